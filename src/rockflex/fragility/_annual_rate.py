@@ -2,16 +2,20 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._checks import in_range, instance, positive
 from rockflex._errors import InputError
+from rockflex.fragility._arguments import checked_confidence
 from rockflex.fragility._curve import Curve, Fragility, checked_curve
 from rockflex.fragility._hazard import HazardCurve
 from rockflex.fragility._lognormal import LognormalFragility
+from rockflex.fragility._recordings import limits
 
+NODES = 12  # of Gauss and Legendre in a segment of a hazard curve
 SMALLEST = 60.0  # in ln(IM): the tail below the curve's lower end is integrated this far
 
 
@@ -28,6 +32,11 @@ class AnnualRate:
         because hazard curves flatten towards small measures. Infinite if the integral diverges.
     above : float
         Largest possible rate in 1/year from larger measures: the rate of the last point.
+    low, high : float
+        Confidence limits of `rate`, if a confidence was given; NaN otherwise.
+    extrapolated : float
+        Part of `rate` in 1/year from measures outside those of the runs, where the fragility is extrapolated; NaN if
+        the measures of the runs are not known.
 
     Examples
     --------
@@ -41,6 +50,9 @@ class AnnualRate:
     rate: float
     below: float
     above: float
+    low: float = math.nan
+    high: float = math.nan
+    extrapolated: float = math.nan
 
     @property
     def beyond(self) -> float:
@@ -52,7 +64,9 @@ class AnnualRate:
         return -math.expm1(-self.rate * positive("years", years, "years", zero=True))
 
 
-def annual_rate(hazard: HazardCurve, fragility: Fragility | Curve) -> AnnualRate:
+def annual_rate(
+    hazard: HazardCurve, fragility: Fragility | Curve, *, confidence: float | None = None
+) -> AnnualRate:
     """Integrate a fragility curve over a hazard curve, λ_f = ∫ P(im) |dλ(im)|.
 
     Between two points λ is a power law; adaptive Gauss-Kronrod quadrature in log IM integrates all segments at once.
@@ -62,13 +76,17 @@ def annual_rate(hazard: HazardCurve, fragility: Fragility | Curve) -> AnnualRate
     hazard
         The hazard curve, in the measure and the unit of the fragility.
     fragility
-        A fit with `probability`, or a function of an array of measures, such as
-        ``lambda im: outcomes.exceedance(im, 0.01)``.
+        A fit with `probability`, such as ``outcomes.curve(0.01)``, or a function of an array of measures.
+    confidence
+        Confidence of a band, in [0, 1), for a fit with a covariance: quantiles of the rates for parameters drawn from
+        Student's t with G - 1 degrees of freedom, where G is the number of recordings. It is the scatter of the records
+        alone, not that of the hazard. Default: no band.
 
     Raises
     ------
     InputError
-        If the probabilities are not finite numbers from 0 to 1.
+        If the probabilities are not finite numbers from 0 to 1, the spectral accelerations of curve and fragility are
+        known to be of different damping, or a band is wanted of a fragility that has none.
 
     Examples
     --------
@@ -82,7 +100,39 @@ def annual_rate(hazard: HazardCurve, fragility: Fragility | Curve) -> AnnualRate
     """
     instance("hazard", hazard, HazardCurve)
     probability = checked_curve(fragility)
-    return AnnualRate(_covered(hazard, probability), _below(hazard, probability), float(hazard.rate[-1]))
+    hazard.check_damping(getattr(fragility, "damping", None))
+    im, share = quadrature(hazard)
+    low, high = (math.nan, math.nan) if confidence is None else _band(fragility, im, share, confidence)
+    ends, outside = getattr(fragility, "measured", None), math.nan
+    if ends is not None:
+        outside = float(np.sum((probability(im) * share)[(im < ends[0]) | (im > ends[1])]))
+    rate, below = _covered(hazard, probability), _below(hazard, probability)
+    return AnnualRate(rate, below, float(hazard.rate[-1]), low, high, outside)
+
+
+def quadrature(hazard: HazardCurve) -> tuple[Array, Array]:
+    """Measures and weights: ∫ P |dλ| is close to the sum of P at these measures times the weights.
+
+    Gauss and Legendre's rule in log IM, in each segment of the curve.
+    """
+    points, shares = np.polynomial.legendre.leggauss(NODES)
+    step = 0.5 + 0.5 * points
+    start, width, k = np.log(hazard.im[:-1]), np.diff(np.log(hazard.im)), hazard.slopes
+    im = np.exp(start[:, None] + width[:, None] * step)
+    falls = (k * width * hazard.rate[:-1])[:, None] * np.exp(-np.outer(k * width, step))
+    return im.ravel(), (0.5 * shares * falls).ravel()
+
+
+def _band(fragility: Any, im: Array, share: Array, confidence: float) -> tuple[float, float]:
+    wanted = checked_confidence(confidence)
+    if not hasattr(fragility, "drawn"):
+        raise InputError(
+            f"confidence needs a fit that knows its scatter, such as outcomes.curve(0.01), but "
+            f"{type(fragility).__name__} was given. Leave confidence out for the rate alone.",
+            field="confidence",
+        )
+    low, high = limits(fragility.drawn(im) @ share, wanted)
+    return float(low), float(high)
 
 
 def risk_targeted_median(

@@ -6,13 +6,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
+from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError
 from rockflex.fragility._arguments import flags, log_column, same_length
-from rockflex.fragility._lognormal import LognormalFragility
+from rockflex.fragility._lognormal import LognormalFragility, covariance_of_scores
+from rockflex.fragility._recordings import Recordings
+from rockflex.fragility._regression import fit_capacity_lines
 
 
-def fit_capacities(im: ArrayLike, censored: ArrayLike | None = None) -> LognormalFragility:
+def fit_capacities(
+    im: ArrayLike,
+    censored: ArrayLike | None = None,
+    groups: ArrayLike | None = None,
+    *,
+    damping: float | None = None,
+) -> LognormalFragility:
     """Fit a lognormal fragility to the capacities of records.
 
     Without censored records: mean and standard deviation (n - 1) of the logarithms, the method of moments of Baker 2015
@@ -26,11 +34,17 @@ def fit_capacities(im: ArrayLike, censored: ArrayLike | None = None) -> Lognorma
         record the largest measure that was tried.
     censored : array_like, shape (n,), optional
         Whether the record never reached the limit.
+    groups : array_like, shape (n,), optional
+        Name or number of the recording of every record, the same for both components. Without it the band assumes
+        independent records, and is too narrow where recordings repeat.
+    damping
+        As in `fit_logistic`.
 
     Raises
     ------
     InputError
-        If a value is not positive, or fewer than two different capacities are known.
+        If a value is not positive, fewer than two different capacities are known, or the name of a recording is
+        missing.
 
     Examples
     --------
@@ -41,7 +55,8 @@ def fit_capacities(im: ArrayLike, censored: ArrayLike | None = None) -> Lognorma
     """
     x = log_column("im", im, "Leave those records out.")
     above = np.zeros(x.size, dtype=np.bool_) if censored is None else flags("censored", censored)
-    same_length(im=x, censored=above)
+    recordings = None if groups is None else Recordings.of(groups)
+    same_length(im=x, censored=above, **({} if recordings is None else {"groups": recordings.codes}))
     known = x[~above]
     if known.size < 2 or np.ptp(known) == 0.0:
         raise InputError(
@@ -54,7 +69,24 @@ def fit_capacities(im: ArrayLike, censored: ArrayLike | None = None) -> Lognorma
     else:
         mean, beta, n = float(known.mean()), float(known.std(ddof=1)), known.size
         method, covariance = "capacities, moments", np.diag([beta**2 / n, beta**2 / (2.0 * (n - 1))])
-    return LognormalFragility(math.exp(mean), beta, covariance, x.size, method)
+    if recordings is None:
+        return LognormalFragility(math.exp(mean), beta, covariance, x.size, method, damping=damping)
+    median, replicates = math.exp(mean), recordings.without_each(lambda some: _scores(x, above, some, mean, beta))
+    covariance = covariance_of_scores(replicates, median, beta)
+    return LognormalFragility(median, beta, covariance, x.size, method, recordings.count, damping)
+
+
+def _scores(x: Array, above: Bools, weights: Array, mean: float, beta: float) -> Array:
+    """Intercept and slope of the normal score for each row of weights, by the method of the fit of all records."""
+    if above.any():
+        shifted = fit_capacity_lines((x - mean) / beta, -above.astype(float), weights, np.array([0.0, 1.0]))
+        slope = shifted[:, 1] / beta
+        return np.column_stack((shifted[:, 0] - slope * mean, slope))
+    size = weights.sum(axis=1)
+    with np.errstate(all="ignore"):  # NaN where one record is left
+        means = weights @ x / size
+        slope = 1.0 / np.sqrt((weights * (x - means[:, None]) ** 2).sum(axis=1) / (size - 1.0))
+    return np.column_stack((-means * slope, slope))
 
 
 def _maximum_likelihood(known: Array, above: Array) -> tuple[float, float]:

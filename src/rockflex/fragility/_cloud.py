@@ -12,6 +12,7 @@ from rockflex._html import HtmlTable
 from rockflex._values import Value
 from rockflex.fragility._arguments import checked_confidence, fractions, log_at, log_column, log_measures, same_length
 from rockflex.fragility._predictor import standard_error
+from rockflex.fragility._recordings import Recordings, jackknifed, quantile_of_t
 from rockflex.fragility._regression import fit_lines
 
 
@@ -33,7 +34,9 @@ class CloudFit(HtmlTable, Value):
     n : int
         Number of runs.
     covariance : ndarray, shape (2, 2)
-        Covariance of (c1, c2); read-only.
+        Covariance of (c1, c2), read-only: the jackknife over recordings; for independent runs that of least squares.
+    n_groups : int
+        Number of recordings; 0 if the runs were taken as independent.
 
     Examples
     --------
@@ -52,6 +55,7 @@ class CloudFit(HtmlTable, Value):
     r2: float
     n: int
     covariance: Array
+    n_groups: int = 0
 
     def __repr__(self) -> str:
         line = f"c1={self.c1:.4g}, c2={self.c2:.4g}, dispersion={self.dispersion:.4g}"
@@ -69,11 +73,14 @@ class CloudFit(HtmlTable, Value):
         return self.median(im) * np.exp(self.dispersion * ndtri(fractions("p", p)))
 
     def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
-        """Lower and upper confidence limits of the median, from Student's t with n - 2 degrees of freedom."""
-        from scipy.special import stdtrit
+        """Lower and upper confidence limits of the median.
 
+        Student's t with `n_groups` - 1 degrees of freedom; n - 2 for independent runs. NaN if all runs belong to one
+        recording.
+        """
         x = log_at(im)
-        half = stdtrit(self.n - 2, 0.5 + 0.5 * checked_confidence(confidence)) * standard_error(x, self.covariance)
+        times = quantile_of_t(checked_confidence(confidence), self.n_groups or self.n - 1)
+        half = times * standard_error(x, self.covariance)
         centre = self.c1 + self.c2 * x
         with np.errstate(over="ignore"):
             return np.exp(centre - half), np.exp(centre + half)
@@ -88,10 +95,8 @@ class CloudFit(HtmlTable, Value):
         return ndtr(above / self.dispersion)
 
 
-def fit_cloud(im: ArrayLike, response: ArrayLike) -> CloudFit:
+def fit_cloud(im: ArrayLike, response: ArrayLike, groups: ArrayLike | None = None) -> CloudFit:
     """Fit log(y) = c1 + c2 log(IM) by least squares (Silva & Stojadinović 2024, Figures 6 and 7).
-
-    The covariance assumes independent runs. If several runs share a record, use `bootstrap_band` with `groups`.
 
     Parameters
     ----------
@@ -99,12 +104,15 @@ def fit_cloud(im: ArrayLike, response: ArrayLike) -> CloudFit:
         Intensity measure of every run, in any one unit; n >= 3.
     response : array_like, shape (n,)
         Peak response of every run, in any one unit: the runs that rocked and did not overturn.
+    groups : array_like, shape (n,), optional
+        Name or number of the recording of every run, as in `fit_logistic`. Without it the band assumes independent
+        runs, and is too narrow where recordings repeat.
 
     Raises
     ------
     InputError
-        If a value is not positive and finite, fewer than three runs are given, or all have the same measure or the
-        same response.
+        If a value is not positive and finite, fewer than three runs are given, all have the same measure or the same
+        response, or the name of a recording is missing.
 
     Examples
     --------
@@ -117,12 +125,13 @@ def fit_cloud(im: ArrayLike, response: ArrayLike) -> CloudFit:
     y = log_column(
         "response", response, "A cloud holds the runs that responded: leave the others out, or see fit_outcomes."
     )
-    same_length(im=x, response=y)
-    return fit_line(x, y)[0]
+    recordings = None if groups is None else Recordings.of(groups)
+    same_length(im=x, response=y, **({} if recordings is None else {"groups": recordings.codes}))
+    return fit_line(x, y, recordings)[0]
 
 
-def fit_line(x: Array, y: Array) -> tuple[CloudFit, Array]:
-    """Least squares through logarithms of equal length; the fit and its residuals."""
+def fit_line(x: Array, y: Array, recordings: Recordings | None = None) -> tuple[CloudFit, Array | None]:
+    """Least squares through logarithms of equal length; c1, c2 and ln(dispersion) without each recording."""
     if x.size < 3 or np.ptp(y) == 0.0:
         raise InputError(
             f"A cloud needs at least 3 runs with different responses, but {x.size} runs with {np.unique(y).size} "
@@ -130,5 +139,17 @@ def fit_line(x: Array, y: Array) -> tuple[CloudFit, Array]:
         )
     c1, c2, mean, n, sxx, syy, residual = (float(value[0]) for value in fit_lines(x, y, np.ones((1, x.size))))
     variance = residual / (n - 2.0)
-    covariance = variance * np.array([[1.0 / n + mean**2 / sxx, -mean / sxx], [-mean / sxx, 1.0 / sxx]])
-    return CloudFit(c1, c2, math.sqrt(variance), 1.0 - residual / syy, x.size, covariance), y - (c1 + c2 * x)
+    count, replicates = 0, None
+    if recordings is None:
+        covariance = variance * np.array([[1.0 / n + mean**2 / sxx, -mean / sxx], [-mean / sxx, 1.0 / sxx]])
+    else:
+        count, replicates = int(recordings.held.sum()), recordings.without_each(lambda some: _parameters(x, y, some))
+        covariance = jackknifed(replicates[recordings.held])[:2, :2]
+    fit = CloudFit(c1, c2, math.sqrt(variance), 1.0 - residual / syy, x.size, covariance, count)
+    return fit, replicates
+
+
+def _parameters(x: Array, y: Array, weights: Array) -> Array:
+    lines = fit_lines(x, y, weights)
+    with np.errstate(all="ignore"):  # NaN where too few runs are left
+        return np.column_stack((lines.intercept, lines.slope, np.log(lines.dispersion)))

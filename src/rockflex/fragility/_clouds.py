@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rockflex._arrays import Array
+from rockflex._arrays import Array, Bools
 from rockflex._cases import cases
 from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
@@ -154,6 +154,11 @@ def fit_each_cloud(
     return fits, reasons
 
 
+def recordings_of(runs: "pd.DataFrame") -> "pd.Series[Any] | None":
+    """Column with the recording of every run, if the table has it."""
+    return runs["group"].astype(str) if "group" in runs else None
+
+
 def _groups(runs: "pd.DataFrame", measure: str) -> "Iterator[tuple[str, str, pd.DataFrame]]":
     """Runs of each structure with each model."""
     needed = ["structure", "model", "status", "max_rotation", *DISPLACEMENTS, "nominal_overturning", measure]
@@ -173,14 +178,15 @@ def _fits(
     im, rotation = (solved[name].to_numpy(dtype=float) for name in (measure, "max_rotation"))
     rocks = ~fallen & rocked(solved, threshold).to_numpy(dtype=bool)
     lifts = UPLIFT.exceeded(solved).to_numpy(dtype=bool)
-    outcomes = fit_outcomes(im, rotation, fallen, uplifted=lifts, threshold=threshold)
-    relative, total = (_line(im[rocks], solved[name].to_numpy(dtype=float)[rocks]) for name in DISPLACEMENTS)
+    groups = recordings_of(solved)
+    outcomes = fit_outcomes(im, rotation, fallen, groups, uplifted=lifts, threshold=threshold)
+    relative, total = (_line(im, solved[name].to_numpy(dtype=float), rocks, groups) for name in DISPLACEMENTS)
     return CloudFits(structure, model, measure, outcomes, relative, total, len(group) - len(solved))
 
 
-def _line(im: Array, values: Array) -> CloudFit | None:
-    """The fit, or None if it fails."""
+def _line(im: Array, values: Array, rocked: Bools, groups: "pd.Series[Any] | None") -> CloudFit | None:
+    """The fit of the runs that rocked, or None if it fails."""
     try:
-        return fit_cloud(im, values)
+        return fit_cloud(im[rocked], values[rocked], None if groups is None else groups[rocked])
     except InputError:
         return None

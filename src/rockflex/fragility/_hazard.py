@@ -1,5 +1,6 @@
 """Seismic hazard curves."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
@@ -8,11 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite_vector, positive
+from rockflex._checks import finite_vector, in_range, positive
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.fragility._arguments import log_at
 from rockflex.fragility._openquake_curve import read_exported_curve
+
+DAMPING = 0.05  # of the spectra of hazard analyses, and of OpenQuake's and Pelicun's SA
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -25,11 +28,14 @@ class HazardCurve(Value):
         Intensity measures, positive and rising, two at least, in the unit of the fragility curve.
     rate : array_like, shape (n,)
         Annual rates λ in 1/year at which they are exceeded, positive and falling.
+    damping
+        Damping ratio of a spectral measure, by default the 5 % of hazard analyses; other measures have none.
 
     Raises
     ------
     InputError
-        If the columns differ in length, are not positive, or do not rise and fall as they should.
+        If the columns differ in length, are not positive, or do not rise and fall as they should, or the damping is
+        not between 0 and 1.
 
     Examples
     --------
@@ -41,8 +47,9 @@ class HazardCurve(Value):
 
     im: Array
     rate: Array
+    damping: float
 
-    def __init__(self, im: ArrayLike, rate: ArrayLike) -> None:
+    def __init__(self, im: ArrayLike, rate: ArrayLike, *, damping: float = DAMPING) -> None:
         measures, rates = finite_vector("im", im, "one unit"), finite_vector("rate", rate, "1/year")
         if measures.size != rates.size or measures.size < 2:
             raise InputError(
@@ -59,10 +66,21 @@ class HazardCurve(Value):
                 f"rate must be positive and fall from point to point, but rate[{bad[0]}] = {rates[bad[0]]:g} does not. "
                 "Give annual rates of exceedance; drop the points at which the rate is zero."
             )
-        vars(self).update(im=measures, rate=rates)
+        ratio = in_range("damping", damping, 0.0, 1.0, hint="5 % of critical is damping=0.05.")
+        vars(self).update(im=measures, rate=rates, damping=ratio)
+
+    def check_damping(self, damping: float | None) -> None:
+        """Raise an InputError if a fragility's spectral measure is of another damping; None is not known, or none."""
+        if damping is not None and not math.isclose(damping, self.damping, rel_tol=1e-6):
+            raise InputError(
+                f"The fragility is in a spectral measure at {damping:.4g} of critical damping, but the hazard curve is at "
+                f"{self.damping:g}. Fit the runs to sa_t1_5, Sa(T₁) at 5 %, or give the curve of that damping, "
+                f"HazardCurve(im, rate, damping={damping:.4g}).",
+                field="damping",
+            )
 
     @classmethod
-    def from_poe(cls, im: ArrayLike, poe: ArrayLike, years: float) -> Self:
+    def from_poe(cls, im: ArrayLike, poe: ArrayLike, years: float, *, damping: float = DAMPING) -> Self:
         """Return the curve of a Poisson process whose probabilities of exceedance are known for a number of years.
 
         The annual rate is -ln(1 - poe)/years.
@@ -75,6 +93,8 @@ class HazardCurve(Value):
             Probabilities that they are exceeded at least once in `years`, between 0 and 1, falling.
         years
             Years that the probabilities refer to, often 1 or 50.
+        damping
+            Damping ratio of a spectral measure.
 
         Raises
         ------
@@ -100,7 +120,7 @@ class HazardCurve(Value):
             given = f"poe[{i}] = {chances[i]:g} was given"
             raise InputError(f"poe must lie between 0 and 1, but {given}.{why}", field="poe")
         with np.errstate(over="ignore"):  # rates that are not finite are rejected
-            return cls(im, -np.log1p(-chances) / span)
+            return cls(im, -np.log1p(-chances) / span, damping=damping)
 
     @classmethod
     def from_openquake_csv(cls, path: str | Path, *, site: tuple[float, float] | str | None = None) -> Self:

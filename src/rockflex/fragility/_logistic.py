@@ -14,6 +14,13 @@ from rockflex._html import HtmlTable
 from rockflex._values import Value
 from rockflex.fragility._arguments import checked_confidence, flags, log_at, log_measures, same_length
 from rockflex.fragility._predictor import Standardised, standard_error
+from rockflex.fragility._recordings import (
+    ONE_RECORDING,
+    Recordings,
+    drawn,
+    jackknifed,
+    quantile_of_t,
+)
 from rockflex.fragility._regression import Scoring, fit_curves, information
 from rockflex.fragility._unanimous import UnanimousOutcome
 
@@ -30,7 +37,8 @@ class LogisticFit(HtmlTable, Value):
     b0, b1 : float
         Intercept (at IM = 1) and slope.
     covariance : ndarray, shape (2, 2)
-        Covariance of (b0, b1): inverse of the Fisher information at the estimate, without the penalty; read-only.
+        Covariance of (b0, b1), read-only: the jackknife over recordings; for independent runs the inverse of the Fisher
+        information at the estimate, without the penalty.
     n, n_events : int
         Number of runs, and of those in which the outcome happened.
     method : str
@@ -40,6 +48,12 @@ class LogisticFit(HtmlTable, Value):
         finite slope.
     note : str
         Warnings about the curve; empty if there are none.
+    n_groups : int
+        Number of recordings; 0 if the runs were taken as independent.
+    damping : float or None
+        Damping ratio of the spectral acceleration or displacement that IM is; None for other measures.
+    measured : tuple of float, or None
+        Smallest and largest measure of the runs; outside, the curve is extrapolated.
 
     Examples
     --------
@@ -59,6 +73,9 @@ class LogisticFit(HtmlTable, Value):
     method: Method
     separated: bool
     note: str
+    n_groups: int = 0
+    damping: float | None = None
+    measured: tuple[float, float] | None = None
 
     def __repr__(self) -> str:
         rises = f"median={self.median:.4g}, dispersion={self.dispersion:.4g}, " if self.b1 > 0.0 else ""
@@ -99,16 +116,29 @@ class LogisticFit(HtmlTable, Value):
         return expit(self.b0 + self.b1 * log_at(im))
 
     def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
-        """Lower and upper confidence limits of the probability: delta method on b0 + b1 log IM, then the curve."""
-        from scipy.special import expit, ndtri
+        """Lower and upper confidence limits of the probability, from those of b0 + b1 log IM.
+
+        Student's t with `n_groups` - 1 degrees of freedom; the normal distribution for independent runs. NaN if all
+        runs belong to one recording.
+        """
+        from scipy.special import expit
 
         x = log_at(im)
-        half = ndtri(0.5 + 0.5 * checked_confidence(confidence)) * standard_error(x, self.covariance)
+        half = quantile_of_t(checked_confidence(confidence), self.n_groups) * standard_error(x, self.covariance)
         centre = self.b0 + self.b1 * x
         return expit(centre - half), expit(centre + half)
 
+    def drawn(self, im: Array) -> Array:
+        """Probabilities at `im`, shape (m,), for 2048 parameters drawn from the t distribution of the estimate."""
+        from scipy.special import expit
 
-def fit_logistic(im: ArrayLike, outcome: ArrayLike) -> LogisticFit:
+        b = drawn((self.b0, self.b1), self.covariance, self.n_groups)
+        return expit(b[:, :1] + b[:, 1:] * np.log(im))
+
+
+def fit_logistic(
+    im: ArrayLike, outcome: ArrayLike, groups: ArrayLike | None = None, *, damping: float | None = None
+) -> LogisticFit:
     """Fit a logistic curve by maximum likelihood (Silva & Stojadinović 2024, Figure 5).
 
     If one measure separates the runs with the outcome from those without, the likelihood increases with the slope
@@ -122,12 +152,18 @@ def fit_logistic(im: ArrayLike, outcome: ArrayLike) -> LogisticFit:
         Intensity measure of every run, in any one unit.
     outcome : array_like, shape (n,)
         Whether it happened: booleans, or 1 and 0.
+    groups : array_like, shape (n,), optional
+        Name or number of the recording of every run, the same for both components and all scales: the column `group` of
+        a study. Without it the band assumes independent runs, and is too narrow where recordings repeat.
+    damping
+        Damping ratio of the spectral acceleration or displacement that `im` is, which `annual_rate` compares with the
+        hazard curve's. Default: not known, or another measure.
 
     Raises
     ------
     InputError
-        If a measure is not positive and finite, all are the same, an outcome is neither true nor false, or all
-        outcomes are alike.
+        If a measure is not positive and finite, all are the same, an outcome is neither true nor false, all
+        outcomes are alike, or the name of a recording is missing.
 
     Examples
     --------
@@ -140,22 +176,38 @@ def fit_logistic(im: ArrayLike, outcome: ArrayLike) -> LogisticFit:
     """
     x = log_measures(im)
     y = flags("outcome", outcome)
-    same_length(im=x, outcome=y)
+    recordings = None if groups is None else Recordings.of(groups)
+    same_length(im=x, outcome=y, **({} if recordings is None else {"groups": recordings.codes}))
+    return fit_curve(x, y, recordings, damping)[0]
+
+
+def fit_curve(
+    x: Array, y: Bools, recordings: Recordings | None, damping: float | None
+) -> tuple[LogisticFit, Array | None]:
+    """Fit a curve through logarithms of equal length; the fit, and its parameters without each recording."""
     if y.all() or not y.any():
-        alike = UnanimousOutcome(bool(y[0]), y.size)
+        alike = UnanimousOutcome(bool(y[0]), y.size, 0 if recordings is None else int(recordings.held.sum()))
         raise InputError(
             f"outcome is {alike.outcome} in all {alike.n} runs, so there is no curve to fit. {alike.note} "
             "Add runs at other measures, or use fit_outcomes, which accepts such a group."
         )
     scaled = Standardised(x)
     unit = np.ones((1, x.size))
-    curve = fit_curves(scaled.x, y, unit, Scoring(CONVERGED / y.size, CONVERGED, augmented=True))
+    scoring = Scoring(CONVERGED / y.size, CONVERGED, augmented=True)
+    curve = fit_curves(scaled.x, y, unit, scoring)
     if not np.isfinite(curve.parameters).all():
         raise SolverError(
             f"Firth's penalised likelihood did not converge for {y.size} runs with {int(y.sum())} events. "
             "Look for a single run far from all others."
         )
-    covariance = np.linalg.inv(information(scaled.x, unit, curve.parameters)[0])
+    count, replicates = 0, None
+    if recordings is None:
+        covariance = np.linalg.inv(information(scaled.x, unit, curve.parameters)[0])
+    else:
+        count = int(recordings.held.sum())
+        replicates = recordings.without_each(lambda some: fit_curves(scaled.x, y, some, scoring).parameters)
+        covariance = jackknifed(replicates[recordings.held])
+        replicates = scaled.back(replicates)
     b0, b1, covariance = scaled.unscaled(curve.parameters[0], covariance)
     separated = bool(curve.separated[0])
     method: Method = "Firth" if curve.penalised[0] else "maximum likelihood"
@@ -170,7 +222,12 @@ def fit_logistic(im: ArrayLike, outcome: ArrayLike) -> LogisticFit:
         notes.append("Nearly separated: maximum likelihood did not converge, so Firth's penalty was used.")
     if b1 <= 0.0:
         notes.append(f"The probability does not rise with im (b1 = {b1:.3g}), so there is no median or dispersion.")
-    return LogisticFit(b0, b1, covariance, y.size, int(y.sum()), method, separated, " ".join(notes))
+    if count == 1:
+        notes.append(ONE_RECORDING)
+    events = int(y.sum())
+    ends, note = (math.exp(x.min()), math.exp(x.max())), " ".join(notes)
+    fit = LogisticFit(b0, b1, covariance, y.size, events, method, separated, note, count, damping, ends)
+    return fit, replicates
 
 
 def _gap(x: Array, y: Bools) -> tuple[float, float]:

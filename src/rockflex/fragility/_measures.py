@@ -74,7 +74,8 @@ def compare_measures(
     for name in measures.columns:
         x = log_measures(measures[name].to_numpy(), f"measures[{shown(name)}]")
         same_length(measures=x, response=y)
-        fit, residuals = fit_line(x, y)
+        fit, _ = fit_line(x, y)
+        residuals = y - (fit.c1 + fit.c2 * x)
         row = {
             "c2": fit.c2,
             "dispersion": fit.dispersion,

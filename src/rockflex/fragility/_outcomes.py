@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Self, overload
+from typing import Any, NamedTuple, Self, TypeAlias, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,10 +14,11 @@ from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
 from rockflex._shown import shown
 from rockflex._values import Value
-from rockflex.fragility._arguments import flags, log_at, log_measures, same_length
-from rockflex.fragility._cloud import CloudFit, fit_cloud
+from rockflex.fragility._arguments import checked_confidence, flags, log_at, log_measures, same_length
+from rockflex.fragility._cloud import CloudFit, fit_line
 from rockflex.fragility._limit_states import ROCKED
-from rockflex.fragility._logistic import LogisticFit, fit_logistic
+from rockflex.fragility._logistic import LogisticFit, fit_curve
+from rockflex.fragility._recordings import Recordings, drawn, jackknifed, limits
 from rockflex.fragility._unanimous import UnanimousOutcome
 from rockflex.fragility._words import curve_words, power_law
 
@@ -93,6 +94,15 @@ class OutcomeFragility(HtmlTable, Value):
     notes : tuple of str
         Warnings about the fits: few runs, or curves that could not be fitted. The `kind` of each is ``"runs"`` or the
         attribute above that it concerns.
+    covariance : ndarray, shape (7, 7)
+        Covariance of the parameters of the total probability, read-only: (b0, b1) of `overturning` and of `rocking`, and
+        (c1, c2, ln dispersion) of `rotation`; zero where there is no curve.
+    n_groups : int
+        Number of recordings; 0 if the runs were taken as independent.
+    damping : float or None
+        Damping ratio of the spectral acceleration or displacement that IM is; None for other measures.
+    measured : tuple of float, or None
+        Smallest and largest measure of the runs; outside, all curves are extrapolated.
 
     Examples
     --------
@@ -117,6 +127,10 @@ class OutcomeFragility(HtmlTable, Value):
     n_rocking: int
     n_overturned: int
     notes: tuple[Note, ...]
+    covariance: Array
+    n_groups: int = 0
+    damping: float | None = None
+    measured: tuple[float, float] | None = None
 
     def __repr__(self) -> str:
         notes = f"; see {len(self.notes)} in notes" if self.notes else ""
@@ -155,6 +169,24 @@ class OutcomeFragility(HtmlTable, Value):
         InputError
             If a measure is not positive, or a limit is below `lowest_limit` or not below `highest_limit`.
         """
+        limits = self._checked(limit)
+        falls = self.overturning.probability(im)
+        rocks = np.full_like(falls, np.nan) if self.rocking is None else self.rocking.probability(im)
+        beyond = np.full_like(limits, np.nan) if self.rotation is None else self.rotation.exceedance(im, limit)
+        return total_probability(falls, rocks, beyond)
+
+    def curve(self, limit: float) -> "RotationFragility":
+        """Fragility curve of a rotation in rad, with its band, for `annual_rate` and the files of risk programs.
+
+        Raises
+        ------
+        InputError
+            If the limit is below the threshold of rocking or not below `highest_limit`.
+        """
+        self._checked(positive("limit", limit, "rad"))
+        return RotationFragility(self, float(limit))
+
+    def _checked(self, limit: ArrayLike) -> Array:
         limits = np.exp(log_at(limit, "limit"))
         if (limits < self.lowest_limit * (1.0 - 1e-12)).any() or (limits >= self.highest_limit).any():
             raise InputError(
@@ -162,19 +194,83 @@ class OutcomeFragility(HtmlTable, Value):
                 "given. Below, a run that does not rock may exceed it, as a base on springs turns without uplift (fit "
                 "the rotations by fit_outcomes without uplifted); above, an overturned run need not exceed it."
             )
-        falls = self.overturning.probability(im)
-        rocks = np.full_like(falls, np.nan) if self.rocking is None else self.rocking.probability(im)
-        beyond = np.full_like(limits, np.nan) if self.rotation is None else self.rotation.exceedance(im, limit)
-        return total_probability(falls, rocks, beyond)
+        return limits
+
+
+@dataclass(frozen=True)
+class RotationFragility:
+    """Fragility curve of a rotation: the total probability of `OutcomeFragility.exceedance` at one limit.
+
+    Attributes
+    ----------
+    outcomes : OutcomeFragility
+        The fits.
+    limit : float
+        Rotation in rad.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> im = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8]
+    >>> rotation = [0.0, 0.0, 0.01, 0.0, 0.02, 0.05, 1.6, 1.6]
+    >>> curve = rf.fit_outcomes(im, rotation, [angle > 1.5 for angle in rotation]).curve(0.02)
+    >>> print(f"{curve.probability(0.5):.3g}")
+    0.747
+    """
+
+    outcomes: OutcomeFragility
+    limit: float
+
+    @property
+    def damping(self) -> float | None:
+        """Damping ratio of the spectral acceleration or displacement that IM is; None for other measures."""
+        return self.outcomes.damping
+
+    @property
+    def measured(self) -> tuple[float, float] | None:
+        """Smallest and largest measure of the runs; outside, the curve is extrapolated."""
+        return self.outcomes.measured
+
+    def probability(self, im: ArrayLike) -> Array:
+        """Probability that the rotation exceeds the limit, of the shape of `im`; NaN if it could not be fitted."""
+        return self.outcomes.exceedance(im, self.limit)
+
+    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
+        """Lower and upper confidence limits of the probability; NaN if there are none.
+
+        Quantiles of the probability for parameters drawn from Student's t with `n_groups` - 1 degrees of freedom; from
+        the normal distribution for independent runs. Outcomes that no run or every run had are taken as certain.
+        """
+        x, wanted = np.exp(log_at(im)), checked_confidence(confidence)
+        low, high = limits(self.drawn(x.ravel()), wanted)
+        return low.reshape(x.shape), high.reshape(x.shape)
+
+    def drawn(self, im: Array) -> Array:
+        """Probabilities at `im`, shape (m,), for 2048 parameters drawn from the t distribution of the estimate."""
+        from scipy.special import expit, ndtr
+
+        fit, x = self.outcomes, np.log(im)
+        parameters = drawn(_parameters(fit), fit.covariance, fit.n_groups)
+        curves = (
+            expit(parameters[:, place : place + 1] + parameters[:, place + 1 : place + 2] * x)
+            if isinstance(curve, LogisticFit)
+            else np.full((len(parameters), x.size), np.nan if curve is None else float(curve.outcome))
+            for place, curve in ((0, fit.overturning), (2, fit.rocking))
+        )
+        c1, c2, spread = (parameters[:, place : place + 1] for place in (4, 5, 6))
+        known = 1.0 if fit.rotation else np.nan
+        return total_probability(*curves, known * ndtr((c1 + c2 * x - np.log(self.limit)) / np.exp(spread)))
 
 
 def fit_outcomes(
     im: ArrayLike,
     rotation: ArrayLike,
     overturned: ArrayLike,
+    groups: ArrayLike | None = None,
     *,
     uplifted: ArrayLike | None = None,
     threshold: float = ROCKED,
+    damping: float | None = None,
 ) -> OutcomeFragility:
     """Fit the three outcomes of a cloud of runs, and the rotations of those that rocked.
 
@@ -190,16 +286,22 @@ def fit_outcomes(
     overturned : array_like, shape (n,)
         Whether the run overturned, by the caller's definition: the rotation reached π/2, or passed the nominal
         0.7 atan(B/h*_1) (columns `status` and `nominal_overturning` of a study).
+    groups : array_like, shape (n,), optional
+        Name or number of the recording of every run, as in `fit_logistic`. Without it bands assume independent runs,
+        and are too narrow where recordings repeat.
     uplifted : array_like, shape (n,), optional
         Whether the base of the run uplifted (column `status`). Default: wherever it turned, as on rigid ground; one
         on springs also turns without uplift.
     threshold
         A run counts as rocking if its base uplifted and its rotation in rad is larger.
+    damping
+        As in `fit_logistic`.
 
     Raises
     ------
     InputError
-        If a value is out of range, all measures are the same, or a run overturned with a rotation up to `threshold`.
+        If a value is out of range, all measures are the same, a run overturned with a rotation up to `threshold`, or
+        the name of a recording is missing.
 
     Examples
     --------
@@ -216,7 +318,9 @@ def fit_outcomes(
     measures = finite_vector("im", im, "one unit")
     rotations, falls = finite_vector("rotation", rotation, "rad"), flags("overturned", overturned)
     lifts = np.ones(falls.size, dtype=bool) if uplifted is None else flags("uplifted", uplifted)
-    same_length(im=measures, rotation=rotations, overturned=falls, uplifted=lifts)
+    recordings = None if groups is None else Recordings.of(groups)
+    numbers = {} if recordings is None else {"groups": recordings.codes}
+    same_length(im=measures, rotation=rotations, overturned=falls, uplifted=lifts, **numbers)
     limit = positive("threshold", threshold, "rad")
     _check(rotations, falls, limit)
 
@@ -224,15 +328,21 @@ def fit_outcomes(
     rocked = stands & moves
     counts = int((~moves).sum()), int(rocked.sum()), int(falls.sum())
     notes = [
-        Note(f"Only {count} of {falls.size} runs {what}: fits of these runs are uncertain, see bootstrap_band.")
+        Note(f"Only {count} of {falls.size} runs {what}: fits of these runs are uncertain.")
         for count, what in zip(counts, ("do not rock", "rock without overturning", "overturn"), strict=True)
         if 0 < count < FEW
     ]
+    shared = _Shared(measures, recordings, damping, notes)
+    overturning, part = shared.curve("overturning", falls, np.ones_like(falls))
+    rocking, other = shared.curve("rocking", moves, stands)
+    initiation, _ = shared.curve("initiation", moves, np.ones_like(falls))
+    line, last = shared.cloud(rotations, rocked)
+    count = 0 if recordings is None else recordings.count
     return OutcomeFragility(
-        overturning=_curve("overturning", measures, falls, notes) or UnanimousOutcome(bool(falls[0]), falls.size),
-        rocking=_curve("rocking", measures[stands], moves[stands], notes),
-        initiation=_curve("initiation", measures, moves, notes) or UnanimousOutcome(bool(moves[0]), moves.size),
-        rotation=_cloud(measures[rocked], rotations[rocked], notes),
+        overturning=overturning or UnanimousOutcome(bool(falls[0]), falls.size, count),
+        rocking=rocking,
+        initiation=initiation or UnanimousOutcome(bool(moves[0]), moves.size, count),
+        rotation=line,
         threshold=limit,
         lowest_limit=float(rotations[~moves].max(initial=limit)),
         highest_limit=float(rotations[falls].min(initial=0.5 * math.pi)),
@@ -240,6 +350,10 @@ def fit_outcomes(
         n_rocking=counts[1],
         n_overturned=counts[2],
         notes=tuple(notes),
+        covariance=_joint((part, other, last), count),
+        n_groups=count,
+        damping=damping,
+        measured=(float(measures.min()), float(measures.max())),
     )
 
 
@@ -258,30 +372,74 @@ def _check(rotations: Array, falls: Bools, threshold: float) -> None:
         )
 
 
-def _curve(name: str, im: Array, outcome: Bools, notes: list[Note]) -> LogisticFit | UnanimousOutcome | None:
-    if outcome.size == 0:
-        notes.append(Note(f"{name}: all runs overturned, so there is nothing to fit.", name))
-        return None
-    if outcome.all() or not outcome.any():
-        alike = UnanimousOutcome(bool(outcome[0]), outcome.size)
-        notes.append(Note(f"{name}: {'all' if alike.outcome else 'none'} of {alike.n} runs. {alike.note}", name))
-        return alike
-    try:
-        fit = fit_logistic(im, outcome)
-    except (InputError, SolverError) as error:
-        notes.append(Note(f"{name}: {error}", name))
-        return None
-    if fit.note:
-        notes.append(Note(f"{name}: {fit.note}", name))
-    return fit
+Part: TypeAlias = tuple[Array, Array | None]
+"""Covariance of the parameters of a part for independent runs, and its parameters without each recording."""
 
 
-def _cloud(im: Array, rotation: Array, notes: list[Note]) -> CloudFit | None:
-    try:
-        return fit_cloud(im, rotation)
-    except InputError as error:
-        notes.append(Note(f"rotation: {error}", "rotation"))
-        return None
+class _Shared(NamedTuple):
+    """What the fits of all parts share."""
+
+    im: Array
+    recordings: Recordings | None
+    damping: float | None
+    notes: list[Note]
+
+    def some(self, chosen: Bools) -> Recordings | None:
+        return None if self.recordings is None else self.recordings.some(chosen)
+
+    def curve(self, name: str, happened: Bools, chosen: Bools) -> tuple[LogisticFit | UnanimousOutcome | None, Part]:
+        """The curve of an outcome of some of the runs."""
+        outcome, some, none = happened[chosen], self.some(chosen), (np.zeros((2, 2)), None)
+        if outcome.size == 0:
+            self.notes.append(Note(f"{name}: all runs overturned, so there is nothing to fit.", name))
+            return None, none
+        if outcome.all() or not outcome.any():
+            alike = UnanimousOutcome(bool(outcome[0]), outcome.size, 0 if some is None else int(some.held.sum()))
+            self.notes.append(Note(f"{name}: {'all' if alike.outcome else 'none'} of {alike.n} runs. {alike.note}", name))
+            return alike, none
+        try:
+            fit, replicates = fit_curve(log_measures(self.im[chosen]), outcome, some, self.damping)
+        except (InputError, SolverError) as error:
+            self.notes.append(Note(f"{name}: {error}", name))
+            return None, none
+        if fit.note:
+            self.notes.append(Note(f"{name}: {fit.note}", name))
+        return fit, (fit.covariance, replicates)
+
+    def cloud(self, rotation: Array, rocked: Bools) -> tuple[CloudFit | None, Part]:
+        """The line through the rotations of the runs that rocked."""
+        try:
+            x, y = log_measures(self.im[rocked]), np.log(rotation[rocked])
+            fit, replicates = fit_line(x, y, self.some(rocked))
+        except InputError as error:
+            self.notes.append(Note(f"rotation: {error}", "rotation"))
+            return None, (np.zeros((3, 3)), None)
+        covariance = np.zeros((3, 3))
+        covariance[:2, :2], covariance[2, 2] = fit.covariance, 0.5 / (fit.n - 2.0)
+        return fit, (covariance, replicates)
+
+
+def _joint(parts: Sequence[Part], count: int) -> Array:
+    """Covariance of the parameters of all parts, which share recordings."""
+    from scipy.linalg import block_diag
+
+    if not count:
+        return block_diag(*(covariance for covariance, _ in parts))
+    zeros = (np.zeros((count, len(covariance))) for covariance, _ in parts)
+    columns = [zero if found is None else found for zero, (_, found) in zip(zeros, parts, strict=True)]
+    return jackknifed(np.column_stack(columns))
+
+
+def _parameters(fit: OutcomeFragility) -> Array:
+    """Parameters of the total probability, in the order of their covariance; zero where there is no curve."""
+    curves = (
+        (curve.b0, curve.b1) if isinstance(curve, LogisticFit) else (0.0, 0.0)
+        for curve in (fit.overturning, fit.rocking)
+    )
+    line = fit.rotation
+    with np.errstate(divide="ignore"):  # runs on one line have no scatter
+        last = (0.0, 0.0, 0.0) if line is None else (line.c1, line.c2, float(np.log(line.dispersion)))
+    return np.array([*(value for pair in curves for value in pair), *last])
 
 
 def total_probability(falls: Array, rocks: Array, beyond: Array) -> Array:

@@ -19,6 +19,10 @@ class Standardised:
         """Other logarithms on the same scale."""
         return (x - self._mean) / self._spread
 
+    def back(self, parameters: Array) -> Array:
+        """Intercepts and slopes for the original logarithms, shape (m, 2)."""
+        return parameters @ self._back.T
+
     def unscaled(self, parameters: Array, covariance: Array) -> tuple[float, float, Array]:
         """Intercept, slope and covariance for the original logarithms."""
         a, b = self._back @ parameters

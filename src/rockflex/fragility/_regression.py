@@ -91,6 +91,47 @@ def information(x: Array, weights: Array, parameters: Array) -> Array:
     return np.moveaxis(np.array([[one, first], [first, second]]), -1, 0)
 
 
+def fit_capacity_lines(x: Array, kind: Array, weights: Array, start: Array) -> Array:
+    """Fit a + b x, the normal score of log(IM)/capacity, to capacities of which some are bounds, by maximum likelihood.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Logarithms of the intensity measure.
+    kind : ndarray, shape (n,)
+        0 where the capacity is x, 1 where it is smaller (the run exceeds the limit), -1 where it is larger.
+    weights : ndarray, shape (m, n)
+        How often each run counts in each fit.
+    start : ndarray, shape (2,)
+        a and b near all solutions, such as those of the fit of all runs.
+
+    Returns
+    -------
+    ndarray, shape (m, 2)
+        a and b; where the likelihood has no maximum nearby, one step of Newton's method from `start`.
+    """
+    from scipy.special import log_ndtr
+
+    known = kind == 0.0
+    b = np.tile(start, (weights.shape[0], 1))
+    first, converged = b, np.zeros(weights.shape[0], dtype=np.bool_)
+    with np.errstate(all="ignore"):
+        for number in range(NEWTON):
+            z = b[:, :1] + b[:, 1:] * x
+            side = np.where(known, 1.0, kind)
+            ratio = np.exp(-0.5 * z**2 - 0.5 * np.log(2.0 * np.pi) - log_ndtr(side * z))  # φ/Φ
+            slope = np.where(known, -z, side * ratio)
+            bend = weights * np.where(known, 1.0, ratio * (ratio + side * z))
+            n_known, (one, cross, second) = weights @ known.astype(float), _moments(x, bend)
+            _, step = _step(x, weights * slope, (one, cross, second + n_known / b[:, 1] ** 2), n_known / b[:, 1])
+            b = b + step
+            first = b if number == 0 else first
+            converged = np.abs(step).max(axis=1) <= STEP * np.abs(start).max()
+            if (converged | ~np.isfinite(b).all(axis=1)).all():
+                break
+    return np.where(converged[:, None] & np.isfinite(b), b, first)
+
+
 class Lines(NamedTuple):
     """Least-squares lines y = intercept + slope x, each field of shape (m,).
 
@@ -145,10 +186,12 @@ def _determinant(moments: tuple[Array, Array, Array]) -> Array:
     return one * second - first**2
 
 
-def _step(x: Array, residual: Array, moments: tuple[Array, Array, Array]) -> tuple[Array, Array]:
-    """Score of the residuals, and the step of the parameters that it makes."""
+def _step(
+    x: Array, residual: Array, moments: tuple[Array, Array, Array], more: Array | float = 0.0
+) -> tuple[Array, Array]:
+    """Score of the residuals, with `more` in that of the slope, and the step of the parameters that it makes."""
     one, first, second = moments
-    a, b = residual.sum(axis=1), residual @ x
+    a, b = residual.sum(axis=1), residual @ x + more
     step = np.column_stack((second * a - first * b, one * b - first * a))
     return np.column_stack((a, b)), step / _determinant(moments)[:, None]
 

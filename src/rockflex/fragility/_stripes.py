@@ -10,15 +10,26 @@ from rockflex._arrays import Array
 from rockflex._checks import finite_vector
 from rockflex._errors import InputError, SolverError
 from rockflex.fragility._arguments import log_measures, same_length
-from rockflex.fragility._lognormal import LognormalFragility
+from rockflex.fragility._lognormal import LognormalFragility, covariance_of_scores
 from rockflex.fragility._predictor import Standardised
+from rockflex.fragility._recordings import Recordings
+from rockflex.fragility._regression import fit_capacity_lines
 
 
-def fit_stripes(im_levels: ArrayLike, n_exceeding: ArrayLike, n_total: ArrayLike) -> LognormalFragility:
+def fit_stripes(
+    im_levels: ArrayLike,
+    n_exceeding: ArrayLike,
+    n_total: ArrayLike,
+    groups: ArrayLike | None = None,
+    *,
+    damping: float | None = None,
+) -> LognormalFragility:
     """Fit a lognormal fragility to stripes by maximum likelihood of the binomial counts.
 
-    A generalised linear model with probit link on log IM (Baker 2015, Earthquake Spectra 31(1), 579-599). The
-    covariance follows from the Fisher information by the delta method.
+    A generalised linear model with probit link on log IM (Baker 2015, Earthquake Spectra 31(1), 579-599). Every stripe
+    runs the same recordings, so its runs and those of the others are not independent: for a band give single runs, or
+    counts by recording, with their `groups`. Without them the covariance is that of independent runs, from the Fisher
+    information by the delta method, and the band is too narrow.
 
     Parameters
     ----------
@@ -26,6 +37,11 @@ def fit_stripes(im_levels: ArrayLike, n_exceeding: ArrayLike, n_total: ArrayLike
         Intensity measure of every stripe, in any one unit.
     n_exceeding, n_total : array_like, shape (k,)
         Number of runs in each stripe that exceed the limit or overturn, and of all its runs.
+    groups : array_like, shape (k,), optional
+        Name or number of the recording of every row, the same for both components; a level then has several rows, such
+        as one for each run, with the counts 0 or 1, and 1.
+    damping
+        As in `fit_logistic`.
 
     Raises
     ------
@@ -44,7 +60,9 @@ def fit_stripes(im_levels: ArrayLike, n_exceeding: ArrayLike, n_total: ArrayLike
     """
     x = log_measures(im_levels, "im_levels")
     total, events = _counts("n_total", n_total, 1), _counts("n_exceeding", n_exceeding, 0)
-    same_length(im_levels=x, n_exceeding=events, n_total=total)
+    recordings = None if groups is None else Recordings.of(groups)
+    numbers = {} if recordings is None else {"groups": recordings.codes}
+    same_length(im_levels=x, n_exceeding=events, n_total=total, **numbers)
     if (events > total).any():
         row = int(np.flatnonzero(events > total)[0])
         raise InputError(
@@ -71,10 +89,17 @@ def fit_stripes(im_levels: ArrayLike, n_exceeding: ArrayLike, n_total: ArrayLike
             f"The fraction of runs that exceed does not rise with im_levels (slope {b:.3g}), so no lognormal capacity "
             "fits. Check the order of the columns."
         )
-    back = np.array([[-1.0 / b, a / b**2], [0.0, -1.0 / b**2]])
-    return LognormalFragility(
-        math.exp(-a / b), 1.0 / b, back @ covariance @ back.T, int(total.sum()), "binomial counts, maximum likelihood"
-    )
+    median, beta, count = math.exp(-a / b), 1.0 / b, 0
+    if recordings is None:
+        back = np.array([[-1.0 / b, a / b**2], [0.0, -1.0 / b**2]])
+        found = back @ covariance @ back.T
+    else:
+        kind, runs, both = np.repeat((1.0, -1.0), x.size), np.concatenate((events, total - events)), np.tile(scaled.x, 2)
+        twice, at = Recordings(np.tile(recordings.codes, 2), recordings.count), np.asarray(result.params)
+        replicates = twice.without_each(lambda some: fit_capacity_lines(both, kind, some * runs, at))
+        found, count = covariance_of_scores(scaled.back(replicates), median, beta), recordings.count
+    method = "binomial counts, maximum likelihood"
+    return LognormalFragility(median, beta, found, int(total.sum()), method, count, damping)
 
 
 def _counts(name: str, values: ArrayLike, least: int) -> Array:

@@ -19,6 +19,8 @@ class UnanimousOutcome:
         Whether it happened in all runs, or in none.
     n : int
         Number of runs.
+    n_groups : int
+        Number of recordings, each of which counts once in a bound; 0 if the runs are taken as independent.
 
     Examples
     --------
@@ -30,6 +32,7 @@ class UnanimousOutcome:
 
     outcome: bool
     n: int
+    n_groups: int = 0
 
     @property
     def note(self) -> str:
@@ -43,10 +46,11 @@ class UnanimousOutcome:
     def bound(self, confidence: float = 0.95) -> float:
         """Exact one-sided bound of the probability averaged over the runs, with the given confidence.
 
-        An upper bound, 1 - (1 - confidence)^(1/n), if it never happened; a lower one, (1 - confidence)^(1/n), if it
-        always did (Clopper & Pearson 1934, Biometrika 26(4), 404-413).
+        An upper bound, 1 - (1 - confidence)^(1/m), if it never happened; a lower one, (1 - confidence)^(1/m), if it
+        always did (Clopper & Pearson 1934, Biometrika 26(4), 404-413). m is the number of recordings, or of independent
+        runs.
         """
-        root = (1.0 - checked_confidence(confidence)) ** (1.0 / self.n)
+        root = (1.0 - checked_confidence(confidence)) ** (1.0 / (self.n_groups or self.n))
         return root if self.outcome else 1.0 - root
 
     def probability(self, im: ArrayLike) -> Array:
