@@ -218,7 +218,8 @@ def test_the_settings_of_the_caller_stay_as_they_are(four):
         before = dict(rcParams)
         figure = plot_history(four[0])
         assert dict(rcParams) == before
-    assert figure.get_facecolor() == (1.0, 1.0, 1.0, 1.0)
+    assert figure.get_facecolor() == (1.0, 0.0, 0.0, 1.0)
+    assert figure.axes[0].yaxis.label.get_fontsize() == 17.0
 
 
 def test_matplotlib_is_imported_late_and_pyplot_never():

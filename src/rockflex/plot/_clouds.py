@@ -21,7 +21,7 @@ from rockflex.plot._study_tables import (
     names_in,
     structure_panels,
 )
-from rockflex.plot._style import BLACK, Look, columns, styled
+from rockflex.plot._style import BLACK, Look, Size, columns, points, styled
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -55,6 +55,7 @@ def plot_clouds(
     *,
     threshold: float = ROCKED,
     nominal: bool = False,
+    size: Size | None = None,
 ) -> Figure:
     r"""Plot the response of runs that rocked without overturning over an intensity measure, one panel per structure.
 
@@ -77,6 +78,9 @@ def plot_clouds(
         A run counts as rocking if its base uplifted and its rotation in rad is larger.
     nominal
         Whether runs that exceed 0.7 atan(B/h*_1) count as overturned, as well as those that reach π/2.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -87,7 +91,7 @@ def plot_clouds(
     ------
     InputError
         If the quantity is unknown, the table lacks a column or holds no solved run, a measure is not positive, or there
-        are too many structures or models.
+        are too many structures or models; or the size is unknown.
 
     Examples
     --------
@@ -108,7 +112,7 @@ def plot_clouds(
     looks = looks_of(names_in(cloud.model for cloud in clouds))
     names = names_in(cloud.structure for cloud in clouds)
     rocked, fallen = pd.concat([cloud.rocked for cloud in clouds]), pd.concat([cloud.fallen for cloud in clouds])
-    with styled():
+    with styled(size=size):
         figure, panels = structure_panels(names, 2, 2.45, measure_name(measure), _QUANTITIES[quantity])
         panels[0].set(xscale="log", yscale="log")
         for axes in panels:
@@ -210,7 +214,7 @@ def _write(axes: Axes, rows: list[tuple[str, str]]) -> None:
     width = max(len(text) for text, _ in rows)  # remarks stand behind, and move no column
     for place, (text, color) in enumerate(reversed([(header, BLACK), *rows])):
         axes.text(
-            0.985, 0.025 + _ROW * place, text.ljust(width), transform=axes.transAxes, color=color, fontsize=_TINY,
-            ha="right", family="DejaVu Sans Mono",
+            0.985, 0.025 + _ROW * place, text.ljust(width), transform=axes.transAxes, color=color,
+            fontsize=points(_TINY), ha="right", family="DejaVu Sans Mono",
             bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.6, "pad": 0.5},
         )  # fmt: skip

@@ -8,7 +8,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.plot._style import BLACK, GRAY, GREEN, LOOKS, ORANGE, PURPLE, RED, SKY, Look, literal
+from rockflex.plot._style import BLACK, GRAY, GREEN, LOOKS, ORANGE, PURPLE, RED, SKY, Look, literal, recoloured
 from rockflex.response import History, Response
 
 
@@ -156,7 +156,7 @@ def _looks(histories: list[History]) -> list[Look]:
                 )
             own = spare.pop(0)
         looks.append(own)
-    return looks
+    return recoloured(looks)
 
 
 def _own_look(history: History, most: int) -> Look | None:

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from rockflex._errors import InputError
 from rockflex.fragility import OVERTURNED, OVERTURNING, beyond, symbol_of_nominal
 from rockflex.plot._study_tables import MARKERS, check_columns, keys_of, names_in, structure_panels
-from rockflex.plot._style import BLACK, BLUE, GREEN, LOOKS, RED, SMALL, Look, columns, literal, styled
+from rockflex.plot._style import BLACK, BLUE, GREEN, LOOKS, RED, SMALL, Look, Size, columns, literal, recoloured, styled
 from rockflex.plot._units import short
 
 if TYPE_CHECKING:
@@ -42,7 +42,9 @@ class _Value(NamedTuple):
     logarithmic: bool
 
 
-def plot_design(table: "pd.DataFrame", target: float | None = None, *, logarithmic: bool | None = None) -> Figure:
+def plot_design(
+    table: "pd.DataFrame", target: float | None = None, *, logarithmic: bool | None = None, size: Size | None = None
+) -> Figure:
     r"""Plot the probability, or the annual rate, of exceeding a limit over the half width, one curve per tendon.
 
     Symbols are the designs, bands those of the table. With a target, a ring marks where each curve meets it, as
@@ -56,6 +58,9 @@ def plot_design(table: "pd.DataFrame", target: float | None = None, *, logarithm
         Largest probability, or annual rate, to be met.
     logarithmic
         Whether the axis of the values is logarithmic, which leaves out zeros. Default: only for rates.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -66,7 +71,7 @@ def plot_design(table: "pd.DataFrame", target: float | None = None, *, logarithm
     ------
     InputError
         If the table lacks a column, has no rows or several kinds of limit, the target is not positive, or there
-        are too many models or tendons.
+        are too many models or tendons; or the size is unknown.
 
     Examples
     --------
@@ -86,9 +91,11 @@ def plot_design(table: "pd.DataFrame", target: float | None = None, *, logarithm
     if len(tendons) > len(MARKERS):
         raise InputError(f"{len(tendons)} tendons were given, but there are {len(MARKERS)} symbols. Plot some of them.")
     found = None if target is None else _least(table, target)
-    looks: dict[str, tuple[Look, str]] = dict(zip(tendons, zip(_LOOKS, MARKERS, strict=False), strict=False))
+    looks: dict[str, tuple[Look, str]] = dict(
+        zip(tendons, zip(recoloured(_LOOKS), MARKERS, strict=False), strict=False)
+    )
     drawn = _Value(value, _words(table, value), value == "rate" if logarithmic is None else logarithmic)
-    with styled():
+    with styled(size=size):
         figure, panels = structure_panels(models, 2, 2.9, "half width $B$ [m]", drawn.name)
         for axes, model in zip(panels, models, strict=True):
             for tendon, (look, marker) in looks.items():

@@ -11,7 +11,22 @@ from matplotlib.lines import Line2D
 from rockflex._checks import instance, one_of
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.plot._style import BLUE, GREEN, LOOKS, ORANGE, RED, SMALL, THEMES, Look, literal, new_figure, styled
+from rockflex.plot._style import (
+    BLUE,
+    GREEN,
+    LOOKS,
+    ORANGE,
+    RED,
+    SMALL,
+    THEMES,
+    Look,
+    Size,
+    literal,
+    narrow,
+    new_figure,
+    recoloured,
+    styled,
+)
 from rockflex.plot._units import readable, short
 from rockflex.study.design.search import BestDesign, Interpolated, margins_of, trade_off
 
@@ -44,7 +59,9 @@ class _Scale:
         return table[self.column].to_numpy(float) / self.divisor
 
 
-def plot_design_search(found: BestDesign, *, theme: Literal["light", "dark"] = "light") -> Figure:
+def plot_design_search(
+    found: BestDesign, *, theme: Literal["light", "dark"] = "light", size: Size | None = None
+) -> Figure:
     """Plot the least cost over the width, and the trade-off of prestress against dissipators at the best width.
 
     Left: the least cost at which all targets are met, as predicted by `trade_off`, in the colour of the limit that
@@ -59,6 +76,9 @@ def plot_design_search(found: BestDesign, *, theme: Literal["light", "dark"] = "
         What `best_design` returned.
     theme
         ``"light"`` or ``"dark"``.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -68,7 +88,7 @@ def plot_design_search(found: BestDesign, *, theme: Literal["light", "dark"] = "
     Raises
     ------
     InputError
-        If the theme is unknown, or too few designs have probabilities of all limits.
+        If the theme is unknown, or too few designs have probabilities of all limits; or the size is unknown.
 
     Examples
     --------
@@ -92,10 +112,11 @@ def plot_design_search(found: BestDesign, *, theme: Literal["light", "dark"] = "
     labels = [each.label for each in found.requirements]
     if len(labels) > len(_LOOKS):
         raise InputError(f"{len(labels)} requirements were given, but there are {len(_LOOKS)} looks for their lines.")
-    looks = dict(zip(labels, _LOOKS, strict=False))
-    with styled(theme):
-        figure = new_figure(7.2 if len(varied) > 1 else 4.2, 3.9)
-        panels: list[Axes] = list(np.atleast_1d(figure.subplots(1, 2 if len(varied) > 1 else 1)))
+    looks = dict(zip(labels, recoloured(_LOOKS), strict=False))
+    with styled(theme, size=size):
+        count = min(len(varied), 2)
+        figure = new_figure(7.2 if count > 1 else 4.2, 0.9 + 3.0 * count if narrow() else 3.9)
+        panels: list[Axes] = list(np.atleast_1d(figure.subplots(*((count, 1) if narrow() else (1, count)))))
         _draw_costs(panels[0], found, varied[0], looks)
         if len(varied) > 1:
             _draw_plane(panels[1], found, between, (varied[-2], varied[-1]), looks)
@@ -112,7 +133,13 @@ def plot_design_search(found: BestDesign, *, theme: Literal["light", "dark"] = "
                     label=name,
                 )
             )  # fmt: skip
-        figure.legend(handles=handles, loc="outside upper center", ncols=2, title=_answer(found), title_fontsize=9.0)
+        figure.legend(
+            handles=handles,
+            loc="outside upper center",
+            ncols=1 if narrow() else 2,
+            title=_answer(found),
+            title_fontsize="medium",
+        )
     return figure
 
 

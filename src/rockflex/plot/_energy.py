@@ -6,14 +6,29 @@ from matplotlib.figure import Figure
 from rockflex._arrays import Array
 from rockflex.modal import Tendon
 from rockflex.plot._curves import curves_of
-from rockflex.plot._style import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SKY, YELLOW, literal, new_figure, styled
+from rockflex.plot._style import (
+    BLACK,
+    BLUE,
+    GRAY,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    RED,
+    SKY,
+    YELLOW,
+    Size,
+    key_beside,
+    literal,
+    new_figure,
+    styled,
+)
 from rockflex.plot._units import readable
 from rockflex.response import History, Response
 
 BROWN, SAND, CLAY = "#7d5a30", "#d8c9a3", "#b8926a"  # of the ground
 
 
-def plot_energy(response: Response) -> Figure:
+def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
     """Plot the stored and dissipated energies, stacked, and the input energy.
 
     The layers are those of `EnergyLedger`, with the energies of the simplified models (Silva & Stojadinović 2024,
@@ -27,6 +42,9 @@ def plot_energy(response: Response) -> Figure:
     ----------
     response
         One response with its history.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -36,7 +54,7 @@ def plot_energy(response: Response) -> Figure:
     Raises
     ------
     InputError
-        If the response has no history.
+        If the response has no history; or the size is unknown.
 
     Examples
     --------
@@ -59,7 +77,7 @@ def plot_energy(response: Response) -> Figure:
     supply = ledger.input[drawn] + start
     factor, unit = readable(float(np.max(np.abs(supply))), "J")
     time = history.time[drawn]
-    with styled():
+    with styled(size=size):
         figure = new_figure(6.3, 3.4)
         axes = figure.subplots()
         if layers:
@@ -74,8 +92,8 @@ def plot_energy(response: Response) -> Figure:
         axes.set(ylim=(0.0, 1.06 * float(np.max(supply)) / factor or 1.0), xlabel="time [s]", ylabel=f"energy [{unit}]")
         title = f"{curve.label} under {literal(curve.response.motion)}, closing error {ledger.closing_error:.1e}"
         axes.set_title(title)
-        handles, labels = axes.get_legend_handles_labels()
-        figure.legend(handles[::-1], labels[::-1], loc="outside right upper")
+        handles, _ = axes.get_legend_handles_labels()
+        key_beside(figure, handles[::-1])
     return figure
 
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex.plot._curves import Curve, curves_of, title_of
-from rockflex.plot._style import BLACK, BLUE, GRAY, RED, letter, literal, new_figure, styled
+from rockflex.plot._style import BLACK, BLUE, GRAY, RED, Size, letter, literal, new_figure, styled
 from rockflex.plot._units import readable
 from rockflex.response import History, Response
 
@@ -17,7 +17,7 @@ FEW = 4  # springs: their forces are drawn as lines, those of more as a map
 _COLORS = (BLUE, RED, BLACK, GRAY)
 
 
-def plot_footing(response: Response, *, title: str | None = None) -> Figure:
+def plot_footing(response: Response, *, title: str | None = None, size: Size | None = None) -> Figure:
     """Plot a base on springs over time: the rise of its edges, the pressure under it, and its share in contact.
 
     The pressure, or the force of each spring where the springs have no area, is a map over the width of the base and
@@ -30,6 +30,9 @@ def plot_footing(response: Response, *, title: str | None = None) -> Figure:
         One response with its history, of a structure on a `Ground` with springs.
     title
         Default: the name of the motion.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -39,7 +42,7 @@ def plot_footing(response: Response, *, title: str | None = None) -> Figure:
     Raises
     ------
     InputError
-        If the response has no history, or its base is not on springs.
+        If the response has no history, or its base is not on springs; or the size is unknown.
 
     Examples
     --------
@@ -59,7 +62,7 @@ def plot_footing(response: Response, *, title: str | None = None) -> Figure:
             "The base of this response is not on springs. Simulate it with "
             "ground=Ground(springs=..., base_inertia=...), or use plot_history."
         )
-    with styled():
+    with styled(size=size):
         figure = new_figure(6.3, 5.4)
         edges, soil, contact = figure.subplots(3, 1, sharex=True, height_ratios=(1.0, 1.3, 0.7))
         _draw_edges(edges, history)

@@ -14,7 +14,7 @@ from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex.fragility import CloudFits, LogisticFit, fit_clouds, observed_fractions, rocked
 from rockflex.plot._study_tables import keys_of, looks_of, measure_name, names_in, structure_panels
-from rockflex.plot._style import GRAY, SHADE, SMALL, Look, columns, styled
+from rockflex.plot._style import GRAY, SHADE, SMALL, Look, Size, columns, styled
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,6 +30,7 @@ def plot_fragility(
     confidence: float | None = None,
     overturning: bool = False,
     bins: SupportsIndex = 0,
+    size: Size | None = None,
 ) -> Figure:
     r"""Plot the probability of rocking over an intensity measure, one panel per structure and one curve per model.
 
@@ -50,6 +51,9 @@ def plot_fragility(
     bins
         Number of groups of equally many runs, sorted by intensity, for which the fraction of rocking runs is marked;
         requires the table. Default: none.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -60,7 +64,7 @@ def plot_fragility(
     ------
     InputError
         If the table lacks a column or holds no solved run of a structure and model, the fits use several measures or
-        another one, bins are given with fits, or there are too many structures or models.
+        another one, bins are given with fits, or there are too many structures or models; or the size is unknown.
 
     Examples
     --------
@@ -77,7 +81,7 @@ def plot_fragility(
     looks = looks_of(names_in(fit.model for fit in fits))
     names = names_in(fit.structure for fit in fits)
     limit = _limit(fits, runs, whole=overturning or groups > 0)
-    with styled():
+    with styled(size=size):
         event = rf"\mathrm{{uplift}},\ θ_{{\mathrm{{max}}}}>{_power(fits[0].outcomes.threshold)}"
         y = "probability" if overturning else f"$P({event})$"
         figure, panels = structure_panels(names, 3, 2.1, measure_name(fits[0].measure), y)

@@ -15,7 +15,7 @@ from rockflex._checks import positive, whole_number
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties, UpliftedModes, frequency_equation, uplifted_modes
 from rockflex.plot._panel import list_beside
-from rockflex.plot._style import GRAY, Look, letter, literal, new_figure, styled
+from rockflex.plot._style import GRAY, Look, Size, columns, letter, literal, narrow, new_figure, styled
 from rockflex.plot._surrogates import surrogate_looks
 from rockflex.study import RockingStructure, properties_of
 
@@ -31,6 +31,7 @@ def plot_frequency_equation(
     *,
     highest: float | None = None,
     side: int | None = None,
+    size: Size | None = None,
 ) -> Figure:
     r"""Plot the frequency equation of an uplifted structure over ω, one curve per model, and mark its zeros.
 
@@ -49,6 +50,9 @@ def plot_frequency_equation(
     side
         1 for motion about the right edge of the base, -1 about the left one. Default: the edge about which the base
         lifts first; both are equal if the structure is symmetric.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -58,7 +62,8 @@ def plot_frequency_equation(
     Raises
     ------
     InputError
-        If there is no structure, one has too few modes, `highest` is not positive, or `side` is neither.
+        If there is no structure, one has too few modes, `highest` is not positive, or `side` is neither; or the size is
+        unknown.
 
     Examples
     --------
@@ -77,7 +82,7 @@ def plot_frequency_equation(
     end = None if highest is None else positive("highest", highest, "ω/ω_1")
     models = {name: _models_of(each, n_modes, side) for name, each in named.items()}
     looks = surrogate_looks(label for each in models.values() for label in each)
-    with styled():
+    with styled(size=size):
         figure = new_figure(6.3, 0.5 + 2.4 * len(named))
         panels: list[Axes] = list(figure.subplots(len(named), 1, squeeze=False).flat)
         for axes, (name, each), mark in zip(panels, models.items(), ascii_uppercase, strict=False):
@@ -90,7 +95,8 @@ def plot_frequency_equation(
             for label, look in looks.items()
         ]
         handles.append(Line2D([], [], color=GRAY, linestyle=":", linewidth=0.9, label=r"$ω_n/ω_1$, fixed base"))
-        figure.legend(handles=handles, loc="outside upper center", ncols=len(handles), handlelength=2.8)
+        across = columns([str(each.get_label()) for each in handles], 0) if narrow() else len(handles)
+        figure.legend(handles=handles, loc="outside upper center", ncols=across, handlelength=2.8)
     return figure
 
 

@@ -12,7 +12,8 @@ from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import PinnedBeam
-from rockflex.plot._style import BLUE, GRAY, SMALL, Look, letter, literal, new_figure, styled
+from rockflex.plot._study_tables import label_plainly
+from rockflex.plot._style import BLUE, GRAY, SMALL, Look, Size, columns, letter, literal, narrow, new_figure, styled
 from rockflex.plot._surrogates import surrogate_looks
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ def plot_frequency_ratios(
     *,
     modes: Sequence[SupportsIndex] = (1, 2),
     mark: float | None = 10.0,
+    size: Size | None = None,
 ) -> Figure:
     """Plot ω*_n/ω_n over the aspect ratio h*_1/B, one panel per mode.
 
@@ -47,6 +49,9 @@ def plot_frequency_ratios(
         Modes to show, counted from 1.
     mark
         Aspect ratio of a vertical gray line; None for none.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -57,7 +62,7 @@ def plot_frequency_ratios(
     ------
     InputError
         If no mode is given, a table lacks a column or has no row of a mode, a limit belongs to no table or has too
-        few modes, or there are too many tables to distinguish.
+        few modes, or there are too many tables to distinguish; or the size is unknown.
 
     Examples
     --------
@@ -75,9 +80,10 @@ def plot_frequency_ratios(
     _check(named, bounds, shown)
     looks = surrogate_looks(str(model) for table in named.values() for model in table["model"])
     dashes = dict(zip(named, _DASHES, strict=False))
-    with styled():
-        figure = new_figure(0.6 + 2.95 * len(shown) + 0.5 * (len(shown) == 1), 3.5)
-        panels: list[Axes] = list(figure.subplots(1, len(shown), squeeze=False).flat)
+    with styled(size=size):
+        rows = len(shown) if narrow() else 1
+        figure = new_figure(0.6 + 2.95 * len(shown) + 0.5 * (len(shown) == 1), 0.9 + 2.6 * rows)
+        panels: list[Axes] = list(figure.subplots(rows, len(shown) // rows, squeeze=False).flat)
         for axes, mode, mark_of_panel in zip(panels, shown, ascii_uppercase, strict=False):
             top = max(_draw(axes, table, mode, looks, dashes[name]) for name, table in named.items())
             for name, beam in bounds.items():
@@ -88,10 +94,14 @@ def plot_frequency_ratios(
                 axes.axvline(mark, color=GRAY, linewidth=1.2, zorder=1.5, label="_mark")
             axes.set_xscale("log")
             axes.margins(x=0.0)
+            if narrow():
+                label_plainly(axes.xaxis)
             axes.set(ylim=(1.0 - (_ROOM - 1.0) * (top - 1.0), 1.0 + _ROOM * (top - 1.0) + 1e-6), xlabel=r"$h^*_1/B$")
             axes.set_ylabel(rf"$ω^*_{{{mode}}}/ω_{{{mode}}}$")
             letter(axes, mark_of_panel)
-        figure.legend(handles=_handles(looks, dashes, bool(bounds), mark), loc="outside upper center", ncols=3)
+        handles = _handles(looks, dashes, bool(bounds), mark)
+        across = columns([str(each.get_label()) for each in handles], 0) if narrow() else 3
+        figure.legend(handles=handles, loc="outside upper center", ncols=across)
     return figure
 
 

@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 
 from rockflex.plot._curves import Curve, curves_of
 from rockflex.plot._panel import add_key, draw_panel, quantities_of, usual_panels
-from rockflex.plot._style import GRAY, SHADE, new_figure, styled
+from rockflex.plot._style import GRAY, SHADE, Size, new_figure, styled
 from rockflex.response import Response
 
 _BAR = 0.025  # height of an uplift bar as a share of the panel
@@ -22,6 +22,7 @@ def plot_history(
     *,
     panels: Sequence[str] | None = None,
     title: str | None = None,
+    size: Size | None = None,
 ) -> Figure:
     """Plot rotation θ, displacements of the top, base moment M_b and base shear V_b over time, one panel each.
 
@@ -46,6 +47,9 @@ def plot_history(
         the top is not known, and with the slip if a base can slide and the edges if one is on springs.
     title
         Default: the name of the motion, if there is only one.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -57,7 +61,7 @@ def plot_history(
     ------
     InputError
         If there are no responses or too many, one has no history, the number of labels differs, or a panel is
-        unknown.
+        unknown; or the size is unknown.
 
     Examples
     --------
@@ -72,7 +76,7 @@ def plot_history(
     curves = curves_of(responses, labels)
     quantities = quantities_of(usual_panels(curves) if panels is None else panels)
     handles: list[Artist] = []
-    with styled():
+    with styled(size=size):
         figure = new_figure(6.3, len(quantities) * max(1.45, 0.155 * (len(curves) + 2)) + 0.8)
         grid: list[Axes] = list(figure.subplots(len(quantities), 1, sharex=True, squeeze=False).flat)
         for axes, quantity, mark in zip(grid, quantities, ascii_uppercase, strict=False):

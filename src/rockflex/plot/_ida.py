@@ -12,7 +12,7 @@ from rockflex._cases import rows_of
 from rockflex._errors import InputError
 from rockflex.fragility import LognormalFragility, fit_capacities
 from rockflex.plot._study_tables import check_columns, measure_name, names_in
-from rockflex.plot._style import BLACK, BLUE, GRAY, RED, SMALL, letter, literal, new_figure, styled
+from rockflex.plot._style import BLACK, BLUE, GRAY, RED, SMALL, Size, letter, literal, narrow, new_figure, styled
 from rockflex.plot._units import short
 
 if TYPE_CHECKING:
@@ -37,7 +37,9 @@ class _Capacities(NamedTuple):
     fit: LognormalFragility | None
 
 
-def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, confidence: float | None = 0.9) -> Figure:
+def plot_ida(
+    runs: "pd.DataFrame", measure: str = "pga", *, confidence: float | None = 0.9, size: Size | None = None
+) -> Figure:
     r"""Plot θ_max over an intensity measure, one curve per record, next to the capacities.
 
     Each structure and model has a row of two panels.
@@ -55,6 +57,9 @@ def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, confidence: float | 
         Column of the intensity measure.
     confidence
         Confidence of the band around the lognormal curve, between 0 and 1; None for no band.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -64,7 +69,8 @@ def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, confidence: float | 
     Raises
     ------
     InputError
-        If the table lacks a column or has no rows, the measure is unknown, or there are too many structures and models.
+        If the table lacks a column or has no rows, the measure is unknown, or there are too many structures and models;
+        or the size is unknown.
 
     Examples
     --------
@@ -86,9 +92,10 @@ def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, confidence: float | 
         raise InputError(
             f"{len(groups)} structures and models are too many for one figure; {_MOST} fit. Plot fewer at a time."
         )
-    with styled():
-        figure = new_figure(6.3, 0.9 + 2.1 * len(groups))
-        grid = figure.subplots(len(groups), 2, sharex=True, squeeze=False)
+    with styled(size=size):
+        across = 1 if narrow() else 2
+        figure = new_figure(6.3, 0.9 + 2.1 * len(groups) * 2 // across)
+        grid = figure.subplots(2 * len(groups) // across, across, sharex=True, squeeze=False).reshape(-1, 2)
         for row, (structure, model) in enumerate(groups):
             left, right = grid[row]
             found = _capacities(rows_of(capacities, structure, model))
@@ -99,9 +106,15 @@ def plot_ida(runs: "pd.DataFrame", measure: str = "pga", *, confidence: float | 
             letter(left, chr(ord("A") + 2 * row))
             letter(right, chr(ord("B") + 2 * row))
         grid[0, 0].set_xlim(0.0, _limit(runs, capacities, measure))
-        for axes in grid[-1]:
+        for axes in grid[-1, -across:]:
             axes.set_xlabel(measure_name(measure))
-        figure.legend(handles=_handles(), loc="outside upper center", ncols=5, columnspacing=1.2, handlelength=1.6)
+        figure.legend(
+            handles=_handles(),
+            loc="outside upper center",
+            ncols=2 if narrow() else 5,
+            columnspacing=1.2,
+            handlelength=1.6,
+        )
     return figure
 
 

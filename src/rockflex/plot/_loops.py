@@ -9,14 +9,16 @@ from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
 from rockflex.plot._base_loops import COLORS, BaseLoops, base_loops, name_of
-from rockflex.plot._style import BLACK, BLUE, GRAY, columns, literal, new_figure, styled
+from rockflex.plot._style import BLACK, BLUE, GRAY, Size, columns, literal, narrow, new_figure, styled
 from rockflex.plot._units import readable
 from rockflex.response import MomentRotation, MomentRotationOnSprings, Response
 
 _PER_ROW = 2
 
 
-def plot_loops(result: MomentRotation | MomentRotationOnSprings | Response, *, title: str | None = None) -> Figure:
+def plot_loops(
+    result: MomentRotation | MomentRotationOnSprings | Response, *, title: str | None = None, size: Size | None = None
+) -> Figure:
     """Plot the resisting moment of a base over its rotation, and the force of each element over its elongation.
 
     The resisting moment M is the sum of the parts of the weight and of the elements, about the pivot about which the
@@ -33,6 +35,9 @@ def plot_loops(result: MomentRotation | MomentRotationOnSprings | Response, *, t
         What `moment_rotation` returned, or a response with its history.
     title
         Default: the name of the motion.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -43,7 +48,7 @@ def plot_loops(result: MomentRotation | MomentRotationOnSprings | Response, *, t
     Raises
     ------
     InputError
-        If `result` is neither, has no history, or is of a base that cannot lift.
+        If `result` is neither, has no history, or is of a base that cannot lift; or the size is unknown.
 
     Examples
     --------
@@ -61,22 +66,26 @@ def plot_loops(result: MomentRotation | MomentRotationOnSprings | Response, *, t
     drawn = [] if loops.edges is None else [_draw_edges]
     drawn += [partial(_draw_element, place=place) for place in range(len(loops.elements))]
     count = len(drawn)
-    rows = max(math.ceil(count / _PER_ROW), 1)
-    beside = math.ceil(count / rows)
-    with styled():
-        figure = new_figure(4.2 + 2.2 * beside, max(3.6, 0.7 + 2.3 * rows))
+    with styled(size=size):
+        rows = count if narrow() else max(math.ceil(count / _PER_ROW), 1)
+        beside = 0 if narrow() else math.ceil(count / rows)
+        figure = new_figure(4.2 + 2.2 * beside, max(3.6, (3.3 if narrow() else 0.7) + 2.3 * rows))
         figure.get_layout_engine().set(w_pad=0.07)  # pyright: ignore
-        grid = figure.add_gridspec(rows, 1 + beside, width_ratios=(1.7, *[1.0] * beside))
-        base = figure.add_subplot(grid[:, 0])
+        if narrow():
+            grid = figure.add_gridspec(1 + rows, 1, height_ratios=(1.4, *[1.0] * rows))
+            base = figure.add_subplot(grid[0, 0])
+        else:
+            grid = figure.add_gridspec(rows, 1 + beside, width_ratios=(1.7, *[1.0] * beside))
+            base = figure.add_subplot(grid[:, 0])
         _draw_base(base, loops)
         for place, draw in enumerate(drawn):
-            row, column = divmod(place, beside)
-            draw(figure.add_subplot(grid[row, 1 + column]), loops)
+            row, column = (1 + place, 0) if narrow() else (place // beside, 1 + place % beside)
+            draw(figure.add_subplot(grid[row, column]), loops)
         lines = base.get_lines()
         names = [str(line.get_label()) for line in lines]
         figure.legend(
             lines, names, loc="outside upper center", ncols=columns(names, 36 + 22 * beside),
-            title=literal(title) if title is not None else loops.title, title_fontsize=9.0, handlelength=2.0,
+            title=literal(title) if title is not None else loops.title, title_fontsize="medium", handlelength=2.0,
         )  # fmt: skip
     return figure
 

@@ -9,17 +9,19 @@ from matplotlib.figure import Figure
 
 from rockflex._errors import InputError
 from rockflex.modal import ModalProperties
-from rockflex.plot._style import BLUE, GRAY, new_figure, styled
+from rockflex.plot._style import BLUE, GRAY, Size, narrow, new_figure, points, styled
 from rockflex.plot._units import short
 
-_PER_ROW = 5
+_PER_ROW, _PER_NARROW_ROW = 5, 3
 
 
 class _HasModes(Protocol):
     def modal(self, n_modes: int | None = None) -> ModalProperties: ...
 
 
-def plot_mode_shapes(structure_or_modal: _HasModes | ModalProperties, n_modes: int | None = None) -> Figure:
+def plot_mode_shapes(
+    structure_or_modal: _HasModes | ModalProperties, n_modes: int | None = None, *, size: Size | None = None
+) -> Figure:
     """Plot the mode shapes Γ_n φ_n over the height, one panel each.
 
     The title of each panel gives T_n, m*_n and h*_n (Silva & Stojadinović 2024, Section 2.1, after Eq. 12), with m*_n
@@ -32,6 +34,9 @@ def plot_mode_shapes(structure_or_modal: _HasModes | ModalProperties, n_modes: i
         A structure with modes, such as a `Frame`, or its `ModalProperties`.
     n_modes
         Number of modes to show, the lowest first. Default: all.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -41,7 +46,7 @@ def plot_mode_shapes(structure_or_modal: _HasModes | ModalProperties, n_modes: i
     Raises
     ------
     InputError
-        If the argument has no modes, or too few.
+        If the argument has no modes, or too few; or the size is unknown.
 
     Examples
     --------
@@ -57,9 +62,9 @@ def plot_mode_shapes(structure_or_modal: _HasModes | ModalProperties, n_modes: i
     complete = np.allclose(modes.shapes @ modes.participation, 1.0, rtol=0.0, atol=1e-6)
     total = float(modes.effective_mass.sum()) if complete else None
     shown = modes if n_modes is None else modes.truncated(n_modes)
-    columns = min(shown.n_modes, _PER_ROW)
-    rows = math.ceil(shown.n_modes / _PER_ROW)
-    with styled():
+    with styled(size=size):
+        columns = min(shown.n_modes, _PER_NARROW_ROW if narrow() else _PER_ROW)
+        rows = math.ceil(shown.n_modes / columns)
         figure = new_figure(max(1.26 * columns, 2.6), 3.4 * rows)
         grid = figure.subplots(rows, columns, sharey=True, squeeze=False)
         panels: list[Axes] = list(grid.flat)
@@ -70,7 +75,7 @@ def plot_mode_shapes(structure_or_modal: _HasModes | ModalProperties, n_modes: i
                 axes.set_axis_off()
         for row in grid:
             row[0].set_ylabel("height [m]")
-        figure.supxlabel(r"$Γ_n\,φ_n$", fontsize=9.0)
+        figure.supxlabel(r"$Γ_n\,φ_n$", fontsize="medium")
     return figure
 
 
@@ -96,7 +101,7 @@ def _draw(axes: Axes, modes: ModalProperties, n: int, total: float | None) -> No
     axes.set_xlim(-1.25 * largest, 1.25 * largest)
     axes.set_xticks([-tick, 0.0, tick], [f"−{tick:g}", "0", f"{tick:g}"])
     axes.set_ylim(0.0, 1.04 * float(heights[-1]))
-    axes.set_title(_describe(modes, n, total), fontsize=8.0)
+    axes.set_title(_describe(modes, n, total), fontsize=points(8.0))
 
 
 def _rounded_down(value: float) -> float:

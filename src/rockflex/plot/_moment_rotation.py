@@ -12,7 +12,7 @@ from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex.plot._base_loops import follows_a_line, resistance_of
 from rockflex.plot._curves import Curve, curves_of, rotation_limit
-from rockflex.plot._style import BLUE, new_figure, styled
+from rockflex.plot._style import BLUE, Size, narrow, new_figure, styled
 from rockflex.plot._units import readable
 from rockflex.response import Response, push_on_springs, resistance_on_springs
 
@@ -25,7 +25,9 @@ _SPRINGS = "static, on the springs"
 _SIDED = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$ of each side"
 
 
-def plot_moment_rotation(responses: Response | Iterable[Response], labels: Sequence[str] | None = None) -> Figure:
+def plot_moment_rotation(
+    responses: Response | Iterable[Response], labels: Sequence[str] | None = None, *, size: Size | None = None
+) -> Figure:
     """Plot the base moment M_b over the rotation θ, and the static resisting moment of the simplified models.
 
     The resisting moment is ±(M_r - L_0^r g |θ|), with M_r = m_tot g B (Silva & Stojadinović 2024, Fig. 11 and Eq. 23);
@@ -42,6 +44,9 @@ def plot_moment_rotation(responses: Response | Iterable[Response], labels: Seque
         One response or several, each with its history.
     labels
         A name for each response. Default: the models, with the motions if a model occurs twice.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -52,7 +57,7 @@ def plot_moment_rotation(responses: Response | Iterable[Response], labels: Seque
     ------
     InputError
         If there are no responses or too many, one has no history, the number of labels differs, or no base can
-        lift.
+        lift; or the size is unknown.
 
     Examples
     --------
@@ -73,9 +78,9 @@ def plot_moment_rotation(responses: Response | Iterable[Response], labels: Seque
     rotation = _HEADROOM * (rotation_limit(curves) or max(map(whole_line, curves)))
     largest = max(largest_moment(curve) for curve in curves)
     factor, unit = readable(largest, "N m")
-    columns = min(len(curves), _PER_ROW)
-    rows = math.ceil(len(curves) / columns)
-    with styled():
+    with styled(size=size):
+        columns = 1 if narrow() else min(len(curves), _PER_ROW)
+        rows = math.ceil(len(curves) / columns)
         figure = new_figure(2.2 + 1.8 * columns, 0.6 + 2.6 * rows)
         grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
         panels: list[Axes] = list(grid.flat)
@@ -89,8 +94,8 @@ def plot_moment_rotation(responses: Response | Iterable[Response], labels: Seque
             axes.tick_params(labelbottom=True)
         for axes in panels[len(curves) :]:
             axes.set_axis_off()
-        figure.supxlabel("θ [rad]", fontsize=9.0)
-        figure.supylabel(f"$M_b$ [{unit}]", fontsize=9.0)
+        figure.supxlabel("θ [rad]", fontsize="medium")
+        figure.supylabel(f"$M_b$ [{unit}]", fontsize="medium")
         kinds = {line.get_label(): line for axes in panels for line in axes.get_lines()[1:]}
         figure.legend(handles=list(kinds.values()), loc="outside upper center", handlelength=3.0)
     return figure

@@ -11,7 +11,7 @@ from rockflex._checks import positive
 from rockflex._constants import GRAVITY
 from rockflex.modal import Pivot, RockingProperties
 from rockflex.plot._base_loops import follows_a_line
-from rockflex.plot._style import BLACK, GRAY, SMALL, letter, new_figure, styled
+from rockflex.plot._style import BLACK, GRAY, SMALL, Size, letter, narrow, new_figure, styled
 from rockflex.plot._units import readable, short
 from rockflex.response import base_path
 from rockflex.study import RockingStructure, properties_of
@@ -20,7 +20,11 @@ _ROOM = 1.18
 
 
 def plot_moment_rotation_laws(
-    structure: "RockingStructure | RockingProperties", spring: float | None = None, *, rotation: float | None = None
+    structure: "RockingStructure | RockingProperties",
+    spring: float | None = None,
+    *,
+    rotation: float | None = None,
+    size: Size | None = None,
 ) -> Figure:
     """Plot the static base moment over the rotation: of a pinned beam on a spring, and of the rocking structure.
 
@@ -39,6 +43,9 @@ def plot_moment_rotation_laws(
     rotation
         Largest rotation shown in rad. Default: a little beyond the one at which M vanishes, or the nominal
         overturning rotation where tendons keep it from vanishing.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -48,7 +55,7 @@ def plot_moment_rotation_laws(
     Raises
     ------
     InputError
-        If no structure is given, or a number is not positive and finite.
+        If no structure is given, or a number is not positive and finite; or the size is unknown.
 
     Examples
     --------
@@ -73,9 +80,9 @@ def plot_moment_rotation_laws(
     line = follows_a_line(p)
     if not line:
         zeros = [_first_zero(*push) for push in pushes]
-    with styled():
-        figure = new_figure(6.3, 3.1)
-        left, right = figure.subplots(1, 2, sharex=True, sharey=True)
+    with styled(size=size):
+        figure = new_figure(6.3, 5.6 if narrow() else 3.1)
+        left, right = figure.subplots(*((2, 1) if narrow() else (1, 2)), sharex=True, sharey=True)
         for axes, mark, title in ((left, "A", "pinned beam on a spring"), (right, "B", "rocking base")):
             axes.axhline(0.0, color=GRAY, linewidth=0.8, label="_axis")
             axes.axvline(0.0, color=GRAY, linewidth=0.8, label="_axis")

@@ -118,7 +118,7 @@ def add_key(
     """Add the legend of a figure above it; a row has room for `width` letters."""
     figure.legend(
         handles, names, loc="outside upper center", ncols=columns(names, width), title=title_of(curves, title),
-        title_fontsize=9.0, handlelength=2.6, columnspacing=1.4,
+        title_fontsize="medium", handlelength=2.6, columnspacing=1.4,
     )  # fmt: skip
 
 

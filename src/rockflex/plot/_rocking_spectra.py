@@ -10,7 +10,21 @@ from matplotlib.patches import Patch
 
 from rockflex._errors import InputError
 from rockflex.plot._study_tables import check_columns
-from rockflex.plot._style import BLACK, BLUE, GRAY, GREEN, LOOKS, RED, Look, literal, new_figure, styled
+from rockflex.plot._style import (
+    BLACK,
+    BLUE,
+    GRAY,
+    GREEN,
+    LOOKS,
+    RED,
+    Look,
+    Size,
+    key_beside,
+    literal,
+    new_figure,
+    recoloured,
+    styled,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -19,7 +33,7 @@ _CROSSES = 0.045  # of the panel, from row to row
 _LOOKS = (Look(BLACK, "-"), Look(RED, "-."), Look(GREEN, "--"), Look(BLUE, ":"), *LOOKS)
 
 
-def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
+def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "", size: Size | None = None) -> Figure:
     r"""Plot θ_max/α over 2π/p, a curve for each slenderness.
 
     Blocks that overturn have no θ_max: the curve is interrupted, and crosses at the top mark them, one row per
@@ -31,6 +45,9 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
         The table of `rocking_spectrum`.
     title
         Title of the figure, such as the name of the motion.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -40,7 +57,8 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
     Raises
     ------
     InputError
-        If the table lacks a column that it needs, has no rows, or has too many slendernesses to distinguish.
+        If the table lacks a column that it needs, has no rows, or has too many slendernesses to distinguish; or the
+        size is unknown.
 
     Examples
     --------
@@ -57,10 +75,10 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
     standing = [float(value) for value in table["relative_rotation"][~fell] if np.isfinite(value)]
     room = 1.0 - _CROSSES * (len(groups) + 1)
     limit = (1.05 * max(standing, default=0.0) or 1.0) / room
-    with styled():
+    with styled(size=size):
         figure = new_figure(6.3, 3.6)
         axes = figure.subplots()
-        for rank, ((slenderness, rows), look) in enumerate(zip(groups, _LOOKS, strict=False)):
+        for rank, ((slenderness, rows), look) in enumerate(zip(groups, recoloured(_LOOKS), strict=False)):
             block = rows.sort_values("period")
             over = block["overturned"].fillna(False).to_numpy(dtype=bool)
             values = np.where(over, np.nan, block["relative_rotation"].to_numpy(dtype=float))
@@ -75,11 +93,13 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "") -> Figure:
         axes.set(ylim=(0.0, limit), xlabel=r"$2π/p$ [s]", ylabel=r"$θ_{\mathrm{max}}/α$", title=literal(title))
         cross = Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.5, label="overturned")
         handles, _ = axes.get_legend_handles_labels()
-        figure.legend(handles=[*handles, cross], loc="outside right upper")
+        key_beside(figure, [*handles, cross])
     return figure
 
 
-def plot_overturning_spectrum(tables: "pd.DataFrame | Mapping[str, pd.DataFrame]", *, title: str = "") -> Figure:
+def plot_overturning_spectrum(
+    tables: "pd.DataFrame | Mapping[str, pd.DataFrame]", *, title: str = "", size: Size | None = None
+) -> Figure:
     r"""Plot the smallest amplitude a_p/(g α) that overturns over ω_g/p, one curve per table.
 
     Some larger amplitudes may not overturn, because overturning is not monotone: the range up to the largest of them
@@ -91,6 +111,9 @@ def plot_overturning_spectrum(tables: "pd.DataFrame | Mapping[str, pd.DataFrame]
         A table of `overturning_spectrum`, or several by name.
     title
         Title of the figure.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -100,7 +123,8 @@ def plot_overturning_spectrum(tables: "pd.DataFrame | Mapping[str, pd.DataFrame]
     Raises
     ------
     InputError
-        If a table lacks a column that it needs or has no rows, or there are too many tables to distinguish.
+        If a table lacks a column that it needs or has no rows, or there are too many tables to distinguish; or the size
+        is unknown.
 
     Examples
     --------
@@ -118,13 +142,13 @@ def plot_overturning_spectrum(tables: "pd.DataFrame | Mapping[str, pd.DataFrame]
     _check_number(len(named), "tables")
     for table in named.values():
         check_columns(table, ("frequency_ratio", "lowest", "highest_standing"), "what overturning_spectrum returned")
-    with styled():
+    with styled(size=size):
         figure = new_figure(6.3, 3.6)
         axes = figure.subplots()
         finite = [v for table in named.values() for v in table["lowest"] if np.isfinite(v)]
         top = [v for table in named.values() for v in table["highest_standing"] if np.isfinite(v)]
         limit = 1.1 * max([*finite, *top, 1.0])
-        for (name, table), look in zip(named.items(), _LOOKS, strict=False):
+        for (name, table), look in zip(named.items(), recoloured(_LOOKS), strict=False):
             rows = table.sort_values("frequency_ratio")
             ratio, low = rows["frequency_ratio"].to_numpy(dtype=float), rows["lowest"].to_numpy(dtype=float)
             high = np.minimum(rows["highest_standing"].to_numpy(dtype=float), limit)
@@ -140,7 +164,7 @@ def plot_overturning_spectrum(tables: "pd.DataFrame | Mapping[str, pd.DataFrame]
         handles, _ = axes.get_legend_handles_labels()
         if axes.collections and any(len(area.get_paths()) for area in axes.collections):
             handles.append(Patch(facecolor="none", edgecolor=GRAY, hatch="////", linewidth=0.0, label="either"))
-        figure.legend(handles=handles, loc="outside right upper")
+        key_beside(figure, handles)
     return figure
 
 

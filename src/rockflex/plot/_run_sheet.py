@@ -14,7 +14,7 @@ from rockflex.plot._curves import Curve, curves_of, rotation_limit
 from rockflex.plot._history import shade_uplifts
 from rockflex.plot._moment_rotation import largest_moment, resistance_line, whole_line
 from rockflex.plot._panel import draw_curves, quantities_of, scale_of
-from rockflex.plot._style import BLACK, GRAY, SHADE, SMALL, columns, new_figure, styled
+from rockflex.plot._style import BLACK, GRAY, SHADE, SMALL, columns, new_figure, points, styled
 from rockflex.plot._units import readable
 from rockflex.response import Response
 
@@ -57,7 +57,7 @@ def run_sheet(
                 mark, (0.0, 1.0), xytext=(4, -3), xycoords="axes fraction", textcoords="offset points", weight="bold",
                 va="top", zorder=6.0,
             )  # fmt: skip
-            axes.set_ylabel(_fitting(axes.get_ylabel(), height / len(quantities)), fontsize=8.0)
+            axes.set_ylabel(_fitting(axes.get_ylabel(), height / len(quantities)), fontsize=points(8.0))
             axes.tick_params(labelbottom=row == len(quantities) - 1)
             axes.locator_params(axis="y", nbins=5)
             panels.append(axes)

@@ -10,7 +10,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex.motion import Selection
-from rockflex.plot._style import BLACK, BLUE, GRAY, RED, SHADE, columns, literal, new_figure, styled
+from rockflex.plot._style import BLACK, BLUE, GRAY, RED, SHADE, Size, columns, literal, new_figure, styled
 
 _POINTS = 100
 _BEYOND = 3.0  # the figure reaches beyond the range of periods by this factor
@@ -19,7 +19,7 @@ _NAMES = {"component": "$S_a$", "geometric mean": "geometric-mean $S_a$", "rotd5
           "rotd100": "RotD100 $S_a$"}  # fmt: skip
 
 
-def plot_selection(selection: Selection[Any]) -> Figure:
+def plot_selection(selection: Selection[Any], *, size: Size | None = None) -> Figure:
     """Plot the spectra of chosen records with their target, mean and spread, and the ratio of the mean to the target.
 
     The mean is the arithmetic one, which codes compare with the target. The band reaches from the 16th to the 84th
@@ -30,6 +30,9 @@ def plot_selection(selection: Selection[Any]) -> Figure:
     ----------
     selection
         The result of `Suite.select`.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -39,7 +42,7 @@ def plot_selection(selection: Selection[Any]) -> Figure:
     Raises
     ------
     InputError
-        If the argument is not a selection.
+        If the argument is not a selection; or the size is unknown.
 
     Examples
     --------
@@ -58,7 +61,7 @@ def plot_selection(selection: Selection[Any]) -> Figure:
     periods = np.geomspace(low / _BEYOND, high * _BEYOND, _POINTS)
     known = periods[(periods >= target.periods[0]) & (periods <= target.periods[-1])]
     rows = selection.at(periods)
-    with styled():
+    with styled(size=size):
         figure = new_figure(5.4, 4.6)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
         for axes in (upper, lower):
@@ -81,7 +84,7 @@ def plot_selection(selection: Selection[Any]) -> Figure:
         handles, labels = upper.get_legend_handles_labels()
         figure.legend(
             handles, labels, loc="outside upper center", ncols=min(2, columns(labels, 78)),
-            title=f"ζ = {100.0 * target.damping_ratio:g} %, {low:.3g} to {high:.3g} s", title_fontsize=9.0,
+            title=f"ζ = {100.0 * target.damping_ratio:g} %, {low:.3g} to {high:.3g} s", title_fontsize="medium",
         )  # fmt: skip
     return figure
 

@@ -11,7 +11,7 @@ from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex.plot._curves import Curve, curves_of, title_of
 from rockflex.plot._panel import Quantity, quantities_of, scale_of
-from rockflex.plot._style import BLACK, GRAY, SHADE, columns, new_figure, styled
+from rockflex.plot._style import BLACK, GRAY, SHADE, Size, columns, narrow, new_figure, points, styled
 from rockflex.response import Response
 
 _POINTS = 2000  # across the panel, more than it has dots
@@ -24,6 +24,7 @@ def plot_spread(
     *,
     panels: Sequence[str] = ("rotation", "top_displacement"),
     title: str | None = None,
+    size: Size | None = None,
 ) -> Figure:
     """Plot each response with the band from the smallest to the largest value of its variations at each time.
 
@@ -42,6 +43,9 @@ def plot_spread(
         Panels of `plot_history`, from the left.
     title
         Default: the name of the motion, if there is only one.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -51,7 +55,8 @@ def plot_spread(
     Raises
     ------
     InputError
-        If the number of groups of variations differs, one is empty or without history, or a panel is unknown.
+        If the number of groups of variations differs, one is empty or without history, or a panel is unknown; or the
+        size is unknown.
 
     Examples
     --------
@@ -74,9 +79,11 @@ def plot_spread(
     quantities = quantities_of(panels)
     everything = [*curves, *(curve for group in groups for curve in group)]
     times = np.linspace(0.0, max(float(curve.history.time[-1]) for curve in curves), _POINTS)
-    with styled():
-        figure = new_figure(0.8 + 3.2 * len(quantities), 0.9 + 1.35 * len(curves))
-        grid = figure.subplots(len(curves), len(quantities), sharex=True, sharey="col", squeeze=False)
+    with styled(size=size):
+        shape = (len(quantities) * len(curves), 1) if narrow() else (len(curves), len(quantities))
+        figure = new_figure(0.8 + 3.2 * len(quantities), 0.9 + 1.35 * shape[0])
+        # In a narrow figure all panels of a quantity stand above those of the next.
+        grid = figure.subplots(*shape, sharex=True, squeeze=False).reshape(len(curves), -1, order="F")
         for column, quantity in enumerate(quantities):
             factor, unit, limit = scale_of(quantity, everything)
             for row, (curve, group) in enumerate(zip(curves, groups, strict=True)):
@@ -87,14 +94,15 @@ def plot_spread(
                 values = quantity.of(curve.history)[drawn] / factor
                 axes.plot(curve.history.time[drawn], values, color=BLACK, linewidth=0.8, label=curve.label)
                 axes.set(ylim=(-limit, limit), xlim=(0.0, float(times[-1])), ylabel=f"{quantity.symbol} [{unit}]")
-                axes.set_title(curve.label, fontsize=8.0, loc="left", pad=3.0)
-            grid[-1, column].set_xlabel("time [s]")
+                axes.set_title(curve.label, fontsize=points(8.0), loc="left", pad=3.0)
+            if column + 1 == len(quantities) or not narrow():
+                grid[-1, column].set_xlabel("time [s]")
         figure.align_ylabels()
         handles = [grid[0, 0].get_lines()[0], Patch(facecolor=SHADE, edgecolor=GRAY, linewidth=0.4)]
         names = ["nominal", "from the least to the largest of what was varied"]
         figure.legend(
             handles, names, loc="outside upper center", ncols=columns(names, 16 + 45 * len(quantities)),
-            title=title_of(curves, title), title_fontsize=9.0,
+            title=title_of(curves, title), title_fontsize="medium",
         )  # fmt: skip
     return figure
 

@@ -10,7 +10,7 @@ from rockflex._arrays import Array
 from rockflex._errors import InputError, SolverError
 from rockflex.fragility import LognormalFragility, fit_stripes
 from rockflex.plot._study_tables import check_columns, keys_of, looks_of, measure_name, names_in, structure_panels
-from rockflex.plot._style import Look, columns, styled
+from rockflex.plot._style import Look, Size, columns, points, styled
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,6 +27,7 @@ def plot_stripes(
     measure: str = "level of the stripe",
     *,
     confidence: float | None = 0.9,
+    size: Size | None = None,
 ) -> Figure:
     """Plot the fraction of runs that exceed a limit in each stripe, one panel per structure, one curve per model.
 
@@ -43,6 +44,9 @@ def plot_stripes(
         Name of the measure of the levels, such as ``"pgv"``, for the axis; it is not in the table.
     confidence
         Confidence of the bands around the curves, between 0 and 1; None for no bands.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -53,7 +57,7 @@ def plot_stripes(
     ------
     InputError
         If the table lacks a column or has no solved run, the limit is unknown, or there are too many structures or
-        models.
+        models; or the size is unknown.
 
     Examples
     --------
@@ -78,7 +82,7 @@ def plot_stripes(
     looks = looks_of(names_in(runs["model"]))
     names = names_in(runs["structure"])
     end = 1.1 * float(counts["level"].max())
-    with styled():
+    with styled(size=size):
         event = stripe_limit(limit).symbol
         y = f"$P({event})$" if ">" in event else f"P({event})"
         figure, panels = structure_panels(names, 3, 2.1, measure_name(measure), y)
@@ -91,8 +95,9 @@ def plot_stripes(
                     notes.append((text, look.color))
             for place, (text, color) in enumerate(reversed(notes)):
                 axes.text(
-                    0.97, 0.04 + 0.075 * place, text, transform=axes.transAxes, ha="right", fontsize=6.5, color=color
-                )
+                    0.97, 0.04 + 0.075 * place, text, transform=axes.transAxes, ha="right", fontsize=points(6.5),
+                    color=color,
+                )  # fmt: skip
         panels[0].set(xlim=(0.0, end), ylim=(-0.03, 1.03))
         figure.legend(handles=keys_of(looks), loc="outside upper center", ncols=columns(list(looks), 42))
     return figure

@@ -12,7 +12,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rockflex._errors import InputError
 from rockflex.motion import MEASURES
-from rockflex.plot._style import Look, literal, new_figure
+from rockflex.plot._style import Look, literal, narrow, new_figure
 from rockflex.plot._surrogates import surrogate_looks
 from rockflex.plot._units import short
 
@@ -80,7 +80,7 @@ def structure_panels(names: Sequence[str], across: int, height: float, x: str, y
     """
     if len(names) > _MOST:
         raise InputError(f"{len(names)} structures are too many for one figure; {_MOST} fit. Plot fewer at a time.")
-    columns = min(across, len(names))
+    columns = 1 if narrow() else min(across, len(names))
     rows = math.ceil(len(names) / columns)
     figure = new_figure(4.2 if columns == 1 else 6.3, 0.6 + height * rows)
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)

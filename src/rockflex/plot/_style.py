@@ -1,29 +1,50 @@
-"""Style of all figures: sizes, colours and line styles, without changing the settings of the caller."""
+"""Style of all figures: sizes, fonts, colours and line styles.
+
+What the caller has set in matplotlib's rcParams stays, and nothing that is set here lasts.
+"""
 
 import io
-from collections.abc import Generator
+import itertools
+import math
+import re
+from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from contextvars import ContextVar
+from dataclasses import dataclass, replace
 from threading import RLock
-from typing import Any
+from typing import Any, Literal
 
-from matplotlib import rc_context
+import numpy as np
+from matplotlib import rc_context, rcParams, rcParamsDefault
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.backend_bases import RendererBase
+from matplotlib.colors import is_color_like, to_hex, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+from matplotlib.text import Text
+from matplotlib.textpath import TextPath
+
+from rockflex._errors import InputError
+from rockflex._shown import shown
 
 # Okabe & Ito's palette, which colour-blind readers can tell apart.
 BLACK, GRAY, GREEN, RED = "#000000", "#8c8c8c", "#009e73", "#d55e00"
 BLUE, ORANGE, SKY, PURPLE = "#0072b2", "#e69f00", "#56b4e9", "#cc79a7"
 YELLOW = "#f0e442"
 SHADE = "#e9edf2"
-SMALL = 7.5
+SMALL = "small"  # letters of notes, relative to font.size
+
+_FONT = 9.0
+_POINTS = 72.0  # in an inch
+_HANDLE, _BORDER = 5.6, 2.0  # widths of a legend's handle with its gaps, and of its borders, in sizes of letters
 
 COARSE, FINE = 100, 2  # points of a notebook an inch, and dots a point: sharp on screens of many dots
 
 _STYLE: dict[Any, Any] = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],
-    "font.size": 9.0,
+    "font.size": _FONT,
     "axes.labelsize": 9.0,
     "axes.titlesize": 9.0,
     "axes.linewidth": 0.7,
@@ -75,11 +96,81 @@ LOOKS = tuple(Look(color, dashes) for dashes in _DASHES for color in (PURPLE, OR
 """Looks for models without one of their own, the most distinct first; blue is left to reference lines."""
 
 
+Size = Literal["column", "page"] | tuple[float, float]
+"""Size of a figure: the width of a journal's column or page, or width and height in inches."""
+
+_WIDTHS = {"column": 3.5, "page": 7.2}  # inches
+_NARROW = 4.6  # inches of width below which panels are stacked
+_COLUMN_FONT = 8.0
+_LETTERS = ("font.size", "axes.labelsize", "axes.titlesize", "legend.fontsize", "xtick.labelsize", "ytick.labelsize")
+_SAVED = ("savefig.bbox", "svg.hashsalt", "pdf.fonttype", "path.simplify")  # so that equal figures give equal files
+_DARKEST = 0.5  # brightness of a background on which ink is dark
+
+_SIZE: ContextVar[tuple[float, float | None] | None] = ContextVar("size", default=None)
+_DRAWN: ContextVar[list[Figure] | None] = ContextVar("drawn", default=None)
+
+
 @contextmanager
-def styled(theme: str = "light") -> Generator[None, None, None]:
-    """Apply the style while a figure is drawn; matplotlib's settings are global, so one thread at a time."""
-    with _LOCK, rc_context(THEMES[theme]):
-        yield
+def styled(theme: str = "light", size: Size | None = None) -> Generator[None, None, None]:
+    """Apply the style while a figure is drawn; matplotlib's settings are global, so one thread at a time.
+
+    Raises
+    ------
+    InputError
+        If the size is neither a name nor a width and a height in inches.
+    """
+    inches = _inches(size)
+    with _LOCK:
+        font = rcParams["font.size"] if _chosen("font.size") else _default_font(inches)
+        lines, marks = (rcParams[name] if _chosen(name) else None for name in ("lines.linewidth", "lines.markersize"))
+        settings: dict[Any, Any] = {
+            name: value for name, value in THEMES[theme].items() if name in _SAVED or not _chosen(name)
+        }
+        settings |= {name: settings[name] * font / _FONT for name in _LETTERS if name in settings}
+        settings["lines.linewidth"] = _STYLE["lines.linewidth"]  # those of the caller are applied at the end
+        with rc_context(settings):
+            figures: list[Figure] = []
+            tokens = _SIZE.set(inches), _DRAWN.set(figures)
+            try:
+                yield
+            finally:
+                _SIZE.reset(tokens[0])
+                _DRAWN.reset(tokens[1])
+            for figure in figures:
+                _rescale(figure, lines, marks)
+                if theme == "light" and _brightness(rcParams["axes.facecolor"]) < _DARKEST:
+                    _invert(figure)
+                if inches is not None or font != _FONT:
+                    _wrap(figure)
+
+
+def _chosen(name: Any) -> bool:
+    """Whether the caller has set one of matplotlib's settings."""
+    return bool(rcParams[name] != rcParamsDefault[name])
+
+
+def _default_font(inches: tuple[float, float | None] | None) -> float:
+    return _FONT if inches is None or inches[0] >= _NARROW else _COLUMN_FONT
+
+
+def _inches(size: Size | None) -> tuple[float, float | None] | None:
+    """Width and height asked for; the height is None where the figure chooses it."""
+    if size is None:
+        return None
+    if isinstance(size, str):
+        if size in _WIDTHS:
+            return _WIDTHS[size], None
+    else:
+        try:
+            width, height = (float(each) for each in size)
+        except (TypeError, ValueError):
+            width = height = math.nan
+        if 0.0 < width < math.inf and 0.0 < height < math.inf:
+            return width, height
+    raise InputError(
+        f'size must be "column" (3.5 in wide), "page" (7.2 in wide) or (width, height) in inches, both positive, but '
+        f"{shown(size)} was given."
+    )
 
 
 def literal(text: str) -> str:
@@ -91,7 +182,15 @@ class NotebookFigure(Figure):
     """A figure that a notebook shows when it is the last expression of a cell, without pyplot and without a magic.
 
     Where matplotlib's inline backend is active, its own way of showing figures comes first, so none is shown twice.
+    Labels of ticks are made when the figure is drawn, so it is drawn with the settings it was made with.
     """
+
+    settings: dict[Any, Any]
+
+    def draw(self, renderer: RendererBase) -> None:
+        """Draw with the settings with which the figure was made."""
+        with _LOCK, rc_context(self.settings):
+            super().draw(renderer)
 
     def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
         content = io.BytesIO()
@@ -102,8 +201,38 @@ class NotebookFigure(Figure):
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """Empty figure of a size in inches, without a window or an entry in the global list of figures."""
-    return NotebookFigure(figsize=(width, height), layout="constrained")
+    """Empty figure, without a window or an entry in the global list of figures.
+
+    Width and height in inches are those of a figure for which the caller has asked for no size.
+    """
+    asked = _SIZE.get()
+    if asked is not None:
+        width, height = asked[0], asked[1] or height
+    figure = NotebookFigure(figsize=(width, height), layout="constrained")
+    figure.settings = {name: rcParams[name] for name in _STYLE}
+    drawn = _DRAWN.get()
+    if drawn is not None:
+        drawn.append(figure)
+    return figure
+
+
+def narrow() -> bool:
+    """Whether the caller has asked for a figure so narrow that panels must be stacked."""
+    asked = _SIZE.get()
+    return asked is not None and asked[0] < _NARROW
+
+
+def points(size: float) -> float:
+    """Size of letters in points that is `size` in a figure with letters of 9 points."""
+    return size * rcParams["font.size"] / _FONT
+
+
+def recoloured(looks: Iterable[Look]) -> list[Look]:
+    """Looks in the colours of the caller's own cycle (``axes.prop_cycle``), if there is one."""
+    cycle = rcParams["axes.prop_cycle"].by_key().get("color") if _chosen("axes.prop_cycle") else None
+    if not cycle:
+        return list(looks)
+    return [replace(look, color=color) for look, color in zip(looks, itertools.cycle(cycle), strict=False)]
 
 
 def letter(axes: Axes, text: str) -> None:
@@ -113,10 +242,111 @@ def letter(axes: Axes, text: str) -> None:
     )
 
 
-def columns(names: list[str], width: int) -> int:
-    """Number of columns of a legend, if a row has room for `width` letters; the legend fills column by column."""
+def columns(names: Sequence[str], letters: int) -> int:
+    """Number of columns of a legend, if a row has room for `letters`, or for the width that the caller asked for.
+
+    The legend fills column by column.
+    """
+    asked, font = _SIZE.get(), FontProperties(size=rcParams["legend.fontsize"]).get_size_in_points()
+    room = letters if asked is None else _POINTS * asked[0] / font - _BORDER
+    widths = [len(name) + 7.0 if asked is None else _HANDLE + _length(name) for name in names]
     for count in range(len(names), 1, -1):
-        rows = -(-len(names) // count)
-        if sum(max(map(len, names[i : i + rows])) + 7 for i in range(0, len(names), rows)) <= width:
+        if sum(float(max(column)) for column in np.array_split(widths, count)) <= room:
             return count
     return 1
+
+
+def _length(text: str) -> float:
+    """Length of a text of a legend in the size of its letters; those on a screen are wider than their outlines."""
+    return 0.106 * float(TextPath((0.0, 0.0), text, size=10.0).get_extents().width)
+
+
+def key_beside(figure: Figure, handles: Sequence[Artist]) -> None:
+    """Add the legend of a figure to the right of its panels, or above them in a narrow one."""
+    if narrow():
+        names = [str(handle.get_label()) for handle in handles]
+        figure.legend(handles=handles, loc="outside upper center", ncols=columns(names, 0))
+    else:
+        figure.legend(handles=handles, loc="outside right upper")
+
+
+def _rescale(figure: Figure, width: float | None, mark: float | None) -> None:
+    """Draw lines and marks as much wider or larger as the caller's own lines and marks are than those here."""
+    for line in (line for part in (*figure.axes, *_legends(figure)) for line in part.get_lines()):
+        if width is not None:
+            line.set_linewidth(line.get_linewidth() * width / _STYLE["lines.linewidth"])
+        if mark is not None:
+            line.set_markersize(line.get_markersize() * mark / rcParamsDefault["lines.markersize"])
+
+
+def _legends(figure: Figure) -> list[Any]:
+    return [*figure.legends, *filter(None, (axes.get_legend() for axes in figure.axes))]
+
+
+def _brightness(color: Any) -> float:
+    return sum(to_rgb(color)) / 3.0
+
+
+def _invert(figure: Figure) -> None:
+    """Turn black ink into the colour of the caller's text, and white and shades into dark ones."""
+    ink, ground = rcParams["text.color"], rcParams["axes.facecolor"]
+    turned = {BLACK: ink, "#404040": ink, "#303030": ink, "#ffffff": ground, SHADE: "#2b333c"}
+    artists = figure.findobj(include_self=False)
+    artists += [box for each in artists if isinstance(each, Text) and (box := each.get_bbox_patch()) is not None]
+    for artist in artists:
+        filled = hasattr(artist, "get_facecolor")
+        for name in ("facecolor", "edgecolor") if filled else ("color", "markerfacecolor", "markeredgecolor"):
+            color: Any = getattr(artist, f"get_{name}", lambda: None)()
+            if np.shape(color) == (1, 4):  # of all parts of a band
+                color = color[0]
+            new = turned.get(to_hex(color)) if is_color_like(color) else None
+            if new is not None:
+                getattr(artist, f"set_{name}")(new)
+
+
+def _wrap(figure: Figure) -> None:
+    """Break titles and labels into lines that fit."""
+    for _ in range(2):  # lines of a title take some of the height from the axes
+        figure.draw_without_rendering()
+        across, up = figure.bbox.width - _EDGE, figure.bbox.height - _EDGE
+        for axes in figure.axes:
+            left, right = axes.bbox.x0, axes.bbox.x1
+            middle = min(left + right, 2.0 * figure.bbox.width - left - right) - _EDGE  # to the nearer edge, twice
+            _break(axes.title, middle)
+            _break(axes.xaxis.label, middle)
+            _break(axes._left_title, across - left)  # pyright: ignore
+            _break(axes._right_title, right - _EDGE)  # pyright: ignore
+            _break(axes.yaxis.label, axes.bbox.height, turned=True)
+        for each in (figure._suptitle, figure._supxlabel, *(key.get_title() for key in figure.legends)):  # pyright: ignore
+            _break(each, across)
+        _break(figure._supylabel, up, turned=True)  # pyright: ignore
+
+
+_EDGE = 4.0  # dots that stay free at the edge of a figure
+_WORDS = re.compile(r"(?:\$[^$]*\$|[^\s$])+")  # with mathematics in one piece
+
+
+def _break(text: Text | None, room: float, *, turned: bool = False) -> None:
+    """Break a text between its words, so that it is no longer than `room` dots."""
+    if text is None:
+        return
+    label = text
+
+    def long(words: str) -> bool:
+        label.set_text(words)
+        box = label.get_window_extent()
+        return (box.height if turned else box.width) > room
+
+    whole = label.get_text()
+    if not whole or not long(whole):
+        return
+    lines: list[str] = []
+    for line in whole.split("\n"):
+        lines.append("")
+        for word in _WORDS.findall(line):
+            more = f"{lines[-1]} {word}".strip()
+            if lines[-1] and long(more):
+                lines.append(word)
+            else:
+                lines[-1] = more
+    label.set_text("\n".join(lines))

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from rockflex._errors import InputError
-from rockflex.plot._style import BLACK, GREEN, LOOKS, RED, Look
+from rockflex.plot._style import BLACK, GREEN, LOOKS, RED, Look, recoloured
 
 _OWN = {"2DOF-S": Look(RED, "-."), "3DOF-S": Look(GREEN, "--"), "MDOF-S": Look(BLACK, "-", 2.0)}
 
@@ -21,4 +21,4 @@ def surrogate_looks(models: Iterable[str]) -> dict[str, Look]:
     if len(others) > len(LOOKS):
         raise InputError(f"{len(names)} models are too many to distinguish in one figure. Plot fewer at a time.")
     looks = _OWN | dict(zip(others, LOOKS, strict=False))
-    return {name: looks[name] for name in names}
+    return dict(zip(names, recoloured(looks[name] for name in names), strict=True))

@@ -7,7 +7,7 @@ from matplotlib.patches import Circle, Wedge
 
 from rockflex._checks import positive
 from rockflex._errors import InputError
-from rockflex.plot._style import BLUE, GRAY, RED, SHADE, SMALL, letter, new_figure, styled
+from rockflex.plot._style import BLUE, GRAY, RED, SHADE, SMALL, Size, letter, narrow, new_figure, styled
 from rockflex.plot._units import short
 from rockflex.structure import TaperedTower
 
@@ -15,7 +15,7 @@ _EDGE = "#404040"
 _SLICE = 0.015  # height of the slice over that of the tower
 
 
-def plot_tower(tower: TaperedTower, section: float | None = None) -> Figure:
+def plot_tower(tower: TaperedTower, section: float | None = None, *, size: Size | None = None) -> Figure:
     """Plot a tower's elevation, and one of its sections with its contribution to I_θ.
 
     The figure is that of Silva & Stojadinović 2024, Fig. 14. A slice of mass m at the height z turns about the pivot O
@@ -27,6 +27,9 @@ def plot_tower(tower: TaperedTower, section: float | None = None) -> Figure:
         A `TaperedTower`.
     section
         Height z of the section in m, at most the tower's height. Default: half the height.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -36,7 +39,7 @@ def plot_tower(tower: TaperedTower, section: float | None = None) -> Figure:
     Raises
     ------
     InputError
-        If no tower is given, or the section is outside it.
+        If no tower is given, or the section is outside it; or the size is unknown.
 
     Examples
     --------
@@ -52,9 +55,12 @@ def plot_tower(tower: TaperedTower, section: float | None = None) -> Figure:
     z = 0.5 * tower.height if section is None else positive("section", section, "m")
     if z > tower.height:
         raise InputError(f"section must be at most the height of the tower, {tower.height:g} m, but {z:g} m was given.")
-    with styled():
-        figure = new_figure(6.3, 4.6)
-        left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
+    with styled(size=size):
+        figure = new_figure(6.3, 7.2 if narrow() else 4.6)
+        if narrow():
+            left, right = figure.subplots(2, 1, height_ratios=(1.5, 1.0))
+        else:
+            left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
         _draw_elevation(left, tower, z)
         _draw_section(right, tower, z)
         letter(left, "A")

@@ -9,12 +9,16 @@ from matplotlib.figure import Figure
 from rockflex.plot._curves import Curve, curves_of
 from rockflex.plot._history import shade_uplifts
 from rockflex.plot._panel import add_key, draw_panel, quantities_of, scale_of
-from rockflex.plot._style import letter, new_figure, styled
+from rockflex.plot._style import Size, letter, narrow, new_figure, styled
 from rockflex.response import Response
 
 
 def plot_hysteresis(
-    responses: Response | Iterable[Response], labels: Sequence[str] | None = None, *, title: str | None = None
+    responses: Response | Iterable[Response],
+    labels: Sequence[str] | None = None,
+    *,
+    title: str | None = None,
+    size: Size | None = None,
 ) -> Figure:
     r"""Plot the restoring force V_b of the superstructure over its top displacement u_top.
 
@@ -29,6 +33,9 @@ def plot_hysteresis(
         A name for each response in the legend. Default: the models, with the motions if a model occurs twice.
     title
         Default: the name of the motion, if there is only one.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -38,7 +45,8 @@ def plot_hysteresis(
     Raises
     ------
     InputError
-        If there are no responses or too many, one has no history, or the number of labels differs.
+        If there are no responses or too many, one has no history, or the number of labels differs; or the size is
+        unknown.
 
     Examples
     --------
@@ -52,7 +60,7 @@ def plot_hysteresis(
     ('$u_{\\mathrm{top}}$, relative [m]', '$V_b$ [kN]')
     """
     curves = curves_of(responses, labels)
-    with styled():
+    with styled(size=size):
         figure = new_figure(4.2, 3.6)
         lines = _loops(figure.subplots(), curves)
         add_key(figure, curves, lines, [curve.label for curve in curves], title, 58)
@@ -60,7 +68,11 @@ def plot_hysteresis(
 
 
 def plot_yielding(
-    responses: Response | Iterable[Response], labels: Sequence[str] | None = None, *, title: str | None = None
+    responses: Response | Iterable[Response],
+    labels: Sequence[str] | None = None,
+    *,
+    title: str | None = None,
+    size: Size | None = None,
 ) -> Figure:
     r"""Plot rotation θ and top displacement u_top over time, and the hysteresis of the superstructure.
 
@@ -75,6 +87,9 @@ def plot_yielding(
         A name for each response in the legend. Default: the models, with the motions if a model occurs twice.
     title
         Default: the name of the motion, if there is only one.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -84,7 +99,8 @@ def plot_yielding(
     Raises
     ------
     InputError
-        If there are no responses or too many, one has no history, or the number of labels differs.
+        If there are no responses or too many, one has no history, or the number of labels differs; or the size is
+        unknown.
 
     Examples
     --------
@@ -98,9 +114,13 @@ def plot_yielding(
     (3, '$u_{\\mathrm{top}}$, relative [m]')
     """
     curves = curves_of(responses, labels)
-    with styled():
-        figure = new_figure(8.6, 2.0 * max(1.45, 0.155 * (len(curves) + 2)) + 0.9)
-        grid = figure.add_gridspec(2, 2, width_ratios=(1.55, 1.0))
+    with styled(size=size):
+        tall = max(1.45, 0.155 * (len(curves) + 2))
+        figure = new_figure(8.6, (2.0 * tall if not narrow() else 2.0 * tall + 2.6) + 0.9)
+        if narrow():
+            grid = figure.add_gridspec(3, 1, height_ratios=(tall, tall, 2.6))
+        else:
+            grid = figure.add_gridspec(2, 2, width_ratios=(1.55, 1.0))
         top = figure.add_subplot(grid[0, 0])
         histories: list[Axes] = [top, figure.add_subplot(grid[1, 0], sharex=top)]
         for axes, quantity, mark in zip(histories, quantities_of(("rotation", "top_displacement")), "AB", strict=True):
@@ -108,7 +128,7 @@ def plot_yielding(
         shade_uplifts(histories, curves)
         top.tick_params(labelbottom=False)
         histories[1].set(xlabel="time [s]", xlim=(0.0, max(float(curve.history.time[-1]) for curve in curves)))
-        loops = figure.add_subplot(grid[:, 1])
+        loops = figure.add_subplot(grid[2, 0] if narrow() else grid[:, 1])
         lines = _loops(loops, curves)
         letter(loops, "C")
         figure.align_ylabels(histories)

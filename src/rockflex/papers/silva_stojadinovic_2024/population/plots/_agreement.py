@@ -21,7 +21,7 @@ from rockflex.papers.silva_stojadinovic_2024.population.plots._pairs import (
     square_panel,
 )
 from rockflex.plot._study_tables import MARKERS
-from rockflex.plot._style import SMALL, letter, new_figure, styled
+from rockflex.plot._style import SMALL, Size, letter, narrow, new_figure, styled
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -42,7 +42,7 @@ _MAPS = {
 _EDGE = "#303030"
 
 
-def plot_agreement(pairs: "pd.DataFrame") -> Figure:
+def plot_agreement(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figure:
     """Plot peaks of MDOF-S against those of 2DOF-S, one symbol per pair.
 
     This is Fig. 9 of Silva & Stojadinović 2024. Symbols show the aspect ratio, their size the number of stories, and
@@ -53,6 +53,9 @@ def plot_agreement(pairs: "pd.DataFrame") -> Figure:
     ----------
     pairs
         The table of a population study, such as `run_population` returns.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -63,7 +66,8 @@ def plot_agreement(pairs: "pd.DataFrame") -> Figure:
     Raises
     ------
     InputError
-        If the table lacks a column, no pair was solved, or there are more aspect ratios than symbols.
+        If the table lacks a column, no pair was solved, or there are more aspect ratios than symbols; or the size is
+        unknown.
 
     Examples
     --------
@@ -77,9 +81,12 @@ def plot_agreement(pairs: "pd.DataFrame") -> Figure:
     markers = _markers(pairs)
     periods = pairs["period"].to_numpy(dtype=float)
     scale = Normalize(float(periods.min()), float(periods.max()))
-    with styled():
-        figure = new_figure(6.3, 6.0)
-        panels: list[Axes] = list(figure.subplots(2, 2).flat)
+    with styled(size=size):
+        figure = new_figure(6.3, 9.8 if narrow() else 6.0)
+        if narrow():
+            panels: list[Axes] = list(figure.subplots(4, 1, height_ratios=(1.0, 1.0, 1.0, 0.75)))
+        else:
+            panels = list(figure.subplots(2, 2).flat)
         for axes, (mark, group, quantity, symbol, unit, name) in zip(panels, _PANELS, strict=False):
             rows = groups.resting if group == "no_uplift" else groups.rocking
             _draw(axes, rows, quantity, markers, scale)
@@ -138,7 +145,8 @@ def _write_keys(
             handles=handles, title=title, loc="upper left", bbox_to_anchor=(place, 1.04), ncols=1 + (len(handles) > 4),
             fontsize=SMALL, title_fontsize=SMALL, handletextpad=0.2, columnspacing=0.8, alignment="left",
         )  # fmt: skip
-        axes.add_artist(key)
+        if handles is symbols:  # the axes keep the last legend themselves
+            axes.add_artist(key)
     for (behaviour, colors), height in zip(_MAPS.items(), (0.46, 0.21), strict=True):
         bar = figure.colorbar(
             ScalarMappable(scale, colors), cax=axes.inset_axes((0.02, height, 0.94, 0.055)), orientation="horizontal"

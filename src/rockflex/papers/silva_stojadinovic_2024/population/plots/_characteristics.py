@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from rockflex._arrays import Array
 from rockflex.papers.silva_stojadinovic_2024.population.plots._pairs import BEHAVIOURS
 from rockflex.plot._study_tables import check_columns, measure_name
-from rockflex.plot._style import BLUE, RED, letter, new_figure, styled
+from rockflex.plot._style import BLUE, RED, Size, letter, narrow, new_figure, styled
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,9 +25,10 @@ _PANELS = {
 _COLORS = {"shear": RED, "flexure": BLUE}
 _FEW = 20  # largest number of values for which each has a bar
 _BINS = 20
+_MOST_TICKS = 8
 
 
-def plot_population(pairs: "pd.DataFrame") -> Figure:
+def plot_population(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figure:
     """Plot how the characteristics of random structures and the PGV of their records are distributed.
 
     This is Fig. 8 of Silva & Stojadinović 2024: bars of the number of pairs, flexure stacked on shear.
@@ -36,6 +37,9 @@ def plot_population(pairs: "pd.DataFrame") -> Figure:
     ----------
     pairs
         The table of a population study, such as `run_population` returns.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -46,7 +50,7 @@ def plot_population(pairs: "pd.DataFrame") -> Figure:
     Raises
     ------
     InputError
-        If the table lacks a column or has no rows.
+        If the table lacks a column or has no rows; or the size is unknown.
 
     Examples
     --------
@@ -56,16 +60,16 @@ def plot_population(pairs: "pd.DataFrame") -> Figure:
     6
     """
     check_columns(pairs, ("behaviour", *_PANELS), "what run_population returned")
-    with styled():
-        figure = new_figure(6.3, 4.3)
-        panels: list[Axes] = list(figure.subplots(2, 3).flat)
+    with styled(size=size):
+        figure = new_figure(6.3, 5.6 if narrow() else 4.3)
+        panels: list[Axes] = list(figure.subplots(*((3, 2) if narrow() else (2, 3))).flat)
         for axes, (name, label), mark in zip(panels, _PANELS.items(), "ABCDEF", strict=True):
             _draw(axes, name, pairs)
             axes.set_xlabel(label)
             axes.grid(visible=False, axis="x")
             axes.locator_params(axis="y", integer=True, nbins=6)
             letter(axes, mark)
-        for axes in (panels[0], panels[3]):
+        for axes in panels[:: 2 if narrow() else 3]:
             axes.set_ylabel("pairs")
         counts = {name: int((pairs["behaviour"] == name).sum()) for name in BEHAVIOURS}
         handles, _ = panels[0].get_legend_handles_labels()
@@ -81,20 +85,27 @@ def _draw(axes: Axes, name: str, pairs: "pd.DataFrame") -> None:
     for behaviour, color in _COLORS.items():
         mine = values[(pairs["behaviour"] == behaviour).to_numpy(dtype=bool)]
         counts = np.histogram(mine, edges)[0]
-        gap = 0.8 if values.size and np.unique(values).size <= _FEW else 1.0
+        gap = 0.8 if _separate(values) else 1.0
         axes.bar(
             centres, counts, gap * np.diff(edges), bottom=below, color=color, edgecolor="white",
             linewidth=0.4, label=behaviour,
         )  # fmt: skip
         below += counts
-    if np.unique(values).size <= _FEW and name != "height":
-        axes.set_xticks(centres if centres.size <= 8 else centres[::2])
+    if _separate(values) and name != "height":
+        most = _MOST_TICKS // 2 if narrow() else _MOST_TICKS
+        axes.set_xticks(centres[:: -(-centres.size // most)])
+
+
+def _separate(values: Array) -> bool:
+    """Whether there are few values, on a grid with few places, so that each has a bar."""
+    different = np.unique(values)
+    return different.size <= _FEW and bool(np.ptp(different) <= _FEW * np.diff(different).min(initial=np.inf))
 
 
 def _bars(values: Array) -> tuple[Array, Array]:
     """Return centres and edges of the bars: one for each value if there are few, a fixed number otherwise."""
     different = np.unique(values)
-    if different.size > _FEW:
+    if not _separate(values):
         edges = np.linspace(different[0], different[-1], _BINS + 1)
     else:
         half = 0.5 * float(np.diff(different).min()) if different.size > 1 else 0.5

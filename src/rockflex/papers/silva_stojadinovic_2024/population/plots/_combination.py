@@ -19,7 +19,7 @@ from rockflex.papers.silva_stojadinovic_2024.population.plots._pairs import (
     slope,
     square_panel,
 )
-from rockflex.plot._style import BLUE, GRAY, GREEN, ORANGE, letter, new_figure, styled
+from rockflex.plot._style import BLUE, GRAY, GREEN, ORANGE, Size, letter, narrow, new_figure, points, styled
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -58,7 +58,7 @@ _PANELS = (
 )  # fmt: skip
 
 
-def plot_modal_combination(pairs: "pd.DataFrame") -> Figure:
+def plot_modal_combination(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figure:
     """Plot peaks of MDOF-S against 2DOF-S combined with the second mode on a fixed base, one symbol per rocking pair.
 
     This is Fig. 13 of Silva & Stojadinović 2024; the estimates are the square root of the sum of squares (SRSS, Section
@@ -69,6 +69,9 @@ def plot_modal_combination(pairs: "pd.DataFrame") -> Figure:
     ----------
     pairs
         The table of a population study, such as `run_population` returns.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
 
     Returns
     -------
@@ -78,7 +81,7 @@ def plot_modal_combination(pairs: "pd.DataFrame") -> Figure:
     Raises
     ------
     InputError
-        If the table lacks a column, or no pair was solved.
+        If the table lacks a column, or no pair was solved; or the size is unknown.
 
     Examples
     --------
@@ -91,9 +94,9 @@ def plot_modal_combination(pairs: "pd.DataFrame") -> Figure:
     groups = groups_of(pairs, tuple(sorted(needed)))
     rows = groups.rocking
     behaviours = rows["behaviour"].astype(str).to_numpy()
-    with styled():
-        figure = new_figure(6.3, 6.4)
-        axes_of: list[Axes] = list(figure.subplots(2, 2).flat)
+    with styled(size=size):
+        figure = new_figure(6.3, 9.8 if narrow() else 6.4)
+        axes_of: list[Axes] = list(figure.subplots(*((4, 1) if narrow() else (2, 2))).flat)
         for axes, panel, mark in zip(axes_of, _PANELS, "ABCD", strict=True):
             _draw(axes, panel, rows, behaviours)
             letter(axes, mark)
@@ -106,7 +109,13 @@ def plot_modal_combination(pairs: "pd.DataFrame") -> Figure:
             Line2D([], [], color=BLUE, label="$y = c_1 x$"),
         ]
         title = f"{len(rows)} rocking pairs" + (f"; left out: {groups.left_out}" if groups.left_out else "")
-        figure.legend(handles=handles, loc="outside upper center", ncols=4, title=title, title_fontsize=8.0)
+        figure.legend(
+            handles=handles,
+            loc="outside upper center",
+            ncols=2 if narrow() else 4,
+            title=title,
+            title_fontsize=points(8.0),
+        )
     return figure
 
 
