@@ -21,8 +21,8 @@ extensions = [
     "sphinx_copybutton",
     "sphinx_gallery.gen_gallery",
     "docstrings",
+    "sphinxcontrib.katex",
     "figures",
-    "mathml",
     "signatures",
 ]
 exclude_patterns = ["_build", "_extensions", "_templates", "gallery/*.py", "gallery/*.ipynb"]
@@ -46,7 +46,9 @@ napoleon_use_rtype = False
 napoleon_preprocess_types = False
 napoleon_attr_annotations = False
 
-html_math_renderer = "mathml"  # no script, no network
+# Scripts come with sphinxcontrib-katex; style and fonts of the same version of KaTeX are in _static: no network.
+html_math_renderer = "katex"
+katex_css_path = "katex/katex.min.css"
 html_theme = "furo"
 html_title = f"rockflex {release}"
 html_static_path = ["_static"]

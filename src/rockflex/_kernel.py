@@ -17,8 +17,8 @@ _IMPORTS = re.compile(rb"^from rockflex\.([\w.]+) import", re.MULTILINE)
 
 KERNELS: list[Any] = []  # that Python calls, of the modules imported so far
 NOTICE = (
-    "rockflex is compiling its kernels, which takes some ten seconds. This happens once after an installation or an "
-    "upgrade, and `rockflex warm` does it ahead of need."
+    "rockflex is compiling its kernels, which takes some fifteen seconds. This happens once after an installation or "
+    "an upgrade, and `rockflex warm` does it ahead of need."
 )
 
 F = TypeVar("F", bound=Callable[..., Any])

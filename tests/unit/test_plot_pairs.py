@@ -56,7 +56,7 @@ def test_agreement_shows_every_pair_that_stands(pairs):
         ((x, y),) = [line.get_data() for line in lines(axes, "_equal")]
         np.testing.assert_array_equal(x, y)
     key = figure.axes[3]
-    titles = [artist.get_title().get_text() for artist in key.artists]
+    titles = [each.get_title().get_text() for each in (*key.artists, key.get_legend())]
     assert titles == [r"$h^*_1/B$", "stories"]
     assert [text.get_text() for text in key.artists[0].get_texts()] == ["5", "6", "7", "8", "9", "10"]
 

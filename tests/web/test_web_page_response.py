@@ -377,7 +377,7 @@ def test_a_chart_is_zoomed_and_clicked(visitor) -> None:
     assert page.evaluate("rockflexStage.panel.zoom") is None
 
 
-@pytest.mark.parametrize(("ready", "said"), [(True, "Computing …"), (False, "half a minute")])
+@pytest.mark.parametrize(("ready", "said"), [(True, "Computing …"), (False, "fifteen seconds")])
 def test_a_long_wait_is_explained(visitor, ready, said) -> None:
     page, held = visitor.page, []
     page.evaluate("ready => { rockflexPage.about.ready = ready; }", ready)

@@ -15,9 +15,10 @@ from rockflex.modal._tendons import Tendon, checked_ratio, checked_rupture
 class YieldingDissipator:
     """A fuse between the base and the ground that yields in tension and compression, with kinematic hardening.
 
-    At a distance r from the pivot it is stretched by δ = 2 r sin(|θ|/2), to first order r |θ|. Its force is
-    F = α k δ + (1 - α) z, where z follows k δ and is limited to ± F_y. The first yield is therefore at F = F_y. A fuse
-    that has yielded keeps a force while the base is closed, which shifts the moment at which the base lifts.
+    At a distance r from the pivot it is stretched by the gap that opens there, δ = 2 r sin(|θ|/2), to first order
+    r |θ|, as it is held on both sides of the joint and bends freely. Its force is F = α k δ + (1 - α) z, where z
+    follows k δ and is limited to ± F_y. The first yield is therefore at F = F_y. A fuse that has yielded keeps a force
+    while the base is closed, which shifts the moment at which the base lifts.
 
     Attributes
     ----------

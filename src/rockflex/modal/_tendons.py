@@ -11,10 +11,11 @@ from rockflex._shown import shown
 class Tendon:
     """An unbonded, elastic, vertical tendon from the structure through the base into the ground.
 
-    While the base rocks about a pivot at the distance r, the tendon is stretched by 2 r sin(|θ|/2), to first order
-    r |θ|, and its force increases linearly from the initial force (Vassiliou & Makris 2015, doi
-    10.1061/(ASCE)EM.1943-7889.0000953). It pulls and never pushes: it goes slack at zero force. On rigid ground no
-    rotation makes an elastic tendon between the edges of the base slack; on springs the base can sink and shorten it.
+    While the base rocks about a pivot at the distance r, the tendon is stretched by the gap that opens at its place,
+    2 r sin(|θ|/2), to first order r |θ|, as it is guided without friction on both sides of the joint. Its force
+    increases linearly from the initial force (Vassiliou & Makris 2015, doi 10.1061/(ASCE)EM.1943-7889.0000953). It
+    pulls and never pushes: it goes slack at zero force. On rigid ground no rotation makes an elastic tendon between the
+    edges of the base slack; on springs the base can sink and shorten it.
 
     Attributes
     ----------

@@ -39,7 +39,7 @@ const FILES = [
 ];
 
 const PATIENCE = 1500; // ms before the page says that it is computing
-const FIRST = "Computing … The first run after an installation compiles the kernels, which takes about half a minute.";
+const FIRST = "Computing … The first run after an installation compiles the kernels, which takes some fifteen seconds.";
 
 export default function responseTab(app) {
   let view = null;
