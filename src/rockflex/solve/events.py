@@ -10,6 +10,7 @@ from rockflex.models import (
     OPENS,
     OVERTURNS,
     RELEASES,
+    SLIPS,
     TURNS,
     Impact,
     kinetic_energy,
@@ -22,7 +23,7 @@ from rockflex.solve.adaptive.step import FAILED, forget, step_over
 from rockflex.solve.adaptive.turning import turning
 from rockflex.solve.carrier import begin, first_exit, first_fence, free_inertia, move, turning_exit, turning_rate
 from rockflex.solve.exits import INSIDE, LIFTED, PASSING, TOUCHED
-from rockflex.solve.history import keep, room_left
+from rockflex.solve.history import drop_passing, keep, room_left
 from rockflex.solve.layout import (
     BESIDE,
     CHANGED,
@@ -116,11 +117,13 @@ def cross(
                 enter(system, at, system.links[p, TURNED if event == TURNS else BESIDE + 0], motion)
                 at.onset, at.lift, at.resume = INSIDE, np.nan, RESUME
                 if system.phases[p].fences > 0:  # the base may have begun to slip, which was not recorded either
+                    drop_passing(log, now)
                     keep(log, now, system.phases[at.phase].side, here, span.rise, motion.state)
             else:
                 set_off(system, steps, at, bound, excess, motion)
                 at.onset = LIFTED
                 if event == RELEASES:
+                    drop_passing(log, now)
                     keep(log, now, side, here, span.rise, motion.state)
             at.slip_onset, at.slide = INSIDE, np.nan
             at.fresh_rows = True
@@ -172,6 +175,8 @@ def cross(
             log.tally[IMPACTS] += event == CLOSES
             pass_fence(system, at, fence, stop, motion)
             if at.onset < LIFTED:
+                if event == SLIPS and at_once:
+                    drop_passing(log, now)
                 keep(log, now, side, here, rise, motion.state)
         elif event in (CHANGES, TURNS):
             if at.onset < LIFTED:  # otherwise an uplift is yet to be recorded

@@ -25,6 +25,18 @@ def keep(log: Log, time: float, side: float, ground: float, rise: float, state: 
 
 
 @kernel
+def drop_passing(log: Log, time: float) -> None:
+    """Remove the states of phases that have begun and ended at the present instant with the base on the same side.
+
+    A base that turns back is held by friction for no time at all, and its acceleration then is no part of the motion.
+    """
+    last = log.tally[KEPT] - 1
+    while last > 0 and log.history[last - 1, TIME] == time and log.history[last - 1, SIDE] == log.history[last, SIDE]:
+        last -= 1
+        log.tally[KEPT] = last + 1
+
+
+@kernel
 def room_left(log: Log) -> int:
     """Return how many more states can be stored before the history must be enlarged."""
     if log.history.shape[0] == 0:
