@@ -141,7 +141,8 @@ class Ground(Value):
         Coulomb coefficient μ between base and ground, positive; infinity prevents sliding. With springs, one for each
         of the n springs; a single number applies to all. Default: the base cannot slide.
     springs : Springs or None
-        Springs under the base. Default: the ground is rigid.
+        Springs under the base. Default: the ground is rigid. The weight has the moment L_0^r (g + a_v) θ under vertical
+        shaking; that of the heave, L_0^r z'' θ, is not modelled.
     base_inertia : float or None
         Rotary inertia I_b of the base and the floors about the axis of the masses in kg m², positive. Given with
         springs, and only then: on rigid ground it is part of I_θ. The inertia Σ m_i h_i² of the structure is added to

@@ -82,7 +82,8 @@ class GroundHistory:
 
         Without dashpots, and uniform over the part 2 (B - |e|) of the base whose middle is the resultant, at the
         eccentricity e: the area of Meyerhof (1953), by which bearing capacities are given, whatever the distribution of
-        stiffness. The end zones of a bed and its dashpots raise `soil_pressure` above it. Zero in flight.
+        stiffness. The end zones of a bed and its dashpots raise `soil_pressure` above it. Zero in flight; on one spring
+        alone it is the pressure of that spring.
 
         Raises
         ------
