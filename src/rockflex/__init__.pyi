@@ -10,6 +10,7 @@ from .fragility import LogisticFit as LogisticFit
 from .fragility import LognormalFragility as LognormalFragility
 from .fragility import OutcomeFragility as OutcomeFragility
 from .fragility import OutcomeProbabilities as OutcomeProbabilities
+from .fragility import RotationFragility as RotationFragility
 from .fragility import UnanimousOutcome as UnanimousOutcome
 from .fragility import annual_rate as annual_rate
 from .fragility import bootstrap_band as bootstrap_band

@@ -52,8 +52,9 @@ def test_words_of_a_label_that_is_words():
     arias = MEASURES["arias"]
     assert (arias.title, arias.axis) == ("Arias intensity", "Arias intensity [m/s]")
     assert (arias.head, arias.sign) == ("Arias", "$I_a$")
-    assert MEASURES["sa_t1"].title == "Sa(T₁), spectral acceleration"
-    assert MEASURES["sa_t1"].axis == "$S_a(T_1)$ [m/s²]"
+    assert MEASURES["sa_t1"].title == "Sa(T₁, ζ₁), spectral acceleration at the structure's damping"
+    assert MEASURES["sa_t1"].axis == "$S_a(T_1,ζ_1)$ [m/s²]"
+    assert MEASURES["sa_t1_5"].axis == r"$S_a(T_1,5\,\%)$ [m/s²]"
     assert MEASURES["relative_pga"].title == "PGA/(g tan α)"
     assert MEASURES["relative_pga"].axis == r"PGA/($g\,\tan α$)"
 
@@ -87,7 +88,7 @@ def test_without_a_structure_its_measures_are_missing():
 
 def test_the_spectrum_of_a_stiff_structure_is_the_peak_of_the_ground():
     stiff = Shaking(EL_CENTRO, omega=1e8, damping_ratio=0.02)
-    assert MEASURES["sa_t1"].of(stiff) == pytest.approx(EL_CENTRO.pga)
+    assert MEASURES["sa_t1"].of(stiff) == MEASURES["sa_t1_5"].of(stiff) == pytest.approx(EL_CENTRO.pga)
 
 
 @pytest.mark.usefixtures("added")

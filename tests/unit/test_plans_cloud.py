@@ -71,6 +71,7 @@ def test_measures_are_those_of_the_scaled_motion(table):
         for name in ("pga", "pgv", "pgd", "arias", "cav"):
             assert getattr(row, name) == pytest.approx(getattr(motion, name), rel=1e-12)
         assert row.sa_t1 == pytest.approx(motion.sa(period, 0.02), rel=1e-12)
+        assert (row.sa_t1_5, row.zeta_1) == pytest.approx((motion.sa(period, 0.05), 0.02), rel=1e-12)
         assert row.sd_t1 == pytest.approx(motion.sd(period, 0.02), rel=1e-12)
         tan_alpha = p.m_tot * p.half_width / p.l0r
         assert row.relative_pga == pytest.approx(motion.pga / (9.81 * tan_alpha), rel=1e-12)
@@ -181,7 +182,7 @@ def test_options_reach_the_runs():
 
 def test_mirrored_motion():
     table = run_cloud(rf.Frame(**FRAME), SUITE[0], scales=[1.0, -1.0])
-    names = ["pga", "pgv", "pgd", "arias", "cav", "sd_t1", "sa_t1", "relative_pga", "relative_pgv", "max_rotation"]
+    names = ["pga", "pgv", "pgd", "arias", "cav", "sd_t1", "sa_t1", "sa_t1_5", "relative_pga", "relative_pgv", "max_rotation"]
     assert table.loc[0, names].tolist() == pytest.approx(table.loc[1, names].tolist(), rel=1e-9)
     assert (table[names] > 0).all(axis=None)
 

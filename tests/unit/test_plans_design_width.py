@@ -77,7 +77,7 @@ def test_what_is_said_of_a_width(values, expected, outcome, monotone, notes):
 
 
 def test_widths_of_every_tendon(runs):
-    table = rf.design_table(runs, 0.02, at=0.4, n_resamples=40)
+    table = rf.design_table(runs, 0.02, at=0.4)
     target = float(table["probability"].iloc[1])
     found = rf.smallest_width(table, target)
     assert list(found["tendon"]) == ["no tendon", "held"]

@@ -95,6 +95,8 @@ def test_stripes_with_their_curve(stripes):
     np.testing.assert_allclose(curve.get_ydata(), fit.probability(curve.get_xdata()))
     assert notes(axes) == [f"median {fit.median:.3g}, β = {fit.beta:.2f}"]
     assert len(axes.collections) == 1
+    (shade,) = axes.patches
+    assert shade.get_extents().transformed(axes.transData.inverted()).x1 == pytest.approx(0.5)
     axes = drawn(rf.plot_stripes(stripes[stripes["level"] < 1.0], 0.005, confidence=None)).axes[0]
     assert axes.get_ylabel() == r"$P(θ_{\mathrm{max}}>0.005\ \mathrm{rad})$"
     assert notes(axes) == ["no curve fits"]

@@ -115,6 +115,7 @@ VALUES = {
     rf.GroundMotion: motion,
     rf.HazardCurve: lambda: rf.HazardCurve([0.1, 1.0], [1e-2, 1e-4]),
     rf.History: lambda: response().history,
+    rf.RotationFragility: lambda: rf.fit_outcomes(*RUNS).curve(0.01),
     rf.SampledHistory: lambda: response().resample(0.1),
     rf.InitialState: lambda: rf.InitialState(0.01, [0.001], rotation_velocity=0.1),
     rf.LogisticFit: lambda: rf.fit_logistic([0.1, 0.2, 0.3, 0.4, 0.5], [0, 0, 1, 0, 1]),

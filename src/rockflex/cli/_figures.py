@@ -33,7 +33,7 @@ def figures(
         str | None,
         typer.Option(
             metavar="NAME",
-            help=f"Intensity measure of {', '.join(OTHERS)} or {LAST} studies, such as sa_t1. Default: pgv.",
+            help=f"Intensity measure of {', '.join(OTHERS)} or {LAST} studies, such as sa_t1_5. Default: pgv.",
         ),
     ] = None,
     form: Annotated[str, typer.Option("--format", metavar="|".join(FORMATS), help="Format of the files.")] = "png",

@@ -1,11 +1,11 @@
 """Fragility and risk: regressions of study results, their confidence bands, and their integrals over hazard."""
 
-from rockflex.fragility._annual_rate import AnnualRate, annual_rate, risk_targeted_median
+from rockflex.fragility._annual_rate import AnnualRate, annual_rate, quadrature, risk_targeted_median
 from rockflex.fragility._bootstrap import BootstrapBand, bootstrap_band
 from rockflex.fragility._capacities import fit_capacities
 from rockflex.fragility._cloud import CloudFit, fit_cloud
 from rockflex.fragility._clouds import CloudFits, fit_clouds, fit_each_cloud
-from rockflex.fragility._hazard import HazardCurve
+from rockflex.fragility._hazard import HazardCurve, damping_of
 from rockflex.fragility._limit_states import (
     LIMIT_STATES,
     NOMINAL,
@@ -27,8 +27,9 @@ from rockflex.fragility._lognormal import LognormalFragility
 from rockflex.fragility._measures import compare_measures
 from rockflex.fragility._nrml import write_nrml
 from rockflex.fragility._observed import observed_fractions
-from rockflex.fragility._outcomes import OutcomeFragility, OutcomeProbabilities, fit_outcomes
+from rockflex.fragility._outcomes import OutcomeFragility, OutcomeProbabilities, RotationFragility, fit_outcomes
 from rockflex.fragility._pelicun import write_pelicun
+from rockflex.fragility._recordings import limits
 from rockflex.fragility._resamples import resample_weights, resampled_exceedance
 from rockflex.fragility._stripes import fit_stripes
 from rockflex.fragility._unanimous import UnanimousOutcome
@@ -52,11 +53,13 @@ __all__ = [
     "LognormalFragility",
     "OutcomeFragility",
     "OutcomeProbabilities",
+    "RotationFragility",
     "UnanimousOutcome",
     "annual_rate",
     "beyond",
     "bootstrap_band",
     "compare_measures",
+    "damping_of",
     "fit_capacities",
     "fit_cloud",
     "fit_clouds",
@@ -65,7 +68,9 @@ __all__ = [
     "fit_outcomes",
     "fit_stripes",
     "limit_label",
+    "limits",
     "observed_fractions",
+    "quadrature",
     "resample_weights",
     "resampled_exceedance",
     "residual_beyond",

@@ -9,6 +9,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._checks import in_range, instance, positive
 from rockflex._errors import InputError
+from rockflex._values import Value
 from rockflex.fragility._arguments import checked_confidence
 from rockflex.fragility._curve import Curve, Fragility, checked_curve
 from rockflex.fragility._hazard import HazardCurve
@@ -19,8 +20,8 @@ NODES = 12  # of Gauss and Legendre in a segment of a hazard curve
 SMALLEST = 60.0  # in ln(IM): the tail below the curve's lower end is integrated this far
 
 
-@dataclass(frozen=True)
-class AnnualRate:
+@dataclass(frozen=True, eq=False)
+class AnnualRate(Value):
     """Mean annual rate of failure within the hazard curve, and bounds on the rate beyond its ends.
 
     Attributes
@@ -64,9 +65,7 @@ class AnnualRate:
         return -math.expm1(-self.rate * positive("years", years, "years", zero=True))
 
 
-def annual_rate(
-    hazard: HazardCurve, fragility: Fragility | Curve, *, confidence: float | None = None
-) -> AnnualRate:
+def annual_rate(hazard: HazardCurve, fragility: Fragility | Curve, *, confidence: float | None = None) -> AnnualRate:
     """Integrate a fragility curve over a hazard curve, λ_f = ∫ P(im) |dλ(im)|.
 
     Between two points λ is a power law; adaptive Gauss-Kronrod quadrature in log IM integrates all segments at once.

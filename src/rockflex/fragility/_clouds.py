@@ -11,6 +11,7 @@ from rockflex._html import HtmlTable
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.fragility._cloud import CloudFit, fit_cloud
+from rockflex.fragility._hazard import damping_of
 from rockflex.fragility._limit_states import NOMINAL, OVERTURNING, ROCKED, UPLIFT, rocked
 from rockflex.fragility._outcomes import OutcomeFragility, fit_outcomes
 from rockflex.fragility._words import power_law
@@ -179,7 +180,8 @@ def _fits(
     rocks = ~fallen & rocked(solved, threshold).to_numpy(dtype=bool)
     lifts = UPLIFT.exceeded(solved).to_numpy(dtype=bool)
     groups = recordings_of(solved)
-    outcomes = fit_outcomes(im, rotation, fallen, groups, uplifted=lifts, threshold=threshold)
+    damping = damping_of(solved, measure)
+    outcomes = fit_outcomes(im, rotation, fallen, groups, uplifted=lifts, threshold=threshold, damping=damping)
     relative, total = (_line(im, solved[name].to_numpy(dtype=float), rocks, groups) for name in DISPLACEMENTS)
     return CloudFits(structure, model, measure, outcomes, relative, total, len(group) - len(solved))
 

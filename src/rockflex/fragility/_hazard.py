@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +14,9 @@ from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.fragility._arguments import log_at
 from rockflex.fragility._openquake_curve import read_exported_curve
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 DAMPING = 0.05  # of the spectra of hazard analyses, and of OpenQuake's and Pelicun's SA
 
@@ -73,9 +76,9 @@ class HazardCurve(Value):
         """Raise an InputError if a fragility's spectral measure is of another damping; None is not known, or none."""
         if damping is not None and not math.isclose(damping, self.damping, rel_tol=1e-6):
             raise InputError(
-                f"The fragility is in a spectral measure at {damping:.4g} of critical damping, but the hazard curve is at "
-                f"{self.damping:g}. Fit the runs to sa_t1_5, Sa(T₁) at 5 %, or give the curve of that damping, "
-                f"HazardCurve(im, rate, damping={damping:.4g}).",
+                f"The fragility is in a spectral measure at {'an unknown' if math.isnan(damping) else format(damping, '.4g')} "
+                f"ratio of damping, but the hazard curve is at {self.damping:g}. Fit the runs to sa_t1_5, Sa(T₁) at 5 %, "
+                "or give the hazard curve of that damping, HazardCurve(im, rate, damping=0.02) for 2 %.",
                 field="damping",
             )
 
@@ -185,6 +188,27 @@ class HazardCurve(Value):
     def im_at(self, rate: ArrayLike) -> Array:
         """Measure that is exceeded at an annual `rate`: the uniform-hazard value (2 % in 50 years is 1/2475)."""
         return np.exp(_between("rate", log_at(rate, "rate"), np.log(self.rate[::-1]), np.log(self.im[::-1])))
+
+
+def damping_of(runs: "pd.DataFrame", measure: str) -> float | None:
+    """Return the damping ratio of an intensity measure of a study's runs; None of one that has none.
+
+    NaN if the runs do not state it, or it differs between their structures.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> from rockflex.fragility import damping_of
+    >>> runs = pd.DataFrame({"zeta_1": [0.02, 0.02]})
+    >>> damping_of(runs, "pgv"), damping_of(runs, "sa_t1"), damping_of(runs, "sa_t1_5")
+    (None, 0.02, 0.05)
+    """
+    if measure == "sa_t1_5":
+        return DAMPING
+    if measure not in ("sa_t1", "sd_t1"):
+        return None
+    found = runs["zeta_1"].dropna().unique() if "zeta_1" in runs else []
+    return float(found[0]) if len(found) == 1 else math.nan
 
 
 def _between(name: str, x: Array, points: Array, values: Array) -> Array:

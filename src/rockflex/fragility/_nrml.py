@@ -86,7 +86,7 @@ def write_nrml(
     """
     target = path_of("path", path)
     _, unit = unit_of(measure)
-    functions, im = functions_of(curves, levels, rotations)
+    functions, im = functions_of(curves, levels, rotations, measure)
     texts = {"description": description, "asset_category": asset_category, "loss_category": loss_category}
     for name, text in texts.items():
         if not isinstance(text, str) or not text.strip() or not text.isprintable():  # pyright: ignore[reportUnnecessaryIsInstance]

@@ -18,7 +18,7 @@ from rockflex.fragility._arguments import checked_confidence, flags, log_at, log
 from rockflex.fragility._cloud import CloudFit, fit_line
 from rockflex.fragility._limit_states import ROCKED
 from rockflex.fragility._logistic import LogisticFit, fit_curve
-from rockflex.fragility._recordings import Recordings, drawn, jackknifed, limits
+from rockflex.fragility._recordings import Recordings, drawn, jackknifed, limits, quantile_of_t
 from rockflex.fragility._unanimous import UnanimousOutcome
 from rockflex.fragility._words import curve_words, power_law
 
@@ -97,6 +97,8 @@ class OutcomeFragility(HtmlTable, Value):
     covariance : ndarray, shape (7, 7)
         Covariance of the parameters of the total probability, read-only: (b0, b1) of `overturning` and of `rocking`, and
         (c1, c2, ln dispersion) of `rotation`; zero where there is no curve.
+    without : ndarray, shape (n_groups, 7), or None
+        The same parameters without each recording; None for independent runs.
     n_groups : int
         Number of recordings; 0 if the runs were taken as independent.
     damping : float or None
@@ -128,6 +130,7 @@ class OutcomeFragility(HtmlTable, Value):
     n_overturned: int
     notes: tuple[Note, ...]
     covariance: Array
+    without: Array | None = None
     n_groups: int = 0
     damping: float | None = None
     measured: tuple[float, float] | None = None
@@ -197,8 +200,8 @@ class OutcomeFragility(HtmlTable, Value):
         return limits
 
 
-@dataclass(frozen=True)
-class RotationFragility:
+@dataclass(frozen=True, eq=False)
+class RotationFragility(Value):
     """Fragility curve of a rotation: the total probability of `OutcomeFragility.exceedance` at one limit.
 
     Attributes
@@ -238,19 +241,32 @@ class RotationFragility:
     def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
         """Lower and upper confidence limits of the probability; NaN if there are none.
 
-        Quantiles of the probability for parameters drawn from Student's t with `n_groups` - 1 degrees of freedom; from
-        the normal distribution for independent runs. Outcomes that no run or every run had are taken as certain.
+        The jackknife over recordings of the logit, with Student's t with `n_groups` - 1 degrees of freedom. For
+        independent runs, quantiles for parameters drawn from the normal distribution of the estimate. Outcomes that no
+        run or every run had are taken as certain.
         """
-        x, wanted = np.exp(log_at(im)), checked_confidence(confidence)
-        low, high = limits(self.drawn(x.ravel()), wanted)
-        return low.reshape(x.shape), high.reshape(x.shape)
+        from scipy.special import expit, logit
+
+        wanted, x, without = checked_confidence(confidence), np.exp(log_at(im)), self.outcomes.without
+        if without is None:
+            low, high = limits(self.drawn(x.ravel()), wanted)
+            return low.reshape(x.shape), high.reshape(x.shape)
+        with np.errstate(divide="ignore", invalid="ignore"):  # a probability of 0 or 1
+            away = logit(self._at(without, x.ravel())).reshape(-1, *x.shape)
+            error = np.sqrt((len(without) - 1.0) * away.var(axis=0))
+            centre, half = logit(self.probability(x)), quantile_of_t(wanted, len(without)) * error
+            return expit(centre - half), expit(centre + half)
 
     def drawn(self, im: Array) -> Array:
         """Probabilities at `im`, shape (m,), for 2048 parameters drawn from the t distribution of the estimate."""
+        fit = self.outcomes
+        return self._at(drawn(_parameters(fit), fit.covariance, fit.n_groups), im)
+
+    def _at(self, parameters: Array, im: Array) -> Array:
+        """Probabilities at `im` for each row of parameters."""
         from scipy.special import expit, ndtr
 
         fit, x = self.outcomes, np.log(im)
-        parameters = drawn(_parameters(fit), fit.covariance, fit.n_groups)
         curves = (
             expit(parameters[:, place : place + 1] + parameters[:, place + 1 : place + 2] * x)
             if isinstance(curve, LogisticFit)
@@ -314,6 +330,8 @@ def fit_outcomes(
     >>> outcomes.overturning.method
     'Firth'
     """
+    from scipy.linalg import block_diag
+
     log_measures(im)
     measures = finite_vector("im", im, "one unit")
     rotations, falls = finite_vector("rotation", rotation, "rad"), flags("overturned", overturned)
@@ -338,6 +356,7 @@ def fit_outcomes(
     initiation, _ = shared.curve("initiation", moves, np.ones_like(falls))
     line, last = shared.cloud(rotations, rocked)
     count = 0 if recordings is None else recordings.count
+    without = None if recordings is None else _together((part, other, last), count)
     return OutcomeFragility(
         overturning=overturning or UnanimousOutcome(bool(falls[0]), falls.size, count),
         rocking=rocking,
@@ -350,7 +369,8 @@ def fit_outcomes(
         n_rocking=counts[1],
         n_overturned=counts[2],
         notes=tuple(notes),
-        covariance=_joint((part, other, last), count),
+        covariance=block_diag(part[0], other[0], last[0]) if without is None else jackknifed(without),
+        without=without,
         n_groups=count,
         damping=damping,
         measured=(float(measures.min()), float(measures.max())),
@@ -395,7 +415,9 @@ class _Shared(NamedTuple):
             return None, none
         if outcome.all() or not outcome.any():
             alike = UnanimousOutcome(bool(outcome[0]), outcome.size, 0 if some is None else int(some.held.sum()))
-            self.notes.append(Note(f"{name}: {'all' if alike.outcome else 'none'} of {alike.n} runs. {alike.note}", name))
+            self.notes.append(
+                Note(f"{name}: {'all' if alike.outcome else 'none'} of {alike.n} runs. {alike.note}", name)
+            )
             return alike, none
         try:
             fit, replicates = fit_curve(log_measures(self.im[chosen]), outcome, some, self.damping)
@@ -419,15 +441,10 @@ class _Shared(NamedTuple):
         return fit, (covariance, replicates)
 
 
-def _joint(parts: Sequence[Part], count: int) -> Array:
-    """Covariance of the parameters of all parts, which share recordings."""
-    from scipy.linalg import block_diag
-
-    if not count:
-        return block_diag(*(covariance for covariance, _ in parts))
+def _together(parts: Sequence[Part], count: int) -> Array:
+    """Parameters of all parts without each recording; zero where there is no curve."""
     zeros = (np.zeros((count, len(covariance))) for covariance, _ in parts)
-    columns = [zero if found is None else found for zero, (_, found) in zip(zeros, parts, strict=True)]
-    return jackknifed(np.column_stack(columns))
+    return np.column_stack([zero if found is None else found for zero, (_, found) in zip(zeros, parts, strict=True)])
 
 
 def _parameters(fit: OutcomeFragility) -> Array:

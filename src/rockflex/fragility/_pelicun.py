@@ -86,7 +86,7 @@ def write_pelicun(
         )
     name, unit = _DEMANDS[kind]
     demand = f"{name}|{period}" if period else name
-    functions, im = functions_of(curves, levels, rotations)
+    functions, im = functions_of(curves, levels, rotations, measure)
     states = range(1, len(functions[0].curves) + 1)
     head = ["ID", "Incomplete", "Demand-Type", "Demand-Unit", "Demand-Offset", "Demand-Directional"]
     text = io.StringIO()

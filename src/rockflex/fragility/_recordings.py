@@ -77,12 +77,16 @@ class Recordings(NamedTuple):
 
 
 def jackknifed(replicates: Array) -> Array:
-    """Covariance of the parameters from those without each recording; NaN for a single recording."""
+    """Covariance of the parameters from those without each recording.
+
+    NaN for a single recording, and for parameters that could not be fitted without one of the recordings.
+    """
     count = replicates.shape[0]
-    if count < 2:
-        return np.full((replicates.shape[1],) * 2, np.nan)
-    away = replicates - replicates.mean(axis=0)
-    return (count - 1.0) / count * (away.T @ away)
+    known = np.isfinite(replicates).all(axis=0) & (count > 1)
+    away = np.where(known, replicates, 0.0) - np.where(known, replicates, 0.0).mean(axis=0)
+    covariance = (count - 1.0) / count * (away.T @ away)
+    covariance[~known, :] = covariance[:, ~known] = np.nan
+    return covariance
 
 
 def quantile_of_t(confidence: float, n_groups: int) -> float:

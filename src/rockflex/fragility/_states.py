@@ -1,5 +1,6 @@
 """The limit states of structures in the order of their severity, as risk programs take them."""
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ from rockflex._checks import all_positive, finite_vector, positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.fragility._curve import Curve, Fragility, checked_curve
+from rockflex.fragility._hazard import DAMPING
 from rockflex.fragility._lognormal import LognormalFragility
 from rockflex.fragility._outcomes import OutcomeFragility
 
@@ -45,14 +47,14 @@ class Function:
 
 
 def functions_of(
-    curves: Mapping[str, States], levels: ArrayLike, rotations: Mapping[str, float] | None
+    curves: Mapping[str, States], levels: ArrayLike, rotations: Mapping[str, float] | None, measure: str
 ) -> tuple[list[Function], Array]:
     """Return the limit states of each structure, and the levels of the measure, both checked.
 
     Raises
     ------
     InputError
-        If a name cannot be written, the levels do not rise, structures have different limit states, a probability is
+        If a name cannot be written, a spectral measure is not at 5 % damping, the levels do not rise, structures have different limit states, a probability is
         not one, or a more severe limit state is more probable than a milder one.
     """
     im = finite_vector("levels", levels, "the SI unit of the measure")
@@ -80,6 +82,8 @@ def functions_of(
     if taken:
         raise InputError(f"{taken[0]} is a limit state of its own: give this rotation another name.", field="rotations")
     found = [_function(name, states, limits) for name, states in curves.items()]
+    for name, states in curves.items():
+        _check_damping(name, states, measure)
     _same_states(found)
     for each in found:
         _ordered(each, im)
@@ -117,6 +121,19 @@ def _function(name: Any, states: Any, rotations: Mapping[str, float]) -> Functio
     checked = {limit: checked_curve(curve, f"curves[{name!r}][{limit!r}]") for limit, curve in given.items()}
     fits = {limit: curve for limit, curve in given.items() if isinstance(curve, LognormalFragility)}
     return Function(name, checked, fits if len(fits) == len(given) else None)
+
+
+def _check_damping(name: str, states: States, measure: str) -> None:
+    """Raise an InputError if a spectral measure is known not to be at the 5 % of risk programs."""
+    for fit in states.values() if isinstance(states, Mapping) else [states]:
+        damping = getattr(fit, "damping", None)
+        if damping is not None and not math.isclose(damping, DAMPING, rel_tol=1e-6):
+            ratio = "an unknown" if math.isnan(damping) else f"{damping:.4g}"
+            raise InputError(
+                f"measure: {measure} of risk programs is at a damping ratio of {DAMPING:g}, but the curves of {name} are in a "
+                f"spectral measure at {ratio} damping ratio. Fit the runs to sa_t1_5, Sa(T₁) at 5 %.",
+                field="measure",
+            )
 
 
 def _rocking(outcomes: OutcomeFragility, im: Array) -> Array:

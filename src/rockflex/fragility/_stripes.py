@@ -94,7 +94,11 @@ def fit_stripes(
         back = np.array([[-1.0 / b, a / b**2], [0.0, -1.0 / b**2]])
         found = back @ covariance @ back.T
     else:
-        kind, runs, both = np.repeat((1.0, -1.0), x.size), np.concatenate((events, total - events)), np.tile(scaled.x, 2)
+        kind, runs, both = (
+            np.repeat((1.0, -1.0), x.size),
+            np.concatenate((events, total - events)),
+            np.tile(scaled.x, 2),
+        )
         twice, at = Recordings(np.tile(recordings.codes, 2), recordings.count), np.asarray(result.params)
         replicates = twice.without_each(lambda some: fit_capacity_lines(both, kind, some * runs, at))
         found, count = covariance_of_scores(scaled.back(replicates), median, beta), recordings.count

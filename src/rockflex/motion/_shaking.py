@@ -34,8 +34,12 @@ class Shaking:
     @cached_property
     def sd(self) -> float:
         """Spectral displacement in m of the first mode; NaN if there is no mode."""
+        return self.sd_at(self.damping_ratio)
+
+    def sd_at(self, damping_ratio: float) -> float:
+        """Spectral displacement in m at the period of the first mode and another damping; NaN if there is no mode."""
         if math.isnan(self.omega):
             return math.nan
         period = 2.0 * math.pi / self.omega
         # Such a stiff structure moves with the ground; its period is below those of a spectrum.
-        return self.motion.sd(period, self.damping_ratio) if period >= STIFF else self.motion.pga / self.omega**2
+        return self.motion.sd(period, damping_ratio) if period >= STIFF else self.motion.pga / self.omega**2

@@ -45,7 +45,8 @@ def plot_fragility(
     measure
         Column of the intensity measure; default: ``"pgv"``, or the measure of the fits.
     confidence
-        Confidence of bands around the curves, between 0 and 1. Default: no bands.
+        Confidence of bands around the curves, between 0 and 1, by recording where the table has the column `group`.
+        Default: no bands.
     overturning
         Whether to draw the probability of overturning too, as thin lines.
     bins
@@ -81,6 +82,8 @@ def plot_fragility(
     looks = looks_of(names_in(fit.model for fit in fits))
     names = names_in(fit.structure for fit in fits)
     limit = _limit(fits, runs, whole=overturning or groups > 0)
+    ends = [fit.outcomes.measured[0] for fit in fits if fit.outcomes.measured is not None]
+    lowest = min(ends, default=None)
     with styled(size=size):
         event = rf"\mathrm{{uplift}},\ θ_{{\mathrm{{max}}}}>{_power(fits[0].outcomes.threshold)}"
         y = "probability" if overturning else f"$P({event})$"
@@ -91,8 +94,8 @@ def plot_fragility(
                 _draw(axes, fit, look, limit, confidence, overturning=overturning)
                 if runs is not None and groups:
                     _mark(axes, rows_of(runs, fit.structure, fit.model), fit, marker, look.color, groups)
-            if runs is not None:
-                axes.axvspan(0.0, float(runs[fits[0].measure].min()), color=SHADE, linewidth=0.0, label="_no runs")
+            if lowest is not None:
+                axes.axvspan(0.0, lowest, color=SHADE, linewidth=0.0, label="_no runs")
             failed = sum(fit.n_failed for fit in fits if fit.structure == name)
             if failed:
                 axes.text(0.97, 0.05, f"{failed} failed", transform=axes.transAxes, ha="right", fontsize=SMALL)
@@ -102,7 +105,7 @@ def plot_fragility(
             handles.append(Line2D([], [], color=GRAY, marker="o", linestyle="", markersize=3.0, label="observed"))
         if overturning:
             handles.append(Line2D([], [], color=GRAY, linewidth=0.6, label="overturning"))
-        if runs is not None:
+        if lowest is not None:
             handles.append(Patch(color=SHADE, linewidth=0.0, label="no runs"))
         labels = [str(handle.get_label()) for handle in handles]
         figure.legend(handles=handles, loc="outside upper center", ncols=columns(labels, 42 + 44 * (len(names) > 1)))

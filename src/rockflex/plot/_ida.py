@@ -47,7 +47,7 @@ def plot_ida(
     Curves are interrupted where a run overturns, by the limit of the study; the first such run is a red cross at the
     top. Runs that do not overturn at a larger scale than one that did ("resurrections", Vamvatsikos & Cornell 2002)
     are open symbols. The right panel has the fraction of overturned records as steps (the Kaplan-Meier estimate if
-    some never overturned), and the lognormal curve of `fit_capacities`.
+    some never overturned), and the lognormal curve of `fit_capacities` with its band, by recording.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def _capacities(rows: "pd.DataFrame") -> _Capacities:
     known = rows[rows["capacity"].notna()]
     values, censored = known["capacity"].to_numpy(dtype=float), known["censored"].to_numpy(dtype=bool)
     try:
-        fit = fit_capacities(values, censored)
+        fit = fit_capacities(values, censored, known["group"])
     except InputError:
         fit = None
     return _Capacities(values, censored, int((known["resurrections"] > 0).sum()), fit)
@@ -178,7 +178,7 @@ def _draw_capacities(axes: Axes, found: _Capacities, confidence: float | None, f
         end = float(found.reached.max()) * 1.3
         im = np.linspace(end / _POINTS, end, _POINTS)
         axes.plot(im, found.fit.probability(im), color=RED, linestyle="--", linewidth=1.1, label="_fit")
-        if confidence is not None:
+        if confidence is not None and found.fit.covariance is not None:
             axes.fill_between(im, *found.fit.band(im, confidence), color=RED, alpha=0.13, linewidth=0.0, label="_band")
         lines.append(f"median {short(found.fit.median)}, β = {found.fit.beta:.2f}")
     lines.append(f"{found.resurrected} with resurrections")

@@ -6,11 +6,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rockflex._arrays import Array
+from rockflex._cases import rows_of
 from rockflex._errors import InputError, SolverError
 from rockflex.fragility import LognormalFragility, fit_stripes
 from rockflex.plot._study_tables import check_columns, keys_of, looks_of, measure_name, names_in, structure_panels
-from rockflex.plot._style import Look, Size, columns, points, styled
+from rockflex.plot._style import SHADE, Look, Size, columns, points, styled
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,7 +31,9 @@ def plot_stripes(
 ) -> Figure:
     """Plot the fraction of runs that exceed a limit in each stripe, one panel per structure, one curve per model.
 
-    The curves are those of `fit_stripes`; if the stripes do not determine one, there are only symbols.
+    The curves are those of `fit_stripes`; if the stripes do not determine one, there are only symbols. In the shaded
+    range, below the lowest stripe, they are extrapolated. Bands are those of recordings, by the column `group`; a table
+    without it is taken as one of independent runs.
 
     Parameters
     ----------
@@ -91,8 +93,11 @@ def plot_stripes(
             for model, (look, marker) in looks.items():
                 stripes = counts[(counts["structure"].astype(str) == name) & (counts["model"].astype(str) == model)]
                 if len(stripes):
-                    text = _draw(axes, stripes, model, look, marker, end, confidence)
+                    text = _draw(
+                        axes, stripes, _fit(rows_of(runs, name, model), limit), model, look, marker, end, confidence
+                    )
                     notes.append((text, look.color))
+            axes.axvspan(0.0, float(counts["level"].min()), color=SHADE, linewidth=0.0, label="_no runs")
             for place, (text, color) in enumerate(reversed(notes)):
                 axes.text(
                     0.97, 0.04 + 0.075 * place, text, transform=axes.transAxes, ha="right", fontsize=points(6.5),
@@ -104,7 +109,14 @@ def plot_stripes(
 
 
 def _draw(
-    axes: Axes, stripes: "pd.DataFrame", model: str, look: Look, marker: str, end: float, confidence: float | None
+    axes: Axes,
+    stripes: "pd.DataFrame",
+    fit: LognormalFragility | None,
+    model: str,
+    look: Look,
+    marker: str,
+    end: float,
+    confidence: float | None,
 ) -> str:
     """Draw symbols, curve and band; return their text."""
     at, events, total = (stripes[name].to_numpy(dtype=float) for name in ("level", "n_exceeding", "n_total"))
@@ -112,18 +124,21 @@ def _draw(
         at, events / total, marker, color=look.color, markersize=3.5, markerfacecolor="none", markeredgewidth=0.8,
         label=f"_{model}",
     )  # fmt: skip
-    fit = _fit(at, events, total)
     if fit is None:
         return "no curve fits"
     im = np.linspace(end / _POINTS, end, _POINTS)
     axes.plot(im, fit.probability(im), color=look.color, linestyle=look.dashes, label=model)
-    if confidence is not None:
+    if confidence is not None and fit.covariance is not None:
         axes.fill_between(im, *fit.band(im, confidence), color=look.color, alpha=0.13, linewidth=0.0, label="_band")
     return f"median {fit.median:.3g}, β = {fit.beta:.2f}"
 
 
-def _fit(at: Array, events: Array, total: Array) -> LognormalFragility | None:
+def _fit(runs: "pd.DataFrame", limit: "StripeLimit") -> LognormalFragility | None:
+    from rockflex.study.stripes import stripe_limit
+
+    solved = runs[runs["status"].notna()]
+    exceeded, groups = stripe_limit(limit).exceeded(solved).astype(bool), solved["group"] if "group" in solved else None
     try:
-        return fit_stripes(at, events, total)
+        return fit_stripes(solved["level"], exceeded, np.ones(len(solved)), groups)
     except (InputError, SolverError):
         return None

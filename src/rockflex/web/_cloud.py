@@ -5,18 +5,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockflex._arrays import Array, Bools
+from rockflex._arrays import Array
 from rockflex._errors import InputError, SolverError
 from rockflex._json import plain
 from rockflex.fragility import (
     NOMINAL,
-    OVERTURNING,
     ROCKING,
     CloudFits,
-    OutcomeFragility,
-    bootstrap_band,
     fit_each_cloud,
-    fit_outcomes,
     observed_fractions,
 )
 from rockflex.study.cloud import CloudStudy
@@ -36,7 +32,6 @@ if TYPE_CHECKING:
 
 GRID = 60  # points of a curve
 FEWEST = 12  # runs before a curve is fitted
-RESAMPLES = 60
 BINS = 8  # groups of the observed fractions
 
 
@@ -85,7 +80,6 @@ def cloud_view(job: Job, state: State) -> dict[str, Any]:
 
 def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Array, notes: list[str]) -> dict[str, Any]:
     im, rotation = (part[name].to_numpy(dtype=float) for name in (choice.measure, "max_rotation"))
-    fallen = OVERTURNING.exceeded(part).to_numpy(dtype=bool)
     over = limit_state(choice.limit, choice.rotation).exceeded(part).to_numpy(dtype=bool)
     found: dict[str, Any] = {
         "model": fit.model,
@@ -107,7 +101,7 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
             # On springs bases turn without uplift too, so a rotation is not one of rocking runs only.
             found["p"] = fit_outcomes(im, rotation, fallen).exceedance(grid, choice.rotation)
             found["median"] = _median(grid, found["p"])
-            low, high = _band(part, im, rotation, fallen, choice, grid)
+            low, high = fit.outcomes.curve(choice.rotation).band(grid, choice.confidence)
             found |= {"low": low, "high": high}
         except (InputError, SolverError) as error:
             notes.append(f"{fit.model}: {error}")
@@ -129,27 +123,6 @@ def _median(grid: Array, p: Array) -> float | None:
     k = int(above[0])
     share = (0.5 - p[k - 1]) / (p[k] - p[k - 1])
     return float(np.exp(np.log(grid[k - 1]) + share * np.log(grid[k] / grid[k - 1])))
-
-
-def _band(
-    part: "pd.DataFrame", im: Array, rotation: Array, fallen: Bools, choice: CloudChoice, grid: Array
-) -> tuple[Array, Array]:
-    """Return the percentile band over resampled recordings: the total probability has no closed form for it."""
-
-    def fit(measures: Array, values: Array) -> OutcomeFragility:
-        return fit_outcomes(measures, values[:, 0], values[:, 1] > 0.5)
-
-    band = bootstrap_band(
-        fit,
-        im,
-        np.column_stack((rotation, fallen)),
-        part["group"].astype(str).to_numpy(),
-        at=grid,
-        confidence=choice.confidence,
-        n=RESAMPLES,
-        curve=lambda found, at: found.exceedance(at, choice.rotation),
-    )
-    return band.low, band.high
 
 
 def _runs(job: Job, _: State) -> "pd.DataFrame":

@@ -20,8 +20,6 @@ from rockflex.web._uploads import Uploads
 if TYPE_CHECKING:
     import pandas as pd
 
-RESAMPLES = 60  # while the study is running; 200 when it has ended
-
 
 def limit_of(choice: DesignChoice) -> float | str:
     """Return the limit in the form that the library expects."""
@@ -63,9 +61,8 @@ def design_study(state: State, uploads: Uploads) -> DesignStudy:
 def _table(job: Job, state: State) -> "pd.DataFrame":
     """Return the table of designs from the runs so far, one row per design."""
     runs, choice = some_runs_of(job), state.design
-    resamples = 200 if job.over else RESAMPLES
     with refusing("design"):
-        return design_table(runs, limit_of(choice), measure=choice.measure, at=choice.at, n_resamples=resamples)
+        return design_table(runs, limit_of(choice), measure=choice.measure, at=choice.at)
 
 
 def design_view(job: Job, state: State) -> dict[str, Any]:

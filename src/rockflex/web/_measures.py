@@ -5,7 +5,7 @@ from typing import Annotated, Any
 from rockflex.motion import Measure, intensities
 from rockflex.web._names import among
 
-FIRST = ("pgv", "pga", "pgd", "sa_t1", "sd_t1")  # in the list; the others follow in their own order
+FIRST = ("pgv", "pga", "pgd", "sa_t1_5", "sa_t1", "sd_t1")  # in the list; the others follow in their own order
 
 
 MeasureName = Annotated[str, among(lambda: [measure.name for measure in _offered()])]

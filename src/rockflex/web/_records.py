@@ -151,8 +151,10 @@ def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str
     if built is not None and built.properties.n_modes:
         first = 2.0 * np.pi / float(built.properties.omega[0])
         zeta, of_mode = float(built.properties.zeta[0]), MEASURES["sa_t1"]
-        words = f"{of_mode.words} at the first period and its damping, {zeta:.3g}"
-        measures.append(_fact(of_mode, motion.sa(first, zeta), words))
+        measures += [
+            _fact(of_mode, motion.sa(first, zeta), f"{of_mode.words}, {zeta:.3g}, and its first period"),
+            _fact(MEASURES["sa_t1_5"], motion.sa(first, 0.05), MEASURES["sa_t1_5"].words),
+        ]
     return plain(
         {
             "name": motion.name,

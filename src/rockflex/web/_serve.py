@@ -36,9 +36,7 @@ def make_app(host: str = "127.0.0.1", names: Sequence[str] = ()) -> "Starlette":
     return create(host, names)
 
 
-def serve(
-    port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (), open_browser: bool = False
-) -> None:
+def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (), open_browser: bool = False) -> None:
     """Serve the web page until interrupted.
 
     A client must send a request within 20 s, and its content within 60 s. Where more than 400 connections are open,

@@ -255,7 +255,9 @@ def factor_view(state: State, uploads: Uploads, period: object) -> dict[str, Any
     else:
         if not isinstance(period, int | float) or isinstance(period, bool) or not 0.0 <= period <= 100.0:
             raise Refusal(
-                {"target.period": f"it must be a period in s, from 0 to 100, but {str(period)[:40]} was given.{unclear(period)}"}
+                {
+                    "target.period": f"it must be a period in s, from 0 to 100, but {str(period)[:40]} was given.{unclear(period)}"
+                }
             )
         try:
             wanted = float(target.at([period])[0])

@@ -19,7 +19,9 @@ def check_limit(limit: float | str) -> None:
 def check_same_for_all(measure: str) -> None:
     """Raise an InputError unless the measure exists and does not depend on the base."""
     if intensity(measure).of_what == "base":
-        raise InputError(f"measure must not depend on the base, as a level of {measure} does. Give pgv, pga or sa_t1.")
+        raise InputError(
+            f"measure must not depend on the base, as a level of {measure} does. Give pgv, pga or sa_t1_5."
+        )
 
 
 def state_of(limit: float | str, nominal: float) -> LimitState:

@@ -70,7 +70,7 @@ class DesignStudy(StructuresSpec):
         ["overturning"], min_length=1, description='a list of limits, such as [0.02, "0.5 nominal", "overturning"]'
     )
     measure: Annotated[str, checked_by(check_same_for_all)] = Field(
-        "pgv", description='the intensity measure, such as "pga", "pgv" or "sa_t1"'
+        "pgv", description='the intensity measure, such as "pga", "pgv" or "sa_t1_5"'
     )
     level: float | list[float] | None = Field(
         None, description="the level of the measure in SI units, a number, or a list of one for each limit"

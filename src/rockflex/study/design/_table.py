@@ -1,10 +1,10 @@
 """Probability or annual rate at which each design exceeds a limit."""
 
-from typing import TYPE_CHECKING, Any, SupportsIndex
+from typing import TYPE_CHECKING, Any
 
 from rockflex._errors import InputError
 from rockflex.fragility import HazardCurve
-from rockflex.study.design._fit import Band, Question, judged
+from rockflex.study.design._fit import Question, check_confidence, judged
 from rockflex.study.design._limits import check_limit, check_same_for_all
 
 if TYPE_CHECKING:
@@ -22,14 +22,12 @@ def design_table(
     at: float | None = None,
     hazard: HazardCurve | None = None,
     confidence: float | None = 0.9,
-    n_resamples: SupportsIndex = 200,
-    seed: int = 0,
 ) -> "pd.DataFrame":
     """Compute how likely each design is to exceed a limit, at a level of intensity or in a year.
 
     The probability is the total one of `fit_outcomes`, P(OV) + P(no OV) P(rocking | no OV) P(θ_max > limit | rocking),
-    where OV is |θ| = π/2; over a hazard curve it is integrated by `annual_rate`. The band is that of `bootstrap_band`
-    over recordings, with all resamples fitted at once. All designs share the seed, and therefore the resamples.
+    where OV is |θ| = π/2; over a hazard curve it is integrated by `annual_rate`. The band is that
+    of `RotationFragility` and `annual_rate`, by recording.
 
     Parameters
     ----------
@@ -46,8 +44,6 @@ def design_table(
         Hazard curve in the measure's unit, in place of a level.
     confidence
         Confidence of the band, in [0, 1); None for no band.
-    n_resamples, seed
-        Number of resamples and seed, as in `bootstrap_band`.
 
     Returns
     -------
@@ -84,7 +80,8 @@ def design_table(
         lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
         raise InputError(f"The table {lacks}. Give what run_design returned.")
     question = Question.of(at, hazard)
-    band = None if confidence is None else Band(confidence, n_resamples, seed)
+    if confidence is not None:
+        check_confidence(confidence)
     check_limit(limit)
     import pandas as pd
 
@@ -92,7 +89,7 @@ def design_table(
     for (_, model), group in runs.groupby(["structure", "model"], observed=True, sort=False):
         first = group.iloc[0]
         facts = {"model": str(model), **{name: first[name] for name in FACTS}}
-        rows.append(facts | judged(group, limit, measure, question, band))
+        rows.append(facts | judged(group, limit, measure, question, confidence))
     models, tendons = (list(dict.fromkeys(row[name] for row in rows)) for name in ("model", "tendon"))
     rows.sort(key=lambda row: (models.index(row["model"]), tendons.index(row["tendon"]), row["half_width"]))
     return pd.DataFrame(rows)

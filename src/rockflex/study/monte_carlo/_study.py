@@ -23,7 +23,7 @@ from rockflex.study.plan._spec import RunsSpec
 MOST = 2**32 - 1  # structures with different random numbers
 TRIED = 20  # structures, at most, until one can be built
 OF_STRUCTURE = "resisting_moment recentring_ratio"
-_RUN = "structure number motion group magnitude distance_km model scale nominal_limit error"
+_RUN = "structure number motion group magnitude distance_km model scale nominal_limit zeta_1 error"
 _COLUMNS = (*_RUN.split(), *OF_STRUCTURE.split(), *(measure.name for measure in intensities()), "status", *RESULTS)
 
 

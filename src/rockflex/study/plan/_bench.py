@@ -1,5 +1,6 @@
 """The structures, records and models of a study, prepared for its runs."""
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
@@ -115,7 +116,8 @@ class Bench:
         found |= {"model": self.labels, "scale": float}
         found |= dict.fromkeys((measure.name for measure in intensities()), float)
         found |= result_columns(self.structures, grounded=self.assumptions.ground is not None) | {
-            "nominal_limit": float
+            "nominal_limit": float,
+            "zeta_1": float,
         }
         if self.assumptions.friction:
             found["required_friction"] = float
@@ -155,7 +157,9 @@ class Bench:
         if isinstance(case, str):
             return [{"error": case} for _ in runs]
         scaled = [(self.motions[record], scale) for record, scale in runs]
-        limit = {"nominal_limit": case.model.properties.nominal_overturning_rotation}
+        properties = case.model.properties
+        limit = {"nominal_limit": properties.nominal_overturning_rotation}
+        limit["zeta_1"] = float(properties.zeta[0]) if properties.n_modes else math.nan
         if not self.assumptions.history:
             return [row if "error" in row else row | limit for row in peaks_of(case, scaled).rows()]
         found = [case.attempt(*each) for each in scaled]

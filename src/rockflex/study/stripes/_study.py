@@ -45,7 +45,7 @@ class StripeStudy(StructuresSpec):
     """
 
     study: Literal["stripes"] = Field("stripes", description='"stripes"')
-    measure: str = Field("pgv", description='the intensity measure, such as "pga", "pgv" or "sa_t1"')
+    measure: str = Field("pgv", description='the intensity measure, such as "pga", "pgv" or "sa_t1_5"')
     levels: list[float] = Field(min_length=1, description="a list of levels of the measure, in SI units")
 
     def plan(self) -> "StripePlan":

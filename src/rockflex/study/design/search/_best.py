@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any, SupportsIndex
 import numpy as np
 
 from rockflex._arrays import Array, Bools
+from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex._values import Value
-from rockflex.study.design._fit import Band
+from rockflex.study.design._fit import check_confidence
 from rockflex.study.design.search._cost import DesignCost
 from rockflex.study.design.search._requirement import Requirement, check_requirements, margins_of, values_of
 from rockflex.study.design.search._space import VARIABLES
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 FACTS = (*VARIABLES, "aspect_ratio", "prestress", "dissipator_force", "resisting_moment")
 QUANTITIES = ("half_width", "prestress", "dissipator_force", "cost")
+FEWEST = 20  # resamples
 NAMES = {"half_width": "half width", "tendon_factor": "tendon factor", "dissipator_factor": "dissipator factor"}
 
 
@@ -90,8 +92,8 @@ def best_design(
 ) -> BestDesign:
     """Find the cheapest of the designs of a search that meets all requirements, and which of these governs.
 
-    All designs were run under the same records. The bands resample the recordings, with the same resamples for all
-    designs, as in `design_table`; the uncertainty of the choice comes from choosing anew in each resample.
+    All designs were run under the same records. The bands are those of `design_table`; the uncertainty of the choice
+    comes from choosing anew in each of many resamples of the recordings, the same for all designs.
 
     Parameters
     ----------
@@ -99,8 +101,10 @@ def best_design(
         The table of `search_design`, or of a `DesignStudy` with a search.
     requirements, cost
         As in `search_design`; others than those that led the search are possible.
-    confidence, n_resamples, seed
-        As in `design_table`.
+    confidence
+        Confidence of the bands, in [0, 1).
+    n_resamples, seed
+        Number of resamples, at least 20, and the seed of NumPy's default generator.
 
     Raises
     ------
@@ -123,23 +127,25 @@ def best_design(
     """
     import pandas as pd
 
-    wanted, band = check_requirements(requirements), Band(confidence, n_resamples, seed)
+    wanted, times = check_requirements(requirements), whole_number("n_resamples", n_resamples, FEWEST)
+    check_confidence(confidence)
     lacking = [name for name in (*FACTS, "structure", "round", "group") if name not in runs]
     if lacking or not len(runs):
         lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
         raise InputError(f"The table {lacks}. Give what search_design returned.")
     groups = [rows for _, rows in runs.groupby("structure", observed=True, sort=False)]
     values = values_of(groups, wanted)
-    drawn = np.stack([_drawn(rows, wanted, band) for rows in groups], axis=1)  # (resamples, designs, requirements)
+    drawn = np.stack(
+        [_drawn(rows, wanted, times, seed) for rows in groups], axis=1
+    )  # (resamples, designs, requirements)
     table = pd.DataFrame([rows.iloc[0][["structure", "round", *FACTS]] for rows in groups]).infer_objects()
     table = table.reset_index(drop=True).assign(structure=[str(rows["structure"].iloc[0]) for rows in groups])
     price = np.asarray(cost.of(*(table[name].to_numpy(float) for name in QUANTITIES[:3])), dtype=float)
     table["cost"] = price
-    low, high = _band(drawn, confidence)
-    certain = low == high
+    low, high = np.array([[each.band(rows, confidence) for each in wanted] for rows in groups]).transpose(2, 0, 1)
     for place, each in enumerate(wanted):
-        shown = np.where(certain[:, place], np.nan, low[:, place]), np.where(certain[:, place], np.nan, high[:, place])
-        table[each.label], table[f"{each.label}, low"], table[f"{each.label}, high"] = values[:, place], *shown
+        ends = values[:, place], low[:, place], high[:, place]
+        table[each.label], table[f"{each.label}, low"], table[f"{each.label}, high"] = ends
     meets, targets = _met(values, wanted), np.array([each.target for each in wanted])
     labels = [each.label for each in wanted]
     closest = np.nan_to_num(margins_of(values, wanted), nan=-np.inf).argmax(axis=1)
@@ -154,7 +160,7 @@ def best_design(
     return BestDesign(
         designs=table,
         best=best,
-        cautious=_cheapest(price, meets & (high <= targets).all(axis=1)),
+        cautious=_cheapest(price, meets & (np.fmax(values, high) <= targets).all(axis=1)),
         limits=_limits(table, best, wanted, values, price),
         interval=_interval(table, best, choices, confidence),
         governs="" if best is None else labels[closest[best]],
@@ -164,8 +170,8 @@ def best_design(
     )
 
 
-def _drawn(rows: "pd.DataFrame", wanted: list[Requirement], band: Band) -> Array:
-    return np.column_stack([each.resampled(rows, int(band.n), band.seed) for each in wanted])
+def _drawn(rows: "pd.DataFrame", wanted: list[Requirement], n: int, seed: int) -> Array:
+    return np.column_stack([each.resampled(rows, n, seed) for each in wanted])
 
 
 def _met(values: Array, wanted: list[Requirement]) -> Bools:
@@ -175,14 +181,6 @@ def _met(values: Array, wanted: list[Requirement]) -> Bools:
 
 def _cheapest(price: Array, meets: Bools) -> int | None:
     return int(np.where(meets, price, np.inf).argmin()) if meets.any() else None
-
-
-def _band(drawn: Array, confidence: float) -> tuple[Array, Array]:
-    """Limits over the resamples, NaN where a resample was not fitted in most of them."""
-    ends = np.full((2, *drawn.shape[1:]), np.nan)
-    enough = np.isfinite(drawn).sum(axis=0) >= 0.5 * drawn.shape[0]
-    ends[:, enough] = np.nanquantile(drawn[:, enough], (0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence), axis=0)
-    return ends[0], ends[1]
 
 
 def _limits(

@@ -91,6 +91,17 @@ class Requirement:
         except (InputError, SolverError):
             return np.nan
 
+    def band(self, runs: "pd.DataFrame", confidence: float) -> tuple[float, float]:
+        """Confidence limits of the value, as in `design_table`; NaN where there are none."""
+        solved = runs[runs["status"].notna()]
+        if not len(solved):
+            return np.nan, np.nan
+        some = Runs.of(solved, self.limit, self.measure)
+        try:
+            return some.fitted(banded=True).band(self.question, confidence, len(set(some.groups)))[:2]
+        except (InputError, SolverError):
+            return np.nan, np.nan
+
     def resampled(self, runs: "pd.DataFrame", n: int, seed: int) -> Array:
         """The same for `n` resamples of the recordings, shape (n,)."""
         solved = runs[runs["status"].notna()]
