@@ -254,7 +254,7 @@ def test_heights_of_translations_in_any_layout(heights, tmp_path):
         ),
         (
             {"heights": [1.0]},
-            "heights must contain one height for each of the 2 degrees of freedom, but 1 were given. List those that rotate",
+            "heights must contain one height for each of the 2 degrees of freedom, but 1 were given. List",
         ),
         (
             {"heights": {}},

@@ -116,7 +116,9 @@ def test_the_button_saves_the_gif_and_says_that_it_works(visit, link) -> None:
         button.click()
         page.wait_for_function("b => b.ariaBusy === 'true'", arg=button.element_handle())
         button.click()  # once is enough
-        page.wait_for_function("() => /^[1-9]\\d* of \\d+ frames$/.test(document.querySelector('#making-animation').innerText.trim().split('\\n').at(-1))")
+        page.wait_for_function(
+            "() => /[1-9]\\d* of \\d+ frames/.test(document.querySelector('#making-animation').innerText)"
+        )
         assert 0.0 < page.locator("#making-animation progress").evaluate("bar => bar.value") < 1.0
     content = got.value.path().read_bytes()
     assert got.value.suggested_filename == "animation.gif"
@@ -136,7 +138,7 @@ def test_an_animation_can_be_cancelled_on_the_page(visit, link) -> None:
     visitor.tab("response")
     visitor.shown(1, LONG["models"])
     saved = []
-    page.on("download", saved.append)
+    page.on("download", lambda each: saved.append(each))
     page.get_by_role("button", name="Animation (GIF)").click()
     page.locator("#making-animation").get_by_role("button", name="Cancel").click()
     page.wait_for_function("() => document.querySelector('#making-animation').innerText === 'Cancelled.'")

@@ -80,14 +80,12 @@ def test_matrices_with_rotations_are_imported_and_edited(visitor, tmp_path) -> N
     given = {"mass": [2e4, 2e4, 0.0], "stiffness": k, **kept}
     expected = rf.from_matrices(heights={0: 3.0, 1: 6.0}, rotations=[2], **given)
     visitor.wait_for("#modes tbody td", expected.modal().period[0])
-    assert page.locator("#freedoms").inner_text() == (
-        "Degrees of freedom: 2 move sideways, 1 rotate in the plane. 1 have no mass and are condensed out."
-    )
+    assert "2 sideways, 1 rotational. Without mass, and condensed out: 1." in page.locator("#freedoms").inner_text()
     visitor.fill("structure.matrices.heights", "0: 3,5; 1: 7")  # by index, with a decimal comma
     path = '[data-path="structure.matrices.heights"] input'
     expected = rf.from_matrices(heights={0: 3.5, 1: 7.0}, rotations=[2], **given)
     page.wait_for_function(
-        "v => [...document.querySelectorAll('dd[data-value]')].some((e) => Math.abs(Number(e.dataset.value) / v - 1) < 1e-12)",
+        "v => [...document.querySelectorAll('dd[data-value]')].some((e) => Math.abs(e.dataset.value / v - 1) < 1e-12)",
         arg=expected.rocking().l0r,
     )
     assert page.locator(path).input_value() == "0: 3.5, 1: 7"
@@ -144,7 +142,7 @@ def test_what_commas_mean(visitor, kind, field, text, value) -> None:
     control.fill(text)
     control.blur()
     assert visitor.state()["structure"][kind][field] == value
-    if isinstance(value, str) or "3,6" in value or "1,000" in value:
+    if "'" in str([value]):  # it stayed text
         assert "write a decimal point, no thousands separators" in visitor.error(f"structure.{kind}.{field}")
 
 

@@ -257,7 +257,7 @@ def answers(app, host: str) -> bool:
 @pytest.mark.parametrize(
     ("host", "known", "foreign"),
     [
-        ("127.0.0.1", ["127.0.0.1:80", "localhost", "[::1]:80"], ["evil.example", "10.0.0.1", "", "localhost.evil.example"]),
+        ("127.0.0.1", ["127.0.0.1:80", "localhost", "[::1]:80"], ["evil.example", "10.0.0.1", "", "localhost.evil"]),
         ("127.0.0.2", ["127.0.0.2:80", "LOCALHOST:80"], ["evil.example", "10.0.0.1"]),
         ("::1", ["[::1]:80", "localhost:80"], ["evil.example", "::1.evil.example"]),
         ("localhost", ["localhost:80", "127.0.0.1"], ["evil.example"]),

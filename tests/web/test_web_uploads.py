@@ -183,9 +183,7 @@ def test_rotations_are_imported_in_any_layout(client, heights) -> None:
     assert [each["value"] for each in view["properties"] if each["symbol"] == "I_θ"] == pytest.approx(
         [expected.rocking().i_theta], rel=1e-12
     )
-    assert view["freedoms"] == (
-        "Degrees of freedom: 2 move sideways, 2 rotate in the plane. 2 have no mass and are condensed out."
-    )
+    assert view["freedoms"] == "Degrees of freedom: 2 sideways, 2 rotational. Without mass, and condensed out: 2."
     state = client.state(structure={"matrices": found | SCALARS})
     _, toml = client.download("/api/download/structure", state)
     again = StructureEntry.model_validate(tomllib.loads(toml.decode())).build()

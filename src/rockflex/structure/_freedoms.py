@@ -66,8 +66,7 @@ class Freedoms:
             lowest = f"{values.min():g} m" if values.size else "none"
             raise InputError(
                 f"heights must contain at least one height in m above the base, all positive, but {lowest} was given. "
-                "A mass at the base belongs to base_mass; what does not translate horizontally has no height, not a height "
-                "of zero.",
+                "A mass at the base belongs to base_mass; what does not translate horizontally has none.",
                 field="heights",
             )
         order = np.argsort(values, kind="stable")

@@ -47,8 +47,8 @@ def from_matrices(
         Height of each degree of freedom above the base in m, NaN for one that does not translate horizontally, or a
         map ``{index: height}`` of those that do. The highest one with mass is the top.
     rotations : sequence of int
-        Indices of the rotations in the plane, which need no height, with the sign of the base rotation: a positive rotation displaces the
-        structure above it in the direction of the positive translations.
+        Indices of the rotations in the plane, which need no height, with the sign of the base rotation: a positive
+        rotation displaces the structure above it in the direction of the positive translations.
     base_mass, half_width : float
         Mass m_0 of the base in kg, zero or positive, and its half-width B in m.
     damping_ratio : array_like

@@ -15,7 +15,9 @@ WIDTH = 800  # pixels
 
 
 def animation(state: State, uploads: Uploads, told: Callable[[int, int], None]) -> tuple[str, bytes]:
-    """Return the name and the content of a GIF of the models that are shown, at their true speed; `told` gets the frames drawn and all.
+    """Return the name and the content of a GIF of the models that are shown, at their true speed.
+
+    `told` is called with the number of frames drawn and that of all.
 
     Raises
     ------

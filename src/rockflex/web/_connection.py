@@ -1,7 +1,6 @@
 """Connections that do not wait for ever for their clients, and make room for others."""
 
 from asyncio import TimerHandle, Transport
-from typing import Any
 
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
@@ -15,7 +14,7 @@ class Connection(H11Protocol):
     A server alone would keep half a request for ever, and refuse everybody once it has too many.
     """
 
-    since = 0.0  # when it was opened, or its last answer was complete
+    since: float = 0.0  # when it was opened, or its last answer was complete
     _limit: TimerHandle | None = None
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
@@ -23,7 +22,7 @@ class Connection(H11Protocol):
         super().connection_made(transport)
         self._wait()
         if len(self.connections) > MOST:
-            waiting: list[Any] = [each for each in self.connections if each.waits]  # of this class
+            waiting = [each for each in self.connections if isinstance(each, Connection) and each.waits]
             if waiting:
                 idlest = min(waiting, key=lambda each: each.since)
                 idlest.transport.abort()
@@ -47,7 +46,7 @@ class Connection(H11Protocol):
 
     @property
     def _idle(self) -> bool:
-        return self.cycle is None or self.cycle.response_complete
+        return not self.cycle or self.cycle.response_complete
 
     def _wait(self) -> None:
         self.since = self.loop.time()

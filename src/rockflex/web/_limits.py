@@ -78,8 +78,8 @@ def unclear(value: Any) -> str:
     if not any(isinstance(each, str) and re.fullmatch(r"[-+\d.,\s]*\d,\d[\d.,\s]*", each) for each in values):
         return ""
     return (
-        " A comma may separate thousands, decimals or numbers: write a decimal point, no thousands separators, and spaces "
-        "between numbers."
+        " A comma may separate thousands, decimals or numbers: write a decimal point, no thousands separators, and "
+        "spaces between numbers."
     )
 
 

@@ -146,14 +146,10 @@ def _freedoms(table: StructureTable) -> str:
     size = len(mass)
     found = Freedoms.of(given["heights"], given.get("rotations", ()), size)
     others = size - found.translates.size - found.rotates.size
-    kinds = (
-        (found.translates.size, "move sideways"),
-        (found.rotates.size, "rotate in the plane"),
-        (others, "do neither"),
-    )
-    counted = ", ".join(f"{count} {does}" for count, does in kinds if count)
+    kinds = ((found.translates.size, "sideways"), (found.rotates.size, "rotational"), (others, "other"))
+    counted = ", ".join(f"{count} {kind}" for count, kind in kinds if count)
     bare = size - int(np.count_nonzero(mass.any(axis=1) if mass.ndim == 2 else mass))
-    condensed = f" {bare} have no mass and are condensed out." if bare and isinstance(table, MatricesTable) else ""
+    condensed = f" Without mass, and condensed out: {bare}." if bare and isinstance(table, MatricesTable) else ""
     return f"Degrees of freedom: {counted}.{condensed}"
 
 

@@ -254,11 +254,8 @@ def factor_view(state: State, uploads: Uploads, period: object) -> dict[str, Any
             scaled = motion.scaled_to(target, (choice.shortest, choice.longest))
     else:
         if not isinstance(period, int | float) or isinstance(period, bool) or not 0.0 <= period <= 100.0:
-            raise Refusal(
-                {
-                    "target.period": f"it must be a period in s, from 0 to 100, but {str(period)[:40]} was given.{unclear(period)}"
-                }
-            )
+            message = f"it must be a period in s, from 0 to 100, but {str(period)[:40]} was given.{unclear(period)}"
+            raise Refusal({"target.period": message})
         try:
             wanted = float(target.at([period])[0])
             scaled = motion.scaled_to(sa=wanted, period=float(period), damping_ratio=target.damping_ratio)

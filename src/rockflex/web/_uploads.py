@@ -212,12 +212,12 @@ def _numbers(name: str, part: str, array: Any) -> Any:
     if not (np.isfinite(values) | blank).all() or blank.all() or max(values.shape) > FREEDOMS:
         message = f"{name}: {part} must hold finite numbers for up to {FREEDOMS} freedoms."
         raise Refusal({"structure": message})
+    if part == "heights" and values.ndim == 2 and values.shape[1] == 2 and len(values) > 1:
+        return {str(_index(name, part, each)): height for each, height in values.tolist()}
     if values.ndim == 2 and 1 in values.shape and part != "stiffness":
         values = values.ravel()
     if part == "rotations":
         return [_index(name, part, each) for each in values.ravel()]
-    if part == "heights" and values.ndim == 2 and values.shape[1] == 2:
-        return {str(_index(name, part, each)): float(height) for each, height in values}
     if blank.any():
         return {str(i): float(values.ravel()[i]) for i in np.flatnonzero(~blank)}
     return values.tolist()

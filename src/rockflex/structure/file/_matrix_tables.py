@@ -29,12 +29,12 @@ class _FromFiles(StructureTable):
     heights: Annotated[
         Vector | dict[Index, float] | str,
         Key(
-            "a list of the heights of all freedoms in m (nan: does not move sideways), or a table { index = height } of "
-            "those that move sideways, counted from 0",
+            "a list of the heights of all freedoms in m (nan: does not move sideways), or a table { index = height } "
+            "of those that move sideways, counted from 0",
             "m",
             form=_OR_FILE,
-            page="the heights in m of the freedoms that move sideways: of all freedoms but the rotations in their order, "
-            "or each after its index, counted from 0 (0: 3, 2: 6)",
+            page="the heights in m of the freedoms that move sideways: of all freedoms but the rotations in their "
+            "order, or each after its index, counted from 0 (0: 3, 2: 6)",
         ),
     ]
     rotations: Annotated[
