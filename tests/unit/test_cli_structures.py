@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from builders import PROPERTIES, frame_values
-from rockflex import Eccentric, Frame, InputError, LumpedStructure, RockingProperties
+from rockflex import Eccentric, Frame, InputError, LumpedStructure, RockingProperties, read_structure
 from rockflex.cli._structures import describe_properties, load_structure, split_arguments
 
 FRAME = frame_values()
@@ -164,6 +164,31 @@ def test_unknown_key_is_named_with_its_neighbour(failing):
         ": [frame] story_hieght is not known; there are n_stories, story_height, story_mass, base_mass, "
         "stiffness_ratio, period, aspect_ratio, damping_ratio. Did you mean story_height?"
     )
+
+
+def test_unknown_keys_of_a_table_are_listed_once(failing):
+    message = failing(toml({**FRAME, "story_hieght": 3.0, "damping": 0.02, "colour": 1}))
+    assert message.count("not known") == message.count("n_stories") == 1
+    assert "[frame] story_hieght, damping, colour are not known" in message
+    assert "story_height for story_hieght" in message
+
+
+@pytest.mark.parametrize(
+    ("kind", "command"), [("cloud", "cloud"), ("incremental", "ida"), ("monte_carlo", "monte-carlo")]
+)
+def test_the_file_of_a_study_names_its_command(write, kind, command):
+    file = write(f'study = "{kind}"\nmodels = ["2DOF-S"]\nscales = [1.0]\n[records]\nsuites = []\n')
+    with pytest.raises(InputError) as error:
+        load_structure(file, NO_FLAGS)
+    assert f"rockflex {command} {file}" in str(error.value)
+    assert "not known" not in str(error.value)
+    with pytest.raises(InputError, match="load_study"):
+        read_structure(file)
+
+
+def test_the_file_of_an_unknown_study(write):
+    with pytest.raises(InputError, match="file of a study"):
+        load_structure(write('study = ["cluod"]\n'), NO_FLAGS)
 
 
 def test_unknown_table(failing):

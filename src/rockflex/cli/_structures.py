@@ -103,10 +103,22 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
         return _from_flags(flags)
     if flags:
         raise InputError(f"The structure was given by {file} and by {_flags(flags)}. Give one or the other.")
-    document = checked(StructureFile, read_toml(file, "structure"), str(file))
+    content = read_toml(file, "structure")
+    if "study" in content:
+        raise _study_given(file, content["study"])
+    document = checked(StructureFile, content, str(file))
     assumed = document.model_dump(include=set(Assumed.model_fields), exclude_unset=True)
     built = build_in(file, document)
     return LoadedStructure(document.name or file.stem, document.kind, document.describe(), built, assumed)
+
+
+def _study_given(file: Path, name: object) -> InputError:
+    """Return the error for the file of a study in place of one of a structure."""
+    from rockflex.kinds import KINDS
+
+    known = isinstance(name, str) and name in KINDS
+    remedy = f"Use rockflex {KINDS[str(name)].command} {file}." if known else "rockflex --help lists the studies."
+    return InputError(f"{file} is the file of a study, but one of a structure is expected. {remedy}")
 
 
 def describe_properties(properties: RockingProperties) -> dict[str, Any]:

@@ -53,6 +53,8 @@ def read_structure(path: str | Path) -> Built:
     """
     file = path_of("path", path)
     content = {key: value for key, value in read_toml(file, "structure").items() if key not in _FOR_RUNS}
+    if "study" in content:
+        raise InputError(f"{file} is the file of a study, but one of a structure is expected. Use load_study(path).")
     return build_in(file, checked(StructureEntry, content, str(path)))
 
 

@@ -76,17 +76,23 @@ def checked(model: type[AnyTable], content: Mapping[str, Any], place: str = "") 
 
 
 def problems(error: ValidationError, content: Mapping[str, Any], model: type[Table]) -> list[str]:
-    """Return one sentence for each key at fault, with what is expected; the branches of a union count once."""
+    """Return one sentence for each key at fault, with what is expected; the branches of a union count once.
+
+    All unknown keys of a table are in one sentence.
+    """
     sentences: dict[tuple[str | int, ...], str] = {}
+    unknown: dict[tuple[str | int, ...], list[str]] = {}
     for problem in error.errors():
         spot = spot_of(problem["loc"], content, model)
         key = str(spot.path[-1]) if spot.path and not spot.of_table else ""
         label = label_of(spot.path) if key else _header(spot.path).removesuffix(",")
         known = spot.table.model_fields
         if problem["type"] == "extra_forbidden":
-            near = get_close_matches(key, known, n=1)
-            hint = f" Did you mean {near[0]}?" if near else ""
-            said = f"{label} is not known; there are {', '.join(known)}.{hint}"
+            table = spot.path[:-1]
+            others = unknown.setdefault(table, [])
+            others += [key] * (key not in others)
+            sentences[(*table, "")] = _unknown(table, others, list(known))
+            continue
         elif problem["type"] == "value_error":  # raised by a check of the whole table
             said = ": ".join(filter(None, (label, str(problem["ctx"]["error"]) if "ctx" in problem else "")))
         elif problem["type"] in ("missing", "union_tag_not_found"):
@@ -97,6 +103,14 @@ def problems(error: ValidationError, content: Mapping[str, Any], model: type[Tab
             said = f"{label or 'It'} must be a table, but {reprlib.repr(spot.value)} was given."
         sentences[spot.path] = said
     return list(sentences.values())
+
+
+def _unknown(table: tuple[str | int, ...], keys: list[str], known: list[str]) -> str:
+    label = " ".join(filter(None, (_header(table), ", ".join(keys))))
+    near = {key: found[0] for key in keys if (found := get_close_matches(key, known, n=1))}
+    meant = [each if len(keys) == 1 else f"{each} for {key}" for key, each in near.items()]
+    hint = f" Did you mean {', '.join(meant)}?" if meant else ""
+    return f"{label} {'is' if len(keys) == 1 else 'are'} not known; there are {', '.join(known)}.{hint}"
 
 
 @dataclass(frozen=True)
