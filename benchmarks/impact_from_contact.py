@@ -1,4 +1,5 @@
-"""Tables of the study "Where the impact law comes from" (docs/theory/contact.md): about half an hour on one core.
+"""Tables of the studies "Where the impact law comes from" and "Forces after an impact" (docs/theory/contact.md and
+forces.md): about half an hour on one core.
 
 Writes docs/_static/contact/*.csv; `python benchmarks/impact_from_contact.py blocks` computes one of the tables only.
 `impact_figures.py` draws them.
@@ -22,6 +23,7 @@ from rockflex.models import housner
 FOLDER = Path(__file__).parents[1] / "docs" / "_static" / "contact"
 GRAVITY = 9.81
 RATIOS = (0.05, 0.2, 0.7)  # damping of the heave, of critical
+OVERDAMPED = 1.5  # the base does not rebound
 SUITES = ("fema-p695-far-field", "fema-p695-near-field-no-pulse", "fema-p695-near-field-pulse")
 TWO, BED, STRIPS = "two springs", "bed", 20
 # Period in s, h*_1/B and stiffness ratio of the structures of Table 1 of Silva & Stojadinović (2024).
@@ -33,6 +35,7 @@ FRAMES = {
     "#5": (1.0, 5.0, math.inf),
     "#6": (1.0, 5.0, 0.0),
 }
+PEAKS = {"rotation": "max_rotation", "moment": "max_base_moment", "shear": "max_base_shear"}
 VISIBLE = 0.02  # of the rotation at which the structure would stand on its edge
 Row = dict[str, Any]
 Array = np.ndarray
@@ -178,27 +181,43 @@ def records(step: int) -> list[rf.GroundMotion]:
 
 @dataclass(frozen=True)
 class Bench:
-    """One structure under all records, with one model and the scales of the records."""
+    """One structure under every so many-th record, with one model and the scales of the records."""
 
     p: rf.RockingProperties
     model: str
     scales: tuple[float, ...]
+    step: int = 2
 
     def peaks(self, more: float = 1.0, **options: Any) -> pd.DataFrame:
-        """θ_max and counts of events; `more` scales the records further."""
+        """Peaks and counts of events; `more` scales the records further."""
         scales = [more * each for each in self.scales]
         made = rf.simulate_many(
-            self.p, records(2), self.model, scales=scales, output="peaks", workers=1, work_limit=None, **options
+            self.p, records(self.step), self.model, scales=scales, output="peaks", workers=1, work_limit=None, **options
         )
         made["scale"] /= more
-        return made.set_index(["motion", "scale"])[["status", "max_rotation", "n_impacts"]]
+        return made.set_index(["motion", "scale"])[["status", "n_impacts", "min_vertical_reaction", *PEAKS.values()]]
 
-    def compared(self, run: pd.DataFrame, law: pd.DataFrame) -> dict[str, float]:
-        """Quantiles of the ratio of θ_max over the runs that stand and visibly rock in both."""
+    def kept(self, run: pd.DataFrame, law: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
+        """Return the runs that stand and visibly rock in both, and which runs fell."""
         both = run.join(law.add_suffix("_law"))
         limit = self.p.resisting_moment / (self.p.l0r * GRAVITY)
         fell = both[["status", "status_law"]] == "overturned"
-        kept = both[~fell.any(axis=1) & (both["max_rotation_law"] > VISIBLE * limit)]
+        return both[~fell.any(axis=1) & (both["max_rotation_law"] > VISIBLE * limit)], fell
+
+    def forces(self, run: pd.DataFrame, law: pd.DataFrame) -> dict[str, float]:
+        """Quantiles of the ratios of peaks, also where the law never pulls the base down, and how many are above 1.1."""
+        kept, _ = self.kept(run, law)
+        pressed = kept["min_vertical_reaction_law"] >= 0.0
+        found: dict[str, float] = {"runs": len(kept), "runs_pressed": int(pressed.sum())}
+        for name, peak in PEAKS.items():
+            ratio = kept[peak] / kept[f"{peak}_law"]
+            found |= {f"{name}_q{q}": ratio.quantile(q / 100.0) for q in (16, 50, 84)}
+            found |= {f"{name}_pressed": ratio[pressed].median(), f"{name}_above": float((ratio > 1.1).mean())}
+        return found
+
+    def compared(self, run: pd.DataFrame, law: pd.DataFrame) -> dict[str, float]:
+        """Quantiles of the ratio of θ_max over the runs that stand and visibly rock in both."""
+        kept, fell = self.kept(run, law)
         ratio = kept["max_rotation"] / kept["max_rotation_law"]
         return {
             "runs": len(kept),
@@ -225,15 +244,55 @@ def compare(bench: Bench, laws: dict[str, rf.ImpactLaw], grounds: Iterable[tuple
     return rows
 
 
+def bare_frame(name: str) -> rf.RockingProperties:
+    """A structure of Table 1, whose base has no rotary inertia."""
+    period, slender, stiffness_ratio = FRAMES[name]
+    frame = rf.Frame(
+        n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=stiffness_ratio,
+        period=period, aspect_ratio=slender, damping_ratio=0.02,
+    )  # fmt: skip
+    return frame.rocking()
+
+
+def on_a_mat(name: str) -> tuple[rf.RockingProperties, float]:
+    """The same on a mat of the width of the base, and the rotary inertia of the mat."""
+    bare = bare_frame(name)
+    inertia = bare.base_mass * bare.half_width**2 / 3.0
+    return with_rotary(bare, inertia), inertia
+
+
+def stiff_springs(p: rf.RockingProperties, inertia: float, over: float, ratio: float) -> rf.Ground:
+    """Two springs of the stiffness r and the damping ζ."""
+    heave = over * p.omega[0] * p.effective_height[0] / p.half_width
+    return rf.Ground(springs=springs(TWO, p.half_width, p.m_tot, heave, ratio), base_inertia=inertia)
+
+
+def forces() -> pd.DataFrame:
+    """Peaks of the structures of Table 1 on mats over those with VVEL: with Housner's law, and on springs.
+
+    Overdamped springs take fewer records, because their runs are slow.
+    """
+    rows: list[Row] = []
+    for name in FRAMES:
+        p, inertia = on_a_mat(name)
+        bench, few = Bench(p, "MDOF-S", (1.0, 2.0)), Bench(p, "MDOF-S", (1.0, 2.0), step=8)
+        vvel = rf.VVELSimplified()
+        law, others = bench.peaks(impact=vvel), {"Housner": bench.peaks(impact=housner(p))}
+        others["VVEL, records + 1 %"] = bench.peaks(1.01, impact=vvel)
+        rows += [{"structure": name, "run": run} | bench.forces(found, law) for run, found in others.items()]
+        for over, ratio in itertools.product((1.0, 2.0, 3.0, 5.0, 10.0, 20.0), (*RATIOS, OVERDAMPED)):
+            run = (few if ratio == OVERDAMPED else bench).peaks(ground=stiff_springs(p, inertia, over, ratio))
+            row = {"structure": name, "run": "contact", "frequency_ratio": over, "damping": ratio}
+            rows.append(row | bench.forces(run, law))
+        print(name, "forces", flush=True)
+    return pd.DataFrame(rows)
+
+
 def frames() -> pd.DataFrame:
     """The structures of Table 1 with all modes; base with the rotary inertia of a mat, and with that of wide floors."""
     rows: list[Row] = []
-    for name, (period, slender, stiffness_ratio) in FRAMES.items():
-        frame = rf.Frame(
-            n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=stiffness_ratio,
-            period=period, aspect_ratio=slender, damping_ratio=0.02,
-        )  # fmt: skip
-        bare = frame.rocking()
+    for name in FRAMES:
+        bare = bare_frame(name)
         b, total = bare.half_width, bare.m_tot
         cases = [("mat", "MDOF-S", bare.base_mass * b**2 / 3.0)]
         if name in ("#1", "#6"):
@@ -291,6 +350,7 @@ TABLES: dict[str, Callable[[], pd.DataFrame]] = {
     "columns": columns,
     "blocks": blocks,
     "frames": frames,
+    "forces": forces,
 }
 
 if __name__ == "__main__":
