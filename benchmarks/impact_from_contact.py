@@ -205,14 +205,17 @@ class Bench:
         return both[~fell.any(axis=1) & (both["max_rotation_law"] > VISIBLE * limit)], fell
 
     def forces(self, run: pd.DataFrame, law: pd.DataFrame) -> dict[str, float]:
-        """Quantiles of the ratios of peaks, also where the law never pulls the base down, and how many are above 1.1."""
+        """Quantiles of the ratios of peaks, medians where the law never pulls the base down and where it does, and the
+        share above 1.1.
+        """
         kept, _ = self.kept(run, law)
         pressed = kept["min_vertical_reaction_law"] >= 0.0
         found: dict[str, float] = {"runs": len(kept), "runs_pressed": int(pressed.sum())}
         for name, peak in PEAKS.items():
             ratio = kept[peak] / kept[f"{peak}_law"]
             found |= {f"{name}_q{q}": ratio.quantile(q / 100.0) for q in (16, 50, 84)}
-            found |= {f"{name}_pressed": ratio[pressed].median(), f"{name}_above": float((ratio > 1.1).mean())}
+            found |= {f"{name}_pressed": ratio[pressed].median(), f"{name}_pulled": ratio[~pressed].median()}
+            found[f"{name}_above"] = float((ratio > 1.1).mean())
         return found
 
     def compared(self, run: pd.DataFrame, law: pd.DataFrame) -> dict[str, float]:

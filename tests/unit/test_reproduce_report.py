@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from page import Page, check_page
 from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
-from rockflex.papers.silva_stojadinovic_2024._number import Interval, check, compared, stated, statistic
+from rockflex.papers.silva_stojadinovic_2024._number import Interval, check, compared, count_of, stated, statistic
 from rockflex.report import Document, Remark, Result, to_csv, to_html, to_markdown, write_document
 from rockflex.report._svg import inline
 
@@ -22,6 +22,7 @@ NUMBERS = (
     statistic("R²", "Section 3.3", "0.99", Interval(0.983, 0.978, 0.988)),
     stated("friction", "Section 3.1", "higher than 2", float("inf"), "> 2", ground=Verdict.EQUIVALENT),
     statistic("difference", "Section 3.2", "0.002", Interval(0.00093, 0.00064, 0.00329), "rad"),
+    count_of("pairs that rock", "Section 3.3", "693", Interval(882.0, 867.0, 900.0)),
 )
 CHECKS = (check("T_1 & <x>", "Section 3.1", "0.5", 0.5, unit="s"), check("M_r", "Table 2", "m_tot g B", 1.1, "< 1"))
 computed = []
@@ -86,7 +87,8 @@ def test_every_number_and_verdict_is_in_the_page(folder, document):
         for text in (line.place, line.name, line.printed, line.ours_as_text, line.difference_as_text, line.verdict):
             assert str(text) in page.cells
     assert document.counts == {
-        "reproduced": 1, "compatible": 1, "equivalent specimen": 1, "cannot tell": 1, "does not reproduce": 1,
+        "reproduced": 1, "compatible": 1, "equivalent specimen": 1, "cannot tell": 1, "cannot be compared": 1,
+        "does not reproduce": 1,
     }  # fmt: skip
     assert page.cells.count("a|b & c_*") == 2  # among those that do not reproduce, and in its section
 

@@ -9,7 +9,15 @@ from hypothesis import strategies as st
 
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
-from rockflex.papers.silva_stojadinovic_2024._number import Interval, check, compared, stated, statistic, tendency
+from rockflex.papers.silva_stojadinovic_2024._number import (
+    Interval,
+    check,
+    compared,
+    count_of,
+    stated,
+    statistic,
+    tendency,
+)
 from rockflex.papers.silva_stojadinovic_2024._printed import range_of
 from rockflex.papers.silva_stojadinovic_2024._verdict import WIDEST
 
@@ -22,7 +30,7 @@ from rockflex.papers.silva_stojadinovic_2024._verdict import WIDEST
         ("-13", -13.5, -12.5),
         ("0.90", 0.895, 0.905),
         ("about 44", 43.5, 44.5),
-        ("approximately 2", 1.5, 2.5),
+        ("approximately 2", 1.6, 2.4),
         ("≈ 0.05", 0.045, 0.055),
         ("24'178'750", 24178749.5, 24178750.5),
         ("24 178 750", 24178749.5, 24178750.5),
@@ -95,6 +103,33 @@ def test_a_wrong_number_does_not_come_out_as_reproduced():
     assert line.ours_as_text == "1.65568"
     assert compared("ω_1", "", "1.66", 1.65568).verdict is Verdict.REPRODUCED
     assert compared("ω_1", "", "1.66", math.nan).verdict is Verdict.NOT
+
+
+@pytest.mark.parametrize(
+    ("printed", "ours", "verdict"),
+    [
+        ("approximately 2", 2.48, Verdict.NOT),
+        ("approximately 2", 2.39, Verdict.REPRODUCED),
+        ("approximately 2", 1.55, Verdict.NOT),
+        ("2", 2.48, Verdict.REPRODUCED),
+        ("≈ 0.01", 0.0112, Verdict.REPRODUCED),
+        ("≈ 0.01", 0.0121, Verdict.NOT),
+        ("about 44", 44.4, Verdict.REPRODUCED),
+        ("about 44", 45.0, Verdict.NOT),
+    ],
+)
+def test_about_so_much_has_a_tolerance_that_the_line_states(printed, ours, verdict):
+    line = compared("ratio", "Section 4.2", printed, ours)
+    assert line.verdict is verdict
+    assert ("20 %" in line.criterion) == (printed != "2")
+
+
+@pytest.mark.parametrize(("printed", "low", "high"), [("306", 94.0, 124.0), ("306", 290.0, 320.0), ("2", 0.0, 5.0)])
+def test_a_count_of_outcomes_under_other_records_is_not_compared(printed, low, high):
+    """Neither agreement nor difference is evidence, whatever the interval is."""
+    line = count_of("pairs", "Section 3.3", printed, Interval(0.5 * (low + high), low, high))
+    assert line.verdict is Verdict.INCOMPARABLE
+    assert line.difference == 0.5 * (low + high) - float(printed)
 
 
 def test_ground_of_a_value_that_agrees_and_of_one_that_does_not():

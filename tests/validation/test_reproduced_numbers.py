@@ -1,7 +1,7 @@
 """Silva & Stojadinović 2024: every line that passes is read again from its printed text, with decimal arithmetic.
 
-What does not reproduce is listed here by name, so that a line neither joins nor leaves the list unseen. What hangs on
-the records in place of the paper's is judged from its interval alone. There are fewer random prototypes here than in a
+What does not reproduce is listed here by name, so that a line neither joins nor leaves the list unseen. What depends
+on the records in place of the paper's is judged from its interval alone, and counts of outcomes are not judged. There are fewer random prototypes here than in a
 report.
 """
 
@@ -17,6 +17,7 @@ from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, Verdict, _
 from rockflex.papers.silva_stojadinovic_2024._cloud import cloud, differences, places
 from rockflex.papers.silva_stojadinovic_2024._number import Interval
 from rockflex.papers.silva_stojadinovic_2024._pool import intervals, pool
+from rockflex.papers.silva_stojadinovic_2024.figure_9 import COUNTS
 
 PAIRS = 300  # of a population, in place of the report's thousand
 SLOW = {"sliding"}  # tested with few records
@@ -39,9 +40,10 @@ MISSES = {
     },
     "figure-15": {"θ_max, error of 3DOF-S"},
     "figure-16": {"u_top,max of the weak structure"},
-    "figure-17": {"u_top,max of Fig. 16's weak structure over Fig. 17's"},
+    "figure-17": {"u_top,max, fixed over rocking", "u_top,max of Fig. 16's weak structure over Fig. 17's"},
 }
 BY_RECORDS = {"figure-5", "figure-6", "figure-7", "figure-9", "figure-13", "sliding"}
+COUNTED = {name for name, _ in COUNTS.values()}
 OWN = {"figure-8": 10, "figure-11": 1, "table-2": 8, "figure-3": 4, "figure-4": 3}  # checks of ourselves
 
 
@@ -113,7 +115,10 @@ def agrees(line):
     value, step = digits(line.printed)
     if line.criterion.startswith("cut off"):
         return abs(value) <= abs(ours) < abs(value) + step
-    assert line.criterion == "must round to it"
+    rough = line.printed.startswith(("about", "approximately", "≈"))
+    assert line.criterion == "must round to it" + ", and be within 20 % of it" * rough
+    if rough and abs(ours - value) > Decimal("0.2") * abs(value):
+        return False
     return abs(ours - value) <= step / 2 * (1 + Decimal("1e-9"))
 
 
@@ -121,7 +126,9 @@ def test_every_line_that_passes_agrees_with_what_is_printed(results):
     found = lines(results)
     assert len(found) > 150
     for name, line in found:
-        if name in BY_RECORDS:
+        if line.name in COUNTED:
+            assert line.verdict is Verdict.INCOMPARABLE, line
+        elif name in BY_RECORDS:
             again = by_interval(line)
             assert again in (None, line.verdict), (name, line)
         else:
@@ -140,6 +147,8 @@ def test_verdicts_fit_their_ground(results):
     grounds = {name: {Verdict.COMPATIBLE, Verdict.UNDECIDED} for name in BY_RECORDS}
     grounds |= {name: {Verdict.EQUIVALENT} for name in ("figure-3", "figure-4")}
     for name, line in lines(results):
+        if line.name in COUNTED:
+            continue
         assert line.verdict in grounds.get(name, {Verdict.REPRODUCED}) | {Verdict.NOT}, (name, line.name)
 
 

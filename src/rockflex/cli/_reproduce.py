@@ -57,7 +57,7 @@ def reproduce(
         typer.Option(
             metavar="N",
             help="Number of random populations of 1000 pairs, at least 10, by which Figs. 9 and 13 are judged: fewer "
-            "are quicker but less conclusive. Default: 40.",
+            "are quicker but less conclusive. Default: 20.",
             show_default=False,
         ),
     ] = None,

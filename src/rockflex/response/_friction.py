@@ -97,10 +97,11 @@ class Friction:
             first = int(np.searchsorted(self._places, start[k]))
             looks[first, k] = max(looks[first, k], self._angle_at(int(k), float(start[k])))
         best = float(looks.max())
-        for k in np.flatnonzero(looks.max(axis=0) + self._rise >= best):
+        highest = looks.max(axis=0)
+        for k in np.argsort(-highest):  # from the highest, which leaves the fewest others that may exceed it
             if not 0.0 < best < 0.5 * math.pi:
                 break
-            if start[k] < 1.0:
+            if start[k] < 1.0 and highest[k] + self._rise[k] >= best:
                 best = max(best, self._peak(int(k), int(np.argmax(looks[:, k])), float(start[k]))[1])
         return float(_coefficient(np.array(max(best, 0.0))))
 

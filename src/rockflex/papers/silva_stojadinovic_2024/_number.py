@@ -1,14 +1,16 @@
 """The rules by which a printed number reproduces.
 
-1. *Reproduced.* A value must round to the printed digits; words such as "about" do not widen the range. Where a table
-   cuts digits off (Table 3 does so for some), a value that is cut off to the printed digits also passes, and its line
+1. *Reproduced.* A value must round to the printed digits. A word such as "about" does not widen the range: of one
+   digit it would allow 25 % and more, so such a value must also lie within 20 % of the printed one (our reading of the
+   word). Where a table cuts digits off (Table 3 does so for some), a value that is cut off to the printed digits also passes, and its line
    says so. A bound must hold. A statement in words becomes a criterion on a number; the line shows both.
 2. *Compatible*, or *cannot tell*. The paper's records and random draws are not available. Values from ours have a 90 %
    interval. It must overlap what rounds to the printed digits, or meet its criterion throughout. The result is *cannot
    tell* if the interval is wider than half the printed value, or only a part of it meets the criterion.
 3. *Equivalent specimen.* Rule 1 for a structure that meets the published ratios of a tested specimen but is not the
    specimen itself.
-4. *Does not reproduce.* Everything else. Nothing is adjusted to pass.
+4. *Cannot be compared.* A count of outcomes under other records than the paper's, whatever it is.
+5. *Does not reproduce.* Everything else. Nothing is adjusted to pass.
 
 A printed value counts once, even if it is repeated. Anything that follows from the way the library or an equivalent
 specimen is built is a `Check`, not a number; additional computations are `Remark`s.
@@ -19,9 +21,11 @@ from typing import NamedTuple
 
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._printed import Range, range_of
-from rockflex.papers.silva_stojadinovic_2024._verdict import WIDEST, Verdict
+from rockflex.papers.silva_stojadinovic_2024._verdict import ROUGH, WIDEST, Verdict
 from rockflex.report import Check, Number
 from rockflex.report._line import as_text
+
+MUST_ROUND = "must round to it"
 
 
 class Interval(NamedTuple):
@@ -65,7 +69,9 @@ def compared(
         Whether digits may have been cut off in print (rule 1).
     """
     wanted, value = range_of(printed, truncated=truncated), float(ours)
-    criterion = "must hold" if wanted.is_bound else "must round to it"
+    criterion = "must hold" if wanted.is_bound else MUST_ROUND
+    if wanted.rough:
+        criterion += f", and be within {100.0 * ROUGH:g} % of it"
     if truncated and value in wanted and value not in range_of(printed):
         criterion = "cut off, not rounded, to it"
     verdict = ground if value in wanted else Verdict.NOT
@@ -107,6 +113,13 @@ def statistic(name: str, place: str, printed: str, ours: Interval, unit: str = "
     return _number(name, place, printed, float(ours.estimate), unit, criterion, verdict, wanted, note)
 
 
+def count_of(name: str, place: str, printed: str, ours: Interval) -> Number:
+    """Show a count of outcomes, which depends on how strong the records are, next to the printed one (rule 4)."""
+    criterion = f"none; 90 % interval {as_text(ours.low, 0)} to {as_text(ours.high, 0)}"
+    wanted, note = range_of(printed), "depends on how strong the records are"
+    return _number(name, place, printed, float(ours.estimate), "", criterion, Verdict.INCOMPARABLE, wanted, note)
+
+
 def tendency(
     name: str, place: str, printed: str, ours: Interval, criterion: str, unit: str = "", *, note: str = ""
 ) -> Number:
@@ -126,7 +139,7 @@ def check(
 ) -> Check:
     """Check a value against a bound, such as ``"< 1"``, or by default against the printed number."""
     wanted, value = range_of(criterion or printed), float(ours)
-    digits, words = _digits_of(wanted, value), criterion or "must round to it"
+    digits, words = _digits_of(wanted, value), criterion or MUST_ROUND
     return Check(name, place, printed, value, unit, words, digits, note, value in wanted)
 
 

@@ -5,8 +5,9 @@ import re
 from dataclasses import dataclass
 
 import rockflex as rf
+from rockflex.papers.silva_stojadinovic_2024._verdict import ROUGH
 
-_WORDS = r"(?:about|approximately|≈|≅)\s*"
+_WORDS = r"(?P<word>about|approximately|≈|≅)\s*"
 _NUMBER = r"[-+−]?\d[\d' ]*(?:\.\d+)?"
 _VALUE = re.compile(rf"(?:{_WORDS})?(?P<value>{_NUMBER})(?:\s*/\s*(?P<divisor>{_NUMBER}))?")
 _BOUND = re.compile(rf"(?P<sign>[<>≤≥])\s*(?P<value>{_NUMBER})")
@@ -29,6 +30,8 @@ class Range:
         Unit of its last digit.
     is_bound : bool
         Whether a bound was printed, not a value.
+    rough : bool
+        Whether a word such as "about" was printed before the value.
     """
 
     low: float
@@ -37,6 +40,7 @@ class Range:
     value: float
     step: float
     is_bound: bool
+    rough: bool = False
 
     def __contains__(self, found: object) -> bool:
         if not isinstance(found, float) or math.isnan(found):
@@ -59,7 +63,7 @@ def range_of(printed: str, *, truncated: bool = False) -> Range:
     ----------
     printed
         ``"1.66"``, ``"−0.24"``, ``"24'178'750"``, ``"580000/3"``, ``"about 44"``, or a bound such as ``"≤ 3.2"``. A
-        value represents all that rounds to its digits; a word before it does not widen the range.
+        value represents all that rounds to its digits, and with a word before it, of that what is within 20 % of it.
     truncated
         Whether digits may have been cut off instead of rounded: up to a unit of the last digit away from zero.
 
@@ -85,7 +89,10 @@ def range_of(printed: str, *, truncated: bool = False) -> Range:
     low, high = value - 0.5 * step, value + 0.5 * step
     if truncated:
         low, high = (value - step, high) if value < 0.0 else (low, value + step)
-    return Range(low, high, open=False, value=value, step=step, is_bound=False)
+    rough = match["word"] is not None
+    if rough:
+        low, high = max(low, value - ROUGH * abs(value)), min(high, value + ROUGH * abs(value))
+    return Range(low, high, open=False, value=value, step=step, is_bound=False, rough=rough)
 
 
 def _number(text: str) -> float:

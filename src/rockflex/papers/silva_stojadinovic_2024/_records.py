@@ -6,7 +6,7 @@ from pathlib import Path
 
 import rockflex as rf
 
-SEEDS, FEWEST, SEED = 40, 10, 2024
+SEEDS, FEWEST, SEED = 20, 10, 2024
 SUITES = ("fema-p695-far-field", "fema-p695-near-field-no-pulse")
 
 

@@ -3,6 +3,7 @@
 from enum import StrEnum
 
 WIDEST = 0.5  # of the printed value: the width of an interval, above which it tells nothing
+ROUGH = 0.2  # of a value that is printed as "about" so much: how far from it ours may be
 
 
 class _Explained(StrEnum):
@@ -20,7 +21,8 @@ class Verdict(_Explained):
 
     REPRODUCED = (
         "reproduced",
-        "From the input in the paper: it rounds to the printed digits (or is cut off to them, as noted), or the "
+        "From the input in the paper: it rounds to the printed digits (or is cut off to them, as noted), and is within "
+        f"{100.0 * ROUGH:g} % of a value printed as \"about\" or \"approximately\" so much, which is our reading; or the "
         "criterion holds.",
     )
     COMPATIBLE = (
@@ -38,6 +40,11 @@ class Verdict(_Explained):
         "cannot tell",
         "With other records or draws: the 90 % interval overlaps the printed value but is wider than half of "
         "it, or the criterion holds over only a part of the interval.",
+    )
+    INCOMPARABLE = (
+        "cannot be compared",
+        "A count of outcomes: it depends on how strong the records are, and the paper's are not available. Both counts "
+        "are shown; neither agreement nor difference would tell anything.",
     )
     NOT = "does not reproduce", "None of these. Nothing is adjusted to pass; the difference is shown."
 

@@ -6,7 +6,7 @@ import numpy as np
 
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._draws import measure
-from rockflex.papers.silva_stojadinovic_2024._number import statistic, tendency
+from rockflex.papers.silva_stojadinovic_2024._number import count_of, statistic, tendency
 from rockflex.papers.silva_stojadinovic_2024._pool import DRAWS, PAIRS, intervals, pool, population
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._verdict import Kind
@@ -15,7 +15,6 @@ from rockflex.report import Remark, Result
 
 TITLE = "Agreement of 2DOF-S with MDOF-S"
 PLACE = "Section 3.3"
-OWN = "hangs on how strong the records are"
 COUNTS = {
     "no uplift": ("pairs in which MDOF-S does not uplift", "306"),
     "rocking": ("pairs in which MDOF-S rocks and stands", "693"),
@@ -58,7 +57,7 @@ ROWS = COUNTS | {key: (name, printed) for key, (name, _, printed) in AGREEMENT.i
 def reproduce(records: Records) -> Result:
     """Compare the models pair by pair."""
     found = intervals(records)
-    numbers = [statistic(name, PLACE, n, found[key], note=OWN) for key, (name, n) in COUNTS.items()]
+    numbers = [count_of(name, PLACE, n, found[key]) for key, (name, n) in COUNTS.items()]
     numbers.append(
         tendency(
             "θ_max of 2DOF-S where MDOF-S does not uplift, largest", PLACE, "smaller than 5·10⁻⁵",

@@ -20,7 +20,7 @@ RITZ = {
 
 SLICES = (200, 2000, 4000, 5600, 6250, 6800, 8000, 20_000)
 ELEMENTS = (500, 1000, 2000)
-PLACES = {"lower end": 0.0, "middle": 0.5, "upper end": 1.0}
+PLACES = {"lower end": 0.0, "upper end": 1.0}
 
 
 def reproduce(_: Records) -> Result:
