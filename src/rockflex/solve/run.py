@@ -180,9 +180,11 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
     calm = size_of_motion <= STILL * size_at_rest
     for f in range(log.peaks.size):
         rest, stray = motion.offset[f], 0.0
+        terms = abs(rest)  # of which the constant is the sum: 0 for the loss of support, yet rounded like the weight
         for k in range(moving):
             size = math.hypot(system.rows[p, VALUES, k, f], system.rows[p, VALUES, pairs + k, f])
             stray += size * math.hypot(motion.w[NOW, k], motion.w[NOW, pairs + k])
+            terms += size * math.hypot(motion.still[k], motion.still[pairs + k])
         for k in range(moving, pairs if held else moving):
             rest += system.rows[p, VALUES, k, f] * motion.w[NOW, k]
         if f == GUARD:
@@ -194,7 +196,7 @@ def settled(system: System, at: Progress, log: Log, motion: Motion) -> bool:
         if f == system.turning_row:
             if system.phases[p].turns != 0 and stray > STILL * place:
                 return False
-        elif (rest if f >= log.signed else abs(rest)) + stray > log.peaks[f] and stray > STILL * abs(rest):
+        elif (rest if f >= log.signed else abs(rest)) + stray > log.peaks[f] and stray > STILL * max(terms, abs(rest)):
             return False
     for f in range(log.peaks.size, rows_in(system, p)):
         stray = 0.0
