@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockflex._arrays import Array
+from rockflex._arrays import Array, Complex
 from rockflex._errors import InputError
 from rockflex.models import (
     GROUND,
@@ -25,6 +25,7 @@ from rockflex.solve import ClosedForm
 
 REACH = 8.0  # radians of the fastest mode covered by one Gauss rule, which then has at most 20 points
 MOST_PIECES = 10_000  # per interval: a minute of quadrature for a record of a thousand samples
+AT_ONCE = 2**16  # intervals, whose states take some megabytes
 
 
 class Work(NamedTuple):
@@ -46,10 +47,15 @@ def work_between(model: RockingModel, states: Array) -> Work:
     InputError
         If the model is too fast for the sampling.
     """
-    motion = ClosedForm(model)
+    motion, last = ClosedForm(model), states.shape[0] - 1
+    parts = [_work_of(model, motion, states[k : min(k + AT_ONCE, last) + 1]) for k in range(0, max(last, 1), AT_ONCE)]
+    return Work(*(np.concatenate(each) for each in zip(*parts, strict=True)))
+
+
+def _work_of(model: RockingModel, motion: ClosedForm, states: Array) -> Work:
     intervals = motion.intervals(states)
     span = np.diff(states[:, TIME])
-    places, weights = _rule(model.label, motion.fastest, float(span.max(initial=0.0)))
+    places, weights = _rule(model.label, intervals.roots, float(span.max(initial=0.0)))
     total: Work | None = None
     linear = [TIME, GROUND, RISE]
     rows, moved = states[:-1].copy(), np.diff(states[:, linear], axis=0)
@@ -98,15 +104,24 @@ def sweeps_of(model: RockingModel, states: Array, work: Work) -> Array:
     return arms(model, states[:-1, SIDE]) ** 2 * work.swing[:, None]
 
 
-def _rule(label: str, fastest: float, longest: float) -> tuple[Array, Array]:
-    """Return points in [0, 1] and weights of a Gauss rule for states with eigenvalues up to `fastest` (rad/s)."""
-    pieces = max(math.ceil(fastest * longest / REACH), 1)
+def _rule(label: str, roots: Complex, longest: float) -> tuple[Array, Array]:
+    """Return rising points in [0, 1] and weights of Gauss rules for states with eigenvalues `roots` (rad/s).
+
+    What oscillates or grows needs pieces of equal length. What decays without lasting oscillation is gone after the
+    first of them, which is halved towards its start until it is resolved there.
+    """
+    size = np.abs(roots)
+    lasting = float(size[size > -2.0 * roots.real].max(initial=0.0))
+    pieces = max(math.ceil(lasting * longest / REACH), 1)
     if pieces > MOST_PIECES:
         raise InputError(
             f"The energy ledger of {label} needs {pieces} quadratures per step, above the limit of {MOST_PIECES}: the "
-            f"model vibrates or decays at up to {fastest:.3g} rad/s, and steps last up to {longest:.3g} s. Keep fewer "
-            "modes, damp them less, or refine the record."
+            f"model vibrates at up to {lasting:.3g} rad/s, and steps last up to {longest:.3g} s. Keep fewer modes, or "
+            "refine the record."
         )
-    places, weights = np.polynomial.legendre.leggauss(8 + math.ceil(1.5 * fastest * longest / pieces))
-    starts = np.arange(pieces)[:, None]
-    return ((starts + 0.5 + 0.5 * places) / pieces).ravel(), np.tile(0.5 * weights / pieces, pieces)
+    turn = float(size.max(initial=0.0)) * longest / pieces
+    halvings = math.ceil(math.log2(max(turn / REACH, 1.0)))
+    edges = np.concatenate(([0.0], 0.5 ** np.arange(halvings, 0, -1), np.arange(1, pieces + 1))) / pieces
+    places, weights = np.polynomial.legendre.leggauss(8 + math.ceil(1.5 * min(turn, REACH)))
+    half = 0.5 * np.diff(edges)[:, None]
+    return (edges[:-1, None] + half * (1.0 + places)).ravel(), (half * weights).ravel()

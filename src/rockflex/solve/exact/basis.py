@@ -14,12 +14,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array
+from rockflex._arrays import Array, Complex
 from rockflex.models import Arrow, RockingModel
 
 WORST_CONDITION = 1e5  # of the eigenvectors in energy scale: beyond it five digits are lost
-
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,7 +38,12 @@ class Basis:
 class Drift(NamedTuple):
     """A phase in which some freedom of the base has no stiffness: it is carried by power series only."""
 
-    fastest: float  # largest eigenvalue magnitude, rad/s
+    roots: Complex  # (2K,): eigenvalues, rad/s
+
+    @property
+    def fastest(self) -> float:
+        """Largest eigenvalue magnitude, rad/s."""
+        return float(np.abs(self.roots).max())
 
 
 def drift_of(model: RockingModel, arrow: Arrow, accelerations: Array) -> Drift:
@@ -48,7 +51,7 @@ def drift_of(model: RockingModel, arrow: Arrow, accelerations: Array) -> Drift:
     matrix, _, _ = _first_order(accelerations, model.layout.freedoms)
     scale = _energy_scale(model.properties.effective_mass, model.properties.omega**2, arrow)
     scale = scale[_positions_and_speeds(accelerations.shape[0], model.layout.freedoms)]
-    return Drift(float(np.abs(np.linalg.eigvals(matrix * (scale[:, None] / scale))).max()))
+    return Drift(np.linalg.eigvals(matrix * (scale[:, None] / scale)).astype(np.complex128))
 
 
 def basis_of(model: RockingModel, arrow: Arrow, accelerations: Array) -> Basis:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array
+from rockflex._arrays import Array, Complex
 from rockflex.models import (
     GROUND,
     HEADER,
@@ -155,6 +155,13 @@ class Intervals(NamedTuple):
         In phases that are not linear these are the states at the start of the interval.
         """
         return next(self.along([fraction]))
+
+    @property
+    def roots(self) -> Complex:
+        """Eigenvalues of the linear phases that occur, in rad/s, shape (n,)."""
+        met = {id(part.basis): part.basis.roots for part in self.parts}
+        met |= {id(part.motion): part.motion.roots for part in self.series}
+        return np.concatenate([np.zeros(1, np.complex128), *(each.ravel() for each in met.values())])
 
     def along(self, fractions: Iterable[float]) -> Iterator[Array]:
         """Yield the states as `at` does, at rising fractions, with less work than one after the other."""

@@ -50,7 +50,8 @@ class Developed:
         self._arrow = arrow
         self._omega2, self._drag = p.omega**2, 2.0 * p.zeta * p.omega
         self._more_stiffness, self._more_force = heavier.stiffness - arrow.stiffness, heavier.constant - arrow.constant
-        self._fastest = drift_of(model, arrow, accelerations).fastest
+        drift = drift_of(model, arrow, accelerations)
+        self.roots, self._fastest = drift.roots, drift.fastest
 
         n, places = self._layout.modes, self._layout.rotation + 2 * np.arange(self._layout.freedoms)
         self._where = np.concatenate((np.arange(n), places))
