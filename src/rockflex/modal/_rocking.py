@@ -269,7 +269,7 @@ class RockingProperties(HtmlTable, Value):
         >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
         >>> held = rf.Restrained(frame, [rf.Tendon(100e3, 5e6), rf.YieldingDissipator(2e7, 400e3)]).rocking()
         >>> round(held.recentring_ratio, 2), round(held.recentring_ratio_at(0.03), 2)
-        (3.19, 3.38)
+        (3.19, 3.69)
         """
         turn = positive("rotation", within("rotation", rotation, 0.5 * math.pi, "rad"), "rad")
         found: list[float] = []
