@@ -174,7 +174,7 @@ def test_a_fixed_base_neither_rotates_nor_is_complete():
 
 
 def test_a_block_has_no_modes_to_start_from():
-    with pytest.raises(InputError, match=re.escape("modal_displacement has 1 values, but rigid has 0 modes. Give at")):
+    with pytest.raises(InputError, match=re.escape("modal_displacement has 1 value, but rigid has 0 modes. Give at")):
         simulate(FRAME, quiet_motion(0.1), "rigid", initial=InitialState(modal_displacement=[0.1]))
 
 

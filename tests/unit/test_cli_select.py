@@ -200,6 +200,7 @@ def test_records_keep_their_vertical_component(tmp_path):
         "--limits", "0.01,100", "--records", tmp_path / "scaled",
     )  # fmt: skip
     assert result.exit_code == 0
+    assert "1 scaled record written" in result.stderr
     (back,) = rf.read_suite(tmp_path / "scaled")
     np.testing.assert_allclose(back.vertical, back.acceleration, rtol=1e-14)
 

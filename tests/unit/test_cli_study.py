@@ -126,7 +126,7 @@ def test_pairs_of_a_population_are_counted_by_model(study):
 
 def test_a_dry_run_counts_and_runs_nothing(study, tmp_path):
     done = invoke("cloud", study("cloud"), "--out", tmp_path / "kept", "--dry-run")
-    assert "36 runs in 1 parts, 6 records; about" in done.stdout
+    assert "36 runs in 1 part, 6 records; about" in done.stdout
     assert not (tmp_path / "kept").exists()
     document = json.loads(invoke("ida", study("incremental"), "--dry-run", "--json").stdout)
     assert document["study"] == "incremental"

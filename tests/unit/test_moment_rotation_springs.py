@@ -272,7 +272,7 @@ def test_the_path_as_a_table():
         "spring_force_2", "element_force_1", "element_elongation_1", "plastic_stretch_1", "element_losses_1",
     ]  # fmt: skip
     np.testing.assert_array_equal(table[["left_uplift", "right_uplift"]], curve.edge_uplift)
-    assert repr(curve).startswith("MomentRotationOnSprings(3 points, 2 springs, 1 elements, |θ| up to 0.02 rad, |M| up")
+    assert repr(curve).startswith("MomentRotationOnSprings(3 points, 2 springs, 1 element, |θ| up to 0.02 rad, |M| up")
     assert pickle.loads(pickle.dumps(curve)) == curve
 
 

@@ -207,5 +207,5 @@ def test_the_command_of_another_study(tmp_path):
     done = invoke("cloud", file)
     assert done.exit_code == 2
     assert f'{file} has study = "design". Use rockflex design {file}.' in done.stderr
-    assert "72 runs in 1 parts, 6 records; about" in invoke("design", file, "--dry-run").stdout
+    assert "72 runs in 1 part, 6 records; about" in invoke("design", file, "--dry-run").stdout
     assert "rockflex design study.toml --dry-run" in invoke("design", "--help").stdout

@@ -56,7 +56,7 @@ def test_ida_of_records_that_never_overturn(ladders):
     assert notes(right)[0].splitlines() == [
         "8 records, 8 never overturned",
         "0 with resurrections",
-        "1 runs failed",
+        "1 run failed",
     ]
 
 

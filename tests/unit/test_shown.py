@@ -8,7 +8,7 @@ import pytest
 from rockflex import InputError, SolverError
 from rockflex._checks import finite, finite_matrix, finite_vector, in_range, instance, positive, whole_number
 from rockflex._files import path_of
-from rockflex._shown import shortened, shown
+from rockflex._shown import counted, shortened, shown
 
 
 @pytest.mark.parametrize(
@@ -115,3 +115,8 @@ def test_messages(check: object, message: str) -> None:
 def test_a_path_too_long() -> None:
     with pytest.raises(InputError, match=r"^path must be a valid path, but 'xxx.*x' was given: File name too long"):
         path_of("path", "x" * 10**5)
+
+
+def test_a_number_has_its_noun_in_the_right_form():
+    assert [counted(n, "record") for n in (0, 1, 2)] == ["0 records", "1 record", "2 records"]
+    assert [counted(n, "entry", "entries") for n in (1, 3)] == ["1 entry", "3 entries"]

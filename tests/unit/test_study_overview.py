@@ -79,7 +79,7 @@ def test_damage_does_not_prevent_an_overview(tmp_path, monkeypatch):
             folder.write(number, pa.table({"run": [number]}))
         part = tmp_path / "parts" / "part-00001.parquet"
         part.write_bytes(part.read_bytes()[:-20])
-    assert rows_of(folder)["rows"] == "2; 1 parts cannot be read, see damaged()"
+    assert rows_of(folder)["rows"] == "2; 1 part cannot be read, see damaged()"
     assert [each.number for each in folder.damaged()] == [1]
     monkeypatch.setattr(_overview, "MOST_READ", 1)
     assert rows_of(folder)["rows"] == "1 in the first 1 parts"

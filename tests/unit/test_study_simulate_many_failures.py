@@ -80,7 +80,7 @@ def test_one_start_for_models_of_several_lengths():
     start = InitialState(modal_displacement=[1e-3, 1e-4])
     table = simulate_many(STRUCTURES[0], MOTIONS[0], ["2DOF-S", "3DOF-S", "MDOF-S"], initial=start)
     assert table["error"].isna().tolist() == [False, True, True]
-    assert table["error"][0] == "modal_displacement has 2 values, but 2DOF-S has 1 modes. Give at most 1."
+    assert table["error"][0] == "modal_displacement has 2 values, but 2DOF-S has 1 mode. Give at most 1."
     assert table["n_impacts"].isna().tolist() == [True, False, False]
     alone = simulate(STRUCTURES[0], MOTIONS[0], "3DOF-S", initial=start)
     assert table["max_rotation"][1] == pytest.approx(alone.max_rotation, rel=1e-12)

@@ -173,7 +173,7 @@ def test_of_two_folders_given_quickly_the_later_one_counts(visitor, folder) -> N
     page.evaluate("letGo()")
     page.wait_for_function("() => window.gone")
     page.wait_for_load_state("networkidle")
-    assert page.locator("#taken").inner_text().startswith("1 records taken")
+    assert page.locator("#taken").inner_text().startswith('1 record taken")
     assert visitor.state()["record"]["given"] == "alone"
 
 

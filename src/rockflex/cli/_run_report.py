@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rockflex._errors import InputError
-from rockflex._shown import shortened
+from rockflex._shown import counted, shortened
 from rockflex.cli._console import note
 from rockflex.cli._simulations import Batch, Run
 from rockflex.cli._structures import LoadedStructure
@@ -41,8 +41,8 @@ def check_runs(batch: Batch) -> None:
     if motions * scales > 1:
         first = batch.motions[0].name
         raise InputError(
-            f"--report is of one motion at one scale, but there are {_counted(motions, 'motion')} at "
-            f"{_counted(scales, 'scale')}. Name one record, such as SUITE/NAME ({first}), with one --scale; a loop "
+            f"--report is of one motion at one scale, but there are {counted(motions, 'motion')} at "
+            f"{counted(scales, 'scale')}. Name one record, such as SUITE/NAME ({first}), with one --scale; a loop "
             "writes a report of each."
         )
     if models > MOST:
@@ -72,7 +72,3 @@ def _command() -> list[str]:
     """Return the command as typed, which repeats the page, if this is one."""
     typed = sys.argv[1:]
     return [shortened(f"Command: rockflex {shlex.join(typed)}", _COMMAND)] if typed[:1] == ["run"] else []
-
-
-def _counted(number: int, what: str) -> str:
-    return f"{number} {what}{'s' * (number > 1)}"

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
+from rockflex._shown import counted
 from rockflex.cli._console import Styled, fits, grid, moment_unit, note, number, output, show
 from rockflex.cli._elements import elements_table
 from rockflex.cli._simulations import SLIDING, Batch, Run
@@ -78,7 +79,7 @@ def print_runs(title: str, batch: Batch, runs: Sequence[Run], elapsed: float, *,
     if batch.friction is not None:
         console.print(FRICTION.format(window=IMPACT_WINDOW, mu=batch.friction), markup=False, soft_wrap=True)
     each = "" if len(runs) == 1 else f", {number(1e3 * elapsed / len(runs), 3)} ms a run"
-    console.print(f"{len(runs)} run{'s' * (len(runs) > 1)} in {number(elapsed, 3)} s{each}", markup=False)
+    console.print(f"{counted(len(runs), 'run')} in {number(elapsed, 3)} s{each}", markup=False)
 
 
 def print_warnings(runs: Sequence[Run]) -> None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from rockflex._errors import InputError
+from rockflex._shown import counted
 from rockflex.cli import _options as options
 
 if TYPE_CHECKING:
@@ -235,4 +236,4 @@ def _write_records(folder: Path, document: dict[str, Any], chosen: "Selection[An
     with staged(folder, document, force=force) as stage:
         for stem, motion in zip(file_stems(motion.name for motion in chosen.suite), chosen.suite, strict=True):
             (stage / f"{stem}.csv").write_text(record_csv(motion), "utf-8", newline="\n")
-    note(f"{len(chosen.suite)} scaled records written to {folder}")
+    note(f"{counted(len(chosen.suite), 'scaled record')} written to {folder}")

@@ -8,6 +8,7 @@ from typing import Any
 
 from rockflex._errors import InputError
 from rockflex._schema import FrameFlags, FrameKeys
+from rockflex._shown import counted
 from rockflex.cli._elements import describe_elements
 from rockflex.cli._flags import flags_of, naming
 from rockflex.modal import RockingProperties
@@ -60,7 +61,7 @@ class LoadedStructure:
         shift = f", e = {p.eccentricity:.4g} m" if p.eccentricity else ""
         if p.n_modes == 0:
             return f"{self.name}: rigid, B/h = {p.half_width * p.m_tot / p.l0r:.4g}{shift}"
-        modes = "1 mode" if p.n_modes == 1 else f"{p.n_modes} modes"
+        modes = counted(p.n_modes, "mode")
         slenderness = p.effective_height[0] / p.half_width
         period = 2.0 * math.pi / p.omega[0]
         return f"{self.name}: {modes}, T_1 = {period:.4g} s, h*_1/B = {slenderness:.4g}, ζ_1 = {p.zeta[0]:.4g}{shift}"

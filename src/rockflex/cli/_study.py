@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 import typer
 
 from rockflex._errors import InputError
+from rockflex._shown import counted
 from rockflex.cli import _options as options
 from rockflex.kinds import StudyKind
 
@@ -139,7 +140,8 @@ def _announce(study: "Spec", file: Path, workers: int | None, *, json: bool) -> 
         typer.echo(to_json(document))
         return
     typer.echo(
-        f"{file}: {at_most}{plan.n_runs} runs in {plan.n_chunks} parts, {len(plan.motions)} records; "
+        f"{file}: {at_most}{counted(plan.n_runs, 'run')} in {counted(plan.n_chunks, 'part')}, "
+        f"{counted(len(plan.motions), 'record')}; "
         f"about {at_most}{duration(seconds)} here"
     )
 

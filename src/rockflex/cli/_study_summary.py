@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from rockflex._errors import InputError, SolverError
+from rockflex._shown import counted
 from rockflex.cli._console import grid, note, number, output, show
 from rockflex.cli._output import to_json, versions
 from rockflex.kinds import Findings, StudyKind
@@ -43,14 +44,14 @@ def summarise(kind: StudyKind, study: "Spec", table: "pd.DataFrame", seconds: fl
         _print(tables)
         for text in (text for each in lifts for text in each.warnings):
             typer.echo(f"\n{text}")
-        typer.echo(f"\n{len(table)} rows in {duration(seconds)}")
+        typer.echo(f"\n{counted(len(table), 'row')} in {duration(seconds)}")
     for remark in found.remarks:
         note(remark)
     for reason in dict.fromkeys(found.unfitted):
         note(f"No fit: {reason}")
     if failed:
         first = table.loc[table["error"].notna(), "error"].iloc[0]
-        note(f"{failed} rows have an error, the first: {first}")
+        note(f"{counted(failed, 'row has', 'rows have')} an error, the first: {first}")
     return failed, len(found.unfitted)
 
 

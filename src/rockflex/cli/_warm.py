@@ -12,6 +12,7 @@ def warm() -> None:
 
     They are kept for later processes, until rockflex or numba is upgraded.
     """
+    from rockflex._shown import counted
     from rockflex.cli._console import note, steps
     from rockflex.progress import duration
     from rockflex.study import warm as start
@@ -23,4 +24,4 @@ def warm() -> None:
     elif done.compiled == 0:
         note(f"All kernels are compiled already, under {done.folder}.")
     else:
-        note(f"{done.compiled} kernels compiled in {duration(done.duration)}, kept under {done.folder}.")
+        note(f"{counted(done.compiled, 'kernel')} compiled in {duration(done.duration)}, kept under {done.folder}.")

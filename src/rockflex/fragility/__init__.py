@@ -4,7 +4,7 @@ from rockflex.fragility._annual_rate import AnnualRate, annual_rate, quadrature,
 from rockflex.fragility._bootstrap import BootstrapBand, bootstrap_band
 from rockflex.fragility._capacities import fit_capacities
 from rockflex.fragility._cloud import CloudFit, fit_cloud
-from rockflex.fragility._clouds import CloudFits, fit_clouds, fit_each_cloud
+from rockflex.fragility._clouds import CloudFits, fit_clouds, fit_each_cloud, recordings_of
 from rockflex.fragility._hazard import HazardCurve, damping_of
 from rockflex.fragility._limit_states import (
     LIMIT_STATES,
@@ -71,6 +71,7 @@ __all__ = [
     "limits",
     "observed_fractions",
     "quadrature",
+    "recordings_of",
     "resample_weights",
     "resampled_exceedance",
     "residual_beyond",

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from rockflex._shown import counted
 from rockflex.kinds import _cloud
 from rockflex.kinds._kind import Findings, Runs, StudyKind
 
@@ -11,7 +12,7 @@ def _report(study: Any, runs: Runs, found: Findings) -> None:
     lost = int(structures["weight"].isna().sum())
     if lost:
         found.remarks.append(f"{lost} of {len(structures)} structures cannot be built; their runs have an error")
-    found.tables[f"Values of {len(structures)} random structures"] = [
+    found.tables[f"Values of {counted(len(structures), 'random structure')}"] = [
         {"variable": name, "least": values.min(), "median": values.median(), "largest": values.max()}
         for name in (*study.variables, "recentring_ratio")
         for values in (structures[name],)

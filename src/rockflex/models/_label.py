@@ -9,7 +9,7 @@ import numpy as np
 
 from rockflex._checks import one_of, whole_number
 from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex._shown import counted, shown
 from rockflex.modal import FrictionDamper, Ground, RockingProperties
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._ground_checks import check_base
@@ -157,8 +157,8 @@ class Model:
         if self.n_modes is not None and self.n_modes > properties.n_modes:
             whole = replace(self, n_modes=None).label
             raise InputError(
-                f"Model {self.label} needs {_modes(self.n_modes)}, but the structure has {properties.n_modes}. "
-                f"Give more modes, or use {whole} for all modes."
+                f"Model {self.label} needs {counted(self.n_modes, 'mode')}, but the structure has "
+                f"{properties.n_modes}. Give more modes, or use {whole} for all modes."
             )
         kept = properties if self.n_modes is None else properties.truncated(self.n_modes)
         self._check_missing_mass(kept)
@@ -234,10 +234,6 @@ class Model:
                 "of Σ m_i h_i²: Eq. 19 is one equation for many velocities. Use MDOF-C-SI or MDOF-C-E."
             )
         return VVELComplete()
-
-
-def _modes(count: int) -> str:
-    return "1 mode" if count == 1 else f"{count} modes"
 
 
 def parse_model(model: str | Model) -> Model:

@@ -7,6 +7,7 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex._files import path_of
+from rockflex._shown import counted
 from rockflex.motion._direction import azimuth_of, direction_of
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
@@ -101,9 +102,9 @@ def parse_at2(file: Path, lines: list[str]) -> GroundMotion:
     values = _values(file, lines, start)
     if values.size != npts:
         what = "is truncated" if values.size < npts else "contains too many values"
+        found = counted(values.size, "value follows", "values follow")
         raise InputError(
-            f"{file} {what}: its header says NPTS = {npts}, but {values.size} values follow. "
-            "Download the record again, or correct NPTS."
+            f"{file} {what}: its header says NPTS = {npts}, but {found}. Download the record again, or correct NPTS."
         )
     remedy = (
         "AT2 files are in g by definition: save only the values as a text file and declare their unit, "

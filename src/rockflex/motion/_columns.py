@@ -8,7 +8,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex._shown import counted, shown
 from rockflex.motion._direction import HORIZONTAL, VERTICAL, azimuth_of, direction_of, is_horizontal_name, told_apart
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_file import stated_facts
@@ -206,7 +206,7 @@ def _check_seconds(file: Path, label: str) -> None:
 def _step(file: Path, times: Array, lines: list[int], dt: float | None) -> float:
     """Return the common time step in s."""
     if times.size < 3:
-        raise InputError(f"{file} has {times.size} samples, but a record needs at least 3.")
+        raise InputError(f"{file} has {counted(times.size, 'sample')}, but a record needs at least 3.")
     steps = np.diff(times)
     if np.any(steps <= 0):
         k = int(np.argmax(steps <= 0))

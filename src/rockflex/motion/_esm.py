@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from rockflex._errors import InputError
+from rockflex._shown import counted
 from rockflex.motion._direction import azimuth_of, direction_of
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
@@ -58,9 +59,9 @@ def parse_esm(file: Path, lines: list[str]) -> list[GroundMotion]:
     )
     if values.size != n_samples:
         what = "is truncated" if values.size < n_samples else "contains too many values"
+        found = counted(values.size, "value follows", "values follow")
         raise InputError(
-            f"{file} {what}: its header says NDATA = {n_samples:g}, but {values.size} values follow. "
-            "Download the record again."
+            f"{file} {what}: its header says NDATA = {n_samples:g}, but {found}. Download the record again."
         )
     return [build_motion(file, values, Unit(unit), dt, _info(file, header), "Check UNITS in the header.")]
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from rockflex._errors import InputError
+from rockflex._shown import counted
 from rockflex.motion._direction import AZIMUTHS, Direction
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
@@ -57,9 +58,9 @@ def parse_knet(file: Path, lines: list[str]) -> list[GroundMotion]:
     )
     if not counts.size or abs(counts.size - duration * rate) > rate:
         what = "is truncated" if counts.size < duration * rate else "contains too many values"
+        found = counted(counts.size, "value follows", "values follow")
         raise InputError(
-            f"{file} {what}: its header says {duration:g} s at {rate:g} Hz, but {counts.size} values follow. "
-            "Download the record again."
+            f"{file} {what}: its header says {duration:g} s at {rate:g} Hz, but {found}. Download the record again."
         )
     gal = float(scale[1]) / float(scale[2])
     info = _info(file, header)

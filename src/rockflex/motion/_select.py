@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from rockflex._arrays import Array
 from rockflex._checks import finite_vector, instance, one_of, positive, real_or_nan, whole_number
 from rockflex._errors import InputError, RecordWarning
-from rockflex._shown import shown
+from rockflex._shown import counted, shown
 from rockflex.motion._choice import Choice, best_set
 from rockflex.motion._direction import check_horizontal
 from rockflex.motion._ground_motion import GroundMotion
@@ -116,10 +116,10 @@ def _recordings(motions: Sequence[GroundMotion], measure: Combination) -> list[R
             field="measure",
         )
     if single:
+        count = counted(len(single), "motion that is", "motions that are")
         more = f" and {len(single) - _NAMED} more" if len(single) > _NAMED else ""
         warnings.warn(
-            f"Left out: {len(single)} motions that are not one of two components with the same time step, "
-            f"{', '.join(single[:_NAMED])}{more}.",
+            f"Left out: {count} not one of two components with the same time step, {', '.join(single[:_NAMED])}{more}.",
             RecordWarning,
             stacklevel=4,
         )

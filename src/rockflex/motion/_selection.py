@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
 from rockflex._html import HtmlTable, span
-from rockflex._shown import few
+from rockflex._shown import counted, few
 from rockflex._values import Value
 from rockflex.motion._choice import misfit
 from rockflex.motion._ground_motion import GroundMotion
@@ -65,7 +65,7 @@ class Selection(HtmlTable, Value, Generic[S]):
 
     def __repr__(self) -> str:
         return (
-            f"Selection({len(self.names)} records, misfit of the mean {self.misfit:.2g}, "
+            f"Selection({counted(len(self.names), 'record')}, misfit of the mean {self.misfit:.2g}, "
             f"least mean/target {self.least_ratio:.2g})"
         )
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from rockflex._checks import instance
 from rockflex._errors import InputError
 from rockflex._html import HtmlTable, span
-from rockflex._shown import few, shown
+from rockflex._shown import counted, few, shown
 from rockflex._values import Value
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._recordings import Combination
@@ -78,7 +78,7 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
         return tuple(motion.name for motion in self.motions)
 
     def __repr__(self) -> str:
-        return f"Suite({self.name!r}, {len(self)} motions: {self.names[0]!r} ... {self.names[-1]!r})"
+        return f"Suite({self.name!r}, {counted(len(self), 'motion')}: {self.names[0]!r} ... {self.names[-1]!r})"
 
     def _shown_as(self) -> Mapping[str, Any]:
         known = [motion.metadata for motion in self if motion.metadata is not None]

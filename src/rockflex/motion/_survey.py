@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rockflex._shown import counted
 from rockflex._values import Value
 from rockflex.motion._collect import FileRead, collect
 from rockflex.motion._folder import files_of, is_record
@@ -224,7 +225,8 @@ def _survey(
 def _entries(each: FileRead, result: Sorted, names: list[str]) -> list[SurveyEntry]:
     if each.table is not None:
         missing = [Path(name) for name in each.table.missing(names)]
-        told = f"; it lists {len(missing)} files that are not there: {named(missing)}" if missing else ""
+        count = counted(len(missing), "file that is", "files that are")
+        told = f"; it lists {count} not there: {named(missing)}" if missing else ""
         reason = f"a table about the records{told}"
         return [SurveyEntry(file=each.file.name, taken=False, reason=reason, format="table")]
     if each.fault is not None:

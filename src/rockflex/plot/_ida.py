@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from rockflex._arrays import Array, Bools
 from rockflex._cases import rows_of
 from rockflex._errors import InputError
+from rockflex._shown import counted
 from rockflex.fragility import LognormalFragility, fit_capacities
 from rockflex.plot._study_tables import check_columns, measure_name, names_in
 from rockflex.plot._style import BLACK, BLUE, GRAY, RED, SMALL, Size, letter, literal, narrow, new_figure, styled
@@ -168,7 +169,7 @@ def _draw_curves(axes: Axes, runs: "pd.DataFrame", measure: str) -> int:
 def _draw_capacities(axes: Axes, found: _Capacities, confidence: float | None, failed: int) -> None:
     """Draw steps of the observed fraction, the lognormal curve, and the numbers."""
     axes.set_ylim(-0.03, 1.03)
-    lines = [f"{found.reached.size} records"]
+    lines = [counted(found.reached.size, "record")]
     if found.censored.any():
         lines[0] += f", {int(found.censored.sum())} never overturned"
     if (~found.censored).any():
@@ -183,7 +184,7 @@ def _draw_capacities(axes: Axes, found: _Capacities, confidence: float | None, f
         lines.append(f"median {short(found.fit.median)}, β = {found.fit.beta:.2f}")
     lines.append(f"{found.resurrected} with resurrections")
     if failed:
-        lines.append(f"{failed} runs failed")
+        lines.append(f"{counted(failed, 'run')} failed")
     axes.text(
         0.97, 0.05, "\n".join(lines), transform=axes.transAxes, ha="right", fontsize=SMALL, linespacing=1.3,
         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 1.0},

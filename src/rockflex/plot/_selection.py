@@ -9,6 +9,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
+from rockflex._shown import counted
 from rockflex.motion import Selection
 from rockflex.plot._style import BLACK, BLUE, GRAY, RED, SHADE, Size, columns, literal, new_figure, styled
 
@@ -102,7 +103,7 @@ def _draw_spectra(axes: Axes, selection: Selection[Any], periods: Array, rows: A
     count = len(rows)
     if count > 1:
         for k, row in enumerate(rows):
-            label = f"{count} records" if k == 0 else f"_{k}"
+            label = counted(count, "record") if k == 0 else f"_{k}"
             axes.plot(periods, row, color=GRAY, linewidth=0.6, alpha=0.7, label=label)
         median, spread = np.exp(np.log(rows).mean(axis=0)), np.log(rows).std(axis=0, ddof=1)
         band = median * np.exp(-spread), median * np.exp(spread)

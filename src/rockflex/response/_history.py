@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
 from rockflex._checks import finite_rows
+from rockflex._shown import counted
 from rockflex._values import Value
 from rockflex.models import (
     GROUND,
@@ -77,7 +78,7 @@ class History(GroundHistory, ReactionHistory, ElementHistory, FloorMotions, Tabl
     def __repr__(self) -> str:
         duration = self.time[-1] - self.time[0]
         states, uplifts = self.time.size, self.uplift_times.size
-        return f"History({self.model.label}, {states} states over {duration:g} s, {uplifts} uplifts)"
+        return f"History({self.model.label}, {states} states over {duration:g} s, {counted(uplifts, 'uplift')})"
 
     def at(self, times: ArrayLike) -> "SampledHistory":
         """Return the motion at any instants within the history, with all quantities at these instants.

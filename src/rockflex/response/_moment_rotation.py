@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
+from rockflex._shown import counted
 from rockflex.response._resistance import element_resistance, weight_resistance
 from rockflex.response._static_path import StaticPath
 
@@ -63,8 +64,8 @@ class MomentRotation(StaticPath):
     def __repr__(self) -> str:
         largest, peak = (float(np.max(np.abs(values))) for values in (self.rotation, self.moment))
         return (
-            f"MomentRotation({self.rotation.size} points, {len(self.elements)} elements, |θ| up to {largest:.4g} rad, "
-            f"|M| up to {peak:.4g} N m, {self.dissipated_energy[-1]:.4g} J dissipated)"
+            f"MomentRotation({self.rotation.size} points, {counted(len(self.elements), 'element')}, "
+            f"|θ| up to {largest:.4g} rad, |M| up to {peak:.4g} N m, {self.dissipated_energy[-1]:.4g} J dissipated)"
         )
 
     @cached_property

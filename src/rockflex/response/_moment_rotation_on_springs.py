@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
+from rockflex._shown import counted
 from rockflex.modal import Springs
 from rockflex.response._pressure import pressure_of
 from rockflex.response._static_path import StaticPath
@@ -68,8 +69,8 @@ class MomentRotationOnSprings(StaticPath):
     def __repr__(self) -> str:
         largest, peak = (float(np.max(np.abs(values))) for values in (self.rotation, self.moment))
         return (
-            f"MomentRotationOnSprings({self.rotation.size} points, {self.springs.n} springs, {len(self.elements)} "
-            f"elements, |θ| up to {largest:.4g} rad, |M| up to {peak:.4g} N m)"
+            f"MomentRotationOnSprings({self.rotation.size} points, {counted(self.springs.n, 'spring')}, "
+            f"{counted(len(self.elements), 'element')}, |θ| up to {largest:.4g} rad, |M| up to {peak:.4g} N m)"
         )
 
     @cached_property

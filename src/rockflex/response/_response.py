@@ -9,6 +9,7 @@ from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError
 from rockflex._files import path_of
 from rockflex._html import HtmlTable
+from rockflex._shown import counted
 from rockflex._values import Value
 from rockflex.motion import GroundMotion
 from rockflex.response._element_peaks import ELEMENT_PEAKS
@@ -241,7 +242,7 @@ class Response(HtmlTable, Value):
     def __repr__(self) -> str:
         return (
             f"Response({self.model} under {self.motion!r}: {self.status}, θ_max={self.max_rotation:.4g} rad, "
-            f"u_top,max={self.max_top_displacement:.4g} m, {self.n_impacts} impacts)"
+            f"u_top,max={self.max_top_displacement:.4g} m, {counted(self.n_impacts, 'impact')})"
         )
 
     def _shown_as(self) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from rockflex._html import html_table
-from rockflex._shown import few, shortened
+from rockflex._shown import counted, few, shortened
 from rockflex.store._lock import LOCK, holder_of
 from rockflex.store._manifest import Manifest
 from rockflex.store._parts import PARTS
@@ -69,7 +69,7 @@ def _title(spec: Mapping[str, Any]) -> str:
 def _state(folder: Path, done: int, total: int) -> str:
     holder = holder_of(folder / LOCK)
     if done == total:
-        return f"complete: all {total} parts"
+        return f"complete: all {counted(total, 'part')}"
     if holder is not None:
         return f"running: {done} of {total} parts, by {holder}"
     return f"stopped: {done} of {total} parts" if done else f"planned: none of {total} parts"
@@ -100,7 +100,8 @@ def _counts(paths: Sequence[Path]) -> dict[str, str]:
             seen = ["failed"] * len(values) if name == "error" else map(str, values)
             statuses.setdefault(name, Counter()).update(seen)
     some = f" in the first {MOST_READ} parts" if len(paths) > MOST_READ else ""
-    found = {"rows": f"{rows}{some}" + (f"; {unreadable} parts cannot be read, see damaged()" if unreadable else "")}
+    lost = f"; {counted(unreadable, 'part')} cannot be read, see damaged()" if unreadable else ""
+    found = {"rows": f"{rows}{some}{lost}"}
     for name, counter in statuses.items():
         if counter:
             told = (f"{count} {str(value).replace('_', ' ')}" for value, count in counter.most_common())

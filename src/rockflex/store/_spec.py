@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, cast
 
 from rockflex._errors import InputError
-from rockflex._shown import shortened, shown
+from rockflex._shown import counted, shortened, shown
 
 SHOWN = 10  # differences in a message
 DEEPEST = 50  # levels of a specification; those of studies have five
@@ -64,7 +64,7 @@ def differences(old: Any, new: Any, where: str = "") -> list[str]:
     if isinstance(old, list) and isinstance(new, list):
         first, second = cast("list[Any]", old), cast("list[Any]", new)
         if len(first) != len(second):
-            return [f"{where}: {len(first)} entries in the folder, {len(second)} now"]
+            return [f"{where}: {counted(len(first), 'entry', 'entries')} in the folder, {len(second)} now"]
         pairs = enumerate(zip(first, second, strict=True))
         return [line for place, (one, two) in pairs for line in differences(one, two, f"{where}[{place}]")]
     return [] if _same(old, new) else [f"{where}: {_shown(old)} in the folder, {_shown(new)} now"]

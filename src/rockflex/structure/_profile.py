@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from rockflex._arrays import Array
 from rockflex._checks import finite_vector, positive
 from rockflex._errors import InputError
+from rockflex._shown import counted
 from rockflex._values import Value
 
 Along: TypeAlias = float | Callable[[Array], ArrayLike] | tuple[ArrayLike, ArrayLike]
@@ -123,7 +124,10 @@ def profile(name: str, given: Along, height: float, unit: str, *, zero: bool = F
 
 def _table(name: str, given: tuple[ArrayLike, ArrayLike], height: float, unit: str, zero: bool) -> Profile:
     if len(given) != 2:  # pyright: ignore[reportUnnecessaryComparison]
-        raise InputError(f"{name} must be a table (heights, values), but {len(given)} columns were given.", field=name)
+        raise InputError(
+            f"{name} must be a table (heights, values), but {counted(len(given), 'column was', 'columns were')} given.",
+            field=name,
+        )
     z = finite_vector(f"{name}, heights", given[0], "m", field=name)
     values = finite_vector(f"{name}, values", given[1], unit, field=name)
     if z.size != values.size or z.size < 2:

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from rockflex._arrays import Array
 from rockflex._checks import finite_vector, within
 from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex._shown import counted, shown
 from rockflex._values import Value
 from rockflex.models import RockingModel
 
@@ -84,7 +84,10 @@ class InitialState(Value):
             if values is None:
                 continue
             if values.size > n:
-                raise InputError(f"{name} has {values.size} values, but {model.label} has {n} modes. Give at most {n}.")
+                raise InputError(
+                    f"{name} has {counted(values.size, 'value')}, but {model.label} has {counted(n, 'mode')}. Give at "
+                    f"most {n}."
+                )
             state[first : first + values.size] = values
         state[-2:] = self.rotation, self.rotation_velocity
         if not model.lifts and np.any(state[-2:] != 0.0):

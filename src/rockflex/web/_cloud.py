@@ -8,12 +8,16 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._errors import InputError, SolverError
 from rockflex._json import plain
+from rockflex._shown import counted
 from rockflex.fragility import (
     NOMINAL,
+    OVERTURNING,
     ROCKING,
     CloudFits,
     fit_each_cloud,
+    fit_outcomes,
     observed_fractions,
+    recordings_of,
 )
 from rockflex.study.cloud import CloudStudy
 from rockflex.study.plan import pivot_lifts
@@ -61,7 +65,7 @@ def cloud_view(job: Job, state: State) -> dict[str, Any]:
     failed = len(runs) - len(solved)
     if failed:
         first = runs["error"].dropna()
-        view["notes"].append(f"{failed} runs could not be solved. {first.iloc[0] if len(first) else ''}")
+        view["notes"].append(f"{counted(failed, 'run')} could not be solved. {first.iloc[0] if len(first) else ''}")
     view["notes"] += [text for each in pivot_lifts(solved) for text in each.warnings]
     if len(solved) < FEWEST:
         return plain(view)
@@ -99,10 +103,11 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
     if choice.limit == ROTATION:
         try:
             # On springs bases turn without uplift too, so a rotation is not one of rocking runs only.
-            found["p"] = fit_outcomes(im, rotation, fallen).exceedance(grid, choice.rotation)
+            fallen = OVERTURNING.exceeded(part).to_numpy(dtype=bool)
+            turned = fit_outcomes(im, rotation, fallen, recordings_of(part)).curve(choice.rotation)
+            found["p"] = turned.probability(grid)
             found["median"] = _median(grid, found["p"])
-            low, high = fit.outcomes.curve(choice.rotation).band(grid, choice.confidence)
-            found |= {"low": low, "high": high}
+            found["low"], found["high"] = turned.band(grid, choice.confidence)
         except (InputError, SolverError) as error:
             notes.append(f"{fit.model}: {error}")
         return found

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_origin
 from pydantic.fields import FieldInfo
 
 from rockflex._schema import Key
+from rockflex._shown import counted
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
@@ -141,9 +142,10 @@ def _checked_work(task: Task, path: str) -> float:
     """Return the estimated computing time of a run in s; refuse one that takes too long."""
     work = task.work().total
     if work > RUN:
+        modes = counted(task.pace.modes, "mode")
         message = (
-            f"{task.model.label} with {task.pace.modes} modes over {task.record.size} samples takes too long for a "
-            "page. Choose a model with fewer modes, a wider base or a shorter record, or use the library."
+            f"{task.model.label} with {modes} over {task.record.size} samples takes too long for a page. Choose a "
+            "model with fewer modes, a wider base or a shorter record, or use the library."
         )
         raise Refusal({path: message})
     return work

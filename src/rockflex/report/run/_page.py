@@ -8,7 +8,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockflex._shown import shortened
+from rockflex._shown import counted, shortened
 from rockflex._versions import versions_of
 from rockflex.report._svg import inline
 from rockflex.report.run._base import assumption_lines, element_table
@@ -187,7 +187,7 @@ def _few(texts: Sequence[str]) -> list[str]:
     rest = len(texts) - WARNINGS
     return [
         *(shortened(text, LONGEST["warning"]) for text in texts[:WARNINGS]),
-        *([f"and {rest} more warnings; see the responses"] if rest > 0 else []),
+        *([f"and {counted(rest, 'more warning')}; see the responses"] if rest > 0 else []),
     ]
 
 

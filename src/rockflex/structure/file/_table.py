@@ -93,7 +93,7 @@ def problems(error: ValidationError, content: Mapping[str, Any], model: type[Tab
             others += [key] * (key not in others)
             sentences[(*table, "")] = _unknown(table, others, list(known))
             continue
-        elif problem["type"] == "value_error":  # raised by a check of the whole table
+        if problem["type"] == "value_error":  # raised by a check of the whole table
             said = ": ".join(filter(None, (label, str(problem["ctx"]["error"]) if "ctx" in problem else "")))
         elif problem["type"] in ("missing", "union_tag_not_found"):
             said = f"{label} is missing: {expected(known[key])}."

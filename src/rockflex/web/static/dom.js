@@ -22,6 +22,9 @@ export function svg(tag, attributes = {}, ...children) {
   return element;
 }
 
+// A number with its noun: 1 record, 2 records.
+export const counted = (n, one, several = `${one}s`) => `${n} ${n === 1 ? one : several}`;
+
 export function number(value, digits = 4) {
   if (value === null || value === undefined || value === "") return "–";
   const x = Number(value);

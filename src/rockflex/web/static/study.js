@@ -1,16 +1,16 @@
 // A study that the server runs in the background: its buttons, its progress, and its results as they come.
 
 import { ask, attempt, drop } from "./api.js";
-import { h, latest } from "./dom.js";
+import { counted, h, latest } from "./dom.js";
 import { box, chips, select, trouble } from "./form.js";
 import { CHOSEN, GIVEN, suitesOf } from "./measures.js";
 import { yields } from "./models.js";
 
 const SAID = {
   waiting: () => "Waiting for other users' runs.",
-  running: (answer) => `${answer.done} of ${answer.total} runs`,
-  done: (answer) => `Done: ${answer.total} runs.`,
-  cancelled: (answer) => `Cancelled after ${answer.done} of ${answer.total} runs.`,
+  running: (answer) => `${answer.done} of ${counted(answer.total, "run")}`,
+  done: (answer) => `Done: ${counted(answer.total, "run")}.`,
+  cancelled: (answer) => `Cancelled after ${answer.done} of ${counted(answer.total, "run")}.`,
   failed: (answer) => `Failed: ${answer.message}`,
 };
 const SHOWN = 400; // ms between two polls while the tab is shown

@@ -1,7 +1,7 @@
 // A folder of records: given as a folder, as files or as a ZIP archive; a report of each file, and a record to choose.
 
 import { attempt, get, isArchive, sendAll } from "../api.js";
-import { h, latest, number, tableOf } from "../dom.js";
+import { counted, h, latest, number, tableOf } from "../dom.js";
 import { box, field, select, trouble } from "../form.js";
 import { UNITS } from "./upload.js";
 
@@ -71,8 +71,8 @@ export function folder(app, complain) {
     const pairs = found.stations.filter((each) => each.horizontal.length === 2);
     const upright = pairs.filter((each) => each.vertical).length;
     said.textContent = "";
-    summary.textContent = `${taken.length} records taken, ${left} entries not. ${pairs.length} of ${found.stations.length} `
-      + `recordings have two horizontal components, ${upright} of these a vertical one, too.`;
+    summary.textContent = `${counted(taken.length, "record")} taken, ${counted(left, "entry", "entries")} not. `
+      + `${pairs.length} of ${counted(found.stations.length, "recording has", "recordings have")} two horizontal components, ${upright} of these a vertical one, too.`;
     rows.replaceChildren(tableOf(HEAD.map(subscript), found.entries.map(row)));
     stations.replaceChildren(tableOf(["recording", "horizontal", "vertical"], found.stations.map((each) => h("tr", {},
       h("th", { scope: "row" }, each.name), h("td", {}, each.horizontal.join(", ") || "–"), h("td", {}, each.vertical ?? "–")))));
