@@ -73,6 +73,6 @@ def test_impacts_without_end_are_reported_where_they_are():
     message = uncompiled(CHATTERING)
     assert isinstance(message, str)
     assert message.startswith(
-        f"The impacts of MDOF-C accumulate without end in the sample before {end:.6g} s. The state [D, D', θ, θ'] there"
+        f"The events of MDOF-C, such as impacts, accumulate without end in the sample before {end:.6g} s. The state "
     )
     assert message.endswith("Check the model's parameters, and refine the record.")

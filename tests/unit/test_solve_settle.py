@@ -133,7 +133,10 @@ def test_undamped_modes_may_add_up_for_ever():
         (
             Status.CHATTER,
             0.5,
-            ("The impacts of 2DOF-S accumulate without end in the sample before 0.14 s. ", "refine the record."),
+            (
+                "The events of 2DOF-S, such as impacts, accumulate without end in the sample before 0.14 s. ",
+                "the record.",
+            ),
         ),
         (Status.INFINITE, np.nan, ("The motion of 2DOF-S is not finite at 0.14 s. ", "Check the parameters.")),
         (Status.INFINITE, np.inf, ("The motion of 2DOF-S is not finite at 0.14 s. ", "Check the parameters.")),

@@ -156,7 +156,7 @@ class Engine:
         be interrupted by Ctrl-C or `stopping_when`. Only a single run can have a `history`, which keeps every state.
 
         The failures of the result are the errors of single runs: a run that exceeds its work limit (`WorkLimitError`
-        before it begins), a user-defined impact law that fails or a time step that is too long (`InputError`), impacts
+        before it begins), a user-defined impact law that fails or a time step that is too long (`InputError`), events
         that accumulate without end, a motion that does not settle, or impacts that would gain energy (`SolverError`).
 
         Raises

@@ -27,7 +27,7 @@ class Status(IntEnum):
     BROKEN = -1, "The impact law {law} failed", ""
     CHATTER = (
         -2,
-        "The impacts of {label} accumulate without end in the sample before {time:.6g} s.",
+        "The events of {label}, such as impacts, accumulate without end in the sample before {time:.6g} s.",
         "Check the model's parameters, and refine the record.",
     )
     GAINED = (
