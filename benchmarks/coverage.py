@@ -1,7 +1,7 @@
 """How often 90 % bands hold the truth where runs share recordings: the table of docs/theory/checked.md.
 
-`python benchmarks/coverage.py 2000` simulates 2000 suites of 22 recordings with 2 components and 4 scales or levels each
-in some minutes. Every scatter is a normal score: a half of its variance belongs to the recording, a quarter to the
+`python benchmarks/coverage.py 2000` simulates 2000 suites of 22 recordings with 2 components and 4 scales or levels
+each in some minutes. Every scatter is a normal score: a half of its variance belongs to the recording, a quarter to the
 component and a quarter to the run. So runs of one recording are correlated, while every run by itself follows the true
 curve exactly.
 """
@@ -58,7 +58,9 @@ def clouds(rng) -> Iterator[Case]:
     pgv = 0.3 * np.exp(np.repeat(0.4 * rng.normal(size=RECORDINGS), COMPONENTS) + 0.2 * rng.normal(size=n))
     im = np.outer(pgv, SCALES).ravel()
     fell, rocked = (ndtr(score(rng)) < curve(b, im) for b in (FALLS, ROCKS))
-    rotation = np.where(fell, 0.5 * np.pi, np.where(rocked, np.maximum(line(im) * np.exp(SPREAD * score(rng)), 1.1e-4), 0.0))
+    rotation = np.where(
+        fell, 0.5 * np.pi, np.where(rocked, np.maximum(line(im) * np.exp(SPREAD * score(rng)), 1.1e-4), 0.0)
+    )
     fits = [rf.fit_outcomes(im, np.minimum(rotation, 0.5 * np.pi), fell, of) for of in (groups(), None)]
 
     def bands(part):
@@ -105,7 +107,9 @@ def suites(first, last, seed=1, kinds=(clouds, stripes, capacities)):
         for kind in kinds:
             rng = np.random.default_rng((seed, place, len(kind.__name__)))
             for name, at, truth, *bands in kind(rng):
-                cells = [of for low, high in bands for of in ((low <= truth) & (truth <= high), truth > high, truth < low)]
+                cells = [
+                    of for low, high in bands for of in ((low <= truth) & (truth <= high), truth > high, truth < low)
+                ]
                 found.setdefault(name, (at, []))[1].append(cells)
     return found
 

@@ -17,9 +17,11 @@ SHARED = np.repeat(RNG.normal(size=G), 8)
 IM = 0.3 * np.exp(np.repeat(RNG.normal(scale=0.5, size=G), 8)) * np.tile([0.5, 1.0, 2.0, 4.0, 0.6, 1.2, 2.4, 4.8], G)
 SCORE = (SHARED + RNG.normal(size=IM.size)) / math.sqrt(2.0)
 FALLS = stats.norm.cdf(SCORE) < expit(-1.0 + 2.5 * np.log(IM))
-STILL = IM < 0.12 * np.exp(0.5 * RNG.normal(size=IM.size))
-ROTATION = np.where(FALLS, 1.6, np.where(STILL, 0.0, 0.03 * IM**1.3 * np.exp(0.5 * SHARED + 0.3 * RNG.normal(size=IM.size))))
-EXCEEDS = SCORE < np.log(IM / 0.5) / 0.6
+STILL = 0.12 * np.exp(0.5 * RNG.normal(size=IM.size)) > IM
+ROTATION = np.where(
+    FALLS, 1.6, np.where(STILL, 0.0, 0.03 * IM**1.3 * np.exp(0.5 * SHARED + 0.3 * RNG.normal(size=IM.size)))
+)
+EXCEEDS = np.log(IM / 0.5) / 0.6 > SCORE
 CAPACITY = 0.5 * np.exp(0.5 * SCORE[::4])
 HAZARD = rf.HazardCurve([0.05, 0.1, 0.2, 0.4, 0.8, 1.6], [6e-2, 2e-2, 5e-3, 9e-4, 1.2e-4, 8e-6])
 T = stats.t.ppf(0.95, G - 1)
@@ -75,7 +77,9 @@ def test_runs_repeated_under_a_recording_add_no_knowledge(spread):
     im, falls, groups = (spread(column, 4) for column in (IM, FALLS, GROUPS))
     names = pd.Series([f"record {number}" for number in groups])
     for of in (groups, names, pd.Categorical(names), names.to_list()):
-        np.testing.assert_allclose(rf.fit_logistic(im, falls, of).band(AT), rf.fit_logistic(IM, FALLS, GROUPS).band(AT), rtol=1e-6)
+        np.testing.assert_allclose(
+            rf.fit_logistic(im, falls, of).band(AT), rf.fit_logistic(IM, FALLS, GROUPS).band(AT), rtol=1e-6
+        )
     blind, single = (rf.fit_logistic(*each).covariance[0, 0] for each in ((im, falls), (IM, FALLS)))
     assert blind == pytest.approx(single / 4.0)
 
@@ -89,7 +93,9 @@ def test_the_total_probability_has_the_joint_jackknife():
     low, high = stats.logistic.ppf(np.array(fit.curve(0.02).band(AT)))
     np.testing.assert_allclose((high - low) / 2.0, half, rtol=0.15)
     assert (fit.curve(0.02).probability(AT) == fit.exceedance(AT, 0.02)).all()
-    assert ((low < stats.logistic.ppf(fit.exceedance(AT, 0.02))) & (stats.logistic.ppf(fit.exceedance(AT, 0.02)) < high)).all()
+    assert (
+        (low < stats.logistic.ppf(fit.exceedance(AT, 0.02))) & (stats.logistic.ppf(fit.exceedance(AT, 0.02)) < high)
+    ).all()
 
 
 def test_the_band_of_a_rate_is_that_of_parameters_drawn_from_t():
@@ -143,7 +149,11 @@ def test_a_recording_without_a_name_is_refused(groups):
 def runs():
     frame = rf.Frame(3, 3.0, 40e3, 40e3, 1.0, period=0.6, aspect_ratio=8.0, damping_ratio=0.02)
     return rf.run_cloud(
-        {"frame": frame}, rf.load_suite("fema-p695-far-field")[:16], "2DOF-S", [0.5, 1.0, 2.0, 4.0], free_vibration="settle"
+        {"frame": frame},
+        rf.load_suite("fema-p695-far-field")[:16],
+        "2DOF-S",
+        [0.5, 1.0, 2.0, 4.0],
+        free_vibration="settle",
     )
 
 

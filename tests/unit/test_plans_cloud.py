@@ -182,7 +182,19 @@ def test_options_reach_the_runs():
 
 def test_mirrored_motion():
     table = run_cloud(rf.Frame(**FRAME), SUITE[0], scales=[1.0, -1.0])
-    names = ["pga", "pgv", "pgd", "arias", "cav", "sd_t1", "sa_t1", "sa_t1_5", "relative_pga", "relative_pgv", "max_rotation"]
+    names = [
+        "pga",
+        "pgv",
+        "pgd",
+        "arias",
+        "cav",
+        "sd_t1",
+        "sa_t1",
+        "sa_t1_5",
+        "relative_pga",
+        "relative_pgv",
+        "max_rotation",
+    ]
     assert table.loc[0, names].tolist() == pytest.approx(table.loc[1, names].tolist(), rel=1e-9)
     assert (table[names] > 0).all(axis=None)
 

@@ -4,6 +4,8 @@ The share of bands that hold the truth has a standard error of about 1.5 % for 4
 """
 
 import math
+import runpy
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -118,6 +120,16 @@ def test_bootstrap_of_runs_that_share_records():
     share = report("bootstrap of records", blocks, n)
     assert (share > 0.78).all()
     assert (report("bootstrap of single runs", blind, n) < share - 0.1).all()
+
+
+@pytest.mark.slow
+def test_bands_of_runs_that_share_recordings():
+    """A part of the table in docs/theory/checked.md: 120 suites, so that a share has a standard error of 2.7 %."""
+    script = runpy.run_path(str(Path(__file__).parents[2] / "benchmarks" / "coverage.py"))
+    for name, level, hold, below, above, blind in script["covered"]([script["suites"](0, 120)]):
+        assert hold == pytest.approx(0.9, abs=0.09), (name, level)
+        assert max(below, above) < 0.13, (name, level)
+        assert blind < hold, (name, level)
 
 
 def test_total_probability_of_the_three_outcomes():

@@ -75,11 +75,13 @@ def bootstrap_band(
     seed: int = 0,
     curve: Callable[[Any, Array], Any] | None = None,
 ) -> BootstrapBand:
-    """Percentile band of a fitted curve from resamples of the runs, or of the records that they share.
+    """Percentile band of any statistic from resamples of the runs, or of the records that they share.
 
-    With `groups`, whole groups are drawn. The components and scale factors of one record are not independent, and a
-    band that treats them as independent is too narrow (Davison & Hinkley 1997, Bootstrap Methods and their
-    Application, Section 3.8).
+    The fits have bands of their own, which hold the truth as often as they say: prefer those, and `annual_rate` for
+    rates. With `groups`, whole groups are drawn. The components and scale factors of one record are not independent,
+    and a band that treats them as independent is too narrow (Davison & Hinkley 1997, Bootstrap Methods and their
+    Application, Section 3.8). The percentiles are those that widen the band by Student's t and √(m/(m - 1)) for m
+    blocks (Hesterberg 2015, Am. Stat. 69(4), 371-386).
 
     Parameters
     ----------
@@ -151,9 +153,17 @@ def bootstrap_band(
             f"Only {len(curves)} of {times} resamples could be fitted, {NEEDED} are needed. The first failure: "
             f"{failures[0]}"
         )
-    low, high = np.quantile(curves, [0.5 - 0.5 * wanted, 0.5 + 0.5 * wanted], axis=0)
+    low, high = np.quantile(curves, _shares(wanted, len(blocks)), axis=0)
     note = _note(times, failures, separated, len(blocks))
     return BootstrapBand(grid, estimate, low, high, wanted, times, len(failures), separated, len(blocks), note)
+
+
+def _shares(confidence: float, n_blocks: int) -> tuple[float, float]:
+    """Shares of the resamples below the limits of a band, so that few blocks do not make it too narrow."""
+    from scipy.special import ndtr, stdtrit
+
+    half = stdtrit(n_blocks - 1, 0.5 + 0.5 * confidence) * np.sqrt(n_blocks / (n_blocks - 1.0))
+    return float(ndtr(-half)), float(ndtr(half))
 
 
 def _curve(fit: Any, grid: Array) -> Any:
@@ -195,5 +205,5 @@ def _note(n: int, failures: list[str], separated: int, groups: int) -> str:
     if separated:
         notes.append(f"{separated} of {n} resamples were separated and fitted with Firth's penalty.")
     if groups < 20:
-        notes.append(f"Percentile bands from {groups} blocks are too narrow; take them as a lower bound.")
+        notes.append(f"Percentile bands from {groups} blocks may be too narrow; take them as a lower bound.")
     return " ".join(notes)

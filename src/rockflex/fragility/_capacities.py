@@ -73,7 +73,7 @@ def fit_capacities(
         return LognormalFragility(math.exp(mean), beta, covariance, x.size, method, damping=damping)
     median, replicates = math.exp(mean), recordings.without_each(lambda some: _scores(x, above, some, mean, beta))
     covariance = covariance_of_scores(replicates, median, beta)
-    return LognormalFragility(median, beta, covariance, x.size, method, recordings.count, damping)
+    return LognormalFragility(median, beta, covariance, x.size, method, recordings.n, damping)
 
 
 def _scores(x: Array, above: Bools, weights: Array, mean: float, beta: float) -> Array:

@@ -76,9 +76,9 @@ class HazardCurve(Value):
         """Raise an InputError if a fragility's spectral measure is of another damping; None is not known, or none."""
         if damping is not None and not math.isclose(damping, self.damping, rel_tol=1e-6):
             raise InputError(
-                f"The fragility is in a spectral measure at {'an unknown' if math.isnan(damping) else format(damping, '.4g')} "
-                f"ratio of damping, but the hazard curve is at {self.damping:g}. Fit the runs to sa_t1_5, Sa(T₁) at 5 %, "
-                "or give the hazard curve of that damping, HazardCurve(im, rate, damping=0.02) for 2 %.",
+                f"The fragility is in a spectral measure at {damping_words(damping)}, but the hazard curve is at "
+                f"{damping_words(self.damping)}. Fit the runs to sa_t1_5, Sa(T₁) at 5 %, or give the hazard curve of "
+                "that damping, HazardCurve(im, rate, damping=0.02) for 2 %.",
                 field="damping",
             )
 
@@ -188,6 +188,11 @@ class HazardCurve(Value):
     def im_at(self, rate: ArrayLike) -> Array:
         """Measure that is exceeded at an annual `rate`: the uniform-hazard value (2 % in 50 years is 1/2475)."""
         return np.exp(_between("rate", log_at(rate, "rate"), np.log(self.rate[::-1]), np.log(self.im[::-1])))
+
+
+def damping_words(damping: float) -> str:
+    """A damping ratio in words, NaN for one that is not known."""
+    return "an unknown damping ratio" if math.isnan(damping) else f"a damping ratio of {damping:.4g}"
 
 
 def damping_of(runs: "pd.DataFrame", measure: str) -> float | None:

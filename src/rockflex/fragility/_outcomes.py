@@ -95,8 +95,8 @@ class OutcomeFragility(HtmlTable, Value):
         Warnings about the fits: few runs, or curves that could not be fitted. The `kind` of each is ``"runs"`` or the
         attribute above that it concerns.
     covariance : ndarray, shape (7, 7)
-        Covariance of the parameters of the total probability, read-only: (b0, b1) of `overturning` and of `rocking`, and
-        (c1, c2, ln dispersion) of `rotation`; zero where there is no curve.
+        Covariance of the parameters of the total probability, read-only: (b0, b1) of `overturning` and of `rocking`,
+        and (c1, c2, ln dispersion) of `rotation`; zero where there is no curve.
     without : ndarray, shape (n_groups, 7), or None
         The same parameters without each recording; None for independent runs.
     n_groups : int
@@ -267,7 +267,7 @@ class RotationFragility(Value):
         from scipy.special import expit, ndtr
 
         fit, x = self.outcomes, np.log(im)
-        curves = (
+        falls, rocks = (
             expit(parameters[:, place : place + 1] + parameters[:, place + 1 : place + 2] * x)
             if isinstance(curve, LogisticFit)
             else np.full((len(parameters), x.size), np.nan if curve is None else float(curve.outcome))
@@ -275,7 +275,7 @@ class RotationFragility(Value):
         )
         c1, c2, spread = (parameters[:, place : place + 1] for place in (4, 5, 6))
         known = 1.0 if fit.rotation else np.nan
-        return total_probability(*curves, known * ndtr((c1 + c2 * x - np.log(self.limit)) / np.exp(spread)))
+        return total_probability(falls, rocks, known * ndtr((c1 + c2 * x - np.log(self.limit)) / np.exp(spread)))
 
 
 def fit_outcomes(
@@ -355,7 +355,7 @@ def fit_outcomes(
     rocking, other = shared.curve("rocking", moves, stands)
     initiation, _ = shared.curve("initiation", moves, np.ones_like(falls))
     line, last = shared.cloud(rotations, rocked)
-    count = 0 if recordings is None else recordings.count
+    count = 0 if recordings is None else recordings.n
     without = None if recordings is None else _together((part, other, last), count)
     return OutcomeFragility(
         overturning=overturning or UnanimousOutcome(bool(falls[0]), falls.size, count),

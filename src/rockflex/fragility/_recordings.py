@@ -1,9 +1,9 @@
 """How uncertain parameters are when runs share recordings: the jackknife that leaves out one recording at a time.
 
-The covariance is (G - 1)/G Σ (θ_g - mean θ)(θ_g - mean θ)ᵀ over the parameters θ_g without recording g of G, and bands are
-those of Student's t with G - 1 degrees of freedom (MacKinnon, Nielsen & Webb 2023, J. Econometrics 232(2), 272-299: their
-CV3J; for logistic regressions, MacKinnon, Nielsen & Webb 2024, arXiv:2406.00650). What is no straight line in the
-parameters, such as an annual rate, has the quantiles of its values at parameters drawn from that t distribution.
+The covariance is (G - 1)/G Σ (θ_g - mean θ)(θ_g - mean θ)ᵀ over the parameters θ_g without recording g of G, and bands
+are those of Student's t with G - 1 degrees of freedom (MacKinnon, Nielsen & Webb 2023, J. Econometrics 232(2), 272-299:
+their CV3J). What is no straight line in the parameters, such as an annual rate, has the quantiles of its values at
+parameters drawn from that t distribution.
 """
 
 from collections.abc import Callable
@@ -29,7 +29,7 @@ class Recordings(NamedTuple):
     """
 
     codes: NDArray[np.int64]
-    count: int
+    n: int
 
     @classmethod
     def of(cls, groups: ArrayLike) -> Self:
@@ -61,18 +61,18 @@ class Recordings(NamedTuple):
 
     def some(self, chosen: Bools) -> "Recordings":
         """Those of some of the runs, with the same numbers."""
-        return Recordings(self.codes[chosen], self.count)
+        return Recordings(self.codes[chosen], self.n)
 
     @property
     def held(self) -> Bools:
-        """Whether there are runs of each recording, shape (count,)."""
-        return np.bincount(self.codes, minlength=self.count) > 0
+        """Whether there are runs of each recording, shape (n,)."""
+        return np.bincount(self.codes, minlength=self.n) > 0
 
     def without_each(self, fit: Callable[[Array], Array]) -> Array:
-        """Parameters without each recording, shape (count, k); `fit` takes weights of shape (m, n)."""
+        """Parameters without each recording, shape (n, k); `fit` takes weights of shape (m, n)."""
         step = max(1, _CELLS // max(1, self.codes.size))
-        numbers = np.arange(self.count)
-        parts = (numbers[first : first + step, None] != self.codes for first in range(0, self.count, step))
+        numbers = np.arange(self.n)
+        parts = (numbers[first : first + step, None] != self.codes for first in range(0, self.n, step))
         return np.concatenate([fit(part.astype(float)) for part in parts])
 
 

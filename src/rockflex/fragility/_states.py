@@ -15,7 +15,7 @@ from rockflex._checks import all_positive, finite_vector, positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.fragility._curve import Curve, Fragility, checked_curve
-from rockflex.fragility._hazard import DAMPING
+from rockflex.fragility._hazard import DAMPING, damping_words
 from rockflex.fragility._lognormal import LognormalFragility
 from rockflex.fragility._outcomes import OutcomeFragility
 
@@ -54,8 +54,9 @@ def functions_of(
     Raises
     ------
     InputError
-        If a name cannot be written, a spectral measure is not at 5 % damping, the levels do not rise, structures have different limit states, a probability is
-        not one, or a more severe limit state is more probable than a milder one.
+        If a name cannot be written, a spectral measure is not at 5 % damping, the levels do not rise, structures have
+        different limit states, a probability is not one, or a more severe limit state is more probable than a milder
+        one.
     """
     im = finite_vector("levels", levels, "the SI unit of the measure")
     all_positive("levels", im, "in SI units")
@@ -128,10 +129,9 @@ def _check_damping(name: str, states: States, measure: str) -> None:
     for fit in states.values() if isinstance(states, Mapping) else [states]:
         damping = getattr(fit, "damping", None)
         if damping is not None and not math.isclose(damping, DAMPING, rel_tol=1e-6):
-            ratio = "an unknown" if math.isnan(damping) else f"{damping:.4g}"
             raise InputError(
-                f"measure: {measure} of risk programs is at a damping ratio of {DAMPING:g}, but the curves of {name} are in a "
-                f"spectral measure at {ratio} damping ratio. Fit the runs to sa_t1_5, Sa(T₁) at 5 %.",
+                f"measure: {measure} of risk programs is at {damping_words(DAMPING)}, but the curves of {name} are in "
+                f"a spectral measure at {damping_words(damping)}. Fit the runs to sa_t1_5, Sa(T₁) at 5 %.",
                 field="measure",
             )
 

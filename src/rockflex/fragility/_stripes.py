@@ -99,9 +99,9 @@ def fit_stripes(
             np.concatenate((events, total - events)),
             np.tile(scaled.x, 2),
         )
-        twice, at = Recordings(np.tile(recordings.codes, 2), recordings.count), np.asarray(result.params)
+        twice, at = Recordings(np.tile(recordings.codes, 2), recordings.n), np.asarray(result.params)
         replicates = twice.without_each(lambda some: fit_capacity_lines(both, kind, some * runs, at))
-        found, count = covariance_of_scores(scaled.back(replicates), median, beta), recordings.count
+        found, count = covariance_of_scores(scaled.back(replicates), median, beta), recordings.n
     method = "binomial counts, maximum likelihood"
     return LognormalFragility(median, beta, found, int(total.sum()), method, count, damping)
 

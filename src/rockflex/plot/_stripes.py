@@ -137,8 +137,8 @@ def _fit(runs: "pd.DataFrame", limit: "StripeLimit") -> LognormalFragility | Non
     from rockflex.study.stripes import stripe_limit
 
     solved = runs[runs["status"].notna()]
-    exceeded, groups = stripe_limit(limit).exceeded(solved).astype(bool), solved["group"] if "group" in solved else None
+    exceeded = stripe_limit(limit).exceeded(solved).astype(bool)
     try:
-        return fit_stripes(solved["level"], exceeded, np.ones(len(solved)), groups)
+        return fit_stripes(solved["level"], exceeded, np.ones(len(solved)), solved.get("group"))
     except (InputError, SolverError):
         return None
