@@ -1,6 +1,7 @@
 """Connections that do not wait for ever for their clients, and make room for others."""
 
 from asyncio import TimerHandle, Transport
+from operator import attrgetter
 
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
@@ -24,7 +25,7 @@ class Connection(H11Protocol):
         if len(self.connections) > MOST:
             waiting = [each for each in self.connections if isinstance(each, Connection) and each.waits]
             if waiting:
-                idlest = min(waiting, key=lambda each: each.since)
+                idlest = min(waiting, key=attrgetter("since"))
                 idlest.transport.abort()
                 self.connections.discard(idlest)  # now, so that it does not count against the others
 
