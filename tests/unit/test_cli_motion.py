@@ -104,7 +104,7 @@ def test_folder_of_many_motions_and_of_unknown_ones(tmp_path):
     np.savetxt(path, 0.1 * np.sin(np.arange(50)))
     more = ("--units", "g", "--dt", 0.01, "--figures", 1)
     result = invoke("el-centro-1940", path, *more, "--out", tmp_path / "out")
-    assert "series and figures only of up to --figures 1 motions" in result.stderr
+    assert "series and figures only of up to 1 motion, by --figures" in result.stderr
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["motions.csv", "summary.json"]
     with (tmp_path / "out" / "motions.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))

@@ -94,7 +94,7 @@ def test_one_site_needs_no_choice_and_names_choose(export):
         (OLD + "lon,lat,iml\n1,2,3\n", None, "lon, lat and poe-..., but its columns are 'lon, lat, iml'"),
         (OLD, None, "with the columns lon, lat and poe-..., but its columns are ''"),
         (OLD + ROWS.splitlines()[0], None, "must have a row of 7 values for each site, but it has none"),
-        (OLD + ROWS + "1,2\n", None, "must have a row of 7 values for each site, but 1 rows differ"),
+        (OLD + ROWS + "1,2\n", None, "must have a row of 7 values for each site, but 1 row differs"),
         (OLD + ROWS.replace("3.0000", "x"), (8.54, 47.38), "'x00E-01' stands where a number is expected"),
         (OLD + ROWS.replace("3.0", "-3.0"), (8.54, 47.38), "holds probabilities below 0 or above 1"),
         (OLD.replace("PGA", "MMI") + ROWS, (8.54, 47.38), "measure must be one of PGA"),

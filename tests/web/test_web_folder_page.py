@@ -169,11 +169,11 @@ def test_of_two_folders_given_quickly_the_later_one_counts(visitor, folder) -> N
     page.locator("#folder").set_input_files(folder)
     page.wait_for_function("() => window.letGo")
     page.locator("#files").set_input_files(folder / "other" / "alone.csv")
-    page.wait_for_function("() => document.querySelector('#taken').textContent.startsWith('1 records taken')")
+    page.wait_for_function("() => document.querySelector('#taken').textContent.startsWith('1 record taken')")
     page.evaluate("letGo()")
     page.wait_for_function("() => window.gone")
     page.wait_for_load_state("networkidle")
-    assert page.locator("#taken").inner_text().startswith('1 record taken")
+    assert page.locator("#taken").inner_text().startswith("1 record taken")
     assert visitor.state()["record"]["given"] == "alone"
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rockflex._shown import counted
 from rockflex.cli import _options as options
 
 if TYPE_CHECKING:
@@ -211,4 +212,7 @@ def _write(
                     series["vertical"] = item.motion.vertical
                 pd.DataFrame(series).to_csv(stage / f"{stem}.csv", index=False, lineterminator="\n")
                 save_figure(plot_motion(item.motion), stage / f"{stem}.png")
-    note(f"Written to {folder}" + ("" if few else f"; series and figures only of up to --figures {figures} motions"))
+    note(
+        f"Written to {folder}"
+        + ("" if few else f"; series and figures only of up to {counted(figures, 'motion')}, by --figures")
+    )

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from rockflex._errors import InputError
 from rockflex._files import check_regular, path_of
-from rockflex._shown import shown
+from rockflex._shown import counted, shown
 from rockflex.fragility._units import unit_of
 
 Site = tuple[float, float] | str
@@ -72,11 +72,8 @@ def _stated(file: Path, comment: str) -> tuple[float, str]:
 def _row(file: Path, names: Sequence[str], rows: list[list[str]], site: Site | None) -> list[str]:
     whole = [row for row in rows if len(row) == len(names)]
     if len(whole) < len(rows) or not rows:
-        raise InputError(
-            f"{file} must have a row of {len(names)} values for each site, but "
-            f"{f'{len(rows) - len(whole)} rows differ' if rows else 'it has none'}.",
-            field="path",
-        )
+        wrong = counted(len(rows) - len(whole), "row differs", "rows differ") if rows else "it has none"
+        raise InputError(f"{file} must have a row of {len(names)} values for each site, but {wrong}.", field="path")
     if site is None:
         if len(rows) > 1:
             raise InputError(f"{file} has {len(rows)} sites. Choose one with site=(longitude, latitude).", field="site")
