@@ -1,8 +1,10 @@
-"""Figures of docs/theory/contact.md, from the tables that impact_from_contact.py wrote."""
+"""Figures of docs/theory/contact.md and forces.md, from the tables that impact_from_contact.py wrote."""
 
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
+from impact_from_contact import on_a_mat, stiff_springs
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -155,7 +157,63 @@ def bar(axes: Axes, place: float, one: "pd.Series[float]", color: str) -> None:
     axes.plot([one.q50], [place], color=color, marker="o", markersize=4)
 
 
+def forces() -> Figure:
+    """M_b and V_b of the structures of Table 1 over those with VVEL."""
+    figure = Figure(figsize=(7.4, 4.4), layout="constrained")
+    found = table("forces")
+    every = figure.subplots(2, 6, sharex=True, sharey=True)
+    for column, name in enumerate(TITLES):
+        mine = found[found["structure"] == name]
+        same = mine[mine["run"] == "VVEL, records + 1 %"].iloc[0]
+        for axes, peak in zip(every[:, column], ("moment", "shear"), strict=True):
+            axes.axhspan(same[f"{peak}_q16"], same[f"{peak}_q84"], color="#dddddd", zorder=0, label="VVEL, records × 1.01")
+            for ratio in (0.05, 0.7):
+                one = mine[mine["damping"] == ratio]
+                label = f"ζ = {ratio:g}: median, 16 and 84 %"
+                r, low, high = one["frequency_ratio"], one[f"{peak}_q16"], one[f"{peak}_q84"]
+                axes.fill_between(r, low, high, color=OF_RATIO[ratio], alpha=0.18)
+                axes.plot(r, one[f"{peak}_q50"], color=OF_RATIO[ratio], label=label, marker=".")
+            axes.axhline(1.0, color=BLACK, linewidth=0.9, linestyle="--")
+            axes.set(xscale="log", ylim=(0.4, 1.5))
+            axes.set_xticks([1.0, 3.0, 10.0], ["1", "3", "10"])
+            axes.set_xticks([], minor=True)
+        every[0, column].set_title(TITLES[name].replace(": ", "\n").replace("h/B = ", ""))
+    every[0, 0].set_ylabel("$M_b$ on springs / with VVEL")
+    every[1, 0].set_ylabel("$V_b$ on springs / with VVEL")
+    figure.supxlabel(r"stiffness of the ground, $r = \omega_z B/(\omega_1 h^*_1)$", fontsize=9)
+    handles, labels = every[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=3)
+    return figure
+
+
+def landing() -> Figure:
+    """One landing of #4: forces with VVEL, and on stiff springs."""
+    figure = Figure(figsize=(6.6, 5.4), layout="constrained")
+    p, inertia = on_a_mat("#4")
+    motion = rf.load_suite("fema-p695-far-field")["FF-1-a"].scaled(2.0)
+    times = np.linspace(9.34, 9.48, 6001)
+    weight = p.m_tot * 9.81
+    every = figure.subplots(3, 1, sharex=True)
+    runs = {"VVEL": (BLACK, {}), "springs, ζ = 0.05": (BLUE, {"ratio": 0.05}), "springs, ζ = 0.7": (RED, {"ratio": 0.7})}
+    for label, (color, given) in runs.items():
+        ground = {"ground": stiff_springs(p, inertia, 20.0, **given)} if given else {}
+        history = rf.simulate(p, motion, "MDOF-S", work_limit=None, **ground).history
+        assert history is not None
+        shown = history.at(times)
+        values = (shown.base_moment / p.resisting_moment, shown.base_shear / weight, shown.vertical_reaction / weight)
+        for axes, value in zip(every, values, strict=True):
+            axes.plot(times, value, color=color, label=label, linewidth=1.1)
+    every[0].set_ylabel("$M_b / M_r$")
+    every[1].set_ylabel(r"$V_b / (m_{tot}\,g)$")
+    every[2].set_ylabel(r"$N / (m_{tot}\,g)$")
+    every[2].set_yscale("symlog", linthresh=3.0)
+    every[2].set_yticks([0.0, 1.0, 3.0, 10.0, 30.0], ["0", "1", "3", "10", "30"])
+    every[2].set_xlabel("time (s)")
+    figure.legend(*every[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    return figure
+
+
 if __name__ == "__main__":
-    for draw in (restitution, columns, frames, laws):
+    for draw in (restitution, columns, frames, laws, forces, landing):
         with rc_context(STYLE):
             rf.save_figure(draw(), FOLDER / f"{draw.__name__}.png")

@@ -1,4 +1,6 @@
-"""The impact laws as limits of springs and dashpots under the base: docs/theory/contact.md."""
+"""The impact laws as limits of springs and dashpots under the base, and the forces that follow from both:
+docs/theory/contact.md and forces.md.
+"""
 
 import math
 
@@ -115,3 +117,82 @@ def test_a_frame_on_stiff_springs_follows_the_law_of_its_rotary_inertia(share, e
     assert error[1] < 0.03
     assert error[2] < 0.005
     assert error[2] < error[1] < error[0]
+
+
+def on_a_mat(**changes):
+    """A frame of Table 1 on a mat of the width of the base, and the inertia of the mat."""
+    bare = make_frame(**changes).rocking()
+    inertia = bare.base_mass * bare.half_width**2 / 3.0
+    return with_rotary(bare, inertia), inertia
+
+
+def stiff_springs(p, over, ratio, inertia):
+    """Two springs whose heave is `over` times as fast as the first uplifted mode, about."""
+    return two_springs(p, over * p.omega[0] * p.effective_height[0] / p.half_width, ratio, inertia)
+
+
+def over_the_law(p, inertia, over, ratio):
+    """Peaks on springs over those with VVEL, of the records under which both rock, and where VVEL never pulls."""
+    suite = list(rf.load_suite("fema-p695-far-field"))[::4]
+    law, found = (
+        rf.simulate_many(p, suite, "MDOF-S", scales=(2.0,), output="peaks", workers=1, ground=ground)
+        for ground in (None, stiff_springs(p, over, ratio, inertia))
+    )
+    both = (law["status"] == "rocking") & (found["status"] == "rocking")
+    peaks = ["max_rotation", "max_base_moment", "max_base_shear"]
+    return (found[peaks] / law[peaks])[both], (law["min_vertical_reaction"] >= 0.0)[both]
+
+
+FLEXURE = {"stiffness_ratio": 0.0}
+SIXTH = {**FLEXURE, "aspect_ratio": 5.0}
+FOURTH = {**FLEXURE, "period": 0.5}
+
+
+@pytest.mark.parametrize("changes", [{}, SIXTH])
+def test_stiff_ground_without_rebound_gives_the_forces_of_the_law(changes):
+    ratios, _ = over_the_law(*on_a_mat(**changes), 20.0, 0.7)
+    assert ratios.median().tolist() == pytest.approx([1.0] * 3, abs=0.02)
+
+
+def test_rebound_leaves_the_rotation_of_a_flexural_frame_and_raises_its_base_shear():
+    """Also where the law never pulls the base down, so that is not the reason; a shear frame hardly notices."""
+    ratios, pressed = over_the_law(*on_a_mat(**SIXTH), 20.0, 0.05)
+    assert pressed.sum() > 5
+    for some in (ratios, ratios[pressed]):
+        rotation, moment, shear = some.median()
+        assert rotation == pytest.approx(1.0, abs=0.03)
+        assert moment == pytest.approx(1.0, abs=0.1)
+        assert shear > 1.2
+    shear_frame, _ = over_the_law(*on_a_mat(), 20.0, 0.05)
+    assert shear_frame["max_base_shear"].median() == pytest.approx(1.0, abs=0.02)
+
+
+def test_springs_let_go_where_the_law_pulls_the_base_down():
+    """Then both forces of structure #4 are smaller on springs, at nearly the same rotation."""
+    ratios, pressed = over_the_law(*on_a_mat(**FOURTH), 20.0, 0.05)
+    rotation, moment, shear = ratios[~pressed].median()
+    assert rotation == pytest.approx(1.0, abs=0.05)
+    assert moment < 0.85
+    assert shear < 0.85
+
+
+@pytest.mark.parametrize("changes", [FOURTH, SIXTH])
+def test_forces_on_compliant_ground_are_below_those_of_the_law(changes):
+    ratios, _ = over_the_law(*on_a_mat(**changes), 1.0, 0.2)
+    assert ratios["max_base_moment"].median() < 0.8
+    assert ratios["max_base_shear"].median() < 0.75
+
+
+@pytest.mark.parametrize(("ratio", "share"), [(0.05, 0.931), (0.2, 0.821), (0.7, 1.4), (1.0, 2.0)])
+def test_the_blow_on_the_ground_grows_with_its_stiffness(ratio, share):
+    """N_max - m g is a share of m B θ' ω_z; with an impact law the history has no trace of it."""
+    p, inertia = on_a_mat(**FOURTH)
+    start = rf.InitialState(rotation=1e-6, rotation_velocity=-STILL)
+    for over in (100.0, 200.0):
+        heave = over * p.omega[0] * p.effective_height[0] / p.half_width
+        still = rf.quiet_motion(30.0 / heave, dt=0.02 / heave)
+        run = rf.simulate(p, still, "MDOF-S", ground=two_springs(p, heave, ratio, inertia), initial=start)
+        blow = run.history.vertical_reaction.max() - p.m_tot * GRAVITY
+        assert blow == pytest.approx(share * p.m_tot * p.half_width * STILL * heave, rel=0.03)
+    law = rf.simulate(p, still, "MDOF-S", initial=start)
+    assert law.history.vertical_reaction.max() < 3.0 * p.m_tot * GRAVITY

@@ -240,3 +240,11 @@ def test_the_static_bearing_pressure_stands_beside_that_of_a_spring(tmp_path):
     text, value = next((text, value) for text, name, value in row if name == "bearing_pressure")
     assert value == run.bearing_pressure.max()
     assert rounded(run.soil_pressure.max() / 1e3) in text
+
+
+def test_the_page_says_what_forces_with_an_impact_law_leave_out(page, tmp_path):
+    """On springs, and on a fixed base, no law acts and nothing is said."""
+    assert "without the impulse of impacts" in page.read_text("utf-8")
+    for models, options in ((("2DOF-S",), {"ground": SPRINGS}), (("fixed",), {})):
+        path = rf.write_report(runs(FRAME, PULSE, models, **options), tmp_path / f"{models[0]}.html", structure=FRAME)
+        assert "impulse of impacts" not in path.read_text("utf-8")

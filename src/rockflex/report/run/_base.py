@@ -38,12 +38,17 @@ def assumption_lines(about: Given) -> list[tuple[str, str]]:
 def _lines_of(history: History) -> list[tuple[str, str]]:
     """Return what one run assumes."""
     model = history.model
-    lines = [(_LAW, _law(model.law))] if model.lifts and not isinstance(model, SpringModel) else []
+    lines = [(_LAW, _law(model.law))] if follows_law(model) else []
     if model.bouc_wen is not None:
         lines.append(("Hysteresis", _hysteresis(model.bouc_wen)))
     lines += _ground(model)
     start = initial_state(history)
     return [*lines, *([(_START, start)] if start else [])]
+
+
+def follows_law(model: Any) -> bool:
+    """Whether an impact law ends the rocking of a model: on springs none does."""
+    return model.lifts and not isinstance(model, SpringModel)
 
 
 def _law(law: Any) -> str:

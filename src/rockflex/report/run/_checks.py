@@ -193,11 +193,20 @@ def _power(value: float) -> str:
 
 
 def legend(
-    friction: float | None, *, sided: bool, slides: bool, stays: bool, omitted: bool, held: bool, bedded: bool
+    friction: float | None,
+    *,
+    sided: bool,
+    slides: bool,
+    stays: bool,
+    omitted: bool,
+    held: bool,
+    bedded: bool,
+    impacts: bool,
 ) -> list[str]:
     """Return what the columns mean, in sentences; `slides` and `stays` tell whether some base can slide, or cannot.
 
-    `sided` tells whether the limit differs between the sides, and `held` whether elements hold the base.
+    `sided` tells whether the limit differs between the sides, `held` whether elements hold the base, and `impacts`
+    whether some run follows an impact law.
     """
     limit = "" if friction is None else f", to be below the μ = {friction:.4g} given"
     lines = [f"Overturning: nominal limit θ_nom over θ_max{', to the side that is nearer to it' if sided else ''}."]
@@ -212,6 +221,11 @@ def legend(
     if held:
         lines.append("Re-centring: what remains when the base is at rest, in free vibration after the run.")
     lines.append("Energy balance: its largest error over the input energy.")
+    if impacts:
+        lines.append(
+            "Forces with an impact law: without the impulse of impacts, and on rigid ground without rebound; on stiff "
+            "ground that rebounds V_b of flexural structures may be larger."
+        )
     if omitted:
         lines.append(f"{OMITTED.capitalize()}: energies and friction of a run that would take too long here.")
     return lines

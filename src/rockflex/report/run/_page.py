@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rockflex._shown import counted, shortened
 from rockflex._versions import versions_of
 from rockflex.report._svg import inline
-from rockflex.report.run._base import assumption_lines, element_table
+from rockflex.report.run._base import assumption_lines, element_table, follows_law
 from rockflex.report.run._checks import check_table, ground_friction, is_bedded, legend, long_runs
 from rockflex.report.run._given import Given
 from rockflex.report.run._inputs import fingerprint
@@ -132,6 +132,7 @@ def page_of(
     told = legend(
         friction, sided=about.properties.eccentricity != 0.0, slides=any(sliding), stays=not all(sliding),
         omitted=bool(left_out), held=bool(about.properties.elements), bedded=any(map(is_bedded, about.histories)),
+        impacts=any(follows_law(each.model) for each in about.histories),
     )  # fmt: skip
     return Page(
         title=shortened(title, LONGEST["title"]),

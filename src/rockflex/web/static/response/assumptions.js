@@ -16,6 +16,8 @@ const MEANT = {
   complete: "Conserves the total horizontal kinetic energy; the rotation stops.",
   restitution: "Conserves the horizontal velocity of each mass; part of the rotation continues about the other edge.",
 };
+const FORCES = "The history of forces does not include the blow of an impact, and V_b and M_b are those of rigid ground: on " +
+  "springs with little damping, V_b of a flexural frame may be larger.";
 const RESTITUTION = 0.8; // default
 const RANGE = "0: the base stays down until the next uplift; 1: it rocks on without loss";
 const YIELDING = ["2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW"];
@@ -26,7 +28,7 @@ export function assumptions(app, suggested) {
   const impact = select("impact", "Impact law", IMPACTS, "", (value) => app.change({
     impact: value || undefined,
     restitution: value === "restitution" ? RESTITUTION : undefined,
-  }), { hint: MEANT[""] });
+  }), { hint: `${MEANT[""]} ${FORCES}` });
   const restitution = slider("restitution", "Coefficient of restitution",
     { low: 0, high: 1, step: 0.01, hint: RANGE }, RESTITUTION, (value) => app.change({ restitution: value }));
   const tick = h("input", { type: "checkbox", id: "yields", onchange: () => (tick.checked ? begin() : end()) });
@@ -64,7 +66,7 @@ export function assumptions(app, suggested) {
   function refresh() {
     const { state } = app;
     impact.setValue(state.impact ?? "");
-    impact.querySelector(".hint").textContent = MEANT[state.impact ?? ""];
+    impact.querySelector(".hint").textContent = `${MEANT[state.impact ?? ""]} ${FORCES}`;
     restitution.hidden = state.impact !== "restitution";
     restitution.setValue(state.restitution ?? RESTITUTION);
     const on = state.bouc_wen !== undefined;
