@@ -1,5 +1,10 @@
 """Where the rocking phase does not uncouple it stays dense: the same motion, by full matrices."""
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -122,3 +127,30 @@ def test_a_narrow_base_uncouples(monkeypatch, n_stories):
     assert_dense(*prepared(given, "MDOF-S", 0.02))
     assert uncoupled.n_impacts > 0
     assert_same_peaks(simulate(Frame(**given), brief, output="peaks"), uncoupled, 1e-7)
+
+
+TABLES = """
+import numpy as np
+import rockflex as rf
+from builders import make_frame
+from rockflex.solve.exact import basis
+
+basis.WORST_CONDITION = 0.0
+frame = make_frame(n_stories=3, base_mass=120e3, stiffness_ratio=0.125, period=0.4, aspect_ratio=6.0)
+half_width = frame.rocking().half_width
+springs = rf.Springs([-half_width, half_width], 3e8, 1e15)
+motion = rf.GroundMotion(3.0 * np.sin(0.07 * np.arange(200)), 0.01)
+try:
+    rf.simulate(frame, motion, "2DOF-S", ground=rf.Ground(springs=springs, base_inertia=60e3))
+except rf.InputError as error:
+    print(error)
+"""
+
+
+def test_the_work_limit_counts_the_tables_of_a_phase_that_decays_at_once():
+    """A dashpot of 1e15 N s/m: the bounds of the phase at the start alone would take an hour."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(Path(__file__).parents[1]), *sys.path])}
+    done = subprocess.run(
+        [sys.executable, "-c", TABLES], env=environment, capture_output=True, text=True, timeout=60, check=True
+    )
+    assert "work_limit is 30 s" in done.stdout

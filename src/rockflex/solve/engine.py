@@ -185,6 +185,7 @@ class Engine:
             try:
                 system = phases.known_system(dt, shaken=shaken)
                 if system is None:
+                    self._check_tables(phases, tasks[batch.place[RUN]], work_limit)
                     with preparing(self.model):
                         system = phases.system(dt, self.pace.fastest, shaken=shaken)
                 motion = desk.motion(phases.terms)
@@ -218,15 +219,18 @@ class Engine:
         if status == Status.LACKS_PHASE:
             with preparing(self.model):
                 phases.meet(int(at.phase), int(at.lacking))
-            if phases.dense:
-                fastest = max(self.pace.fastest, phases.fastest)
-                replace(task, pace=replace(self.pace, fastest=fastest, dense=True)).check(work_limit)
         elif batch.place[BEGUN] and batch.ends[batch.place[RUN]].left < 0.0:
             raise failure_of_limit(task, int(at.offset) + int(at.index), work_limit, motion.state)
         elif task.history and log.tally[KEPT] > log.history.shape[0] - MARGIN:
             task.check_room(2 * log.history.shape[0])
             return log._replace(history=np.concatenate((log.history, np.zeros_like(log.history))))
         return log
+
+    def _check_tables(self, phases: CompiledPhases | BarePhases, task: Task, work_limit: float | None) -> None:
+        """Check the work of a run before the tables of a dense phase are computed, which may take longest of all."""
+        if phases.dense:
+            fastest = max(self.pace.fastest, phases.fastest)
+            replace(task, pace=replace(self.pace, fastest=fastest, dense=True)).check(work_limit)
 
     @cached_property
     def _at_rest(self) -> tuple[Key, Array]:
