@@ -92,7 +92,7 @@ def test_stripes_with_their_curve(stripes):
     np.testing.assert_allclose(np.column_stack(marks.get_data()), [(0.5, 0.0), (1.0, 0.2), (1.5, 0.5), (2.5, 0.9)])
     fit = fit_stripes([0.5, 1.0, 1.5, 2.5], [0, 2, 5, 9], [10] * 4)
     (curve,) = lines(axes, "MDOF-S")
-    np.testing.assert_allclose(curve.get_ydata(), fit.probability(curve.get_xdata()))
+    np.testing.assert_allclose(curve.get_ydata(), fit.probability(curve.get_xdata()), rtol=1e-4)  # of its iterations
     assert notes(axes) == [f"median {fit.median:.3g}, β = {fit.beta:.2f}"]
     assert len(axes.collections) == 1
     (shade,) = axes.patches
