@@ -80,9 +80,7 @@ def test_bands_are_those_of_the_fits(runs, limit):
             if beyond.all() or not beyond.any():
                 continue
             low, high = rf.fit_logistic(im, beyond, groups).band([0.8], 0.8)
-        np.testing.assert_allclose(
-            [row.low, row.high], [low[0], high[0]], rtol=0.03
-        )  # drawn parameters, and Student's t
+        np.testing.assert_allclose([row.low, row.high], [low[0], high[0]], rtol=1e-9)
         assert row.low <= row.probability <= row.high
 
 

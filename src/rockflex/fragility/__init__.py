@@ -29,7 +29,6 @@ from rockflex.fragility._nrml import write_nrml
 from rockflex.fragility._observed import observed_fractions
 from rockflex.fragility._outcomes import OutcomeFragility, OutcomeProbabilities, RotationFragility, fit_outcomes
 from rockflex.fragility._pelicun import write_pelicun
-from rockflex.fragility._recordings import limits
 from rockflex.fragility._resamples import resample_weights, resampled_exceedance
 from rockflex.fragility._stripes import fit_stripes
 from rockflex.fragility._unanimous import UnanimousOutcome
@@ -68,7 +67,6 @@ __all__ = [
     "fit_outcomes",
     "fit_stripes",
     "limit_label",
-    "limits",
     "observed_fractions",
     "quadrature",
     "recordings_of",

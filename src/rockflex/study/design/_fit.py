@@ -22,7 +22,6 @@ from rockflex.fragility import (
     damping_of,
     fit_logistic,
     fit_outcomes,
-    limits,
     quadrature,
     resample_weights,
     resampled_exceedance,
@@ -143,8 +142,11 @@ class Fitted(NamedTuple):
             return math.nan, math.nan, "No band: all runs had the same outcome."
         if n_groups < 2:
             return math.nan, math.nan, "No band: all runs belong to one recording."
-        low, high = limits(self.curve.drawn(question.nodes) @ question.weights, confidence)
-        return float(low), float(high), ""
+        if question.hazard is None:
+            low, high = (float(end[0]) for end in self.curve.band(question.nodes, confidence))
+            return low, high, ""
+        found = annual_rate(question.hazard, self.curve, confidence=confidence)
+        return found.low, found.high, ""
 
 
 def judged(
