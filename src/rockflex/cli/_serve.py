@@ -27,7 +27,7 @@ def serve(
     """Serve the web page: structure, earthquake, response, fragility and design."""
     from rockflex.cli._console import note
     from rockflex.web import serve as start
-    from rockflex.web._serve import address_of, is_loopback
+    from rockflex.web._hosts import address_of, is_loopback
 
     if not is_loopback(host):
         note(f"Everyone who can reach {host} can use the page: it has no passwords.")

@@ -1,11 +1,11 @@
 """Start of the web page."""
 
 from collections.abc import Sequence
-from ipaddress import ip_address
 from typing import TYPE_CHECKING
 
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
+from rockflex.web._hosts import address_of
 
 if TYPE_CHECKING:
     from starlette.applications import Starlette
@@ -99,30 +99,6 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (
         finally:
             server.should_exit = True
             running.join(GRACE + 2.0)
-
-
-def address_of(host: str, port: int) -> str:
-    """Return the address of the page in a browser."""
-    return f"http://{f'[{host}]' if ':' in host else host}:{port}"
-
-
-def is_loopback(host: str) -> bool:
-    """Tell whether an address is reached from this machine only."""
-    return host.lower() == "localhost" or (is_address(host) and ip_address(host).is_loopback)
-
-
-def is_everywhere(host: str) -> bool:
-    """Tell whether an address stands for all addresses of this machine."""
-    return not host or (is_address(host) and ip_address(host).is_unspecified)
-
-
-def is_address(host: str) -> bool:
-    """Tell whether a host is given by numbers."""
-    try:
-        ip_address(host)
-    except ValueError:
-        return False
-    return True
 
 
 def _check_installed() -> None:
