@@ -166,7 +166,9 @@ def forces() -> Figure:
         mine = found[found["structure"] == name]
         same = mine[mine["run"] == "VVEL, records + 1 %"].iloc[0]
         for axes, peak in zip(every[:, column], ("moment", "shear"), strict=True):
-            axes.axhspan(same[f"{peak}_q16"], same[f"{peak}_q84"], color="#dddddd", zorder=0, label="VVEL, records × 1.01")
+            axes.axhspan(
+                same[f"{peak}_q16"], same[f"{peak}_q84"], color="#dddddd", zorder=0, label="VVEL, records × 1.01"
+            )
             for ratio in (0.05, 0.7):
                 one = mine[mine["damping"] == ratio]
                 label = f"ζ = {ratio:g}: median, 16 and 84 %"
@@ -194,7 +196,11 @@ def landing() -> Figure:
     times = np.linspace(9.34, 9.48, 6001)
     weight = p.m_tot * 9.81
     every = figure.subplots(3, 1, sharex=True)
-    runs = {"VVEL": (BLACK, {}), "springs, ζ = 0.05": (BLUE, {"ratio": 0.05}), "springs, ζ = 0.7": (RED, {"ratio": 0.7})}
+    runs = {
+        "VVEL": (BLACK, {}),
+        "springs, ζ = 0.05": (BLUE, {"ratio": 0.05}),
+        "springs, ζ = 0.7": (RED, {"ratio": 0.7}),
+    }
     for label, (color, given) in runs.items():
         ground = {"ground": stiff_springs(p, inertia, 20.0, **given)} if given else {}
         history = rf.simulate(p, motion, "MDOF-S", work_limit=None, **ground).history

@@ -1,5 +1,4 @@
-"""Tables of the studies "Where the impact law comes from" and "Forces after an impact" (docs/theory/contact.md and
-forces.md): about half an hour on one core.
+"""Tables of the studies of docs/theory/contact.md and forces.md: about half an hour on one core.
 
 Writes docs/_static/contact/*.csv; `python benchmarks/impact_from_contact.py blocks` computes one of the tables only.
 `impact_figures.py` draws them.
@@ -205,9 +204,7 @@ class Bench:
         return both[~fell.any(axis=1) & (both["max_rotation_law"] > VISIBLE * limit)], fell
 
     def forces(self, run: pd.DataFrame, law: pd.DataFrame) -> dict[str, float]:
-        """Quantiles of the ratios of peaks, medians where the law never pulls the base down and where it does, and the
-        share above 1.1.
-        """
+        """Quantiles of the ratios of peaks, their share above 1.1, and medians without and with N < 0 by the law."""
         kept, _ = self.kept(run, law)
         pressed = kept["min_vertical_reaction_law"] >= 0.0
         found: dict[str, float] = {"runs": len(kept), "runs_pressed": int(pressed.sum())}

@@ -1,8 +1,8 @@
 """Silva & Stojadinović 2024: every line that passes is read again from its printed text, with decimal arithmetic.
 
 What does not reproduce is listed here by name, so that a line neither joins nor leaves the list unseen. What depends
-on the records in place of the paper's is judged from its interval alone, and counts of outcomes are not judged. There are fewer random prototypes here than in a
-report.
+on the records in place of the paper's is judged from its interval alone, and counts of outcomes are not judged. There
+are fewer random prototypes here than in a report.
 """
 
 import re

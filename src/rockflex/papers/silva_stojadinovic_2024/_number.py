@@ -1,9 +1,10 @@
 """The rules by which a printed number reproduces.
 
 1. *Reproduced.* A value must round to the printed digits. A word such as "about" does not widen the range: of one
-   digit it would allow 25 % and more, so such a value must also lie within 20 % of the printed one (our reading of the
-   word). Where a table cuts digits off (Table 3 does so for some), a value that is cut off to the printed digits also passes, and its line
-   says so. A bound must hold. A statement in words becomes a criterion on a number; the line shows both.
+   digit rounding alone would allow 25 % and more, so such a value must also lie within 20 % of the printed one (our
+   reading of the word). Where a table cuts digits off (Table 3 does so for some), a value that is cut off to the
+   printed digits also passes, and its line says so. A bound must hold. A statement in words becomes a criterion on a
+   number; the line shows both.
 2. *Compatible*, or *cannot tell*. The paper's records and random draws are not available. Values from ours have a 90 %
    interval. It must overlap what rounds to the printed digits, or meet its criterion throughout. The result is *cannot
    tell* if the interval is wider than half the printed value, or only a part of it meets the criterion.

@@ -22,7 +22,7 @@ class Verdict(_Explained):
     REPRODUCED = (
         "reproduced",
         "From the input in the paper: it rounds to the printed digits (or is cut off to them, as noted), and is within "
-        f"{100.0 * ROUGH:g} % of a value printed as \"about\" or \"approximately\" so much, which is our reading; or the "
+        f'{100.0 * ROUGH:g} % of a value printed as "about" or "approximately" so much, which is our reading; or the '
         "criterion holds.",
     )
     COMPATIBLE = (
