@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 import rockflex as rf
 from report_page import read
 from rockflex.cli import app
-from rockflex.study.plan import record_group
+from rockflex.study.plan import record_groups
 
 G = 9.81
 SUITE = "fema-p695-far-field"
@@ -167,7 +167,7 @@ def test_scaled_records_keep_their_origin_and_their_scale(tmp_path):
         assert rf.read_motion(records / f"{motion.name}.csv").metadata == kept
     pairs = {frozenset(motion.name for motion in each.pair) for each in rf.group_stations(back)}
     assert pairs == {frozenset(row["record"].split(" + ")) for row in found["records"]}
-    assert {record_group(motion) for motion in back} == {record_group(original[motion.name]) for motion in back}
+    assert record_groups(back) == record_groups(original[motion.name] for motion in back)
     name, factor = next(iter(factors.items()))
     block = tmp_path / "block.toml"
     block.write_text("block = { slenderness = 0.3, half_diagonal = 2.5, mass = 5e3 }")

@@ -11,7 +11,7 @@ import pytest
 import rockflex as rf
 from builders import frame_values
 from rockflex.study.cloud import CloudPlan, CloudStudy, run_cloud
-from rockflex.study.plan import record_group, run_plan
+from rockflex.study.plan import record_groups, run_plan
 from rockflex.study.plan._bench import bench_of
 from rockflex.study.plan._records import checksums
 
@@ -98,11 +98,16 @@ def test_facts_of_the_records(table):
 
 def test_group_of_a_record():
     motion = rf.GroundMotion([0, 1, 0], 0.01, "x")
-    assert record_group(motion) == "x"
-    assert record_group(dataclasses.replace(motion, metadata=rf.RecordInfo(event="Quake", station="A"))) == "Quake A"
     known = rf.RecordInfo(event="Quake", year=1990, station="A", rsn=7)
-    assert record_group(dataclasses.replace(motion, metadata=known)) == "RSN7"
-    assert record_group(dataclasses.replace(motion, metadata=dataclasses.replace(known, rsn=None))) == "Quake 1990 A"
+    infos = (None, rf.RecordInfo(event="Quake", station="A"), known, dataclasses.replace(known, rsn=None))
+    motions = [dataclasses.replace(motion, metadata=info) for info in infos]
+    assert record_groups(motions) == ["x", "Quake A", "RSN7", "Quake 1990 A"]
+
+
+def test_components_known_by_their_names_alone_are_of_one_recording():
+    motions = [rf.GroundMotion([0, 1, 0], 0.01, name) for name in ("ABC000", "ABC090", "DEF000")]
+    first, second, third = record_groups(motions)
+    assert first == second != third
 
 
 def test_chunks_depend_on_nothing_but_their_number(plan):

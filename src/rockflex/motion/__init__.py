@@ -9,6 +9,7 @@ from rockflex.motion._folder import folder_files
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._measure import Measure
 from rockflex.motion._measures import MEASURES, intensities, intensity, record_measures, vertical_measures
+from rockflex.motion._pairs import station_names
 from rockflex.motion._pulses import (
     half_sine_pulse,
     one_cosine_pulse,
@@ -80,6 +81,7 @@ __all__ = [
     "rectangular_pulse",
     "ricker_pulse",
     "rotated_spectrum",
+    "station_names",
     "suite_names",
     "survey_plain",
     "survey_records",

@@ -5,7 +5,7 @@ from rockflex.study.plan._bench import Bench
 from rockflex.study.plan._chunked import ChunkedPlan, map_chunks, run_plan
 from rockflex.study.plan._cross import CrossPlan
 from rockflex.study.plan._pivot_lifts import PivotLifts, pivot_lifts
-from rockflex.study.plan._records import Records, record_group
+from rockflex.study.plan._records import Records, record_groups
 from rockflex.study.plan._spec import Spec, StructuresSpec
 
 __all__ = [
@@ -18,7 +18,7 @@ __all__ = [
     "StructuresSpec",
     "map_chunks",
     "pivot_lifts",
-    "record_group",
+    "record_groups",
     "run_plan",
     "to_frame",
 ]

@@ -33,7 +33,7 @@ from rockflex.study._tables import Columns, Row, kinds_of
 from rockflex.study._yielding import hysteresis_of
 from rockflex.study.plan._demands import Demands, checked_demands, derived
 from rockflex.study.plan._intensity import intensity_measures, scaled_measures
-from rockflex.study.plan._records import record_group
+from rockflex.study.plan._records import record_groups
 
 Run = tuple[int, int, int, float]  # the places of a structure, a record and a model, and a scale
 
@@ -239,14 +239,15 @@ def check_lifts(bench: Bench, what: str) -> None:
 
 def record_facts(motions: Suite) -> list[Row]:
     """Return the columns that describe each record; its name and group are codes."""
-    groups = list(dict.fromkeys(record_group(motion) for motion in motions))
+    names = record_groups(motions)
+    groups = list(dict.fromkeys(names))
     facts: list[Row] = []
     for place, motion in enumerate(motions):
         info = motion.metadata
         facts.append(
             {
                 "motion": place,
-                "group": groups.index(record_group(motion)),
+                "group": groups.index(names[place]),
                 "magnitude": None if info is None else info.magnitude,
                 "distance_km": None if info is None else info.distance_km,
             }
@@ -256,7 +257,7 @@ def record_facts(motions: Suite) -> list[Row]:
 
 def record_columns(motions: Suite) -> Columns:
     """Return the columns that `record_facts` fills."""
-    groups = list(dict.fromkeys(record_group(motion) for motion in motions))
+    groups = list(dict.fromkeys(record_groups(motions)))
     return {"motion": motions.names, "group": groups, **kinds_of("magnitude distance_km", float)}
 
 

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.motion import GroundMotion, OnError, Suite, Vertical, load_suite, read_suite
+from rockflex.motion import GroundMotion, OnError, Suite, Vertical, load_suite, read_suite, station_names
 from rockflex.structure.file import Table
 
 
@@ -69,17 +69,24 @@ class Records(Table):
         return Suite(m for m in motions if any(fnmatchcase(m.name, pattern) for pattern in self.include))
 
 
-def record_group(motion: GroundMotion) -> str:
-    """Return the name that the components of one recording share, because they are not independent.
+def record_groups(motions: Iterable[GroundMotion]) -> list[str]:
+    """Return the name of each motion's recording, which its components share because they are not independent.
 
-    It is the record sequence number if known, else earthquake and station, else the name of the record.
+    It is the record sequence number if known, else earthquake and station, else what names share that differ only in
+    the component (ABC000 and ABC090, as in `group_stations`), else the name of the motion.
     """
+    members = list(motions)
+    alike = station_names([(Path(each.name), each) for each in members])
+    return [_known_recording(each) or name for each, name in zip(members, alike, strict=True)]
+
+
+def _known_recording(motion: GroundMotion) -> str | None:
     info = motion.metadata
     if info is not None and info.rsn is not None:
         return f"RSN{info.rsn}"
     if info is not None and info.event is not None and info.station is not None:
         return " ".join(str(part) for part in (info.event, info.year, info.station) if part is not None)
-    return motion.name
+    return None
 
 
 def checksums(motions: Iterable[GroundMotion]) -> dict[str, str]:
