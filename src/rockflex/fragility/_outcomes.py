@@ -115,7 +115,7 @@ class OutcomeFragility(HtmlTable, Value):
     >>> print(f"{outcomes.exceedance(0.5, 0.02):.3g}")
     0.747
     >>> outcomes.notes[0]
-    'Only 3 of 8 runs do not rock: fits of these runs are uncertain, see bootstrap_band.'
+    'Only 3 of 8 runs do not rock: fits of these runs are uncertain.'
     """
 
     overturning: LogisticFit | UnanimousOutcome
