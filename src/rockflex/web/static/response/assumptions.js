@@ -16,8 +16,8 @@ const MEANT = {
   complete: "Conserves the total horizontal kinetic energy; the rotation stops.",
   restitution: "Conserves the horizontal velocity of each mass; part of the rotation continues about the other edge.",
 };
-const FORCES = "The history of forces does not include the blow of an impact, and V_b and M_b are those of rigid ground: on " +
-  "springs with little damping, V_b of a flexural frame may be larger.";
+const FORCES = "The impulse of an impact is not in the history of forces, and V_b and M_b are those of rigid ground: " +
+  "on stiff springs with little damping, V_b of a flexural frame may be larger.";
 const RESTITUTION = 0.8; // default
 const RANGE = "0: the base stays down until the next uplift; 1: it rocks on without loss";
 const YIELDING = ["2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW"];
