@@ -162,7 +162,9 @@ def test_clouds_take_the_recordings_of_the_table(runs):
     count = runs["group"].nunique()
     assert count < runs["motion"].nunique()
     assert {fit.outcomes.n_groups, fit.outcomes.initiation.n_groups, fit.top_displacement.n_groups} == {count}
-    (blind,) = rf.fit_clouds(runs.drop(columns="group"), "pgv")
+    (ungrouped,) = rf.fit_clouds(runs.drop(columns="group"), "pgv")  # scales of one motion are dependent, too
+    assert ungrouped.outcomes.n_groups == runs["motion"].nunique()
+    (blind,) = rf.fit_clouds(runs.drop(columns=["group", "motion"]), "pgv")
     assert blind.outcomes.n_groups == 0
     assert blind.outcomes.rotation.c1 == fit.outcomes.rotation.c1
 

@@ -156,8 +156,11 @@ def fit_each_cloud(
 
 
 def recordings_of(runs: "pd.DataFrame") -> "pd.Series[Any] | None":
-    """Column with the recording of every run, if the table has it."""
-    return runs["group"].astype(str) if "group" in runs else None
+    """Recording of every run, by the column `group`, else by `motion` where motions repeat; None without either."""
+    if "group" in runs:
+        return runs["group"].astype(str)
+    repeat = "motion" in runs and runs["motion"].nunique() < len(runs)
+    return runs["motion"].astype(str) if repeat else None
 
 
 def _groups(runs: "pd.DataFrame", measure: str) -> "Iterator[tuple[str, str, pd.DataFrame]]":

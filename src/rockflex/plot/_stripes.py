@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from rockflex._cases import rows_of
 from rockflex._errors import InputError, SolverError
-from rockflex.fragility import LognormalFragility, fit_stripes
+from rockflex.fragility import LognormalFragility, fit_stripes, recordings_of
 from rockflex.plot._study_tables import check_columns, keys_of, looks_of, measure_name, names_in, structure_panels
 from rockflex.plot._style import SHADE, Look, Size, columns, points, styled
 
@@ -139,6 +139,6 @@ def _fit(runs: "pd.DataFrame", limit: "StripeLimit") -> LognormalFragility | Non
     solved = runs[runs["status"].notna()]
     exceeded = stripe_limit(limit).exceeded(solved).astype(bool)
     try:
-        return fit_stripes(solved["level"], exceeded, np.ones(len(solved)), solved.get("group"))
+        return fit_stripes(solved["level"], exceeded, np.ones(len(solved)), recordings_of(solved))
     except (InputError, SolverError):
         return None
