@@ -1,4 +1,4 @@
-"""What sceptics found in the engine: settling, slack, yielding back, sticking for no time, falling ground, energies."""
+"""Border cases: settling, slack, yielding back, sticking for no time, falling ground, energies that do not close."""
 
 import dataclasses
 import math
