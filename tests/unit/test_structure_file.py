@@ -188,11 +188,10 @@ def test_file_of_numbers_that_is_not_there(failing, tmp_path):
 
 def test_indices_of_heights_are_whole_numbers(failing):
     values = {"mass": MASSES, "stiffness": STIFFNESS, "heights": {"top": 16.0}, **BASE}
-    assert failing(text("matrices", values)) == (
-        ": [matrices] heights must be a list of the heights of all freedoms in m, or a table { index = height } of "
-        "those that move sideways, counted from 0, or the path of a .npz, .mtx or .csv file, but {'top': 16.0} was "
-        "given."
-    )
+    message = failing(text("matrices", values))
+    assert message.startswith(": [matrices] heights must be")
+    assert "{ index = height }" in message
+    assert "{'top': 16.0} was given" in message
 
 
 TENDONS = "".join(

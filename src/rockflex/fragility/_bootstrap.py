@@ -116,7 +116,7 @@ def bootstrap_band(
     >>> im, response = [0.2, 0.4, 0.6, 0.8], [0.004, 0.011, 0.016, 0.026]
     >>> band = rf.bootstrap_band(rf.fit_cloud, im, response, at=[0.5], n=200, seed=1)
     >>> print(f"{band.estimate[0]:.3g} from {band.low[0]:.3g} to {band.high[0]:.3g}")
-    0.0137 from 0.013 to 0.0152
+    0.0137 from 0.0118 to 0.0152
     """
     measures, grid = finite_vector("im", im, "one unit"), finite_vector("at", at, "one unit")
     values = _column("outcome_or_response", outcome_or_response)

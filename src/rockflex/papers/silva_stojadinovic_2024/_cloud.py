@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 import rockflex as rf
 from rockflex._arrays import Array
-from rockflex.fragility import rocked
 from rockflex.papers.silva_stojadinovic_2024._number import Interval, intervals_of, statistic
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._structures import MODELS, STRUCTURES, frame_of
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
 
 PGV = 0.4  # m/s, for which the text gives the differences
 PLACE = "Section 3.2, PGV = 0.4 m/s"
+THRESHOLD = 1e-4  # rad, above which a run rocks
 RESAMPLES = 200
 PARTS = ("median", "84 % quantile")
 SHEAR = np.array([row[2] == "shear" for row in STRUCTURES.values()])
@@ -96,7 +96,7 @@ def largest(records: Records, quantity: str, rows: Iterable[tuple[str, str, str,
 def _kept(records: Records, quantity: str) -> tuple[Array, Array, "NDArray[np.str_]"]:
     """Return PGV, a code of the case with the response, and the recording, of the runs that rock and stand."""
     runs = cloud(records)
-    kept = runs[(runs["status"] == "rocking") & rocked(runs)]
+    kept = runs[(runs["status"] == "rocking") & (runs["max_rotation"] > THRESHOLD)]
     table = np.column_stack((codes_of(kept), kept[quantity].to_numpy(dtype=float)))
     return kept["pgv"].to_numpy(dtype=float), table, kept["group"].astype(str).to_numpy(dtype=np.str_)
 

@@ -6,8 +6,7 @@ import numpy as np
 
 import rockflex as rf
 from rockflex._arrays import Array, Bools
-from rockflex.fragility import rocked
-from rockflex.papers.silva_stojadinovic_2024._cloud import SHEAR, cloud, codes_of
+from rockflex.papers.silva_stojadinovic_2024._cloud import SHEAR, THRESHOLD, cloud, codes_of
 from rockflex.papers.silva_stojadinovic_2024._number import Interval, intervals_of, tendency
 from rockflex.papers.silva_stojadinovic_2024._records import Records
 from rockflex.papers.silva_stojadinovic_2024._structures import MODELS
@@ -52,7 +51,7 @@ def reproduce(records: Records) -> Result:
 
 def _gaps(runs: "pd.DataFrame") -> list[Interval]:
     """Return the largest difference of P from MDOF-S: for shear, for flexure, and flexure minus shear."""
-    pgv, rocks = runs["pgv"].to_numpy(dtype=float), rocked(runs).to_numpy(dtype=bool)
+    pgv, rocks = runs["pgv"].to_numpy(dtype=float), (runs["max_rotation"] > THRESHOLD).to_numpy(dtype=bool)
     grid = np.geomspace(pgv.min(), pgv.max(), POINTS)
     rows = np.column_stack((codes_of(runs), rocks))
 
@@ -79,7 +78,7 @@ def _curve(pgv: Array, rocks: Bools, grid: Array) -> Array:
 
 def _few(runs: "pd.DataFrame") -> str:
     """Show how few runs support the curves of #2, which differ the most."""
-    still = runs[(runs["structure"] == "#2") & ~rocked(runs)]
+    still = runs[(runs["structure"] == "#2") & (runs["max_rotation"] <= THRESHOLD)]
     counts = still["model"].astype(str).value_counts()
     of = len(runs[(runs["structure"] == "#2") & (runs["model"] == "MDOF-S")])
     each = ", ".join(f"{counts.get(model, 0)} with {model}" for model in MODELS)
