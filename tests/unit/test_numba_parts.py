@@ -73,7 +73,7 @@ def test_versions_that_were_tried_have_every_part():
     assert missing() == []
 
 
-@pytest.mark.parametrize("version", ["0.59.1", "0.69.0", "1.0.0", "0.6.0", "0.680.0", "0.70.0dev0+12"])
+@pytest.mark.parametrize("version", ["0.60.0", "0.69.0", "1.0.0", "0.6.0", "0.680.0", "0.70.0dev0+12"])
 def test_a_version_that_was_not_tried_gets_no_private_part(version):
     assert not _numba.is_tried(version)
 
