@@ -4,6 +4,7 @@ They are used with the versions of `TRIED` only. With any other version kernels 
 run more slowly, and are not cached on disk.
 """
 
+import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from pickle import UnpicklingError
@@ -22,6 +23,12 @@ def is_tried(version: str) -> bool:
 
 
 KNOWN = is_tried(numba.__version__)
+if not KNOWN:
+    warnings.warn(
+        f"numba {numba.__version__} has not been tried with rockflex, so every process compiles for minutes. Install "
+        f"numba {TRIED[0]} to {TRIED[-1]}.",
+        stacklevel=2,
+    )
 OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": {"contract"}, "error_model": "numpy"}
 
 # A kernel called only by kernels needs no wrapper for Python, which takes as long to compile as the kernel.
