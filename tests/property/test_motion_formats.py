@@ -12,10 +12,11 @@ SAMPLES = st.lists(st.floats(-900.0, 900.0).map(lambda value: round(value, 3)), 
 
 
 @SETTINGS
-@given(counts=st.lists(st.integers(-(2**23), 2**23), min_size=3, max_size=40), full=st.sampled_from([980, 2000, 3920]))
+@given(counts=st.lists(st.integers(-(2**23), 2**23), min_size=3, max_size=40), full=st.sampled_from([980, 2000, 2400]))
 def test_knet(tmp_path, counts, full):
     file = tmp_path / "a.ns"
     file.write_text(knet(counts=counts, scale=f"{full}(gal)/8388608"))
+    # At most 4.9 g about the mean: above 5 g the unit is questioned.
     gal = (np.array(counts) - np.mean(counts)) * full / 8388608
     assert np.abs(rf.read_motion(file).acceleration - 0.01 * gal).max() <= 1e-12 * full
 
