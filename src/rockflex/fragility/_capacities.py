@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError
-from rockflex.fragility._arguments import flags, log_column, same_length
+from rockflex.fragility._arguments import flags, log_column
 from rockflex.fragility._lognormal import LognormalFragility, covariance_of_scores
 from rockflex.fragility._recordings import Recordings
 from rockflex.fragility._regression import fit_capacity_lines
@@ -55,8 +55,7 @@ def fit_capacities(
     """
     x = log_column("im", im, "Leave those records out.")
     above = np.zeros(x.size, dtype=np.bool_) if censored is None else flags("censored", censored)
-    recordings = None if groups is None else Recordings.of(groups)
-    same_length(im=x, censored=above, **({} if recordings is None else {"groups": recordings.codes}))
+    recordings = Recordings.beside(groups, im=x, censored=above)
     known = x[~above]
     if known.size < 2 or np.ptp(known) == 0.0:
         raise InputError(

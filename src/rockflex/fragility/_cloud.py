@@ -10,7 +10,7 @@ from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._html import HtmlTable
 from rockflex._values import Value
-from rockflex.fragility._arguments import checked_confidence, fractions, log_at, log_column, log_measures, same_length
+from rockflex.fragility._arguments import checked_confidence, fractions, log_at, log_column, log_measures
 from rockflex.fragility._predictor import standard_error
 from rockflex.fragility._recordings import Recordings, jackknifed, quantile_of_t
 from rockflex.fragility._regression import fit_lines
@@ -125,9 +125,7 @@ def fit_cloud(im: ArrayLike, response: ArrayLike, groups: ArrayLike | None = Non
     y = log_column(
         "response", response, "A cloud holds the runs that responded: leave the others out, or see fit_outcomes."
     )
-    recordings = None if groups is None else Recordings.of(groups)
-    same_length(im=x, response=y, **({} if recordings is None else {"groups": recordings.codes}))
-    return fit_line(x, y, recordings)[0]
+    return fit_line(x, y, Recordings.beside(groups, im=x, response=y))[0]
 
 
 def fit_line(x: Array, y: Array, recordings: Recordings | None = None) -> tuple[CloudFit, Array | None]:

@@ -12,7 +12,7 @@ from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
 from rockflex._values import Value
-from rockflex.fragility._arguments import checked_confidence, flags, log_at, log_measures, same_length
+from rockflex.fragility._arguments import checked_confidence, flags, log_at, log_measures
 from rockflex.fragility._predictor import Standardised, standard_error
 from rockflex.fragility._recordings import (
     ONE_RECORDING,
@@ -176,9 +176,7 @@ def fit_logistic(
     """
     x = log_measures(im)
     y = flags("outcome", outcome)
-    recordings = None if groups is None else Recordings.of(groups)
-    same_length(im=x, outcome=y, **({} if recordings is None else {"groups": recordings.codes}))
-    return fit_curve(x, y, recordings, damping)[0]
+    return fit_curve(x, y, Recordings.beside(groups, im=x, outcome=y), damping)[0]
 
 
 def fit_curve(

@@ -14,7 +14,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
 from rockflex._shown import shown
 from rockflex._values import Value
-from rockflex.fragility._arguments import checked_confidence, flags, log_at, log_measures, same_length
+from rockflex.fragility._arguments import checked_confidence, flags, log_at, log_measures
 from rockflex.fragility._cloud import CloudFit, fit_line
 from rockflex.fragility._limit_states import ROCKED
 from rockflex.fragility._logistic import LogisticFit, fit_curve
@@ -336,9 +336,7 @@ def fit_outcomes(
     measures = finite_vector("im", im, "one unit")
     rotations, falls = finite_vector("rotation", rotation, "rad"), flags("overturned", overturned)
     lifts = np.ones(falls.size, dtype=bool) if uplifted is None else flags("uplifted", uplifted)
-    recordings = None if groups is None else Recordings.of(groups)
-    numbers = {} if recordings is None else {"groups": recordings.codes}
-    same_length(im=measures, rotation=rotations, overturned=falls, uplifted=lifts, **numbers)
+    recordings = Recordings.beside(groups, im=measures, rotation=rotations, overturned=falls, uplifted=lifts)
     limit = positive("threshold", threshold, "rad")
     _check(rotations, falls, limit)
 

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex.fragility._arguments import same_length
 
 DRAWS = 2048  # parameters drawn; a power of two, as Sobol's sequence wants
 _CELLS = 2_000_000  # weights held at once
@@ -58,6 +59,19 @@ class Recordings(NamedTuple):
                 field="groups",
             )
         return cls(codes.astype(np.int64), len(names))
+
+    @classmethod
+    def beside(cls, groups: ArrayLike | None, **columns: NDArray[np.generic]) -> Self | None:
+        """Number the recordings of runs with these columns; None without `groups`.
+
+        Raises
+        ------
+        InputError
+            If it is no column of names or numbers, or not all columns have the same number of rows.
+        """
+        found = None if groups is None else cls.of(groups)
+        same_length(**columns, **({} if found is None else {"groups": found.codes}))
+        return found
 
     def some(self, chosen: Bools) -> "Recordings":
         """Those of some of the runs, with the same numbers."""

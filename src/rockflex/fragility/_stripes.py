@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from rockflex._arrays import Array
 from rockflex._checks import finite_vector
 from rockflex._errors import InputError, SolverError
-from rockflex.fragility._arguments import log_measures, same_length
+from rockflex.fragility._arguments import log_measures
 from rockflex.fragility._lognormal import LognormalFragility, covariance_of_scores
 from rockflex.fragility._predictor import Standardised
 from rockflex.fragility._recordings import Recordings
@@ -60,9 +60,7 @@ def fit_stripes(
     """
     x = log_measures(im_levels, "im_levels")
     total, events = _counts("n_total", n_total, 1), _counts("n_exceeding", n_exceeding, 0)
-    recordings = None if groups is None else Recordings.of(groups)
-    numbers = {} if recordings is None else {"groups": recordings.codes}
-    same_length(im_levels=x, n_exceeding=events, n_total=total, **numbers)
+    recordings = Recordings.beside(groups, im_levels=x, n_exceeding=events, n_total=total)
     if (events > total).any():
         row = int(np.flatnonzero(events > total)[0])
         raise InputError(
@@ -94,11 +92,8 @@ def fit_stripes(
         back = np.array([[-1.0 / b, a / b**2], [0.0, -1.0 / b**2]])
         found = back @ covariance @ back.T
     else:
-        kind, runs, both = (
-            np.repeat((1.0, -1.0), x.size),
-            np.concatenate((events, total - events)),
-            np.tile(scaled.x, 2),
-        )
+        kind, both = np.repeat((1.0, -1.0), x.size), np.tile(scaled.x, 2)
+        runs = np.concatenate((events, total - events))
         twice, at = Recordings(np.tile(recordings.codes, 2), recordings.n), np.asarray(result.params)
         replicates = twice.without_each(lambda some: fit_capacity_lines(both, kind, some * runs, at))
         found, count = covariance_of_scores(scaled.back(replicates), median, beta), recordings.n
