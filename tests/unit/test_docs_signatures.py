@@ -37,5 +37,5 @@ def test_aliases_and_constants_are_written_out():
     assert rendered("read_suite").startswith("(paths: str | Path | Iterable[str | Path], ")
     assert "work_limit: float | None=30.0" in rendered("simulate")
     assert "output: Literal['history', 'peaks']='history'" in rendered("simulate")
-    assert rendered("HazardCurve") == "(im: ArrayLike, rate: ArrayLike)"
+    assert rendered("HazardCurve") == "(im: ArrayLike, rate: ArrayLike, *, damping: float=0.05)"
     assert rendered("CloudFit").endswith("covariance: ndarray)")
