@@ -38,4 +38,4 @@ def test_aliases_and_constants_are_written_out():
     assert "work_limit: float | None=30.0" in rendered("simulate")
     assert "output: Literal['history', 'peaks']='history'" in rendered("simulate")
     assert rendered("HazardCurve") == "(im: ArrayLike, rate: ArrayLike, *, damping: float=0.05)"
-    assert rendered("CloudFit").endswith("covariance: ndarray)")
+    assert rendered("CloudFit").endswith("covariance: ndarray, n_groups: int = 0)")
