@@ -14,6 +14,10 @@ from rockflex.study.design._levels import designs_of, half_widths_of
 from rockflex.study.design._limits import state_of
 from rockflex.study.plan import ChunkedPlan
 
+CURVE = {"im": [0.5, 30.0], "rate": [0.1, 2e-5]}
+SPECTRAL = {"level": None, "measure": "sa_t1", "hazard": CURVE}
+SEARCHED = {"tendons": [], "target": 1e-3, "search": {"cost": {"half_width": 1.0}}}
+
 
 @pytest.fixture
 def runs(designed):
@@ -185,12 +189,22 @@ def test_a_specification_that_is_wrong(changes, message):
         ),
         ({"limits": ["2.5 nominal"], "half_widths": [9.0]}, "but '2.5 nominal' (1.62 rad) was given."),
         ({"base_mass_per_width": 1e6}, "B = 0.8 m, none: m_tot must be at least the sum of effective_mass,"),
+        (SPECTRAL, "The fragility is in a spectral measure at a damping ratio of 0.02, but the hazard curve is at a"),
+        (SPECTRAL | SEARCHED, "The fragility is in a spectral measure at a damping ratio of 0.02, but the hazard curve"),
     ],
 )
 def test_a_design_that_cannot_be_built(changes, message):
     with pytest.raises(rf.InputError) as caught:
         DesignStudy(**CONTENT | changes).plan()
     assert message in str(caught.value)
+
+
+def test_a_hazard_curve_in_a_file_states_its_damping():
+    for changes in ({"measure": "sa_t1_5"}, {"hazard": CURVE | {"damping": FRAME["damping_ratio"]}}):
+        study = DesignStudy(**CONTENT | SPECTRAL | changes)
+        assert study.plan().n_runs == len(study.plan().motions) * 12
+    with pytest.raises(rf.InputError, match="damping must lie"):
+        DesignStudy(**CONTENT | SPECTRAL | {"hazard": CURVE | {"damping": 2.0}})
 
 
 @pytest.mark.parametrize(

@@ -163,6 +163,7 @@ def test_what_a_row_says_of_itself(runs):
     [
         ({}, {}, "Give either at, a level of the measure, or hazard, a HazardCurve in it."),
         ({}, {"at": 1.0, "hazard": HAZARD}, "Give either at, a level of the measure, or hazard, a HazardCurve in it."),
+        ({}, {"hazard": HAZARD, "measure": "sa_t1"}, "The fragility is in a spectral measure at a damping ratio of"),
         ({}, {"at": 0.0}, "at must be a positive, finite number in the unit of the measure, but 0.0 was given."),
         ({}, {"at": 1.0, "measure": "relative_pga"}, "measure must not depend on the base, as a level of relative_pga"),
         ({}, {"at": 1.0, "confidence": 1.0}, "confidence must lie in [0, 1), but 1.0 was given. A 90 % band is 0.9."),

@@ -77,8 +77,8 @@ class HazardCurve(Value):
         if damping is not None and not math.isclose(damping, self.damping, rel_tol=1e-6):
             raise InputError(
                 f"The fragility is in a spectral measure at {damping_words(damping)}, but the hazard curve is at "
-                f"{damping_words(self.damping)}. Fit the runs to sa_t1_5, Sa(T₁) at 5 %, or give the hazard curve of "
-                "that damping, HazardCurve(im, rate, damping=0.02) for 2 %.",
+                f"{damping_words(self.damping)}. Take sa_t1_5, Sa(T₁) at 5 %, or a hazard curve of that damping, and "
+                "say so: damping = 0.02 for 2 %.",
                 field="damping",
             )
 

@@ -26,6 +26,7 @@ from rockflex.fragility import (
     resample_weights,
     resampled_exceedance,
 )
+from rockflex.modal import RockingProperties
 from rockflex.study.design._limits import is_rotation, state_of
 
 if TYPE_CHECKING:
@@ -35,6 +36,19 @@ if TYPE_CHECKING:
 def check_confidence(confidence: float) -> None:
     """Raise an InputError unless a confidence is in [0, 1)."""
     in_range("confidence", confidence, 0.0, 1.0, hint="A 90 % band is 0.9.")
+
+
+def check_damping(hazard: HazardCurve | None, runs: "pd.DataFrame", measure: str) -> None:
+    """Raise an InputError if a spectral measure of runs, with the column `zeta_1`, is not at the damping of a curve."""
+    if hazard is not None:
+        hazard.check_damping(damping_of(runs, measure))
+
+
+def first_damping(structure: RockingProperties) -> "pd.DataFrame":
+    """The column `zeta_1` that the runs of a structure will have."""
+    import pandas as pd
+
+    return pd.DataFrame({"zeta_1": structure.zeta[:1]})
 
 
 @dataclass(frozen=True)

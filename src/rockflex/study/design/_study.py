@@ -19,6 +19,7 @@ from rockflex.study._arguments import WORK_LIMIT, GroundChoice, RockingStructure
 from rockflex.study._subjects import Models, Motions
 from rockflex.study._tables import Columns, Row
 from rockflex.study.cloud._study import CloudPlan, Factors
+from rockflex.study.design._fit import check_damping, first_damping
 from rockflex.study.design._levels import Design, TendonLevel, designs_of, half_widths_of
 from rockflex.study.design._limits import check_limit, check_same_for_all, state_of
 from rockflex.study.design._questions import search_of
@@ -75,7 +76,7 @@ class DesignStudy(StructuresSpec):
     level: float | list[float] | None = Field(
         None, description="the level of the measure in SI units, a number, or a list of one for each limit"
     )
-    hazard: HazardTable | None = Field(None, description="a table of the lists im and rate")
+    hazard: HazardTable | None = Field(None, description="a table of the lists im and rate, and damping")
     target: float | list[float] | None = Field(
         None,
         description="the probability, or with a hazard the annual rate, that a design must not exceed, a number, or a "
@@ -95,7 +96,7 @@ class DesignStudy(StructuresSpec):
         if (self.level is None) == (self.hazard is None):
             raise InputError("level and hazard: give one of them, not both, for the strength of the shaking.")
         if self.hazard is not None:
-            HazardCurve(self.hazard.im, self.hazard.rate)
+            HazardCurve(**self.hazard.model_dump())
         for name, unit in (("level", "the unit of the measure"), ("target", "probability or 1/year")):
             given = getattr(self, name)
             if isinstance(given, list) and len(given) != len(self.limits):  # pyright: ignore[reportUnknownArgumentType]
@@ -142,8 +143,8 @@ class DesignStudy(StructuresSpec):
         Raises
         ------
         InputError
-            If a design cannot be built, a record cannot be read, a limit is out of range for a design, or a model's
-            base cannot lift.
+            If a design cannot be built, a record cannot be read, a limit is out of range for a design, a model's base
+            cannot lift, or measure and hazard curve are of different damping.
         """
         bench = self.bench()
         if self.search is not None:
@@ -151,6 +152,8 @@ class DesignStudy(StructuresSpec):
             return SearchPlan(bench, self._space(self.search), requirements, cost, self.scales, self.runs_per_chunk)
         levels = [TendonLevel(**each.model_dump()) for each in self.tendons]
         (properties,) = bench.structures
+        if self.hazard is not None:
+            check_damping(HazardCurve(**self.hazard.model_dump()), first_damping(properties), self.measure)
         designs = designs_of(properties, self.half_widths, levels, self.base_mass_per_width)
         for design in designs:
             for limit in self.limits:

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockflex._errors import InputError
 from rockflex.fragility import HazardCurve
-from rockflex.study.design._fit import Question, check_confidence, judged
+from rockflex.study.design._fit import Question, check_confidence, check_damping, judged
 from rockflex.study.design._limits import check_limit, check_same_for_all
 
 if TYPE_CHECKING:
@@ -80,6 +80,7 @@ def design_table(
         lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
         raise InputError(f"The table {lacks}. Give what run_design returned.")
     question = Question.of(at, hazard)
+    check_damping(hazard, runs, measure)
     if confidence is not None:
         check_confidence(confidence)
     check_limit(limit)

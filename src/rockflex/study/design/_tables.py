@@ -23,6 +23,7 @@ class HazardTable(Table):
 
     im: list[float] = Field(description="a list of levels of the measure, in SI units, rising")
     rate: list[float] = Field(description="a list of annual rates at which they are exceeded, falling")
+    damping: float = Field(0.05, description="the damping ratio of a spectral measure, a number")
 
 
 class CostTable(Table):

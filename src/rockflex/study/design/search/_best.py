@@ -10,7 +10,7 @@ from rockflex._arrays import Array, Bools
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex._values import Value
-from rockflex.study.design._fit import check_confidence
+from rockflex.study.design._fit import check_confidence, check_damping
 from rockflex.study.design.search._cost import DesignCost
 from rockflex.study.design.search._requirement import Requirement, check_requirements, margins_of, values_of
 from rockflex.study.design.search._space import VARIABLES
@@ -133,6 +133,8 @@ def best_design(
     if lacking or not len(runs):
         lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
         raise InputError(f"The table {lacks}. Give what search_design returned.")
+    for each in wanted:
+        check_damping(each.hazard, runs, each.measure)
     groups = [rows for _, rows in runs.groupby("structure", observed=True, sort=False)]
     values = values_of(groups, wanted)
     drawn = np.stack(

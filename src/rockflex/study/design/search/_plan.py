@@ -13,6 +13,7 @@ from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
 from rockflex.study._arguments import factors_of
 from rockflex.study._tables import Columns, Row
+from rockflex.study.design._fit import check_damping, first_damping
 from rockflex.study.design._limits import state_of
 from rockflex.study.design.search._cost import DesignCost
 from rockflex.study.design.search._requirement import Requirement, margins_of, values_of
@@ -51,6 +52,8 @@ class SearchPlan(ChunkedPlan):
         (self.structure,) = bench.structures
         search.check_elements(self.structure)
         self.search, self.requirements, self.cost = search, list(requirements), cost
+        for each in self.requirements:
+            check_damping(each.hazard, first_damping(self.structure), each.measure)
         self.scales = factors_of(scales, max(bench.motions, key=lambda motion: motion.pga))
         self._each = len(bench.motions) * len(self.scales)
         super().__init__(bench.motions, search.n_designs, max(1, runs_per_chunk // self._each))
