@@ -127,6 +127,8 @@ def test_an_outcome_of_all_runs_counts_recordings():
     never = rf.fit_outcomes(IM, np.minimum(ROTATION, 0.1), np.zeros(IM.size), GROUPS).overturning
     assert (never.n, never.n_groups) == (176, G)
     assert never.bound(0.95) == pytest.approx(1.0 - 0.05 ** (1.0 / G))
+    found = rf.annual_rate(HAZARD, never, confidence=0.9)
+    assert (found.rate, math.isnan(found.low), math.isnan(found.high)) == (0.0, True, True)
 
 
 def test_what_is_extrapolated_of_a_rate_is_told():
@@ -212,6 +214,17 @@ def test_a_measure_of_another_damping_is_refused(runs, tmp_path):
         with pytest.raises(rf.InputError, match="sa_t1_5") as caught:
             write(tmp_path / "file", {"frame": fit.outcomes}, "SA(0.6)", [1.0, 10.0])
         assert caught.value.field == "measure"
+    outcome = runs["status"] == "overturned"
+    for fit in (
+        rf.fit_logistic(runs["sa_t1"], outcome),
+        rf.fit_outcomes(runs["sa_t1"], runs["max_rotation"], outcome).overturning,
+    ):
+        with pytest.raises(rf.InputError, match="unknown"):
+            rf.annual_rate(hazard, fit)
+    rf.annual_rate(
+        rf.HazardCurve(hazard.im, hazard.rate, damping=0.02), rf.fit_logistic(runs["sa_t1"], outcome, damping=0.02)
+    )
+    assert rf.fit_logistic(runs["sa_t1_5"], outcome).damping == 0.05
     (unknown,) = rf.fit_clouds(runs.drop(columns="zeta_1"), "sa_t1")  # a study stored before it was told
     with pytest.raises(rf.InputError, match="unknown"):
         rf.annual_rate(hazard, unknown.outcomes.overturning)

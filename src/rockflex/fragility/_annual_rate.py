@@ -15,6 +15,7 @@ from rockflex.fragility._curve import Curve, Fragility, checked_curve
 from rockflex.fragility._hazard import HazardCurve
 from rockflex.fragility._lognormal import LognormalFragility
 from rockflex.fragility._recordings import limits
+from rockflex.fragility._unanimous import UnanimousOutcome
 
 NODES = 12  # of Gauss and Legendre in a segment of a hazard curve
 SMALLEST = 60.0  # in ln(IM): the tail below the curve's lower end is integrated this far
@@ -34,7 +35,7 @@ class AnnualRate(Value):
     above : float
         Largest possible rate in 1/year from larger measures: the rate of the last point.
     low, high : float
-        Confidence limits of `rate`, if a confidence was given; NaN otherwise.
+        Confidence limits of `rate`, if a confidence was given; NaN otherwise, and where all runs had the same outcome.
     extrapolated : float
         Part of `rate` in 1/year from measures outside those of the runs, where the fragility is extrapolated; NaN if
         the measures of the runs are not known.
@@ -124,6 +125,8 @@ def quadrature(hazard: HazardCurve) -> tuple[Array, Array]:
 
 def _band(fragility: Any, im: Array, share: Array, confidence: float) -> tuple[float, float]:
     wanted = checked_confidence(confidence)
+    if isinstance(fragility, UnanimousOutcome):
+        return math.nan, math.nan
     if not hasattr(fragility, "drawn"):
         raise InputError(
             f"confidence needs a fit that knows its scatter, such as outcomes.curve(0.01), but "

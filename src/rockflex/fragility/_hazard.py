@@ -77,8 +77,8 @@ class HazardCurve(Value):
         if damping is not None and not math.isclose(damping, self.damping, rel_tol=1e-6):
             raise InputError(
                 f"The fragility is in a spectral measure at {damping_words(damping)}, but the hazard curve is at "
-                f"{damping_words(self.damping)}. Take sa_t1_5, Sa(T₁) at 5 %, or a hazard curve of that damping, and "
-                "say so: damping = 0.02 for 2 %.",
+                f"{damping_words(self.damping)}. Take sa_t1_5, Sa(T₁) at 5 %, or a hazard curve of the same damping. "
+                "Hazard curves, and fits of single columns, state theirs by damping, 0.02 for 2 %.",
                 field="damping",
             )
 
@@ -214,6 +214,14 @@ def damping_of(runs: "pd.DataFrame", measure: str) -> float | None:
         return None
     found = runs["zeta_1"].dropna().unique() if "zeta_1" in runs else []
     return float(found[0]) if len(found) == 1 else math.nan
+
+
+def damping_named(im: object, damping: float | None) -> float | None:
+    """Damping ratio of a column of a study: the one given, else by the column's name; NaN if that does not tell it."""
+    name = getattr(im, "name", None)
+    if damping is not None or name not in ("sa_t1", "sd_t1", "sa_t1_5"):
+        return damping
+    return DAMPING if name == "sa_t1_5" else math.nan
 
 
 def _between(name: str, x: Array, points: Array, values: Array) -> Array:

@@ -13,6 +13,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
 from rockflex._values import Value
 from rockflex.fragility._arguments import checked_confidence, flags, log_at, log_measures
+from rockflex.fragility._hazard import damping_named
 from rockflex.fragility._predictor import Standardised, standard_error
 from rockflex.fragility._recordings import (
     ONE_RECORDING,
@@ -157,7 +158,8 @@ def fit_logistic(
         a study. Without it the band assumes independent runs, and is too narrow where recordings repeat.
     damping
         Damping ratio of the spectral acceleration or displacement that `im` is, which `annual_rate` compares with the
-        hazard curve's. Default: not known, or another measure.
+        hazard curve's. Default: another measure, or not known; a column named sa_t1_5 is at 5 %, and with sa_t1 or
+        sd_t1 a rate is refused.
 
     Raises
     ------
@@ -176,7 +178,7 @@ def fit_logistic(
     """
     x = log_measures(im)
     y = flags("outcome", outcome)
-    return fit_curve(x, y, Recordings.beside(groups, im=x, outcome=y), damping)[0]
+    return fit_curve(x, y, Recordings.beside(groups, im=x, outcome=y), damping_named(im, damping))[0]
 
 
 def fit_curve(

@@ -16,6 +16,7 @@ from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.fragility._arguments import checked_confidence, flags, log_at, log_measures
 from rockflex.fragility._cloud import CloudFit, fit_line
+from rockflex.fragility._hazard import damping_named
 from rockflex.fragility._limit_states import ROCKED
 from rockflex.fragility._logistic import LogisticFit, fit_curve
 from rockflex.fragility._recordings import Recordings, drawn, jackknifed, limits, quantile_of_t
@@ -348,6 +349,7 @@ def fit_outcomes(
         for count, what in zip(counts, ("do not rock", "rock without overturning", "overturn"), strict=True)
         if 0 < count < FEW
     ]
+    damping = damping_named(im, damping)
     shared = _Shared(measures, recordings, damping, notes)
     overturning, part = shared.curve("overturning", falls, np.ones_like(falls))
     rocking, other = shared.curve("rocking", moves, stands)

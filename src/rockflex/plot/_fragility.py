@@ -45,8 +45,8 @@ def plot_fragility(
     measure
         Column of the intensity measure; default: ``"pgv"``, or the measure of the fits.
     confidence
-        Confidence of bands around the curves, between 0 and 1, by recording where the table has the column `group`.
-        Default: no bands.
+        Confidence of bands around the curves, between 0 and 1, by recording where the table has the column `group` or
+        `motion`. Default: no bands.
     overturning
         Whether to draw the probability of overturning too, as thin lines.
     bins

@@ -32,8 +32,8 @@ def plot_stripes(
     """Plot the fraction of runs that exceed a limit in each stripe, one panel per structure, one curve per model.
 
     The curves are those of `fit_stripes`; if the stripes do not determine one, there are only symbols. In the shaded
-    range, below the lowest stripe, they are extrapolated. Bands are those of recordings, by the column `group`; a table
-    without it is taken as one of independent runs.
+    range, below the lowest stripe, they are extrapolated. Bands are those of recordings, by the column `group`, else
+    by `motion`; a table without either is taken as one of independent runs.
 
     Parameters
     ----------
