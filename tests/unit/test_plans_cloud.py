@@ -104,10 +104,35 @@ def test_group_of_a_record():
     assert record_groups(motions) == ["x", "Quake A", "RSN7", "Quake 1990 A"]
 
 
-def test_components_known_by_their_names_alone_are_of_one_recording():
-    motions = [rf.GroundMotion([0, 1, 0], 0.01, name) for name in ("ABC000", "ABC090", "DEF000")]
-    first, second, third = record_groups(motions)
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("ABC000", "ABC090", "DEF000"),
+        ("RSN9_MUL009", "RSN9_MUL279", "RSN8_MUL009"),
+        ("a_NS", "a_EW", "b_NS"),
+        ("rec1H1", "rec1H2", "rec2H1"),
+        ("a-x", "a-y", "b-x"),
+        ("folder/a.E", "folder/a.N", "other/a.E"),
+    ],
+)
+def test_components_known_by_their_names_alone_are_of_one_recording(names):
+    first, second, third = record_groups(rf.GroundMotion([0, 1, 0], 0.01, name) for name in names)
     assert first == second != third
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        [f"GM{number}" for number in range(1, 23)],
+        [f"eq{number}" for number in range(1, 22)],
+        [f"record_{number:03d}" for number in range(100)],
+        ["GM1", "GM2"],
+        ["pulse 0.5", "pulse 0.7"],
+        ["ABC010", "ABC020", "ABC120"],
+    ],
+)
+def test_records_that_are_merely_numbered_are_recordings_of_their_own(names):
+    assert record_groups(rf.GroundMotion([0, 1, 0], 0.01, name) for name in names) == names
 
 
 def test_chunks_depend_on_nothing_but_their_number(plan):

@@ -9,7 +9,7 @@ from rockflex.motion._folder import folder_files
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._measure import Measure
 from rockflex.motion._measures import MEASURES, intensities, intensity, record_measures, vertical_measures
-from rockflex.motion._pairs import station_names
+from rockflex.motion._pairs import recording_names
 from rockflex.motion._pulses import (
     half_sine_pulse,
     one_cosine_pulse,
@@ -78,10 +78,10 @@ __all__ = [
     "read_target",
     "record_csv",
     "record_measures",
+    "recording_names",
     "rectangular_pulse",
     "ricker_pulse",
     "rotated_spectrum",
-    "station_names",
     "suite_names",
     "survey_plain",
     "survey_records",

@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import TypeAlias
 
 from rockflex._errors import InputError
-from rockflex.motion._direction import APART, is_horizontal_name, station_of_vertical
+from rockflex.motion._direction import APART, azimuth_of, is_horizontal_name, station_of_vertical
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 
 Key: TypeAlias = tuple[str | int | None, ...]
 
+ASKEW = 10.0  # degrees by which components may differ from a right angle
 REPORTED = 10  # records that are named in a message; of more, the number is told
 
 
@@ -63,6 +64,36 @@ def station_names(motions: Sequence[tuple[Path, GroundMotion]]) -> list[str]:
         shared = next((stem for stem in options if counts[stem.casefold()] > 1), None)
         found.append(name or (first.setdefault(shared.casefold(), shared) if shared else file.name))
     return found
+
+
+def recording_names(names: Sequence[str]) -> list[str]:
+    """Return what the name of each component shares with that of the other one of its recording, else the whole name.
+
+    A recording has two horizontal components, at right angles: ABC000 and ABC090, or A-H1 and A-H2. Records that are
+    merely numbered, such as GM1 and GM2, do not belong together.
+    """
+    files = [Path(f"{name}.x") for name in names]
+    words = [{key: word for key, word in _components(file).items() if key[1]} for file in files]
+    members: dict[Key, list[int]] = defaultdict(list)
+    for place, each in enumerate(words):
+        for key in each:
+            members[key].append(place)
+    found = list(names)
+    for place, each in enumerate(words):
+        pair = next((key for key in each if _are_across([words[other][key] for other in members[key]])), None)
+        if pair is not None:
+            first = members[pair][0]
+            found[place] = names[first][: len(names[first]) - len(files[first].stem) + len(str(pair[1]))]
+    return found
+
+
+def _are_across(components: Sequence[str]) -> bool:
+    """Return whether words name the two horizontal components of a recording."""
+    angles = [azimuth_of(word) for word in components]
+    if len(angles) != 2 or angles == [None, None]:
+        return len(angles) == 2
+    one, other = angles
+    return one is not None and other is not None and abs((one - other) % 180.0 - 90.0) <= ASKEW
 
 
 def _header_name(info: RecordInfo | None) -> str | None:

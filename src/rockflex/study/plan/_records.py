@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.motion import GroundMotion, OnError, Suite, Vertical, load_suite, read_suite, station_names
+from rockflex.motion import GroundMotion, OnError, Suite, Vertical, load_suite, read_suite, recording_names
 from rockflex.structure.file import Table
 
 
@@ -72,11 +72,11 @@ class Records(Table):
 def record_groups(motions: Iterable[GroundMotion]) -> list[str]:
     """Return the name of each motion's recording, which its components share because they are not independent.
 
-    It is the record sequence number if known, else earthquake and station, else what names share that differ only in
-    the component (ABC000 and ABC090, as in `group_stations`), else the name of the motion.
+    It is the record sequence number if known, else earthquake and station, else what two names share that differ only
+    in the component (ABC000 and ABC090), else the name of the motion.
     """
     members = list(motions)
-    alike = station_names([(Path(each.name), each) for each in members])
+    alike = recording_names([each.name for each in members])
     return [_known_recording(each) or name for each, name in zip(members, alike, strict=True)]
 
 
