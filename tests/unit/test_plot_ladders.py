@@ -101,3 +101,18 @@ def test_stripes_with_their_curve(stripes):
     assert axes.get_ylabel() == r"$P(θ_{\mathrm{max}}>0.005\ \mathrm{rad})$"
     assert notes(axes) == ["no curve fits"]
     assert not axes.collections
+
+
+@pytest.mark.parametrize(("kind", "draw"), [("stripes", rf.plot_stripes), ("ladders", rf.plot_ida)])
+def test_bands_count_recordings_not_runs(kind, draw, request):
+    """Nine copies of each run under its recording: as independent ones they make a band three times as narrow."""
+    runs = request.getfixturevalue(kind)
+    if kind == "stripes":
+        runs = runs.assign(group=np.arange(len(runs)) % 10, motion="m")
+    copies = [runs.assign(motion=runs["motion"].astype(str) + f" {number}") for number in range(9)]
+    areas = []
+    for table in (runs, pd.concat(copies, ignore_index=True)):
+        (band,) = [each for each in drawn(draw(table)).axes[-1].collections if each.get_label() == "_band"]
+        x, y = band.get_paths()[0].vertices.T
+        areas.append(abs(np.sum(x * np.roll(y, 1) - y * np.roll(x, 1))))
+    assert areas[1] == pytest.approx(areas[0], rel=0.15)  # the β of few capacities depends on their number
