@@ -83,7 +83,9 @@ def test_any_function_of_two_columns_serves():
 
 
 def test_a_few_blocks_are_told():
-    assert "from 4 blocks may be too narrow" in bootstrap_band(fit_cloud, IM, Y, np.arange(144) % 4, at=AT, n=20).note
+    for count in (4, 22):
+        band = bootstrap_band(fit_cloud, IM, Y, np.arange(144) % count, at=AT, n=20)
+        assert f"from {count} blocks may be too narrow" in band.note
 
 
 @pytest.mark.parametrize(

