@@ -72,4 +72,5 @@ def test_runs_beyond_the_balance_rotation_are_counted_and_told() -> None:
     )
     assert [each.beyond for each in pivot_lifts(runs)] == [1, 1]
     assert "θ passes α" in str(pivot_lifts(runs)[1])
+    assert "such as rigid-C" in str(pivot_lifts(runs.assign(model="rigid"))[1])
     assert [each.beyond for each in pivot_lifts(runs.assign(model="MDOF-C-SI"))] == [0, 0]

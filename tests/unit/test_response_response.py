@@ -264,7 +264,10 @@ def test_a_simplified_run_beyond_the_balance_rotation_warns():
         assert any("static moment vanishes" in text for text in run.warnings) == warned
         peaks = simulate(FRAME, quiet_motion(0.02), "2DOF-S", "peaks", initial=start)
         assert peaks.warnings == run.warnings
+        assert "such as MDOF-C" in "".join(run.warnings) or not warned
         assert not simulate(FRAME, quiet_motion(0.02), "2DOF-C", initial=start).warnings
+        block = simulate(FRAME, quiet_motion(0.02), "rigid", initial=start)
+        assert "such as rigid-C" in "".join(block.warnings) or not warned
     fell = simulate(
         FRAME, quiet_motion(1.0), "2DOF-S", initial=InitialState(rotation=3.0 * balance), free_vibration=9.0
     )

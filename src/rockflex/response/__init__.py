@@ -15,7 +15,7 @@ from rockflex.response._resistance_on_springs import push_on_springs, resistance
 from rockflex.response._respond import respond
 from rockflex.response._response import PEAKS, Response
 from rockflex.response._springs_path import springs_path
-from rockflex.response._warnings import BALANCED, leaves_range, warnings_of, warnings_of_energy
+from rockflex.response._warnings import BALANCED, complete_of, leaves_range, warnings_of, warnings_of_energy
 
 __all__ = [
     "BALANCED",
@@ -37,6 +37,7 @@ __all__ = [
     "base_path",
     "columns_among",
     "columns_of",
+    "complete_of",
     "element_resistance",
     "extremes_of",
     "friction_coefficient",

@@ -26,7 +26,7 @@ def warnings_of(model: str, peaks: Mapping[str, Any]) -> tuple[str, ...]:
         found.append(
             f"θ reaches {peaks['max_rotation']:.4g} rad, {peaks['balance_ratio']:.3g} times the rotation α at which "
             f"the static moment vanishes. {model} is for small rotations: whether the structure overturns is to be "
-            "decided by a complete model, such as MDOF-C."
+            f"decided by a complete model on rigid ground, such as {complete_of(model)}."
         )
     return tuple(found)
 
@@ -40,6 +40,11 @@ def warnings_of_energy(closing_error: float) -> tuple[str, ...]:
         f"{BALANCED:g}: an event was missed, or the motion of an element or of the ground was misread. Do not use the "
         "run, and report it as an error of the program.",
     )
+
+
+def complete_of(model: str) -> str:
+    """Return the label of a complete model of the same structure."""
+    return "rigid-C" if model == "rigid" else "MDOF-C"
 
 
 def leaves_range(model: Any, balance_ratio: Any, rotation: Any) -> Any:

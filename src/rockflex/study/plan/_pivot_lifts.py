@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, NamedTuple
 
 from rockflex._cases import cases
-from rockflex.response import leaves_range
+from rockflex.response import complete_of, leaves_range
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,7 +37,8 @@ class PivotLifts(NamedTuple):
             found.append(
                 f"{self.structure}, {self.model}: in {self.beyond} of {self.rocking} runs that rock and stand θ passes "
                 "α, at which the static moment vanishes (balance_ratio above one). The model is for small rotations: "
-                "whether these overturn is to be decided by a complete model, such as MDOF-C."
+                f"whether these overturn is to be decided by a complete model on rigid ground, such as "
+                f"{complete_of(self.model)}."
             )
         return found
 
