@@ -175,6 +175,25 @@ def test_the_reference_has_every_public_name_once():
             assert last in import_module(f"rockflex.{place}").__all__
 
 
+def test_the_style_of_formulas_is_of_the_version_of_their_script():
+    """With another one formulas are set wrongly; without its fonts they need the network, or look like text."""
+    place = pytest.importorskip("sphinxcontrib.katex").__file__
+    style = (DOCS / "_static" / "katex" / "katex.min.css").read_text("utf-8")
+    version = re.search(r'version:"([\d.]+)"', Path(place).with_name("katex.min.js").read_text("utf-8"))
+    assert version is not None
+    assert f'content:"{version[1]}"' in style
+    fonts = re.findall(r"url\((fonts/[\w-]+\.woff2)\)", style)
+    assert len(fonts) > 15
+    assert all((DOCS / "_static" / "katex" / font).is_file() for font in fonts)
+
+
+@pytest.mark.parametrize("page", [*PAGES, *DOCS.glob("design/*.md")], ids=lambda page: str(page.relative_to(DOCS)))
+def test_the_largest_rotation_is_set_as_a_formula(page):
+    """Outside code and tables, where it stands as programs print it."""
+    text = re.sub(r"^ *```.*?^ *```$", "", page.read_text("utf-8"), flags=re.MULTILINE | re.DOTALL)
+    assert "θ_max" not in re.sub(r"`[^`\n]*`|^(?:\||    ).*$", "", text, flags=re.MULTILINE)
+
+
 def test_every_page_is_in_a_table_of_contents():
     entries = set()
     for page in DOCS.rglob("*.md"):

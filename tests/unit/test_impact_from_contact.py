@@ -155,7 +155,7 @@ def test_stiff_ground_without_rebound_gives_the_forces_of_the_law(changes):
 
 
 def test_rebound_leaves_the_rotation_of_a_flexural_frame_and_raises_its_base_shear():
-    """Also where the law never pulls the base down, so that is not the reason; a shear frame hardly notices."""
+    """Also where the law never pulls the base down, so that is not the reason; hardly that of a shear frame."""
     ratios, pressed = over_the_law(*on_a_mat(**SIXTH), 20.0, 0.05)
     assert pressed.sum() > 5
     for some in (ratios, ratios[pressed]):
@@ -185,7 +185,7 @@ def test_forces_on_compliant_ground_are_below_those_of_the_law(changes):
 
 @pytest.mark.parametrize(("ratio", "share"), [(0.05, 0.931), (0.2, 0.821), (0.7, 1.4), (1.0, 2.0)])
 def test_the_blow_on_the_ground_grows_with_its_stiffness(ratio, share):
-    """N_max - m g is a share of m B θ' ω_z; with an impact law the history has no trace of it."""
+    """N_max - m g is a share of m B θ' ω_z; with an impact law it is not in the history."""
     p, inertia = on_a_mat(**FOURTH)
     start = rf.InitialState(rotation=1e-6, rotation_velocity=-STILL)
     for over in (100.0, 200.0):

@@ -76,7 +76,8 @@ class Response(HtmlTable, Value):
     max_base_moment, time_of_max_base_moment
         Largest |M_b| of the elastic forces in N m, and its time; zero for a rigid block, which has no elastic forces.
     max_base_shear, time_of_max_base_shear
-        Largest |V_b| of the elastic forces in N, and its time; zero for a rigid block.
+        Largest |V_b| of the elastic forces in N, and its time; zero for a rigid block. With an impact law V_b and M_b
+        are those of landings without rebound: "Forces after an impact" in the theory tells which to design for.
     max_total_top_displacement, time_of_max_total_top_displacement
         Largest horizontal displacement of the top relative to the ground in m, including the rotation of the base, and
         its time: u_top + h_top θ, in the complete models by Eq. 3. NaN if the height of the top is not known.
