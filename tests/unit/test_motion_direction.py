@@ -32,6 +32,9 @@ VERTICAL = (
     "station-vertical.csv",
     "record_Z.txt",
     "Kobe UP.csv",
+    "RSN953_NORTHR_MUL-UP (1).AT2",
+    "RSN9_BORREGO_B-ELC-DWN - Copy (2).AT2",
+    "DZC_UP - Copy.csv",
 )
 UNKNOWN = (
     "RSN1059_NORTHR_PTH090.AT2",
@@ -69,6 +72,7 @@ UNKNOWN = (
     "group.dat",
     "ELCENTRO-NS.AT2",
     "uplift-1.csv",
+    "ELC-NS (1).csv",
 )
 HEADER = "PEER NGA STRONG MOTION DATABASE RECORD\nSome Event, 1/1/2001, Some Station, {}\nACCELERATION IN UNITS OF G\n"
 

@@ -1,6 +1,7 @@
 """Excel workbooks, written with openpyxl."""
 
 import io
+import re
 import subprocess
 import sys
 import zipfile
@@ -136,8 +137,9 @@ def crafted(file, last_row, dimension="", columns=""):
         (2**20, {"dimension": '<dimension ref="A1:XFD1048576"/>'}, "4"),
         (10**12, {}, "million cells lie before its last filled ones"),
         (4, {"columns": "".join(f'<row r="{k}"><c r="XFD{k}"/></row>' for k in range(5, 30_000))}, "million cells lie"),
+        (4, {"columns": f"<row>{8_000_000 * '<c/>'}</row>"}, "row of more than 2 MB"),
     ],
-    ids=["claimed size", "row far below", "columns far away"],
+    ids=["claimed size", "row far below", "columns far away", "one long row"],
 )
 def test_a_small_workbook_with_cells_far_apart_takes_little_time_and_memory(tmp_path, last_row, more, said):
     file = crafted(tmp_path / "far.xlsx", last_row, **more)
@@ -146,6 +148,16 @@ def test_a_small_workbook_with_cells_far_apart_takes_little_time_and_memory(tmp_
     )
     assert found.returncode == 0, found.stderr
     assert said in found.stdout
+
+
+def test_a_written_record_that_a_spreadsheet_saved_keeps_what_is_known(tmp_path):
+    info = rf.RecordInfo(event="Kocaeli, Turkey", year=1999, scale=1.5)
+    written = rf.motion.record_csv(rf.GroundMotion([0.0, 1.0, 0.0], 0.01, metadata=info))
+    (tmp_path / "a.csv").write_text(re.sub("^#.*", r"\g<0>,", written, flags=re.MULTILINE))
+    rows = [[line] if "#" in line else line.split(",") for line in written.splitlines()]
+    for file in (tmp_path / "a.csv", write(tmp_path, {"S": rows})):
+        found = rf.read_motion(file).metadata
+        assert (found.event, found.year, found.scale) == ("Kocaeli, Turkey", 1999, 1.5)
 
 
 def test_without_openpyxl(tmp_path, monkeypatch):

@@ -28,6 +28,7 @@ HORIZONTAL = re.compile(
 )
 SET_APART = re.compile(rf"(.*)(?:[-_. ](?:{UPRIGHT})|[-_.][VZ])", re.IGNORECASE)
 DOWNWARDS = re.compile(rf".*(?:{DOWN})", re.IGNORECASE)
+COPY = re.compile(r"(?: \(\d+\)| - copy)+$", re.IGNORECASE)  # what browsers and desktops add to a name
 RUN_TOGETHER = re.compile(rf"(.*?)(?:{UPRIGHT}|(?<=\d)V|-V[12])", re.IGNORECASE)
 
 
@@ -48,12 +49,13 @@ def direction_of(file: Path, component: str | None = None) -> Direction | None:
     stated = (component or "").strip()
     if VERTICAL.fullmatch(stated):
         return _upright(stated)
-    if SET_APART.fullmatch(file.stem):
-        return _upright(file.stem)
+    stem = COPY.sub("", file.stem)
+    if SET_APART.fullmatch(stem):
+        return _upright(stem)
     if HORIZONTAL.fullmatch(stated):
         return "horizontal"
     from_peer = file.suffix.lower() == ".at2" or re.match(r"RSN\d", file.name, re.IGNORECASE)
-    return _upright(file.stem) if from_peer and RUN_TOGETHER.fullmatch(file.stem) else None
+    return _upright(stem) if from_peer and RUN_TOGETHER.fullmatch(stem) else None
 
 
 def azimuth_of(component: str | None) -> float | None:
@@ -77,7 +79,8 @@ def _upright(text: str) -> Direction:
 
 def station_of_vertical(file: Path) -> str | None:
     """Return the name of a file without the word that makes it vertical, or None if there is no such word."""
-    named = SET_APART.fullmatch(file.stem) or RUN_TOGETHER.fullmatch(file.stem)
+    stem = COPY.sub("", file.stem)
+    named = SET_APART.fullmatch(stem) or RUN_TOGETHER.fullmatch(stem)
     return named and named[1].rstrip(APART)
 
 

@@ -1,8 +1,10 @@
 """Records in the sheets of an Excel workbook (.xlsx)."""
 
 import io
+import re
 import warnings
 import zipfile
+from itertools import chain, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +18,9 @@ from rockflex.motion._units import Unit
 
 ZIPPED, OLD = b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 LARGEST = 100_000_000  # bytes of a workbook when unpacked
+ROW = 2_000_000  # bytes of a row, all of whose cells openpyxl makes before it gives the first
 MOST = 5_000_000  # cells of a workbook, also empty ones; every 20 characters in a cell count as one
+EDGES = re.compile(rb"<(?:\w+:)?row\b|</(?:\w+:)?sheetData>")
 INSTALL = "Install it: pip install 'rockflex[excel]', or save the sheet as CSV."
 
 
@@ -72,6 +76,9 @@ def sheets_of(file: Path, content: bytes) -> dict[str, list[list[str]]]:
     except ImportError as error:
         raise InputError(f"{file} is an Excel workbook, which needs openpyxl to be read. {INSTALL}") from error
     try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            if any(_longest_row(archive.read(part)) > ROW for part in archive.namelist()):
+                raise InputError(f"{file} has a row of more than {ROW / 1e6:g} MB. Delete what is beside the record.")
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about styles and other extensions that do not matter here
             book: Any = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True)
@@ -80,6 +87,12 @@ def sheets_of(file: Path, content: bytes) -> dict[str, list[list[str]]]:
         raise
     except Exception as error:  # damaged workbooks raise many kinds of errors
         raise InputError(f"{file} cannot be read as an Excel workbook: {str(error)[:200]}.") from error
+
+
+def _longest_row(part: bytes) -> int:
+    """Return the bytes of the longest row in a part of a workbook; 0 if it is no sheet."""
+    ends = (each.start() for each in EDGES.finditer(part)) if b"sheetData" in part else ()
+    return max((after - before for before, after in pairwise(chain(ends, [len(part)]))), default=0)
 
 
 def _cells(file: Path, book: Any) -> dict[str, list[list[str]]]:

@@ -36,7 +36,8 @@ def stated_facts(file: Path, heads: list[str]) -> RecordInfo:
         If a number in them is none.
     """
     found: dict[str, str | int | float] = {}
-    for line, head in enumerate(heads if heads[:1] == [MARK] else [], 1):
+    lines = [head.strip("# ,;\t") for head in heads]  # as spreadsheets leave them
+    for line, head in enumerate(lines if lines[:1] == [MARK] else [], 1):
         name, _, text = (part.strip() for part in head.partition(":"))
         if name not in FACTS or not text:
             continue
