@@ -199,6 +199,8 @@ def test_rotations_are_imported_in_any_layout(client, heights) -> None:
         (b"0;8\n2;16,5\n", "heights", {"0": 8.0, "2": 16.5}),
         (b"1\n3\n", "rotations", [1, 3]),
         (b"4,5;-2\n-2;2\n", "stiffness", [[4.5, -2.0], [-2.0, 2.0]]),
+        (b"4.5e0 -2\n-2 2\n", "stiffness", [[4.5, -2.0], [-2.0, 2.0]]),
+        (b"8\tnan\t16\tnan\n", "heights", {"0": 8.0, "2": 16.0}),
     ],
 )
 def test_freedoms_in_csv_files(content, part, found) -> None:
@@ -210,6 +212,8 @@ def test_freedoms_in_csv_files(content, part, found) -> None:
     [
         ("r.csv", b"1.5\n", "rotations", "whole indices of freedoms, counted from 0, but 1.5"),
         ("h.csv", b"0.5,3\n1,6\n2,9\n", "heights", "whole indices"),
+        ("h.csv", b"0,3\n0,6\n", "heights", "each freedom once"),
+        ("h.csv", b"0,3\nnan,6\n", "heights", "whole indices"),
         ("h.csv", b"nan\nnan\n", "heights", "finite numbers"),
         ("k.csv", b"4,\n,2\n", "stiffness", "finite numbers"),
         ("k.csv", b"4,-2\n-2,2\n", "soul", "say which of mass, stiffness, heights, rotations"),

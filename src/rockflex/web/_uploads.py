@@ -167,17 +167,18 @@ def read_matrices(name: str, content: bytes, part: str) -> dict[str, Any]:
     except Refusal:
         raise
     except Exception as error:  # damaged files raise many kinds of errors
-        message = f"{shown} does not hold matrices that can be read: {str(error)[:200]}."
+        message = f"{shown} does not hold matrices that can be read: {str(error)[:200].rstrip('.')}."
         raise Refusal({"structure": message}) from error
 
 
 def _from_text(text: str) -> Any:
-    """Return the numbers of a CSV file; empty cells, which heights may have, are NaN."""
+    """Return the numbers of a CSV file, or between blanks; empty cells, which heights may have, are NaN."""
     if ";" in text:  # then commas are decimal commas
         text = text.replace(",", ".").replace(";", ",")
     return np.loadtxt(
-        io.StringIO(text), delimiter=",", ndmin=2, converters=lambda cell: float(cell) if cell.strip(" -–") else np.nan
-    )
+        io.StringIO(text), delimiter="," if "," in text else None, ndmin=2,
+        converters=lambda cell: float(cell) if cell.strip(" -–") else np.nan,
+    )  # fmt: skip
 
 
 def _from_npz(name: str, content: bytes) -> dict[str, Any]:
@@ -213,7 +214,11 @@ def _numbers(name: str, part: str, array: Any) -> Any:
         message = f"{name}: {part} must hold finite numbers for up to {FREEDOMS} freedoms."
         raise Refusal({"structure": message})
     if part == "heights" and values.ndim == 2 and values.shape[1] == 2 and len(values) > 1:
-        return {str(_index(name, part, each)): height for each, height in values.tolist()}
+        found = {str(_index(name, part, each)): height for each, height in values.tolist()}
+        if len(found) < len(values):
+            message = f"{name}: {part} must hold each freedom once."
+            raise Refusal({"structure": message})
+        return found
     if values.ndim == 2 and 1 in values.shape and part != "stiffness":
         values = values.ravel()
     if part == "rotations":
@@ -224,7 +229,7 @@ def _numbers(name: str, part: str, array: Any) -> Any:
 
 
 def _index(name: str, part: str, number: float) -> int:
-    if number != int(number):
+    if not number.is_integer():
         message = f"{name}: {part} must hold whole indices of freedoms, counted from 0, but {number:g} was found."
         raise Refusal({"structure": message})
     return int(number)
