@@ -201,6 +201,7 @@ def test_impact_laws(visitor, frame, el_centro) -> None:
     law.select_option("complete")
     visitor.wait_for_peak("2DOF-S", "max_rotation", impacts(rf.VVELComplete()).max_rotation)
     assert visitor.state()["impact"] == "complete"
+    assert page.locator('[data-path="impact"] .hint sub').all_inner_texts() == ["b", "b", "b"]
     law.select_option("restitution")
     visitor.wait_for_peak("2DOF-S", "n_impacts", impacts(rf.Restitution(0.8)).n_impacts)
     visitor.fill("restitution", "0.3")

@@ -1,6 +1,6 @@
 // Assumptions about impacts and yielding of the superstructure.
 
-import { h } from "../dom.js";
+import { h, symbol } from "../dom.js";
 import { select, slider, tableField, trouble } from "../form.js";
 import { yields } from "../models.js";
 
@@ -66,7 +66,7 @@ export function assumptions(app, suggested) {
   function refresh() {
     const { state } = app;
     impact.setValue(state.impact ?? "");
-    impact.querySelector(".hint").textContent = `${MEANT[state.impact ?? ""]} ${FORCES}`;
+    impact.querySelector(".hint").replaceChildren(...symbol(`${MEANT[state.impact ?? ""]} ${FORCES}`));
     restitution.hidden = state.impact !== "restitution";
     restitution.setValue(state.restitution ?? RESTITUTION);
     const on = state.bouc_wen !== undefined;
