@@ -100,7 +100,7 @@ def spread():
 
 
 def ratios():
-    return {name: rf.frequency_ratios(each, [2.0, 4.0, 8.0, 16.0]) for name, each in (("#1", FRAME), ("#2", FRAME))}
+    return {name: rf.frequency_ratios(each, [2.0, 4.0, 8.0, 16.0]) for name, each in ((LONG, FRAME), ("#2", FRAME))}
 
 
 @cache
@@ -137,7 +137,7 @@ ARGUMENTS = {
     "plot_moment_rotation": lambda: (responses(),),
     "plot_moment_rotation_laws": lambda: (FRAME,),
     "plot_motion": lambda: (both_components(),),
-    "plot_overturning_spectrum": lambda: ({"blocks": overturning(), "the same": overturning()},),
+    "plot_overturning_spectrum": lambda: ({LONG: overturning(), "the same": overturning()},),
     "plot_population": lambda: (pairs(),),
     "plot_rocking_spectrum": lambda: (spectrum(),),
     "plot_selection": lambda: (rf.load_suite("fema-p695-far-field").select(rf.ec8_spectrum(2.5, "C"), 7, (0.2, 2.0)),),
@@ -195,6 +195,7 @@ def test_in_a_column_no_text_runs_into_another_or_off_the_figure(name, given, mo
     assert figure.get_size_inches()[0] == 3.5
     texts = written(figure, monkeypatch)
     assert texts
+    assert min(text.get_fontsize() for text in figure.findobj(Text) if text.get_text().strip()) >= 5.5
     room = figure.bbox.padded(1.5)
     assert [text for text, box in texts if not (room.contains(*box.min) and room.contains(*box.max))] == []
     assert [(a, b) for (a, p), (b, q) in combinations(texts, 2) if overlaps(p, q)] == []

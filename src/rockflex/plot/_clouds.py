@@ -31,7 +31,7 @@ _QUANTITIES = {
     "max_top_displacement": r"$u_{\mathrm{top,max}}$, relative to the base [m]",
     "max_total_top_displacement": r"total $u_{\mathrm{top,max}}$ [m]",
 }
-_TINY = 5.6
+_TINY = 6.75
 _ROW = 0.056  # of the panel, from row to row of the numbers in it
 _CROSSES = 0.038  # and of the crosses
 

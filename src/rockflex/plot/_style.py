@@ -319,6 +319,10 @@ def _wrap(figure: Figure) -> None:
             _break(axes.yaxis.label, axes.bbox.height, turned=True)
         for each in (figure._suptitle, figure._supxlabel, *(key.get_title() for key in figure.legends)):  # pyright: ignore
             _break(each, across)
+        for key in figure.legends:
+            widest = max((text.get_window_extent().width for text in key.get_texts()), default=0.0)
+            for text in key.get_texts():
+                _break(text, widest - max(key.get_window_extent().width - across, 0.0))
         _break(figure._supylabel, up, turned=True)  # pyright: ignore
 
 
