@@ -1,9 +1,9 @@
 """How often 90 % bands hold the truth where runs share recordings: the table of docs/theory/checked.md.
 
 `python benchmarks/band_coverage.py 2000` simulates 2000 suites of 22 recordings with 2 components and 4 scales or
-levels each in some minutes. Every scatter is a normal score: a half of its variance belongs to the recording, a quarter to the
-component and a quarter to the run. So runs of one recording are correlated, while every run by itself follows the true
-curve exactly.
+levels each in some minutes. Every scatter is a normal score: a half of its variance belongs to the recording, a quarter
+to the component and a quarter to the run. So runs of one recording are correlated, while every run by itself follows
+the true curve exactly.
 """
 
 import math
