@@ -149,6 +149,7 @@ def cross(
         if lifted and not at_once:
             log.tally[UPLIFTS] += 1
             log.tally[EVENTS] += 1
+            drop_passing(log, now)
             keep(log, now, 0.0, here, span.rise, motion.state)
             keep(log, now, side, here, span.rise, motion.state)
         move(system, steps, at, span, stop, turns, log, motion)

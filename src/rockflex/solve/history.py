@@ -28,12 +28,15 @@ def keep(log: Log, time: float, side: float, ground: float, rise: float, state: 
 def drop_passing(log: Log, time: float) -> None:
     """Remove the states of phases that have begun and ended at the present instant with the base on the same side.
 
-    A base that turns back is held by friction for no time at all, and its acceleration then is no part of the motion.
+    A base that turns back, or lands and lifts at once, is held by friction for no time at all, and its acceleration
+    then is no part of the motion. What follows is kept next.
     """
     last = log.tally[KEPT] - 1
     while last > 0 and log.history[last - 1, TIME] == time and log.history[last - 1, SIDE] == log.history[last, SIDE]:
         last -= 1
         log.tally[KEPT] = last + 1
+    if last > 0 and log.history[last, TIME] == time and log.history[last - 1, TIME] == time:  # it began there, too
+        log.tally[KEPT] = last
 
 
 @kernel

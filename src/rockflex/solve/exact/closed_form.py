@@ -26,6 +26,7 @@ from rockflex.solve.exact.developed import Course, Developed, Shaking
 from rockflex.solve.exact.tables import propagate
 
 LONGEST = 200.0  # phase angle of an interval up to which a series is faster than exponentials of a dense matrix
+ASIDE = 1e-6  # of a step times the change of θ' in it, from the middle rotation
 
 
 class ClosedForm:
@@ -95,9 +96,10 @@ class ClosedForm:
         rise_slopes = np.where(steps > 0.0, np.diff(states[:, RISE]) / safe, 0.0)
         shaken = (rise != 0.0) | (rise_slopes != 0.0)
         shaking = np.stack((states[:-1, GROUND], slopes, rise, rise_slopes))
-        # The branch of an element over an interval is that in its middle, with the memory at its start.
-        rotation = layout.of(states, layout.rotation)
-        middle = 0.5 * (rotation[:-1] + rotation[1:])
+        # The branch of an element over an interval is that in its middle, with the memory at its start. An excursion
+        # may begin and end on the border of a branch: a little of its height tells on which side it is.
+        rotation, spin = layout.of(states, layout.rotation), layout.of(states, layout.spin)
+        middle = 0.5 * (rotation[:-1] + rotation[1:]) - ASIDE * steps * np.diff(spin)
         parts, series = list[Part](), list[SeriesPart]()
         for found, key in phases_at(self._model, states[:-1, SIDE], middle, states[:-1]):
             basis, chosen = self._basis(key), found
