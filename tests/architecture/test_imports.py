@@ -16,13 +16,14 @@ ROOT = Path(__file__).parents[2] / "src" / "rockflex"
 ALLOWED = {
     "motion": set(),
     "modal": set(),
+    "engine": set(),
     "parallel": set(),
     "progress": set(),
     "store": set(),
     "fragility": set(),
     "structure": {"modal"},
-    "models": {"modal"},
-    "solve": {"models", "motion"},
+    "models": {"modal", "engine"},
+    "solve": {"models", "engine", "motion"},
     "response": {"solve", "models", "modal", "motion"},
     "study": {
         "motion",
