@@ -5,10 +5,8 @@ take seconds). The ratios hold on any machine; the times are those of this machi
 """
 
 import resource
-import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 import controlled
 import ground
@@ -25,9 +23,6 @@ from timing import frame, least, milliseconds
 import rockflex as rf
 from rockflex.models import parse_model
 from rockflex.study import Case
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-
 from twins.ode import simulate_ode
 
 MODES = (1, 5, 15)

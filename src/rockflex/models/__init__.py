@@ -83,6 +83,7 @@ from rockflex.models._sliding import SlidingModel
 from rockflex.models._springs import SpringModel
 from rockflex.models._stored import floor_accelerations, raised_weight_rate, stored_energies
 from rockflex.models._strike import Impact, impact_of, kinetic_energy, may_pass, stick, strike
+from rockflex.models._system import system_of
 
 __all__ = [
     "BROKEN",
@@ -190,6 +191,7 @@ __all__ = [
     "stored_energy",
     "strike",
     "swing_by_side",
+    "system_of",
     "turning_row",
     "under_more_gravity",
     "values_of",

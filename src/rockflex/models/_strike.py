@@ -116,17 +116,21 @@ class OwnLaw:
         self.failures: list[BaseException] = []
         self.callback = Callback(self._after)
 
+    def after(self, velocity: Array, spin: float) -> tuple[Array, float]:
+        """Return the velocities after an impact, checked."""
+        found, turn = _pair(self._law.after(self._properties, velocity.copy(), spin))
+        checked = finite_vector("the modal velocity after an impact", found, "m/s")
+        if checked.size != velocity.size:
+            raise InputError(
+                f"The modal velocity after an impact must have {velocity.size} values, but {checked.size} were "
+                "returned."
+            )
+        return checked, finite("the rotation velocity after an impact", turn, "rad/s")
+
     def _after(self, address: int, n: int) -> int:
         try:
             state = np.ctypeslib.as_array(ctypes.cast(address, ctypes.POINTER(ctypes.c_double)), (2 * n + 2,))
-            velocity, spin = _pair(self._law.after(self._properties, state[n : 2 * n].copy(), float(state[-1])))
-            checked = finite_vector("the modal velocity after an impact", velocity, "m/s")
-            if checked.size != n:
-                raise InputError(
-                    f"The modal velocity after an impact must have {n} values, but {checked.size} were returned."
-                )
-            state[n : 2 * n] = checked
-            state[-1] = finite("the rotation velocity after an impact", spin, "rad/s")
+            state[n : 2 * n], state[-1] = self.after(state[n : 2 * n], float(state[-1]))
         except BaseException as error:  # Ctrl-C, too, which ctypes would drop
             self.failures.append(error)
             return 1

@@ -8,12 +8,14 @@ from rockflex.solve._task import Task, WorkLimitError
 from rockflex.solve.batch import Excitation
 from rockflex.solve.engine import Engine
 from rockflex.solve.exact.closed_form import ClosedForm
+from rockflex.solve.hybrid import HybridEngine, takes
 from rockflex.solve.interruption import RunStoppedError, asked_to_stop, check_interruption, stopping_when
 
 __all__ = [
     "ClosedForm",
     "Engine",
     "Excitation",
+    "HybridEngine",
     "Pace",
     "RunStoppedError",
     "Solution",
@@ -26,4 +28,5 @@ __all__ = [
     "pace_of",
     "preparing",
     "stopping_when",
+    "takes",
 ]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,6 +13,15 @@ from rockflex.solve.batch import Batch
 from rockflex.solve.status import Status
 
 OVERTURNED, SETTLED = int(Status.OVERTURNED), int(Status.SETTLED)
+
+
+class Ends(NamedTuple):
+    """How R runs ended, as in `Batch`."""
+
+    ends: Any  # (R,): records of `END`
+    peaks: Array  # (R, F)
+    times: Array  # (R, F)
+    states: Array  # (R, S'): the last ones
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,7 +44,7 @@ class Solutions:
         Of a single run with a history.
     """
 
-    batch: Batch
+    batch: Batch | Ends
     dt: float
     n_peaks: int
     signed: int

@@ -7,7 +7,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex.models import Quantities, RockingModel
 from rockflex.motion import GroundMotion
 from rockflex.response import Response, asked_of, extremes_of, respond
-from rockflex.solve import Engine, Excitation, Solution, Solutions, Task, preparing
+from rockflex.solve import Engine, Excitation, HybridEngine, Solution, Solutions, Task, preparing, takes
 from rockflex.study._arguments import WORK_LIMIT
 from rockflex.study._initial import InitialState
 
@@ -65,7 +65,11 @@ class Case:
         with preparing(self.model):
             asked = asked_of(self.model, floors=self.floors)
         asked = asked if self.extra is None else asked + self.extra
-        engine = Engine(self.model, asked, extremes_of(self.model), many=self.many)
+        most = extremes_of(self.model)
+        if takes(self.model):
+            engine = HybridEngine(self.model, asked, most, many=self.many)
+        else:
+            engine = Engine(self.model, asked, most, many=self.many)
         object.__setattr__(self, "engine", engine)
 
     def task(self, motion: GroundMotion, scale: float = 1.0) -> Task:
