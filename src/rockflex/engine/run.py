@@ -118,28 +118,28 @@ class Run:
     h = cython.declare(cython.double, visibility="readonly")
     ended = cython.declare(cython.bint, visibility="readonly")
     failed: cython.bint
-    phases: list
-    places: dict
+    phases: list  # met so far
+    places: dict  # of the phases, by their keys
     present: PhaseAtStep
-    place: cython.int
+    place: cython.int  # of the present phase
     n: cython.int
-    states: cython.int
+    states: cython.int  # rows of the states and of the outputs in tables and series, multiples of 8
     outputs: cython.int
     y: cython.double[::1]
     one_sided: cython.double[::1]
     peaks_: Peaks
-    series: cython.double[:, ::1]
-    sums: cython.double[:, ::1]
-    away: cython.double[::1]
-    room: cython.double[::1]
-    sizes: cython.double[::1]
-    before: cython.double[::1]
-    q: cython.double[::1]
+    series: cython.double[:, ::1]  # a row of coefficients for each power: states, outputs, conditions
+    sums: cython.double[:, ::1]  # the same for the first powers: magnitudes of the terms of a coefficient
+    away: cython.double[::1]  # of outputs and conditions: how far the expanded motion may get from its start
+    sizes: cython.double[::1]  # of the states: magnitudes of the terms that they were summed from
+    old_sizes: cython.double[::1]
+    workspace: cython.double[::1]
+    q: cython.double[::1]  # polynomials
     slope: cython.double[::1]
-    passed: cython.Py_ssize_t
-    end: cython.double
-    log: list
-    nodes: list
+    passed: cython.Py_ssize_t  # samples, before this call of `advance`
+    end: cython.double  # time of the last event
+    log: list  # events
+    nodes: list  # parts of the history
     n_looks: cython.int
     n_searched: cython.int
 
@@ -159,7 +159,7 @@ class Run:
         """Begin anew at time 0, with the phases met so far."""
         self.peaks_ = Peaks(np.asarray(self.one_sided), self.n, CANDIDATES)
         self.y = np.zeros(self.n) if state is None else array("the state", state, (self.n,))
-        self.sizes, self.before, self.room = np.zeros(self.n), np.zeros(self.n), np.zeros(self.states + 2)
+        self.sizes, self.old_sizes, self.workspace = np.zeros(self.n), np.zeros(self.n), np.zeros(self.states + 2)
         self.q, self.slope = np.zeros(TERMS), np.zeros(TERMS)
         self.log, self.nodes, self.ended, self.failed, self.passed, self.end = [], [], False, False, 0, 0.0
         self.n_looks = self.n_searched = 0
@@ -399,10 +399,12 @@ class Run:
         """Sum the magnitudes of the terms of coefficients of an order: what their rounding is relative to."""
         i: cython.int
         for i in range(self.n):
-            self.room[i] = max(fabs(self.y[i]), self.sizes[i]) if order == 0 else self.sums[order - 1, i] * h / order
-        self.room[self.n] = fabs(a) if order == 0 else fabs(rise) if order == 1 else 0.0
-        self.room[self.n + 1] = 1.0 if order == 0 else 0.0
-        self.present.loops.magnitudes(self.room, self.sums[order])
+            self.workspace[i] = (
+                max(fabs(self.y[i]), self.sizes[i]) if order == 0 else self.sums[order - 1, i] * h / order
+            )
+        self.workspace[self.n] = fabs(a) if order == 0 else fabs(rise) if order == 1 else 0.0
+        self.workspace[self.n + 1] = 1.0 if order == 0 else 0.0
+        self.present.loops.magnitudes(self.workspace, self.sums[order])
 
     @cython.cfunc
     def take_sizes(self, terms: cython.int, t: cython.double):
@@ -420,9 +422,9 @@ class Run:
     def move(self, terms: cython.int, t: cython.double):
         """Set the state to that of the expanded motion at t."""
         i: cython.int
-        self.present.loops.evaluate(self.series, terms, t, self.room)
+        self.present.loops.evaluate(self.series, terms, t, self.workspace)
         for i in range(self.n):
-            self.y[i] = self.room[i]
+            self.y[i] = self.workspace[i]
 
     @cython.cfunc
     def leave(self, event: cython.int, sample: cython.double, a: cython.double):
@@ -436,11 +438,11 @@ class Run:
             self.ask(phase.events[event], a)
             return
         for i in range(self.n):
-            self.room[i] = self.y[i]
-            self.before[i] = self.sizes[i]
+            self.workspace[i] = self.y[i]
+            self.old_sizes[i] = self.sizes[i]
         for i in range(self.n):
-            self.y[i] = row_times(phase.jump, event, i, self.room, self.n)
-            self.sizes[i] = row_times(phase.jump_size, event, i, self.before, self.n)
+            self.y[i] = row_times(phase.jump, event, i, self.workspace, self.n)
+            self.sizes[i] = row_times(phase.jump_size, event, i, self.old_sizes, self.n)
         if kind == ENDS:
             self.ended = True
         elif phase.following[event] is None:
