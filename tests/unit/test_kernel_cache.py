@@ -10,6 +10,7 @@ import numba
 import numpy as np
 import pytest
 
+import another_package
 import rockflex
 from rockflex import _numba
 from rockflex._kernel import sources_digest
@@ -26,7 +27,7 @@ def test_an_edited_callee_changes_the_stamp(tmp_path: Path) -> None:
     callee = package / "solve" / "exact" / "series.py"
     callee.write_text(callee.read_text() + "\n# edited\n")
     command = "from rockflex._kernel import sources_digest; print(sources_digest())"
-    environment = {**os.environ, "PYTHONPATH": str(tmp_path), "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    environment = {**os.environ, **another_package.environment(tmp_path), "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
     done = subprocess.run([sys.executable, "-c", command], env=environment, capture_output=True, text=True, check=True)
     assert done.stdout.strip() != sources_digest()
 

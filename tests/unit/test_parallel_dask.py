@@ -10,6 +10,7 @@ import distributed
 import pandas as pd
 import pytest
 
+import another_package
 from dask_cluster import Cluster
 from rockflex import InputError
 from rockflex.parallel import ClusterError, _dask, _worker, map_dask
@@ -199,7 +200,7 @@ def test_workers_without_rockflex_are_refused(tmp_path: Path) -> None:
     (tmp_path / "empty" / "rockflex" / "__init__.py").touch()
     message = r"The worker tcp://\S+ cannot use rockflex: .*No module named .* in an environment that has it"
     with (
-        Cluster(tmp_path, workers=1, PYTHONPATH=str(tmp_path / "empty")) as own,
+        Cluster(tmp_path, workers=1, **another_package.environment(tmp_path / "empty")) as own,
         pytest.raises(InputError, match=message),
     ):
         next(map_dask(ToyPlan(), [0], own.address))
