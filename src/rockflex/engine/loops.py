@@ -5,6 +5,8 @@ import os
 import cython
 import numpy as np
 
+from rockflex.engine.system import up8
+
 LEVELS = ("", "baseline", "v3", "v4")
 
 
@@ -87,7 +89,7 @@ class PhaseLoops:
             places[5],
             places[6],
         )
-        self.kept, self.states = tuple(views), -(-tables.n // 8) * 8
+        self.kept, self.states = tuple(views), up8(tables.n)
 
     def march(self, phase, a, i, last, y, peaks, states):
         """Advance whole samples from i up to `last` as far as nothing happens; the number of the sample reached."""

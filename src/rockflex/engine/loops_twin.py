@@ -3,7 +3,8 @@
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex.engine.tables import BLOCK, ROWS, Tables, up8
+from rockflex.engine.system import up8
+from rockflex.engine.tables import BLOCK, ROWS, Tables
 
 
 def PyErr_CheckSignals() -> None:  # noqa: N802

@@ -12,8 +12,8 @@ import numpy as np
 
 from rockflex._errors import InputError, SolverError
 from rockflex.engine.rest import at_rest
-from rockflex.engine.system import acceleration, array
-from rockflex.engine.tables import tables_of, up8
+from rockflex.engine.system import acceleration, array, up8
+from rockflex.engine.tables import tables_of
 
 if cython.compiled:
     from cython.cimports.cpython.exc import PyErr_CheckSignals
@@ -292,12 +292,17 @@ class Run:
         self.nodes.append((np.array([self.passed + i + u]), self.place, np.array([a]), np.array(self.y)[None, :]))
 
     @cython.cfunc
-    @cython.exceptval(-1)
-    def expand(self, start: cython.double, end: cython.double, u: cython.double, part: cython.double) -> cython.int:
-        """Expand the motion from the place u of a sample over a part of it; the number of terms, 0 if too long."""
-        return self.present.loops.expand(
-            part * self.h, start + (end - start) * u, (end - start) * part, self.y, self.series, self.away
-        )
+    def expand(self, start: cython.double, end: cython.double, u: cython.double) -> tuple[cython.double, cython.int]:
+        """Expand the motion from the place u of a sample, as far as a series serves: the part of it, and the terms."""
+        part: cython.double = min(1.0 - u, 0.5**self.present.halvings)
+        terms: cython.int = 0
+        while True:
+            terms = self.present.loops.expand(
+                part * self.h, start + (end - start) * u, (end - start) * part, self.y, self.series, self.away
+            )
+            if terms > 0:
+                return part, terms
+            part *= 0.5
 
     @cython.cfunc
     def traverse(self, i: cython.int, start: cython.double, end: cython.double, history: cython.bint):
@@ -312,11 +317,7 @@ class Run:
         self.n_looks += 1
         while u < 1.0:
             PyErr_CheckSignals()
-            part = min(1.0 - u, 0.5**self.present.halvings)
-            terms = self.expand(start, end, u, part)
-            while terms == 0:
-                part *= 0.5
-                terms = self.expand(start, end, u, part)
+            part, terms = self.expand(start, end, u)
             t, event = self.first_event(terms, part * self.h, start + (end - start) * u, (end - start) * part)
             if t > 0.0:
                 self.raise_peaks(terms, t, self.passed + i + u, part)
@@ -541,11 +542,7 @@ class Run:
             u = 0.0
             while u < 1.0:
                 PyErr_CheckSignals()
-                part = min(1.0 - u, 0.5**self.present.halvings)
-                terms = self.expand(a[i], a[i + 1], u, part)
-                while terms == 0:
-                    part *= 0.5
-                    terms = self.expand(a[i], a[i + 1], u, part)
+                part, terms = self.expand(a[i], a[i + 1], u)
                 for j in range(self.outputs):
                     if rows[r, 2 + self.n + j] > high[j]:
                         self.raise_peak(j, terms, 1.0, rows[r, 2 + self.n + j], self.passed + i + u, part)

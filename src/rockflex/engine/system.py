@@ -181,7 +181,7 @@ class System:
         if not isinstance(listed, tuple | list):
             raise InputError(f"{place}events must be a tuple, but {listed!r} was given.")
         events = tuple(_checked(place, event, n) for event in found.events)
-        if -(-max(1, m) // 8) * 8 + -(-len(events) // 8) * 8 > MAX_ROWS:
+        if up8(max(1, m)) + up8(len(events)) > MAX_ROWS:
             raise InputError(f"{place}{m} outputs and {len(events)} events are more than {MAX_ROWS} rows.")
         return replace(found, events=events, **arrays)
 
@@ -200,6 +200,11 @@ def _checked(place: str, event: Any, n: int) -> Event:
         row, limit, key = rest
         rest = array(place + "rest", row, (n,)), float(array(place + "rest", limit, ())), key
     return replace(event, row=array(place + "row", event.row, (n,)), jump=jump, rest=rest, **numbers)
+
+
+def up8(count: int) -> int:
+    """The next multiple of 8."""
+    return -(-count // 8) * 8
 
 
 def array(name: str, values: Any, shape: tuple[int, ...], *, finite: bool = True) -> Array:

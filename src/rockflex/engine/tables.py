@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex.engine.system import LinearPhase
+from rockflex.engine.system import LinearPhase, up8
 
 ROWS, BLOCK = 32, 8  # as in march.h
 LONGEST = 2.5  # rad that a mode may turn within one power series: some thirty terms, and a digit lost
@@ -127,11 +127,6 @@ def changes_of(G: Array, halvings: int) -> list[Array]:
     for _ in range(halvings):
         found.append(2.0 * found[-1] + found[-1] @ found[-1])
     return found[::-1]
-
-
-def up8(count: int) -> int:
-    """The next multiple of 8."""
-    return -(-count // 8) * 8
 
 
 def padded(table: Array) -> Array:

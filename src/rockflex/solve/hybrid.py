@@ -81,19 +81,14 @@ class HybridEngine(Engine):
             end = found.ends[place]
             try:
                 end.status = self._follow(solver, run, dt, free_vibration, history=history)
+                end.samples = round(solver.time / dt)
                 if end.status < 0:
-                    failures[place] = failure_of(
-                        self.model, Status(end.status), round(solver.time / dt), dt, solver.state
-                    )
+                    failures[place] = failure_of(self.model, Status(end.status), int(end.samples), dt, solver.state)
             except (InputError, SolverError) as error:
                 failures[place] = error
                 continue
             names = [name for _, _, name in solver.events]
-            end.samples, end.uplifts, end.impacts = (
-                round(solver.time / dt),
-                names.count("uplift"),
-                names.count("impact"),
-            )
+            end.uplifts, end.impacts = names.count("uplift"), names.count("impact")
             found.peaks[place], found.times[place] = np.array(list(solver.peaks.values())).T
             found.states[place] = solver.state
             if history:
