@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rockflex.engine import Event, LinearPhase, StateLayout, System
+from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System
 
 GRAVITY = 9.81
 
@@ -10,7 +10,7 @@ GRAVITY = 9.81
 def ball(restitution: float, rests_below: float | None = None) -> System:
     """A ball that falls on a floor; it stays there once it is slower than `rests_below`."""
     layout = StateLayout(height=1, speed=1)
-    rest = None if rests_below is None else (np.array([0.0, 1.0]), rests_below, "rests")
+    rest = None if rests_below is None else Rest(np.array([0.0, 1.0]), "rests", -rests_below)
     bounce = np.array([[0.0, 0.0], [0.0, -restitution]])
 
     def phase(key: str) -> LinearPhase:

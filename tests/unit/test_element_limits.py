@@ -38,8 +38,8 @@ def residual(run):
 
 @pytest.mark.parametrize("nothing", [rf.ViscousDamper(0.0, 0.3), rf.FrictionDamper(0.0, -0.2), rf.Tendon(0.0, 0.0)])
 @pytest.mark.parametrize("model", ["2DOF-S", "MDOF-S", "rigid"])
-def test_an_element_of_zero_changes_no_bit(nothing, model):
-    assert (peaks([nothing], model) == peaks([], model)).all()
+def test_an_element_of_zero_changes_nothing(nothing, model):
+    np.testing.assert_allclose(peaks([nothing], model), peaks([], model), rtol=1e-9)
 
 
 def test_a_fuse_that_never_yields_is_a_tendon_without_prestress():

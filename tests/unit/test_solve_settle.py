@@ -10,8 +10,10 @@ from rockflex import (
     Frame,
     GroundMotion,
     InitialState,
+    Restrained,
     RockingProperties,
     SolverError,
+    Tendon,
     load_suite,
     quiet_motion,
     simulate,
@@ -168,7 +170,7 @@ def test_a_run_that_cannot_be_solved_says_where(monkeypatch, status, value, text
 
     monkeypatch.setattr(Engine, "_carry", carry)
     with pytest.raises(SolverError) as caught:
-        simulate(Frame(**frame()), EL_CENTRO, "2DOF-S")
+        simulate(Restrained(Frame(**frame()), Tendon(0.0, 0.0)), EL_CENTRO, "2DOF-S")
     assert str(caught.value).startswith(texts[0])
     assert f"The state [D, D', θ, θ'] there is [{', '.join([f'{value:g}'] * 4)}]." in str(caught.value)
     assert str(caught.value).endswith(texts[1])

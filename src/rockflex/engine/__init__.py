@@ -1,6 +1,6 @@
 """Hybrid systems: phases that are linear in the state, events, jumps and outputs. It knows no structure."""
 
 from rockflex.engine.run import Run
-from rockflex.engine.system import Event, LinearPhase, StateLayout, System
+from rockflex.engine.system import Event, LinearPhase, Rest, StateLayout, StepTooLongError, System
 
-__all__ = ["Event", "LinearPhase", "Run", "StateLayout", "System"]
+__all__ = ["Event", "LinearPhase", "Rest", "Run", "StateLayout", "StepTooLongError", "System"]

@@ -1,12 +1,16 @@
 cdef extern from "march.h" nogil:
-    int BLOCK, MAX_STATES, MAX_ROWS
+    int AHEAD, BLOCK, MAX_STATES, MAX_ROWS
     ctypedef struct Tables:
-        int n, outputs, conditions
+        int n, outputs, rows, parts
         double h
+        const double *block
         const double *step
+        const double *moves
         const double *now
         const double *slope
         const double *bend
+        const double *cap
+        const double *centre
         const double *sway
         const double *magnitude
         const double *one_sided
@@ -16,13 +20,24 @@ cdef extern from "march.h" nogil:
         double passed
         double *states
         double *candidates
-        double *rows
+        double *seen
         int resumes, count, room, width, looks
+        long long work
+    ctypedef struct Phase:
+        Tables tables
+        int events, halvings
+        const double *scale
+        const double **jump
+        const double **rest
+        int *following
+    int UNKNOWN, ENDS, ASKED
     ctypedef struct Loops:
         const char *level
-        void (*product)(int columns, int rows, int total, const double *table, const double *x, double *out) noexcept nogil
+        int group
+        void (*product)(int columns, int rows, const double *table, const double *x, double *out) noexcept nogil
         int (*expand)(const Tables *p, double h, double a, double rise, const double *y, int room, int width, double *series) noexcept nogil
         void (*evaluate)(int rows, int terms, int width, const double *series, double t, double *out) noexcept nogil
+        void (*amounts)(int rows, int terms, int width, const double *series, double t, double *out) noexcept nogil
         void (*spread)(int rows, int terms, int width, const double *series, double *out) noexcept nogil
         int (*march)(const Tables *p, int phase, const double *a, int i, int last, double *y, Log *log) noexcept nogil
     const Loops *rockflex_loops(const char *level)
@@ -30,16 +45,32 @@ cdef extern from "march.h" nogil:
 
 cdef class Peaks:
     cdef Log log
-    cdef readonly object high, when, rows
+    cdef double[::1] high_, when_, seen
     cdef readonly double[:, ::1] candidates
 
+    cdef int looks(self) noexcept nogil
+    cdef int count(self) noexcept nogil
+    cdef void keep(self, int count) noexcept nogil
+    cdef long long work(self) noexcept nogil
+    cdef void add_work(self, long long more) noexcept nogil
 
-cdef class PhaseLoops:
-    cdef Tables tables
-    cdef readonly tuple kept
-    cdef int states
 
-    cdef int march(self, int phase, const double[::1] a, int i, int last, double[::1] y, Peaks peaks, double[:, ::1] states)
-    cdef int expand(self, double h, double a, double rise, const double[::1] y, double[:, ::1] series, double[::1] away)
-    cdef void evaluate(self, double[:, ::1] series, int terms, double t, double[::1] out)
-    cdef void magnitudes(self, double[::1] x, double[::1] out)
+cdef class Phases:
+    cdef Phase *phases
+    cdef readonly int count
+    cdef int n, states
+    cdef double[::1] one_sided
+    cdef list contents, offsets
+
+    cdef int events(self, int place) noexcept nogil
+    cdef int rows(self, int place) noexcept nogil
+    cdef int halvings(self, int place) noexcept nogil
+    cdef double scale(self, int place, int event) noexcept nogil
+    cdef int following(self, int place, int outcome) noexcept nogil
+    cdef int jump(self, int place, int outcome, bint magnitudes, double[::1] y, double[::1] workspace) noexcept nogil
+    cdef int rests(self, int place, int event, double[::1] y, double a) noexcept nogil
+    cdef int march(self, int place, const double[::1] a, int i, int last, double[::1] y, Peaks peaks, double[:, ::1] states) noexcept nogil
+    cdef int expand(self, int place, double h, double a, double rise, double[::1] y, double[:, ::1] series, double[::1] away) noexcept nogil
+    cdef void evaluate(self, double[:, ::1] series, int terms, double t, double[::1] out) noexcept nogil
+    cdef void amounts(self, double[:, ::1] series, int terms, double t, double[::1] out) noexcept nogil
+    cdef void magnitudes(self, int place, double[::1] x, double[::1] out) noexcept nogil

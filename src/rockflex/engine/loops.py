@@ -1,9 +1,12 @@
 """The compiled loops of `march.c` as methods; `loops_twin` has the same in NumPy. Declarations: `loops.pxd`."""
 
 import os
+from itertools import pairwise
 
 import cython
 import numpy as np
+from cython.cimports.libc.math import fabs
+from cython.cimports.libc.stdlib import calloc, free, realloc
 
 from rockflex.engine.system import up8
 
@@ -25,31 +28,47 @@ LOOPS = cython.declare(cython.pointer(cython.const[Loops]), rockflex_loops(chose
 LEVEL = LOOPS.level.decode()
 
 
+def packed(tables):
+    """Column after column, in groups of rows of nearly the same size."""
+    count, rows, _ = tables.shape
+    groups = -(-rows // LOOPS.group)
+    if groups == 0:
+        return np.zeros((count, 0))
+    bounds = [rows // 8 * g // groups * 8 for g in range(groups + 1)]
+    parts = [tables[:, a:b].transpose(0, 2, 1).reshape(count, -1) for a, b in pairwise(bounds)]
+    return np.concatenate(parts, axis=1)
+
+
 @cython.cclass
 class Peaks:
     """Highest values of the outputs, the samples at which they were reached, and samples that may have higher ones."""
 
     def __init__(self, one_sided, states, room):
-        outputs = one_sided.shape[0]
-        self.high, self.when = np.where(one_sided > 0.0, -np.inf, 0.0), np.zeros(outputs)
-        self.rows = np.zeros(MAX_ROWS)
-        self.candidates = np.zeros((room + 1, 2 + states + outputs))
-        high: cython.double[::1] = self.high
-        when: cython.double[::1] = self.when
-        rows: cython.double[::1] = self.rows
-        self.log.high, self.log.when = cython.address(high[0]), cython.address(when[0])
-        self.log.rows, self.log.resumes = cython.address(rows[0]), 0
-        self.log.candidates = cython.address(self.candidates[0, 0])
-        self.log.count, self.log.room, self.log.width = 0, room, 2 + states + outputs
+        outputs: cython.int = one_sided.shape[0]
+        self.high_, self.when_ = np.zeros(outputs), np.zeros(outputs)
+        self.seen, self.candidates = np.zeros(MAX_ROWS), np.zeros((room + 1, 2 + states + outputs))
+        self.log.high, self.log.when = cython.address(self.high_[0]), cython.address(self.when_[0])
+        self.log.seen, self.log.candidates = cython.address(self.seen[0]), cython.address(self.candidates[0, 0])
+        self.log.room, self.log.width = room, 2 + states + outputs
+        self.begin(one_sided)
+
+    def begin(self, one_sided: cython.double[::1]):
+        """Begin anew."""
+        j: cython.int
+        for j in range(one_sided.shape[0]):
+            self.high_[j], self.when_[j] = -np.inf if one_sided[j] > 0.0 else 0.0, 0.0
+        self.log.resumes = self.log.count = self.log.looks = 0
+        self.log.passed, self.log.work = 0.0, 0
 
     @property
-    def count(self):
-        """Number of samples that may have higher values."""
-        return self.log.count
+    def high(self):
+        """Highest value of every output."""
+        return np.asarray(self.high_)
 
-    @count.setter
-    def count(self, value):
-        self.log.count = value
+    @property
+    def when(self):
+        """The sample at which it was reached."""
+        return np.asarray(self.when_)
 
     @property
     def passed(self):
@@ -60,75 +79,215 @@ class Peaks:
     def passed(self, value):
         self.log.passed = value
 
-    @property
     def looks(self):
         """Whether the march has stopped before a sample in which a condition may fail."""
-        return self.log.looks != 0
+        return self.log.looks
+
+    def count(self):
+        """Number of samples that may have higher values."""
+        return self.log.count
+
+    def keep(self, count):
+        """Keep so many of them, the first ones."""
+        self.log.count = count
+
+    def work(self):
+        """Samples so far, and what counts like them."""
+        return self.log.work
+
+    def add_work(self, more):
+        """Count more."""
+        self.log.work += more
 
 
 @cython.cclass
-class PhaseLoops:
-    """The loops over the tables of one phase."""
+class Phases:
+    """The phases that a run has met, each with the loops over its tables."""
 
-    def __init__(self, tables, one_sided, h):
-        views: list = [tables.step, tables.now, tables.slope, tables.bend, tables.sway, tables.magnitude, one_sided]
-        at: cython.const[cython.double][::1]
-        places: cython.p_const_double[7]
+    def __init__(self, one_sided, states):
+        self.one_sided, self.n, self.states = one_sided, states, up8(states)
+        self.contents, self.offsets, self.count = [], [], 0
+
+    def __dealloc__(self):
         k: cython.int
-        for k in range(7):
-            at = views[k]
-            places[k] = cython.address(at[0])
-        t: cython.pointer(Tables) = cython.address(self.tables)
-        t.n, t.outputs, t.conditions, t.h = tables.n, tables.outputs, tables.conditions, h
-        t.step, t.now, t.slope, t.bend, t.sway, t.magnitude, t.one_sided = (
-            places[0],
-            places[1],
-            places[2],
-            places[3],
-            places[4],
-            places[5],
-            places[6],
-        )
-        self.kept, self.states = tuple(views), up8(tables.n)
+        for k in range(self.count):
+            free(self.phases[k].jump)
+            free(self.phases[k].rest)
+            free(self.phases[k].following)
+        free(self.phases)
 
-    def march(self, phase, a, i, last, y, peaks, states):
+    def add(self, tables, events, h):
+        """Take a phase; of each of its events it is not known yet what follows, or known to be the end, or asked."""
+        size: cython.Py_ssize_t = (self.count + 1) * cython.sizeof(Phase)
+        count: cython.int = len(events)
+        systems = tables.halvings.size
+        outcomes = [outcome for event in events for outcome in (event, event.rest)]
+        jumps = [None if outcome is None or callable(outcome.jump) else outcome.jump for outcome in outcomes]
+        rests = [None if event.rest is None else event.rest for event in events]
+        parts = [
+            *(packed(each) for each in tables[3:]),
+            np.array([event.scale for event in events]).reshape(count, systems).T,
+            *(jump.reshape(systems, -1) for jump in jumps if jump is not None),
+            *(np.column_stack((rest.row, rest.direct, rest.constant)) for rest in rests if rest is not None),
+        ]
+        offsets = np.cumsum([0, *(up8(part.shape[1]) for part in parts)])
+        content = aligned(systems, int(offsets[-1]))
+        for part, first in zip(parts, offsets[:-1], strict=True):
+            content[:, first : first + part.shape[1]] = part
+        self.phases = cython.cast(cython.pointer(Phase), realloc(self.phases, size))
+        phase: cython.pointer(Phase) = cython.address(self.phases[self.count])
+        phase.tables.n, phase.tables.outputs, phase.tables.rows = self.n, tables.outputs, tables.rows
+        phase.tables.parts, phase.tables.h = tables.bend.shape[2] - 2, h
+        phase.events = count
+        phase.jump = cython.cast(
+            cython.pointer(cython.p_const_double), calloc(2 * count + 1, cython.sizeof(cython.p_void))
+        )
+        phase.rest = cython.cast(cython.pointer(cython.p_const_double), calloc(count + 1, cython.sizeof(cython.p_void)))
+        phase.following = cython.cast(cython.p_int, calloc(2 * count + 1, cython.sizeof(cython.int)))
+        k: cython.int
+        for k in range(2 * count):
+            outcome = outcomes[k]
+            phase.following[k] = (
+                ASKED
+                if outcome is not None and callable(outcome.jump)
+                else ENDS
+                if outcome is not None and outcome.target is None
+                else UNKNOWN
+            )
+        self.contents.append((content, tables.halvings, jumps, rests))
+        self.offsets.append(offsets)
+        self.count += 1
+
+    def select(self, which: cython.int):
+        """Take the tables of one system of the stack."""
+        place: cython.int
+        for place in range(self.count):
+            self.point(place, which)
+
+    def point(self, place: cython.int, which: cython.int):
+        """Take the tables of one system for one phase."""
+        content, halvings, jumps, rests = self.contents[place]
+        offsets: cython.long[::1] = self.offsets[place]
+        row: cython.double[::1] = content[which]
+        first: cython.p_double = cython.address(row[0])
+        phase: cython.pointer(Phase) = cython.address(self.phases[place])
+        t: cython.pointer(Tables) = cython.address(phase.tables)
+        t.block, t.step, t.moves, t.now = first, first + offsets[1], first + offsets[2], first + offsets[3]
+        t.slope, t.bend, t.cap, t.centre = (
+            first + offsets[4],
+            first + offsets[5],
+            first + offsets[6],
+            first + offsets[7],
+        )
+        t.sway, t.magnitude, t.one_sided = first + offsets[8], first + offsets[9], cython.address(self.one_sided[0])
+        phase.scale, phase.halvings = first + offsets[10], halvings[which]
+        part: cython.int = 11
+        k: cython.int
+        for k in range(2 * phase.events):
+            if jumps[k] is not None:
+                phase.jump[k] = first + offsets[part]
+                part += 1
+        for k in range(phase.events):
+            if rests[k] is not None:
+                phase.rest[k] = first + offsets[part]
+                part += 1
+
+    def lead(self, place, outcome, following):
+        """Say which phase follows an outcome."""
+        self.phases[place].following[outcome] = following
+
+    def events(self, place):
+        """Number of events of a phase."""
+        return self.phases[place].events
+
+    def rows(self, place):
+        """Number of outputs and conditions of a phase."""
+        return self.phases[place].tables.rows
+
+    def halvings(self, place):
+        """How often the step must be halved so that power series converge."""
+        return self.phases[place].halvings
+
+    def scale(self, place, event):
+        """Size of a violation of a condition."""
+        return self.phases[place].scale[event]
+
+    def following(self, place, outcome):
+        """Place of the phase that follows an outcome, or UNKNOWN, ENDS or ASKED."""
+        return self.phases[place].following[outcome]
+
+    def jump(self, place, outcome, magnitudes, y, workspace):
+        """Multiply a state by the matrix of an outcome, or magnitudes by its magnitudes; whether there is one."""
+        matrix: cython.p_const_double = self.phases[place].jump[outcome]
+        i: cython.int
+        j: cython.int
+        total: cython.double
+        if matrix == cython.NULL:
+            return 0
+        for i in range(self.n):
+            workspace[i] = y[i]
+        for i in range(self.n):
+            total = 0.0
+            for j in range(self.n):
+                total += (fabs(matrix[j]) if magnitudes else matrix[j]) * workspace[j]
+            y[i] = total
+            matrix += self.n
+        return 1
+
+    def rests(self, place, event, y, a):
+        """Whether the motion is too slow after an event."""
+        row: cython.p_const_double = self.phases[place].rest[event]
+        k: cython.int
+        total: cython.double
+        if row == cython.NULL:
+            return 0
+        total = row[self.n] * a + row[self.n + 1]
+        for k in range(self.n):
+            total += row[k] * y[k]
+        return total <= 0.0
+
+    def march(self, place, a, i, last, y, peaks, states):
         """Advance whole samples from i up to `last` as far as nothing happens; the number of the sample reached."""
         log: cython.pointer(Log) = cython.address(peaks.log)
         log.states = cython.address(states[0, 0]) if states.shape[0] > 1 else cython.NULL
-        with cython.nogil:
-            i = LOOPS.march(
-                cython.address(self.tables), phase, cython.address(a[0]), i, last, cython.address(y[0]), log
-            )
-        return i
+        return LOOPS.march(
+            cython.address(self.phases[place].tables), place, cython.address(a[0]), i, last, cython.address(y[0]), log
+        )
 
-    def expand(self, h, a, rise, y, series, away):
+    def expand(self, place, h, a, rise, y, series, away):
         """Expand the motion; the number of terms, 0 if too many, and how far each row may get from its start."""
         width: cython.int = series.shape[1]
-        terms: cython.int = LOOPS.expand(
-            cython.address(self.tables),
-            h,
-            a,
-            rise,
-            cython.address(y[0]),
-            series.shape[0],
-            width,
-            cython.address(series[0, 0]),
-        )
-        LOOPS.spread(
-            self.tables.outputs + self.tables.conditions,
-            terms,
-            width,
-            cython.address(series[0, self.states]),
-            cython.address(away[0]),
-        )
+        tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
+        first: cython.p_double = cython.address(series[0, 0])
+        terms: cython.int = LOOPS.expand(tables, h, a, rise, cython.address(y[0]), series.shape[0], width, first)
+        LOOPS.spread(tables.rows, terms, width, first + self.states, cython.address(away[0]))
         return terms
 
     def evaluate(self, series, terms, t, out):
         """Sum the series of the states at t."""
         LOOPS.evaluate(self.states, terms, series.shape[1], cython.address(series[0, 0]), t, cython.address(out[0]))
 
-    def magnitudes(self, x, out):
+    def amounts(self, series, terms, t, out):
+        """Sum the magnitudes of the terms of the states at t."""
+        LOOPS.amounts(self.states, terms, series.shape[1], cython.address(series[0, 0]), t, cython.address(out[0]))
+
+    def magnitudes(self, place, x, out):
         """Multiply the magnitudes of the matrices by those of the states, of the acceleration and of 1."""
-        rows: cython.int = self.states + self.tables.outputs + self.tables.conditions
-        x0: cython.p_double = cython.address(x[0])
-        LOOPS.product(self.tables.n + 2, rows, rows, self.tables.magnitude, x0, cython.address(out[0]))
+        tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
+        rows: cython.int = self.states + up8_(tables.rows)
+        LOOPS.product(self.n + 2, rows, tables.magnitude, cython.address(x[0]), cython.address(out[0]))
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def up8_(count: cython.int) -> cython.int:
+    """The next multiple of 8."""
+    return (count + 7) // 8 * 8
+
+
+def aligned(rows, columns):
+    """Zeros that begin where a cache line does; so do all rows, whose length is a multiple of 8."""
+    room = np.zeros(rows * columns + 8)
+    first = -(room.ctypes.data // 8) % 8
+    return room[first : first + rows * columns].reshape(rows, columns)

@@ -1,103 +1,203 @@
 """The loops of `march.c` in NumPy: slow, easy to follow, and an independent check of the compiled ones."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex.engine.system import up8
-from rockflex.engine.tables import BLOCK, ROWS, Tables
+from rockflex.engine.system import Event, up8
+from rockflex.engine.tables import AHEAD, BLOCK, Tables
+
+UNKNOWN, ENDS, ASKED = -1, -2, -3
 
 
 def PyErr_CheckSignals() -> None:  # noqa: N802
     """Do nothing: the interpreter looks at Ctrl-C by itself."""
 
 
-def unpacked(table: Array, rows: int, columns: int) -> Array:
-    """Return the rows of a table that `tables.packed` has packed."""
-    return np.concatenate(
-        [part.reshape(columns, -1).T for part in np.split(table, range(columns * ROWS, columns * rows, columns * ROWS))]
-    )
-
-
 class Peaks:
     """Highest values of the outputs, the samples at which they were reached, and samples that may have higher ones."""
 
     def __init__(self, one_sided: Array, states: int, room: int) -> None:
-        self.high, self.when = np.where(one_sided > 0.0, -np.inf, 0.0), np.zeros(one_sided.size)
+        self.high, self.when, self.room = np.zeros(one_sided.size), np.zeros(one_sided.size), room
         self.candidates = np.zeros((room + 1, 2 + states + one_sided.size))
-        self.count, self.room, self.looks, self.passed = 0, room, False, 0.0
+        self.begin(one_sided)
+
+    def begin(self, one_sided: Array) -> None:
+        """Begin anew."""
+        self.high[:], self.when[:] = np.where(one_sided > 0.0, -np.inf, 0.0), 0.0
+        self.kept = self.done = 0
+        self.stopped, self.passed = False, 0.0
+
+    def looks(self) -> bool:
+        """Whether the march has stopped before a sample in which a condition may fail."""
+        return self.stopped
+
+    def count(self) -> int:
+        """Number of samples that may have higher values."""
+        return self.kept
+
+    def keep(self, count: int) -> None:
+        """Keep so many of them, the first ones."""
+        self.kept = count
+
+    def work(self) -> int:
+        """Samples so far, and what counts like them."""
+        return self.done
+
+    def add_work(self, more: int) -> None:
+        """Count more."""
+        self.done += more
 
 
 class PhaseLoops:
-    """The loops over the tables of one phase."""
+    """The tables and the outcomes of one phase."""
 
-    def __init__(self, tables: Tables, one_sided: Array, h: float) -> None:
-        self.n, self.states, self.m, self.h = tables.n, up8(tables.n), tables.outputs, h
-        rows, columns = self.m + tables.conditions, tables.n + 2
-        self.rows = self.states + rows
-        self.step = unpacked(tables.step, self.rows, columns + 1)
-        self.now, self.magnitude = (unpacked(each, self.rows, columns) for each in (tables.now, tables.magnitude))
-        self.slope, self.bend, self.sway = (
-            unpacked(each, rows, columns) for each in (tables.slope, tables.bend, tables.sway)
-        )
-        self.one_sided = one_sided > 0.0
+    def __init__(self, tables: Tables, events: Sequence[Event], h: float) -> None:
+        self.tables, self.h, self.events = tables, h, events
+        self.outcomes: list[Any] = [outcome for event in events for outcome in (event, event.rest)]
+        self.following = [
+            UNKNOWN if each is None else ASKED if callable(each.jump) else ENDS if each.target is None else UNKNOWN
+            for each in self.outcomes
+        ]
 
-    def march(self, phase: int, a: Array, i: int, last: int, y: Array, peaks: Peaks, states: Array) -> int:
+
+class Phases:
+    """The phases that a run has met, each with the loops over its tables."""
+
+    def __init__(self, one_sided: Array, states: int) -> None:
+        self.one_sided, self.n, self.states, self.which = one_sided > 0.0, states, up8(states), 0
+        self.phases: list[PhaseLoops] = []
+
+    def add(self, tables: Tables, events: Sequence[Event], h: float) -> None:
+        """Take a phase; of each of its events it is not known yet what follows, or known to be the end, or asked."""
+        self.phases.append(PhaseLoops(tables, events, h))
+
+    def point(self, place: int, which: int) -> None:
+        """Take the tables of one system for one phase."""
+        del place
+        self.which = which
+
+    def select(self, which: int) -> None:
+        """Take the tables of one system of the stack."""
+        self.which = which
+
+    def lead(self, place: int, outcome: int, following: int) -> None:
+        """Say which phase follows an outcome."""
+        self.phases[place].following[outcome] = following
+
+    def events(self, place: int) -> int:
+        """Number of events of a phase."""
+        return len(self.phases[place].events)
+
+    def rows(self, place: int) -> int:
+        """Number of outputs and conditions of a phase."""
+        return self.phases[place].tables.rows
+
+    def halvings(self, place: int) -> int:
+        """How often the step must be halved so that power series converge."""
+        return int(self.phases[place].tables.halvings[self.which])
+
+    def scale(self, place: int, event: int) -> float:
+        """Size of a violation of a condition."""
+        return float(np.asarray(self.phases[place].events[event].scale)[self.which])
+
+    def following(self, place: int, outcome: int) -> int:
+        """Place of the phase that follows an outcome, or UNKNOWN, ENDS or ASKED."""
+        return self.phases[place].following[outcome]
+
+    def jump(self, place: int, outcome: int, magnitudes: bool, y: Array, workspace: Array) -> bool:
+        """Multiply a state by the matrix of an outcome, or magnitudes by its magnitudes; whether there is one."""
+        del workspace
+        found = self.phases[place].outcomes[outcome].jump
+        if found is None:
+            return False
+        matrix = found[self.which]
+        y[: self.n] = (np.abs(matrix) if magnitudes else matrix) @ np.array(y[: self.n])
+        return True
+
+    def rests(self, place: int, event: int, y: Array, a: float) -> bool:
+        """Whether the motion is too slow after an event."""
+        rest: Any = self.phases[place].events[event].rest
+        if rest is None:
+            return False
+        k = self.which
+        return bool(rest.row[k] @ np.asarray(y[: self.n]) + rest.direct[k] * a + rest.constant[k] <= 0.0)
+
+    def march(self, place: int, a: Array, i: int, last: int, y: Array, peaks: Peaks, states: Array) -> int:
         """Advance whole samples from i up to `last` as far as nothing happens; the number of the sample reached."""
-        n, m, x = self.n, self.m, np.array(y)
-        old = (self.now @ np.array((*x, a[i], 1.0)))[self.states :]
-        bend = sway = np.zeros(old.size)
-        peaks.looks, begins = False, True
-        self._raise(peaks, old, i)
+        p, k, x = self.phases[place].tables, self.which, np.array(y[: self.n])
+        m, n, h, rows = p.outputs, self.n, self.phases[place].h, p.rows
+        old = (p.now[k] @ np.array((*x, a[i], 1.0)))[self.states : self.states + rows]
+        bend = cap = sway = np.zeros(rows)
+        peaks.stopped = False
+
+        def at_start(table: Array, y: Array, b: float) -> Array:
+            return table[:rows, : n + 1] @ np.array((*y, b)) + table[:rows, -1]
+
+        self._raise(peaks, old[:m], i)
+        first, ahead, final = i, np.zeros(0), x
         while i < last:
-            if begins:
-                if peaks.count + BLOCK > peaks.room:
+            if (i - first) % BLOCK == 0:
+                if peaks.kept + BLOCK > peaks.room:
                     break
-                changes = np.abs(np.diff(a[i : min(i - i % BLOCK + BLOCK, last) + 1]))
-                rates = np.abs(self.now[:n] @ np.array((*x, a[i], 1.0)))
-                moves = np.array((*rates, changes.sum(), changes.max() / self.h))
-                bend, sway = self.bend @ moves, self.sway @ moves
-            new = self.step @ np.array((*x, a[i], a[i + 1], 1.0))
-            new[:n] += x
-            rows = new[self.states :]
-            before, after = (self.slope @ np.array((*z, b, 1.0)) for z, b in ((x, a[i]), (new[:n], a[i + 1])))
-            turns = np.maximum(4.0 * bend - np.abs(rows - old), 0.0)
-            beyond = np.minimum(
-                turns**2 / np.maximum(16.0 * bend, 1e-300), np.abs(after - before) * (self.h / 8.0) + sway
-            )
-            if (np.minimum(old, rows)[m:] <= beyond[m:]).any():
-                peaks.looks = True
+                changes = np.abs(np.diff(a[i : min(i + BLOCK, last) + 1]))
+                parts = np.abs(p.moves[k][: p.bend.shape[2] - 2] @ np.array((*x, a[i], 1.0)))
+                moves = np.array((*parts[:n], changes.sum(), changes.max() / h, *parts[n:]))
+                bend, cap, sway = (each[k][:rows] @ moves for each in (p.bend, p.cap, p.sway))
+            if (i - first) % AHEAD == 0:
+                ground = np.array(a[i : min(i + AHEAD, last) + 1])
+                ground = np.concatenate((ground, np.zeros(AHEAD + 1 - ground.size)))
+                ahead = p.block[k] @ np.array((*x, *ground, 1.0))
+                final = x + ahead[up8(AHEAD * rows) : up8(AHEAD * rows) + n]
+            which = (i - first) % AHEAD
+            new = ahead[which * rows : (which + 1) * rows]
+            after = x + p.step[k][:n] @ np.array((*x, a[i], a[i + 1], 1.0))
+            slopes = [at_start(p.slope[k], z, b) for z, b in ((x, a[i]), (after, a[i + 1]))]
+            turns = np.maximum(4.0 * bend - np.abs(new - old), 0.0)
+            excess = turns**2 / np.maximum(16.0 * bend, 1e-300) + cap
+            beyond = np.minimum(excess, np.abs(slopes[1] - slopes[0]) * (h / 8.0) + sway)
+            lowest, highest = np.minimum(old, new) - beyond, np.maximum(old, new) + beyond
+            if p.bend.shape[2] - 2 > n:
+                ends = [at_start(p.centre[k], z, b) for z, b in ((x, a[i]), (after, a[i + 1]))]
+                lowest = np.maximum(lowest, np.minimum(*ends) - 0.5 * cap - bend)
+                highest = np.minimum(highest, np.maximum(*ends) + 0.5 * cap + bend)
+            if (lowest[m:] <= 0.0).any():
+                peaks.stopped = True
                 break
-            above = np.maximum(self._counted(old), self._counted(rows)) + beyond[:m]
-            if (above > np.maximum(peaks.high, self._counted(rows))).any():
-                peaks.candidates[peaks.count] = (phase, i, *x, *above)
-                peaks.count += 1
-            x, old, i = new[:n], rows, i + 1
-            self._raise(peaks, old, i)
+            above = np.maximum(self._counted(lowest[:m]), self._counted(highest[:m]))
+            if (above > np.maximum(peaks.high[:m], self._counted(new[:m]))).any():
+                peaks.candidates[peaks.kept, : 2 + n + m] = (place, i, *x, *above)
+                peaks.kept += 1
+            x, old, i = final if which == AHEAD - 1 else after, new, i + 1
+            peaks.done += 1
+            self._raise(peaks, old[:m], i)
             if len(states) > 1:
                 states[i] = x
-            begins = i % BLOCK == 0
-        y[:] = x
+        y[:n] = x
         return i
 
     def _counted(self, rows: Array) -> Array:
-        return np.where(self.one_sided, rows[: self.m], np.abs(rows[: self.m]))
+        return np.where(self.one_sided[: rows.size], rows, np.abs(rows))
 
     def _raise(self, peaks: Peaks, rows: Array, sample: int) -> None:
         found = self._counted(rows)
-        peaks.when[found > peaks.high] = peaks.passed + sample
-        np.maximum(peaks.high, found, out=peaks.high)
+        higher = np.flatnonzero(found > peaks.high[: found.size])
+        peaks.when[higher], peaks.high[higher] = peaks.passed + sample, found[higher]
 
-    def expand(self, h: float, a: float, rise: float, y: Array, series: Array, away: Array) -> int:
+    def expand(self, place: int, h: float, a: float, rise: float, y: Array, series: Array, away: Array) -> int:
         """Expand the motion; the number of terms, 0 if too many, and how far each row may get from its start."""
-        x, most, calm = np.array(y), np.abs(y), 0
+        now, rows = self.phases[place].tables.now[self.which], self.phases[place].tables.rows
+        x, most, calm, first, end = np.array(y[: self.n]), np.abs(y[: self.n]), 0, self.states, self.states + rows
         for k in range(len(series)):
-            z = self.now @ np.array((*x, (a, rise)[k] if k < 2 else 0.0, k == 0))
-            series[k, : self.n], series[k, self.states : self.rows] = x, z[self.states :]
+            z = now @ np.array((*x, (a, rise)[k] if k < 2 else 0.0, k == 0))
+            series[k, : self.n], series[k, first:end] = x, z[first:end]
             x = z[: self.n] * (h / (k + 1))
             most = np.maximum(most, np.abs(x))
             calm = calm + 1 if k > 1 and (np.abs(x) <= 1e-17 * most).all() else 0
             if calm == 2:
-                away[: self.rows - self.states] = np.abs(series[1 : k + 1, self.states : self.rows]).sum(axis=0)
+                away[:rows] = np.abs(series[1 : k + 1, first:end]).sum(axis=0)
                 return k + 1
         return 0
 
@@ -105,6 +205,11 @@ class PhaseLoops:
         """Sum the series of the states at t."""
         out[: self.n] = np.polynomial.polynomial.polyval(t, series[:terms, : self.n])
 
-    def magnitudes(self, x: Array, out: Array) -> None:
+    def amounts(self, series: Array, terms: int, t: float, out: Array) -> None:
+        """Sum the magnitudes of the terms of the states at t."""
+        out[: self.n] = np.polynomial.polynomial.polyval(t, np.abs(series[:terms, : self.n]))
+
+    def magnitudes(self, place: int, x: Array, out: Array) -> None:
         """Multiply the magnitudes of the matrices by those of the states, of the acceleration and of 1."""
-        out[: self.rows] = self.magnitude @ x[: self.n + 2]
+        magnitude = self.phases[place].tables.magnitude[self.which]
+        out[: len(magnitude)] = magnitude @ np.asarray(x)[: self.n + 2]

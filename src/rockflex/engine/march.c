@@ -4,29 +4,42 @@
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
 
 #if defined(__AVX512F__)
 #define LANES 8
+#define UNITS 8 /* of 8 rows in a group, at most: two sums of a group must leave room in the registers */
 #elif defined(__AVX2__)
 #define LANES 4
+#define UNITS 3
 #else
 #define LANES 2
+#define UNITS 1
 #endif
 #define TEXT_(x) #x
 #define TEXT(x) TEXT_(x)
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
-#define REGISTERS (GROUP_ROWS / LANES)
-#define WIDE (MAX_STATES + MAX_ROWS + GROUP_ROWS)
+#define FLAT (AHEAD * MAX_ROWS) /* rows of the samples of one product, one sample after another */
+#define WIDE (MAX_STATES + MAX_ROWS)
 
 typedef double vec __attribute__((vector_size(8 * LANES), aligned(8)));
 typedef double line __attribute__((vector_size(8 * LANES))); /* at the start of a cache line */
 typedef long long mask __attribute__((vector_size(8 * LANES), aligned(8)));
 
+/* Whether a lane of a comparison is true. */
 static inline int any(mask m) {
-    long long found = 0;
-    for (int k = 0; k < LANES; k++) found |= m[k];
-    return found != 0;
+#if defined(__AVX512F__)
+    return _mm512_test_epi64_mask((__m512i)m, (__m512i)m) != 0;
+#elif defined(__AVX2__)
+    return _mm256_movemask_pd((__m256d)m) != 0;
+#elif defined(__SSE2__)
+    return _mm_movemask_pd((__m128d)m) != 0;
+#else
+    return (m[0] | m[1]) != 0;
+#endif
 }
 static inline vec at(const double *x) { return *(const vec *)x; }
 static inline void put(double *x, vec value) { *(vec *)x = value; }
@@ -34,31 +47,44 @@ static inline vec all(double x) { return x + (vec){0}; }
 static inline vec chosen(mask m, vec a, vec b) { return (vec)((m & (mask)a) | (~m & (mask)b)); }
 static inline vec larger(vec a, vec b) { return chosen(a > b, a, b); }
 static inline vec absolute(vec a) { return (vec)((mask)a & 0x7fffffffffffffffLL); }
-static inline vec counted(vec a, vec one_sided) { return chosen(one_sided > 0.0, a, absolute(a)); }
 static inline int up8(int n) { return (n + 7) / 8 * 8; }
 
-/* out = some columns of a table · x for a group of rows that fills so many registers. */
+/* out = table · x for a group of rows that fills so many registers. */
 static inline __attribute__((always_inline)) void group(int registers, int columns, const double *table,
                                                         const double *x, double *out) {
     const line *t = (const line *)table;
-    vec sum[REGISTERS] = {0};
-    for (int k = 0; k < columns; k++, t += registers)
+    vec even[UNITS * 8 / LANES] = {0}, odd[UNITS * 8 / LANES] = {0};
+    int k = 0;
+    for (; k + 1 < columns; k += 2, t += 2 * registers)
 #pragma GCC unroll 16
-        for (int j = 0; j < registers; j++) sum[j] += t[j] * x[k];
-    memcpy(out, sum, registers * sizeof *sum);
+        for (int j = 0; j < registers; j++) {
+            even[j] += t[j] * x[k];
+            odd[j] += t[registers + j] * x[k + 1];
+        }
+#pragma GCC unroll 16
+    for (int j = 0; j < registers; j++) put(out + j * LANES, (k < columns ? even[j] + t[j] * x[k] : even[j]) + odd[j]);
 }
 
-/* out = table · x for the first rows of a table with `total` rows, in whole groups. */
-static void product(int columns, int rows, int total, const double *table, const double *x, double *out) {
-    for (int g = 0; g < rows; g += GROUP_ROWS) {
-        int width = total - g < GROUP_ROWS ? total - g : GROUP_ROWS;
-        switch (width / 8) {
-        case 1: group(8 / LANES, columns, table, x, out); break;
-        case 2: group(16 / LANES, columns, table, x, out); break;
-        case 3: group(24 / LANES, columns, table, x, out); break;
-        default: group(32 / LANES, columns, table, x, out);
+/* out = table · x; groups are of nearly the same size, as in `tables.packed`. */
+static void product(int columns, int rows, const double *table, const double *x, double *out) {
+    int units = rows / 8, groups = (units + UNITS - 1) / UNITS;
+    for (int g = 0; g < groups; g++) {
+        int width = units * (g + 1) / groups - units * g / groups;
+        switch (width) {
+        case 1: group(1 * 8 / LANES, columns, table, x, out); break;
+#if UNITS > 1
+        case 2: group(2 * 8 / LANES, columns, table, x, out); break;
+        case 3: group(3 * 8 / LANES, columns, table, x, out); break;
+#endif
+#if UNITS > 3
+        case 4: group(4 * 8 / LANES, columns, table, x, out); break;
+        case 5: group(5 * 8 / LANES, columns, table, x, out); break;
+        case 6: group(6 * 8 / LANES, columns, table, x, out); break;
+        case 7: group(7 * 8 / LANES, columns, table, x, out); break;
+        case 8: group(8 * 8 / LANES, columns, table, x, out); break;
+#endif
         }
-        table += (size_t)columns * width, out += width;
+        table += (size_t)columns * width * 8, out += width * 8;
     }
 }
 
@@ -66,7 +92,7 @@ static void product(int columns, int rows, int total, const double *table, const
    changes by `rise`. Returns the number of terms at which it has converged to rounding; 0 if there is no room. */
 static int expand(const Tables *p, double h, double a, double rise, const double *y, int room, int width,
                   double *series) {
-    const int n = p->n, states = up8(n), rows = states + p->outputs + p->conditions;
+    const int n = p->n, states = up8(n), rows = up8(p->rows);
     double x[MAX_STATES + 2], z[WIDE], most[MAX_STATES];
     memset(x, 0, sizeof *x * states);
     memcpy(x, y, sizeof *x * n);
@@ -74,8 +100,8 @@ static int expand(const Tables *p, double h, double a, double rise, const double
     for (int k = 0, calm = 0; k < room; k++, series += width) {
         memcpy(series, x, sizeof *x * states);
         x[n] = k == 0 ? a : k == 1 ? rise : 0.0, x[n + 1] = k == 0;
-        product(n + 2, rows, rows, p->now, x, z);
-        memcpy(series + states, z + states, sizeof *z * (rows - states));
+        product(n + 2, states + rows, p->now, x, z);
+        memcpy(series + states, z + states, sizeof *z * rows);
         mask moves = {0};
         for (int i = 0; i < states; i += LANES) {
             vec next = at(z + i) * all(h / (k + 1)), top = larger(at(most + i), absolute(next));
@@ -97,6 +123,15 @@ static void evaluate(int rows, int terms, int width, const double *series, doubl
     }
 }
 
+/* The same of their coefficients' magnitudes. */
+static void amounts(int rows, int terms, int width, const double *series, double t, double *out) {
+    for (int j = 0; j < rows; j += LANES) {
+        vec sum = {0};
+        for (int k = terms - 1; k >= 0; k--) sum = sum * t + absolute(at(series + (size_t)k * width + j));
+        put(out + j, sum);
+    }
+}
+
 /* Sums of the magnitudes of all coefficients but the first. */
 static void spread(int rows, int terms, int width, const double *series, double *out) {
     for (int j = 0; j < rows; j += LANES) {
@@ -106,14 +141,44 @@ static void spread(int rows, int terms, int width, const double *series, double 
     }
 }
 
+typedef struct { /* what is known of every row, once for each sample of a product, one sample after another */
+    int flat;      /* of them, to a multiple of 8 */
+    unsigned char sample[FLAT];                  /* the sample of each */
+    mask flip[FLAT / LANES], keep[FLAT / LANES]; /* a value counts as (value ^ flip) & keep */
+    double limit[FLAT];                          /* the peak, or 0, which a condition must not pass */
+    double bend4[FLAT], over[FLAT], cap[FLAT];   /* in this block: 4 b and 1/16 b with b = h²/8 |r''|, and the cap */
+} Watch;
+
 typedef struct { /* bounds that hold for the samples of a block */
     int fine;    /* whether `sway` is known */
-    double moves[MAX_STATES + 2], bend[MAX_ROWS + GROUP_ROWS], sway[MAX_ROWS + GROUP_ROWS];
+    double moves[2 * MAX_STATES + 2], bend[MAX_ROWS], sway[MAX_ROWS];
 } Block;
 
-static void begin_block(const Tables *p, const double *a, int samples, const double *y, Block *b) {
-    const int n = p->n, rows = p->outputs + p->conditions;
-    double x[MAX_STATES + 2], rates[WIDE], varies = 0.0, steepest = 0.0;
+static void begin_watch(const Tables *p, const Log *log, Watch *w) {
+    const int m = p->outputs, rows = p->rows;
+    long long *flip = (long long *)w->flip, *keep = (long long *)w->keep;
+    w->flat = up8(AHEAD * rows);
+    for (int k = 0, f = 0; k < AHEAD; k++)
+        for (int j = 0; j < rows; j++, f++) {
+            flip[f] = j < m ? 0 : (long long)(1ULL << 63);
+            keep[f] = j < m && !(p->one_sided[j] > 0.0) ? 0x7fffffffffffffffLL : -1;
+            w->limit[f] = j < m ? log->high[j] : -1e-300, w->sample[f] = k;
+        }
+    for (int f = AHEAD * rows; f < w->flat; f++) flip[f] = keep[f] = 0, w->limit[f] = INFINITY, w->bend4[f] = w->over[f] = w->cap[f] = 0.0;
+}
+
+static inline double counted(const Watch *w, int f, double value) {
+    union {
+        double value;
+        long long bits;
+    } x = {value};
+    x.bits = (x.bits ^ ((const long long *)w->flip)[f]) & ((const long long *)w->keep)[f];
+    return x.value;
+}
+
+static void begin_block(const Tables *p, const double *a, int samples, const double *y, Block *b, Watch *w) {
+    const int n = p->n, rows = p->rows, parts = p->parts;
+    double x[MAX_STATES + 2], found[2 * MAX_STATES], varies = 0.0, steepest = 0.0;
     for (int k = 0; k < samples; k++) {
         double change = fabs(a[k + 1] - a[k]);
         varies += change;
@@ -121,112 +186,210 @@ static void begin_block(const Tables *p, const double *a, int samples, const dou
     }
     memcpy(x, y, sizeof *x * n);
     x[n] = a[0], x[n + 1] = 1.0;
-    product(n + 2, n, up8(n) + rows, p->now, x, rates);
-    for (int k = 0; k < n; k++) b->moves[k] = fabs(rates[k]);
+    product(n + 2, up8(parts), p->moves, x, found);
+    for (int k = 0; k < n; k++) b->moves[k] = fabs(found[k]);
+    for (int k = n; k < parts; k++) b->moves[k + 2] = fabs(found[k]);
     b->moves[n] = varies, b->moves[n + 1] = steepest / p->h;
-    product(n + 2, rows, rows, p->bend, b->moves, b->bend);
+    product(parts + 2, up8(rows), p->bend, b->moves, b->bend);
+    memset(w->cap, 0, sizeof *w->cap * rows);
+    if (parts > n) product(parts + 2, up8(rows), p->cap, b->moves, w->cap);
     b->fine = 0;
+    for (int j = 0; j < rows; j++) {
+        double bend = b->bend[j];
+        w->bend4[j] = 4.0 * bend, w->over[j] = 1.0 / (16.0 * bend + 1e-300);
+    }
+    for (int k = 1; k < AHEAD; k++) {
+        memcpy(w->bend4 + k * rows, w->bend4, sizeof *w->bend4 * rows);
+        memcpy(w->over + k * rows, w->over, sizeof *w->over * rows);
+        memcpy(w->cap + k * rows, w->cap, sizeof *w->cap * rows);
+    }
 }
 
 /* How far a row may get beyond both ends of a sample, between which it changes: h²/8 |r''| is at most `bend`. A parabola
    of that curvature gets furthest; where the change is too large for one, the row is monotonic. */
-static inline vec excess(vec change, vec bend) {
-    vec turns = larger(4.0 * bend - absolute(change), all(0.0));
-    return turns * turns / larger(16.0 * bend, all(1e-300));
+static inline vec excess(vec change, vec bend4, vec over) {
+    vec turns = larger(bend4 - absolute(change), all(0.0));
+    return turns * turns * over;
 }
 
-/* The same by the distance from the chord, from the change of the slope and the third derivative. */
-static void refine(const Tables *p, const double *a, const double *y0, const double *y1, Block *b, double *beyond) {
-    const int n = p->n, rows = p->outputs + p->conditions;
-    double x[MAX_STATES + 2], before[MAX_ROWS + GROUP_ROWS], after[MAX_ROWS + GROUP_ROWS];
-    if (!b->fine) product(n + 2, rows, rows, p->sway, b->moves, b->sway);
-    b->fine = 1;
-    memcpy(x, y0, sizeof *x * n);
-    x[n] = a[0], x[n + 1] = 1.0;
-    product(n + 2, rows, rows, p->slope, x, before);
-    memcpy(x, y1, sizeof *x * n);
-    x[n] = a[1];
-    product(n + 2, rows, rows, p->slope, x, after);
-    for (int j = 0; j < rows; j++) {
-        double closer = fabs(after[j] - before[j]) * (p->h / 8.0) + b->sway[j];
-        beyond[j] = closer < beyond[j] ? closer : beyond[j];
+/* What counts of some rows. */
+static inline vec counts(const Watch *w, int f, vec row) {
+    return (vec)(((mask)row ^ w->flip[f / LANES]) & w->keep[f / LANES]);
+}
+
+/* Whether any sample of a product asks for a closer look. */
+static int asks(const Watch *w, const double *before, const double *after) {
+    mask some = {0};
+    for (int f = 0; f < w->flat; f += LANES) {
+        vec r0 = at(before + f), r1 = at(after + f);
+        vec beyond = excess(r1 - r0, at(w->bend4 + f), at(w->over + f)) + at(w->cap + f);
+        some |= larger(counts(w, f, r0), counts(w, f, r1)) + beyond > at(w->limit + f);
     }
+    return any(some);
 }
 
-static void raise_peaks(const Tables *p, const double *rows, double sample, Log *log) {
+typedef struct { /* samples of a product, a bit for each */
+    unsigned at_end, within, fails; /* in which a peak is at the end, may be within, and in which a condition may fail */
+} Asking;
+
+/* Closer bounds of the rows in every sample of a product, and the samples that still ask. A row stays
+   near its chord by the change of its slope and its third derivative, or near what fast modes swing about. */
+static Asking asking(const Tables *p, const double *x, const double *before, const double *after, Block *b,
+                     const Watch *w, double *lowest, double *highest) {
+    const int rows = p->rows, columns = p->n + AHEAD + 2, whole = up8((AHEAD + 1) * rows);
+    double slopes[FLAT + MAX_ROWS], centres[FLAT + MAX_ROWS], sway[FLAT];
+    Asking found = {0};
+    if (!b->fine) product(p->parts + 2, up8(rows), p->sway, b->moves, b->sway);
+    b->fine = 1;
+    for (int k = 0; k < AHEAD; k++) memcpy(sway + k * rows, b->sway, sizeof *sway * rows);
+    for (int f = AHEAD * rows; f < w->flat; f++) sway[f] = 0.0;
+    product(columns, whole, p->slope, x, slopes);
+    if (p->parts > p->n) product(columns, whole, p->centre, x, centres);
+    for (int f = 0; f < w->flat; f += LANES) {
+        vec r0 = at(before + f), r1 = at(after + f), s0 = at(slopes + f), s1 = at(slopes + rows + f);
+        vec beyond = excess(r1 - r0, at(w->bend4 + f), at(w->over + f)) + at(w->cap + f);
+        vec closer = absolute(s1 - s0) * (p->h / 8.0) + at(sway + f);
+        beyond = chosen(closer < beyond, closer, beyond);
+        vec low = -larger(-r0, -r1) - beyond, high = larger(r0, r1) + beyond;
+        if (p->parts > p->n) {
+            vec c0 = at(centres + f), c1 = at(centres + rows + f), away = 0.5 * at(w->cap + f) + 0.25 * at(w->bend4 + f);
+            low = larger(low, -larger(-c0, -c1) - away), high = -larger(-high, -larger(c0, c1) - away);
+        }
+        put(lowest + f, low), put(highest + f, high);
+        vec limit = at(w->limit + f), end = counts(w, f, r1), top = larger(counts(w, f, low), counts(w, f, high));
+        mask above = top > limit, within = top > larger(limit, end), condition = w->flip[f / LANES] < 0;
+        if (any(above))
+            for (int k = 0; k < LANES; k++) {
+                if (above[k])
+                    *(condition[k] ? &found.fails : within[k] ? &found.within : &found.at_end) |= 1u << w->sample[f + k];
+            }
+    }
+    return found;
+}
+
+/* The state a sample later. */
+static void advance(const Tables *p, const double *a, const double *y, double *next) {
+    const int n = p->n;
+    double x[MAX_STATES + 3], z[MAX_STATES];
+    memcpy(x, y, sizeof *x * n);
+    x[n] = a[0], x[n + 1] = a[1], x[n + 2] = 1.0;
+    product(n + 3, up8(n), p->step, x, z);
+    for (int k = 0; k < n; k++) next[k] = z[k] + y[k];
+}
+
+/* Raise the peaks to the outputs at a sample. */
+static inline void raise_peaks(const Tables *p, const double *rows, double sample, const Watch *w, Log *log) {
     for (int j = 0; j < p->outputs; j += LANES) {
-        vec value = counted(at(rows + j), at(p->one_sided + j)), high = at(log->high + j);
+        vec value = counts(w, j, at(rows + j)), high = at(log->high + j);
         put(log->when + j, chosen(value > high, all(log->passed + sample), at(log->when + j)));
         put(log->high + j, larger(high, value));
     }
 }
 
+typedef double States[AHEAD + 1][MAX_STATES]; /* at the samples of a product */
+
+/* Look at the samples of a product that ask for it, whose rows have these bounds. Returns how many there are before the
+   first in which a condition may fail. */
+static int inspect(const Tables *p, int phase, const double *a, int i, int samples, Asking asking, const double *rows,
+                   const double *lowest, const double *highest, States y, int *known, Watch *w, Log *log) {
+    const int n = p->n, m = p->outputs, count = p->rows;
+    int k = 0;
+    for (; k < samples; k++, rows += count, lowest += count, highest += count) {
+        const double *r1 = rows + count;
+        if (!((asking.at_end | asking.within | asking.fails) >> k & 1)) continue;
+        double *row = log->candidates + (size_t)log->count * log->width, *above = row + 2 + n;
+        int fails = asking.fails >> k & 1, higher = 0;
+        if (asking.within >> k & 1)
+            for (int j = 0; j < m; j++) {
+                double end = counted(w, j, r1[j]), high = log->high[j], low = counted(w, j, lowest[j]);
+                above[j] = counted(w, j, highest[j]);
+                above[j] = low > above[j] ? low : above[j];
+                higher |= above[j] > (high > end ? high : end);
+            }
+        if (fails || higher)
+            for (; *known < k; ++*known) advance(p, a + *known, y[*known], y[*known + 1]);
+        if (fails) {
+            log->looks = 1;
+            break;
+        }
+        if (higher) {
+            row[0] = phase, row[1] = i + k;
+            memcpy(row + 2, y[k], sizeof **y * n);
+            log->count++;
+        }
+        raise_peaks(p, r1, i + k + 1, w, log);
+    }
+    for (int j = 0; j < AHEAD; j++) memcpy(w->limit + j * count, log->high, sizeof *log->high * m);
+    return k;
+}
+
 /* Advance whole samples from i, up to `last`. Returns the number of the sample at which the motion stands: before the
-   first in which a condition may fail, or where a block begins for which there is no room for candidates. Blocks begin
-   at multiples of their length, so that what is logged does not change the motion. */
+   first in which a condition may fail, or where a block begins for which there is no room for candidates. What is logged
+   does not change the motion. */
 static int march(const Tables *p, int phase, const double *a, int i, int last, double *y, Log *log) {
-    const int n = p->n, states = up8(n), m = p->outputs, rows = m + p->conditions;
-    double buffers[2][WIDE], x[MAX_STATES + 3], beyond[MAX_ROWS];
-    double *old = buffers[0], *new = buffers[1];
+    const int n = p->n, states = up8(n), rows = p->rows, flat = up8(AHEAD * rows);
+    double room[MAX_ROWS + FLAT + MAX_STATES], x[MAX_STATES + AHEAD + 2], now[WIDE], padded[AHEAD + 1];
+    double *after = room + up8(rows), *before = after - rows, *change = after + flat;
+    double lowest[FLAT], highest[FLAT];
+    States at_samples;
     Block block;
+    Watch watch;
+    begin_watch(p, log, &watch);
     memcpy(x, y, sizeof *x * n);
-    x[n] = a[i], x[n + 1] = 1.0;
     if (log->resumes) {
-        memcpy(old + states, log->rows, sizeof *x * rows);
+        memcpy(before, log->seen, sizeof *x * rows);
     } else {
-        product(n + 2, states + rows, states + rows, p->now, x, old);
-        raise_peaks(p, old + states, i, log);
+        x[n] = a[i], x[n + 1] = 1.0;
+        product(n + 2, states + up8(rows), p->now, x, now);
+        memcpy(before, now + states, sizeof *x * rows);
+        raise_peaks(p, before, i, &watch, log);
     }
     log->looks = log->resumes = 0;
-    for (int begins = 1; i < last; i++, begins = i % BLOCK == 0) {
-        if (begins) {
+    for (int left = 0; i < last && !log->looks; left -= AHEAD) {
+        if (left == 0) {
             if (log->count + BLOCK > log->room) {
-                memcpy(log->rows, old + states, sizeof *x * rows);
+                memcpy(log->seen, before, sizeof *x * rows);
                 log->resumes = 1;
                 break;
             }
-            int end = i - i % BLOCK + BLOCK;
-            begin_block(p, a + i, (end < last ? end : last) - i, x, &block);
+            begin_block(p, a + i, last - i < BLOCK ? last - i : BLOCK, x, &block, &watch);
+            left = BLOCK;
         }
-        x[n] = a[i], x[n + 1] = a[i + 1], x[n + 2] = 1.0;
-        product(n + 3, states + rows, states + rows, p->step, x, new);
-        for (int k = 0; k < n; k++) new[k] += x[k];
-        const double *r0 = old + states, *r1 = new + states;
-        double *row = log->candidates + (size_t)log->count * log->width, *above = row + 2 + n;
-        for (int j = 0; j < rows; j += LANES) put(beyond + j, excess(at(r1 + j) - at(r0 + j), at(block.bend + j)));
-        for (int fine = 0;; fine = 1) {
-            mask fails = {0}, higher = {0};
-            for (int j = m; j < rows; j += LANES)
-                fails |= (at(r0 + j) <= at(beyond + j)) | (at(r1 + j) <= at(beyond + j));
-            for (int j = 0; j < m; j += LANES) {
-                vec side = at(p->one_sided + j), end = counted(at(r1 + j), side);
-                vec top = larger(counted(at(r0 + j), side), end) + at(beyond + j);
-                put(above + j, top);
-                higher |= top > larger(at(log->high + j), end);
-            }
-            int peaks = any(higher);
-            log->looks = any(fails);
-            if ((log->looks || peaks) && !fine) {
-                refine(p, a + i, x, new, &block, beyond);
-                continue;
-            }
-            if (log->looks) goto out;
-            if (peaks) {
-                row[0] = phase, row[1] = i;
-                memcpy(row + 2, x, sizeof *x * n);
-                log->count++;
-            }
-            break;
+        int samples = last - i < AHEAD ? last - i : AHEAD;
+        const double *ground = a + i;
+        if (samples < AHEAD) {
+            for (int k = 0; k <= AHEAD; k++) padded[k] = a[k < samples ? i + k : last];
+            ground = padded;
         }
-        raise_peaks(p, r1, i + 1, log);
-        memcpy(x, new, sizeof *x * n);
-        if (log->states) memcpy(log->states + (size_t)(i + 1) * n, x, sizeof *x * n);
-        double *swap = old;
-        old = new, new = swap;
+        for (int k = 0; k <= AHEAD; k++) x[n + k] = ground[k];
+        x[n + AHEAD + 1] = 1.0;
+        product(n + AHEAD + 2, flat + states, p->block, x, after);
+        int passed = samples;
+        int look = asks(&watch, before, after);
+        if (log->states || samples < AHEAD || look) {
+            int known = 0; /* samples after which the state is known */
+            memcpy(at_samples[0], x, sizeof *x * n);
+            if (look) {
+                Asking which = asking(p, x, before, after, &block, &watch, lowest, highest);
+                passed = inspect(p, phase, ground, i, samples, which, before, lowest, highest, at_samples, &known, &watch, log);
+            }
+            if (log->states || passed < AHEAD)
+                for (; known < passed; known++) advance(p, ground + known, at_samples[known], at_samples[known + 1]);
+            if (log->states) /* the last one may yet be replaced */
+                for (int k = 1; k <= passed; k++) memcpy(log->states + (size_t)(i + k) * n, at_samples[k], sizeof *x * n);
+        }
+        if (passed == AHEAD) {
+            for (int k = 0; k < n; k++) x[k] += change[k];
+            if (log->states) memcpy(log->states + (size_t)(i + passed) * n, x, sizeof *x * n);
+        } else {
+            memcpy(x, at_samples[passed], sizeof *x * n);
+        }
+        if (passed) memcpy(before, before + passed * rows, sizeof *x * rows);
+        i += passed;
+        log->work += passed;
     }
-out:
     memcpy(y, x, sizeof *x * n);
     return i;
 }
 
-const Loops JOIN(rockflex_loops_, LEVEL) = {TEXT(LEVEL), product, expand, evaluate, spread, march};
+const Loops JOIN(rockflex_loops_, LEVEL) = {TEXT(LEVEL), UNITS * 8, product, expand, evaluate, amounts, spread, march};

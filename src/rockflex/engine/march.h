@@ -1,24 +1,29 @@
-/* The loops over vectors: a product of matrix and vector for every sample, and power series.
+/* The loops over vectors: products of a matrix and a vector for a few samples at once, and power series.
 
-   Rows come in multiples of 8, and tables in groups of 32 rows or, at the end, fewer, column after column, so that a
-   group is held in registers while a column is added: 4 registers of AVX-512, 8 of AVX2, 16 of SSE2 and NEON. */
+   Rows come in multiples of 8. A table is cut into groups of rows, column after column, that are held in registers while
+   columns are added: those with even and those with odd numbers apart, so that a sum does not depend on its group. */
 #ifndef ROCKFLEX_MARCH_H
 #define ROCKFLEX_MARCH_H
 
 enum {
-    GROUP_ROWS = 32,
-    BLOCK = 8,      /* samples that share bounds */
+    AHEAD = 4,        /* samples in one product */
+    BLOCK = 16,       /* samples that share bounds */
     MAX_STATES = 320,
-    MAX_ROWS = 640  /* outputs and conditions */
+    MAX_ROWS = 640    /* outputs and conditions */
 };
 
 typedef struct {
-    int n, outputs, conditions; /* states, outputs, conditions; the latter two in multiples of 8 */
+    int n, outputs, rows; /* states, outputs, outputs and conditions */
+    int parts;            /* of y', whose magnitudes bound the rows */
     double h;
-    const double *step;      /* columns y, a0, a1, 1: change of the states in a sample; outputs, conditions after it */
-    const double *now;       /* columns y, a, 1: rates of the states, outputs, conditions */
-    const double *slope;     /* columns y, a, 1: rates of outputs and conditions, without the part of a' */
-    const double *bend;      /* columns |y'|, variation of a, largest |a'|: h²/8 |r''| within a block */
+    const double *block;     /* columns y, a0, a1 .., 1: rows after each of the next samples, then change of the states */
+    const double *step;      /* columns y, a0, a1, 1: change of the states in one sample */
+    const double *moves;     /* columns y, a, 1: parts of y', those of slow modes and amplitudes of fast ones */
+    const double *now;       /* columns y, a, 1: rates of the states, rows */
+    const double *slope;     /* columns y, a0, a1 .., 1: rates of the rows at these samples, without the part of a' */
+    const double *bend;      /* columns: n parts, variation of a, largest |a'|, other parts: h²/8 |r''| in a block */
+    const double *cap;       /* the same columns: distance from the chord due to fast modes */
+    const double *centre;    /* columns y, a0, a1 .., 1: at these samples, what they swing about, within half of that */
     const double *sway;      /* the same columns: h³/96 |r'''| */
     const double *magnitude; /* |now| */
     const double *one_sided; /* 1 for outputs whose largest value counts, 0 where it is the largest magnitude */
@@ -29,17 +34,30 @@ typedef struct {
     double passed;           /* samples before the first of this acceleration */
     double *states;          /* a row for every sample, if a history is kept; otherwise null */
     double *candidates;      /* samples that may have a higher value within: phase, sample, y, bound of every output */
-    double *rows;            /* outputs and conditions where the march has stopped for want of room */
+    double *seen;            /* rows where the march has stopped for want of room */
     int resumes;             /* whether it has: it goes on from there with the same bits */
     int count, room, width;  /* rows of candidates, at most so many; doubles in a row */
     int looks;               /* whether the march has stopped before a sample in which a condition may fail */
+    long long work;          /* samples and expansions so far */
 } Log;
+
+typedef struct {
+    Tables tables;
+    int events, halvings;  /* of the step, so that its power series converge */
+    const double *scale;   /* of every event */
+    const double **jump;   /* of every event, and of the rest after it: a matrix; null if the state is continuous */
+    const double **rest;   /* of every event: columns y, a, 1; null if nothing can follow instead */
+    int *following;        /* of every event, and of the rest after it: place of the phase, or one of the numbers below */
+} Phase;
+enum { UNKNOWN = -1, ENDS = -2, ASKED = -3 };
 
 typedef struct { /* the loops for one level of vector instructions */
     const char *level;
-    void (*product)(int columns, int rows, int total, const double *table, const double *x, double *out);
+    int group; /* rows in a group of a table, at most */
+    void (*product)(int columns, int rows, const double *table, const double *x, double *out);
     int (*expand)(const Tables *p, double h, double a, double rise, const double *y, int room, int width, double *series);
     void (*evaluate)(int rows, int terms, int width, const double *series, double t, double *out);
+    void (*amounts)(int rows, int terms, int width, const double *series, double t, double *out);
     void (*spread)(int rows, int terms, int width, const double *series, double *out);
     int (*march)(const Tables *p, int phase, const double *a, int i, int last, double *y, Log *log);
 } Loops;

@@ -11,6 +11,7 @@ NEVER = cython.declare(cython.double, 2.0)
 
 
 @cython.ccall
+@cython.nogil
 @cython.exceptval(check=False)
 def value(q: cython.double[::1], terms: cython.int, t: cython.double) -> cython.double:
     """The value of a polynomial."""
@@ -22,6 +23,7 @@ def value(q: cython.double[::1], terms: cython.int, t: cython.double) -> cython.
 
 
 @cython.cfunc
+@cython.nogil
 @cython.exceptval(check=False)
 def positive_for(p: cython.double, slope: cython.double, bend: cython.double) -> cython.double:
     """The positive zero of p + slope d - bend d²/2 for p > 0, computed without cancellation."""
@@ -32,6 +34,7 @@ def positive_for(p: cython.double, slope: cython.double, bend: cython.double) ->
 
 
 @cython.ccall
+@cython.nogil
 @cython.exceptval(check=False)
 def first_fall(
     q: cython.double[::1], shift: cython.int, terms: cython.int, start: cython.double, stop: cython.double
@@ -68,3 +71,20 @@ def first_fall(
         if t + step <= t:
             return t
         t += step
+
+
+@cython.ccall
+@cython.nogil
+@cython.exceptval(check=False)
+def next_turn(
+    q: cython.double[::1], slope: cython.double[::1], terms: cython.int, start: cython.double, stop: cython.double
+) -> cython.double:
+    """Where the slope of a polynomial has its next zero, or `stop`; the slope is written beside it."""
+    k: cython.int
+    sign: cython.double = 0.0
+    for k in range(terms - 1, 0, -1):
+        sign = sign * start + k * q[k]
+    sign = 1.0 if sign >= 0.0 else -1.0
+    for k in range(1, terms):
+        slope[k - 1] = sign * k * q[k]
+    return min(first_fall(slope, 0, terms - 1, start, stop), stop)

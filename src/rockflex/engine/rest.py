@@ -26,10 +26,12 @@ def at_rest(phase: LinearPhase, state: Array, high: Array, one_sided: Array) -> 
     scale = np.abs(A) @ np.abs(state) + np.abs(phase.c)  # of which the rates are sums
     held = np.abs(roots) <= ROUNDING * np.abs(roots).max(initial=1e-300)
     moving = ~held & (sizes > ROUNDING * scale[:, None]).any(axis=0)
-    if (sizes[:, held] > ROUNDING * scale[:, None]).any() or (np.real(roots[moving]) >= 0.0).any():
+    if (sizes[:, held] > ROUNDING * scale[:, None]).any() or (
+        np.real(roots[moving]) > ROUNDING * np.abs(roots[moving])
+    ).any():
         return False
     rows = np.concatenate((phase.C, np.array([event.row for event in phase.events]).reshape(-1, n)))
-    constants = np.concatenate((phase.e, [event.constant for event in phase.events]))
+    constants = np.concatenate((phase.e, np.array([event.constant for event in phase.events], dtype=float)))
     ahead = np.where(held, 0.0, parts / np.where(held, 1.0, roots))
     strays = ((rows @ vectors) * ahead)[:, ~held]
     steady = np.imag(roots[~held]) == 0.0
@@ -41,4 +43,4 @@ def at_rest(phase: LinearPhase, state: Array, high: Array, one_sided: Array) -> 
     if (np.where(below <= rounding, end + rounding, end - below)[m:] < 0.0).any():
         return False
     highest = np.where(one_sided[:m] > 0.0, end[:m] + above[:m], np.maximum(end + above, below - end)[:m])
-    return bool(((np.maximum(below, above) <= rounding)[:m] | (highest <= high[:m])).all())
+    return bool(((np.maximum(below, above) <= rounding)[:m] | (highest <= high[:m] + rounding[:m])).all())

@@ -12,17 +12,19 @@ import numpy as np
 
 from rockflex._errors import InputError, SolverError
 from rockflex.engine.rest import at_rest
-from rockflex.engine.system import acceleration, array, up8
+from rockflex.engine.system import StepTooLongError, acceleration, array, up8
 from rockflex.engine.tables import tables_of
 
 if cython.compiled:
     from cython.cimports.cpython.exc import PyErr_CheckSignals
     from cython.cimports.libc.math import fabs, isfinite
-    from cython.cimports.rockflex.engine.loops import Peaks, PhaseLoops
-    from cython.cimports.rockflex.engine.polynomials import first_fall, value
+    from cython.cimports.rockflex.engine.journal import Journal
+    from cython.cimports.rockflex.engine.loops import ASKED, ENDS, UNKNOWN, Peaks, Phases
+    from cython.cimports.rockflex.engine.polynomials import first_fall, next_turn, value
 else:
-    from rockflex.engine.loops_twin import Peaks, PhaseLoops, PyErr_CheckSignals
-    from rockflex.engine.polynomials import first_fall, value
+    from rockflex.engine.journal import Journal
+    from rockflex.engine.loops_twin import ASKED, ENDS, UNKNOWN, Peaks, Phases, PyErr_CheckSignals
+    from rockflex.engine.polynomials import first_fall, next_turn, value
 
 TERMS = cython.declare(cython.int, 48)  # of a series, at most
 ORDERS = cython.declare(cython.int, 5)  # derivatives of a condition that may vanish at the start of a phase
@@ -32,63 +34,10 @@ APART = cython.declare(cython.double, 1e-9)  # of a step: between two peaks of a
 AT_ONCE = cython.declare(cython.int, 100)  # events at one instant, at most
 IN_SAMPLE = cython.declare(cython.int, 20000)  # events in one sample, at most
 CANDIDATES = cython.declare(cython.int, 64)  # samples that are kept for a closer look at their peaks
-STRETCH = cython.declare(cython.int, 65536)  # samples without a look at Ctrl-C
+STRETCH = cython.declare(cython.int, 65536)  # samples, or what counts like them, without a look at Ctrl-C
 QUIET = cython.declare(cython.int, 64)  # samples without excitation before it is asked whether all is at rest
-LEADS = cython.declare(cython.int, 0)  # kinds of events: to a known phase, to the end, or to be asked what follows
-ENDS = cython.declare(cython.int, 1)
-ASKED = cython.declare(cython.int, 2)
-
-
-@cython.cclass
-class PhaseAtStep:
-    """A phase for one time step."""
-
-    key = cython.declare(object, visibility="readonly")
-    phase = cython.declare(object, visibility="readonly")
-    events = cython.declare(tuple, visibility="readonly")
-    loops: PhaseLoops
-    halvings: cython.int
-    n_events: cython.int
-    first: cython.int  # row of the first condition, after the states and outputs
-    rows: cython.int
-    scale: cython.double[::1]
-    jump: cython.double[:, :, ::1]  # of every event, and its magnitudes
-    jump_size: cython.double[:, :, ::1]
-    kind: cython.int[::1]  # of every event: LEADS, ENDS, ASKED
-    following: list  # place of the phase that follows every event, as far as it is known
-
-    def __init__(self, key, phase, h, one_sided):
-        tables = tables_of(phase, h)
-        if not np.isfinite(tables.step).all():
-            raise InputError(f"phase {key!r}: the motion grows without bound within one time step of {h:.9g}.")
-        self.key, self.phase, self.events, self.halvings = key, phase, tuple(phase.events), tables.halvings
-        self.loops = PhaseLoops(tables, one_sided, h)
-        self.n_events, self.first = len(self.events), up8(tables.n) + tables.outputs
-        self.rows = self.first + tables.conditions
-        self.scale = np.array([event.scale for event in self.events], dtype=float)
-        kinds, jumps = np.zeros(self.n_events, dtype=np.intc), np.tile(np.eye(tables.n), (self.n_events, 1, 1))
-        for e, event in enumerate(self.events):
-            if callable(event.jump) or event.rest is not None:
-                kinds[e] = ASKED
-                continue
-            kinds[e] = ENDS if event.target is None else LEADS
-            if event.jump is not None:
-                jumps[e] = event.jump
-        self.kind, self.jump, self.jump_size = kinds, jumps, np.abs(jumps)
-        self.following = [None] * self.n_events
-
-
-@cython.cfunc
-@cython.exceptval(check=False)
-def row_times(
-    matrices: cython.double[:, :, ::1], place: cython.int, row: cython.int, x: cython.double[::1], n: cython.int
-) -> cython.double:
-    """One row of a matrix times a vector."""
-    total: cython.double = 0.0
-    j: cython.int
-    for j in range(n):
-        total += matrices[place, row, j] * x[j]
-    return total
+NOTHING = cython.declare(cython.double, 1e-18)  # of the change of an output: a term that is left out in a search
+EXPANSION = cython.declare(cython.int, 32)  # samples that a power series counts like
 
 
 @cython.cclass
@@ -105,122 +54,182 @@ class Run:
         State at time 0; zero by default.
     key
         Key of the phase at time 0; that of the system by default.
+    which
+        Which system of a stack.
 
     Attributes
     ----------
-    system, h
+    system, h, which
         As given.
     ended
         Whether an event without a next phase has happened; otherwise the run stands at the end of a sample.
+    failure : str
+        Why the run has failed: "accumulation" of events, "growth" without bound, "work" beyond the limit; otherwise
+        empty.
+    watch : callable
+        Called now and then during a run; it may end the run by an exception.
+    limit : int
+        The `work` that the run may take.
     """
 
     system = cython.declare(object, visibility="readonly")
     h = cython.declare(cython.double, visibility="readonly")
+    which = cython.declare(cython.int, visibility="readonly")
     ended = cython.declare(cython.bint, visibility="readonly")
+    watch = cython.declare(object, visibility="public")
+    limit = cython.declare(cython.longlong, visibility="public")
+    pause: cython.longlong  # the work at which the run looks up next
+    failure = cython.declare(str, visibility="readonly")
     failed: cython.bint
-    phases: list  # met so far
+    reached: cython.Py_ssize_t  # samples of this call of `advance` that have passed
+    met: list  # phases met so far: keys and phases
     places: dict  # of the phases, by their keys
-    present: PhaseAtStep
-    place: cython.int  # of the present phase
+    phases: Phases
+    now: cython.int  # place of the present phase
     n: cython.int
-    states: cython.int  # rows of the states and of the outputs in tables and series, multiples of 8
+    states: cython.int  # rows of the states in tables and series, a multiple of 8
     outputs: cython.int
-    y: cython.double[::1]
+    y: cython.double[::1]  # and zeros, to a multiple of 8; so in `sizes` and `before`
     one_sided: cython.double[::1]
     peaks_: Peaks
+    high: cython.double[::1]
+    when: cython.double[::1]
     series: cython.double[:, ::1]  # a row of coefficients for each power: states, outputs, conditions
     sums: cython.double[:, ::1]  # the same for the first powers: magnitudes of the terms of a coefficient
     away: cython.double[::1]  # of outputs and conditions: how far the expanded motion may get from its start
     sizes: cython.double[::1]  # of the states: magnitudes of the terms that they were summed from
-    old_sizes: cython.double[::1]
     workspace: cython.double[::1]
+    before: cython.double[::1]  # the state, while the motion in another sample is expanded
     q: cython.double[::1]  # polynomials
     slope: cython.double[::1]
     passed: cython.Py_ssize_t  # samples, before this call of `advance`
     end: cython.double  # time of the last event
-    log: list  # events
-    nodes: list  # parts of the history
+    journal: Journal
     n_looks: cython.int
     n_searched: cython.int
 
-    def __init__(self, system, h, state=None, key=None):
+    def __init__(self, system, h, state=None, key=None, which: cython.int = 0):
         if not (h > 0.0 and isfinite(h)):
             raise InputError(f"The time step must be a positive number, but {h!r} was given.")
-        self.system, self.h, self.phases, self.places = system, h, [], {}
-        self.n, self.outputs = system.layout.size, up8(max(1, len(system.outputs)))
+        self.system, self.h, self.met, self.places = system, h, [], {}
+        self.n, self.outputs = system.layout.size, len(system.outputs)
         self.states = up8(self.n)
-        one_sided = np.zeros(self.outputs)
+        one_sided = np.zeros(up8(max(1, self.outputs)))
         one_sided[[list(system.outputs).index(name) for name in system.one_sided]] = 1.0
-        self.one_sided = one_sided
+        self.one_sided, self.phases = one_sided, Phases(one_sided, self.n)
+        self.peaks_ = Peaks(one_sided, self.n, CANDIDATES)
+        self.high, self.when = self.peaks_.high, self.peaks_.when
         self.series, self.sums, self.away = np.zeros((TERMS, 0)), np.zeros((ORDERS, 0)), np.zeros(0)
-        self.restart(state, key)
+        self.y, self.sizes, self.before = np.zeros(self.states), np.zeros(self.states), np.zeros(self.states)
+        self.workspace, self.q, self.slope = np.zeros(self.states + 8), np.zeros(TERMS), np.zeros(TERMS)
+        self.journal = Journal(self.n)
+        self.watch, self.limit, self.which = None, 2**62, 0
+        self.restart(state, key, which)
 
-    def restart(self, state=None, key=None):
+    def restart(self, state=None, key=None, which: cython.int = 0):
         """Begin anew at time 0, with the phases met so far."""
-        self.peaks_ = Peaks(np.asarray(self.one_sided), self.n, CANDIDATES)
-        self.y = np.zeros(self.n) if state is None else array("the state", state, (self.n,))
-        self.sizes, self.old_sizes, self.workspace = np.zeros(self.n), np.zeros(self.n), np.zeros(self.states + 2)
-        self.q, self.slope = np.zeros(TERMS), np.zeros(TERMS)
-        self.log, self.nodes, self.ended, self.failed, self.passed, self.end = [], [], False, False, 0, 0.0
+        i: cython.int
+        if not 0 <= which < self.system.count:
+            raise InputError(f"There are {self.system.count} systems in the stack, but number {which} was asked for.")
+        if which != self.which:
+            self.which = which
+            self.phases.select(which)
+        self.peaks_.begin(self.one_sided)
+        given: cython.double[::1] = self.before
+        if state is not None:
+            given = array("the state", state, (self.n,))
+        for i in range(self.n):
+            self.y[i] = given[i] if state is not None else 0.0
+            self.sizes[i] = 0.0
+        self.ended, self.failed, self.failure, self.passed, self.end, self.pause = False, False, "", 0, 0.0, 0
+        self.reached = 0
+        self.journal.begin()
         self.n_looks = self.n_searched = 0
-        self.enter(self.system.start if key is None else key)
+        self.now = self.enter(self.system.start if key is None else key)
 
     @property
     def key(self):
         """Key of the present phase."""
-        return self.present.key
+        return self.met[self.now][0]
 
     @property
     def time(self):
         """Present time."""
-        return self.end if self.ended else self.passed * self.h
+        return self.end if self.ended else (self.passed + self.reached) * self.h
 
     @property
     def state(self):
         """A copy of the present state, shape (n,)."""
-        return np.array(self.y)
+        return np.array(self.y[: self.n])
+
+    @property
+    def highest(self):
+        """Highest value of every output, and its time: two rows, shape (2, m)."""
+        found = np.array((self.high, self.when))[:, : self.outputs]
+        found[1] *= self.h
+        return found
 
     @property
     def peaks(self):
         """Highest value of every output and its time, by name."""
-        pairs = zip(self.peaks_.high.tolist(), (self.peaks_.when * self.h).tolist(), strict=True)
-        return dict(zip(self.system.outputs, pairs, strict=False))
+        return dict(zip(self.system.outputs, zip(*self.highest.tolist(), strict=True), strict=True))
 
     @property
     def events(self):
         """Time, key of the phase that it ended, and name of every event."""
-        return [(t, self.phases[k].key, self.phases[k].events[e].name) for t, k, e in self.log]
+        times, places, numbers = self.journal.events
+        met = [self.met[place] for place in places]
+        return [(t, m[0], m[1].events[e].name) for t, m, e in zip(times, met, numbers, strict=True)]
+
+    def tally(self, *names):
+        """Numbers of events of these names."""
+        found = dict.fromkeys(names, 0)
+        for place, event, often in self.journal.tally():
+            name = self.met[place][1].events[event].name
+            if name in found:
+                found[name] += often
+        return [found[name] for name in names]
+
+    @property
+    def work(self):
+        """Samples so far, and power series, each of which counts like 32 samples: the same on every machine."""
+        return self.peaks_.work()
 
     @property
     def counts(self):
         """Numbers of phases, of samples expanded for events, and of samples expanded for peaks."""
-        return len(self.phases), self.n_looks, self.n_searched
+        return len(self.met), self.n_looks, self.n_searched
 
     @property
     def history(self):
         """Times, keys, accelerations and states at samples and on both sides of every event, if they were kept."""
-        if not self.nodes:
-            return np.zeros(0), [], np.zeros(0), np.zeros((0, self.n))
-        samples, places, a, states = zip(*self.nodes, strict=True)
-        keys = [self.phases[k].key for k, some in zip(places, samples, strict=True) for _ in some]
-        return np.concatenate(samples) * self.h, keys, np.concatenate(a), np.concatenate(states)
+        samples, places, accelerations, states = self.journal.nodes
+        return samples * self.h, [self.met[place][0] for place in places], accelerations, states
 
     @cython.cfunc
-    def enter(self, key):
-        """Go on with the phase of a key."""
+    @cython.exceptval(-1)
+    def enter(self, key) -> cython.int:
+        """Return the place of the phase of a key."""
         try:
             hash(key)
         except TypeError as error:
             raise InputError(f"The key {key!r} of a phase must be hashable, as a tuple is.") from error
-        if key not in self.places:
-            found = PhaseAtStep(key, self.system.checked(key), self.h, np.asarray(self.one_sided))
-            self.places[key] = len(self.phases)
-            self.phases.append(found)
-        self.place = self.places[key]
-        self.present = self.phases[self.place]
-        width: cython.int = self.present.rows + 32  # loops write whole groups of rows
+        if key in self.places:
+            return self.places[key]
+        phase = self.system.checked(key)
+        tables = tables_of(phase, self.h)
+        if not np.isfinite(tables.step).all():
+            words = f"phase {key!r}: the motion grows without bound within one time step of {self.h:.9g}."
+            raise StepTooLongError(words, float(np.linalg.eigvals(phase.A).real.max()))
+        place: cython.int = len(self.met)
+        self.phases.add(tables, phase.events, self.h)
+        self.phases.point(place, self.which)
+        self.met.append((key, phase))
+        self.places[key] = place
+        width: cython.int = self.states + up8(tables.rows)
         if self.series.shape[1] < width:
             self.series, self.sums, self.away = np.zeros((TERMS, width)), np.zeros((ORDERS, width)), np.zeros(width)
+        return place
 
     def advance(self, a, history: cython.bint = False):
         """Advance over the samples of an acceleration, of which the first is that of the present time.
@@ -230,45 +239,74 @@ class Run:
         InputError
             If the acceleration is empty or not finite.
         SolverError
-            If events accumulate without end, the motion grows without bound, or the run has failed before.
+            If events accumulate without end, the motion grows without bound, the work reaches the limit, or the run has
+            failed before.
         """
-        checked = acceleration(a)
+        ground: cython.const[cython.double][::1] = acceleration(a)
         if self.failed:
             raise SolverError("This run has been broken off by an error; begin it anew by `restart`.")
         self.failed = True
         self.peaks_.passed = self.passed
-        self.passed += self.advance_over(checked, history and not self.ended)
+        i: cython.int
+        last: cython.int = ground.shape[0] - 1
+        keeps: cython.bint = history and not self.ended
+        states: cython.double[:, ::1] = np.zeros((last + 1 if keeps and last > 0 else 1, self.n))
+        with cython.nogil:
+            i = self.advance_over(ground, keeps, states)
+        self.passed += i
+        self.reached = 0
         if not np.isfinite(self.y).all():
+            self.failure = "growth"
             raise SolverError(f"The motion in the phase {self.key!r} grows without bound before t = {self.time:.9g}.")
         self.failed = False
 
     @cython.cfunc
-    def advance_over(self, a: cython.const[cython.double][::1], history: cython.bint):
+    @cython.nogil
+    @cython.exceptval(-1)
+    def advance_over(
+        self, a: cython.const[cython.double][::1], history: cython.bint, states: cython.double[:, ::1]
+    ) -> cython.int:
         """Advance over samples; return how many have passed."""
         i: cython.int = 0
+        j: cython.int
         start: cython.int
         stop: cython.int
         last: cython.int = a.shape[0] - 1
-        states: cython.double[:, ::1] = np.zeros((last + 1 if history and last > 0 else 1, self.n))
-        if history and (not self.nodes or self.nodes[-1][2][-1] != a[0]):
-            self.keep(0, 0.0, a[0])
+        if history and self.journal.wants(a[0]):
+            self.journal.keep(self.passed, a[0], self.y, self.now)
         while i < last and not self.ended:
             start, stop = i, min(last, (i // STRETCH + 1) * STRETCH)
-            i = self.present.loops.march(self.place, a, i, stop, self.y, self.peaks_, states)
+            i = self.phases.march(self.now, a, i, stop, self.y, self.peaks_, states)
             if i > start:
                 self.sizes[:] = 0.0
-            if history and i > start:
-                numbers = np.arange(start + 1, i + 1) + float(self.passed)
-                accelerations, passed = np.array(a[start + 1 : i + 1]), np.array(states[start + 1 : i + 1])
-                self.nodes.append((numbers, self.place, accelerations, passed))
-            if self.peaks_.looks:
+            if history:
+                for j in range(start + 1, i + 1):
+                    self.journal.keep(self.passed + j, a[j], states[j], self.now)
+            self.reached = i
+            if self.peaks_.looks():
                 self.traverse(i, a[i], a[i + 1], history)
                 i += 1
             elif i < stop:
                 self.search(a, False)
-            PyErr_CheckSignals()
+            self.look_up()
         self.search(a, True)
         return i
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(-1)
+    def look_up(self) -> cython.int:
+        """After a stretch of work, see whether the run must end."""
+        if self.peaks_.work() >= self.pause:
+            with cython.gil:
+                PyErr_CheckSignals()
+                if self.watch is not None:
+                    self.watch()
+                if self.peaks_.work() > self.limit:
+                    self.failure = "work"
+                    raise SolverError(f"The run has reached the limit of its work, {self.limit} samples.")
+                self.pause = min(self.limit + 1, self.peaks_.work() + STRETCH)
+        return 0
 
     def settle(self, most: int = 1_000_000, *, history: bool = False) -> bool:
         """Advance without excitation until nothing can follow, and return whether that was so after `most` samples.
@@ -278,8 +316,8 @@ class Run:
         quiet = np.zeros(QUIET + 1)
         start: cython.Py_ssize_t = self.passed
         while not self.ended:
-            y, one_sided = np.asarray(self.y), np.asarray(self.one_sided)
-            if at_rest(self.present.phase, y, self.peaks_.high, one_sided):
+            high, one_sided = np.array(self.high[: self.outputs]), np.array(self.one_sided[: self.outputs])
+            if at_rest(self.met[self.now][1].of(self.which), np.array(self.y[: self.n]), high, one_sided):
                 return True
             if self.passed - start >= most:
                 break
@@ -287,25 +325,25 @@ class Run:
         return False
 
     @cython.cfunc
-    def keep(self, i: cython.int, u: cython.double, a: cython.double):
-        """Add the present state to the history."""
-        self.nodes.append((np.array([self.passed + i + u]), self.place, np.array([a]), np.array(self.y)[None, :]))
-
-    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
     def expand(self, start: cython.double, end: cython.double, u: cython.double) -> tuple[cython.double, cython.int]:
         """Expand the motion from the place u of a sample, as far as a series serves: the part of it, and the terms."""
-        part: cython.double = min(1.0 - u, 0.5**self.present.halvings)
+        part: cython.double = min(1.0 - u, 0.5 ** self.phases.halvings(self.now))
         terms: cython.int = 0
         while True:
-            terms = self.present.loops.expand(
-                part * self.h, start + (end - start) * u, (end - start) * part, self.y, self.series, self.away
+            self.peaks_.add_work(EXPANSION)
+            terms = self.phases.expand(
+                self.now, part * self.h, start + (end - start) * u, (end - start) * part, self.y, self.series, self.away
             )
             if terms > 0:
                 return part, terms
             part *= 0.5
 
     @cython.cfunc
-    def traverse(self, i: cython.int, start: cython.double, end: cython.double, history: cython.bint):
+    @cython.nogil
+    @cython.exceptval(-1)
+    def traverse(self, i: cython.int, start: cython.double, end: cython.double, history: cython.bint) -> cython.int:
         """Advance over a sample in which something may happen."""
         u: cython.double = 0.0  # the part of the sample that has passed
         part: cython.double
@@ -316,13 +354,13 @@ class Run:
         in_sample: cython.int = 0
         self.n_looks += 1
         while u < 1.0:
-            PyErr_CheckSignals()
+            self.look_up()
             part, terms = self.expand(start, end, u)
             t, event = self.first_event(terms, part * self.h, start + (end - start) * u, (end - start) * part)
             if t > 0.0:
                 self.raise_peaks(terms, t, self.passed + i + u, part)
-                self.take_sizes(terms, t)
-                self.move(terms, t)
+                self.phases.amounts(self.series, terms, t, self.sizes)
+                self.phases.evaluate(self.series, terms, t, self.y)
                 at_once = 0
             if event < 0:
                 u = u + part if part < 1.0 - u else 1.0
@@ -331,23 +369,27 @@ class Run:
             at_once += 1
             in_sample += 1
             if at_once > AT_ONCE or in_sample > IN_SAMPLE:
-                raise SolverError(
-                    f"Events of the phase {self.key!r}, such as {self.present.events[event].name!r}, accumulate "
-                    f"without end at t = {(self.passed + i + u) * self.h:.9g}."
-                )
+                with cython.gil:
+                    key, phase = self.met[self.now]
+                    self.failure = "accumulation"
+                    raise SolverError(
+                        f"Events of the phase {key!r}, such as {phase.events[event].name!r}, accumulate without end at "
+                        f"t = {(self.passed + i + u) * self.h:.9g}."
+                    )
             if history and at_once == 1:
-                self.keep(i, u, start + (end - start) * u)
-            elif history:  # what lay between two events at one instant is no part of the motion
-                self.nodes.pop()
+                self.journal.keep(self.passed + i + u, start + (end - start) * u, self.y, self.now)
             self.leave(event, self.passed + i + u, start + (end - start) * u)
             if self.ended:
-                return
+                return 0
             if history:
-                self.keep(i, u, start + (end - start) * u)
+                self.journal.keep(self.passed + i + u, start + (end - start) * u, self.y, self.now)
         if history:
-            self.keep(i + 1, 0.0, end)
+            self.journal.keep(self.passed + i + 1, end, self.y, self.now)
+        return 0
 
     @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
     def first_event(
         self, terms: cython.int, h: cython.double, a: cython.double, rise: cython.double
     ) -> tuple[cython.double, cython.int]:
@@ -357,7 +399,7 @@ class Run:
         derivative that is not zero decides, and the zeros are divided out. Of several conditions that have failed from
         the start that of the lowest derivative, and then of the largest violation over its scale, is the first.
         """
-        phase: PhaseAtStep = self.present
+        first_row: cython.int = self.states + self.outputs
         e: cython.int
         k: cython.int
         row: cython.int
@@ -368,8 +410,8 @@ class Run:
         worst: cython.double = 0.0
         first: cython.double = 1.0
         t: cython.double
-        for e in range(phase.n_events):
-            row = phase.first + e
+        for e in range(self.phases.events(self.now)):
+            row = first_row + e
             if self.series[0, row] > self.away[self.outputs + e]:
                 continue
             zeros = 0
@@ -383,7 +425,7 @@ class Run:
             if zeros == ORDERS:
                 continue
             if self.series[zeros, row] < 0.0:
-                t = -self.series[zeros, row] / phase.scale[e]
+                t = -self.series[zeros, row] / self.phases.scale(self.now, e)
                 if zeros < lowest or (zeros == lowest and t > worst):
                     lowest, worst, found, first = zeros, t, e, 0.0
                 continue
@@ -396,7 +438,9 @@ class Run:
         return first, found
 
     @cython.cfunc
-    def sum_up(self, order: cython.int, h: cython.double, a: cython.double, rise: cython.double):
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def sum_up(self, order: cython.int, h: cython.double, a: cython.double, rise: cython.double) -> cython.void:
         """Sum the magnitudes of the terms of coefficients of an order: what their rounding is relative to."""
         i: cython.int
         for i in range(self.n):
@@ -405,77 +449,72 @@ class Run:
             )
         self.workspace[self.n] = fabs(a) if order == 0 else fabs(rise) if order == 1 else 0.0
         self.workspace[self.n + 1] = 1.0 if order == 0 else 0.0
-        self.present.loops.magnitudes(self.workspace, self.sums[order])
+        self.phases.magnitudes(self.now, self.workspace, self.sums[order])
 
     @cython.cfunc
-    def take_sizes(self, terms: cython.int, t: cython.double):
-        """Take the magnitudes of the terms that make up the state at t, to which its rounding is relative."""
-        i: cython.int
-        k: cython.int
-        total: cython.double
-        for i in range(self.n):
-            total = 0.0
-            for k in range(terms - 1, -1, -1):
-                total = total * t + fabs(self.series[k, i])
-            self.sizes[i] = total
-
-    @cython.cfunc
-    def move(self, terms: cython.int, t: cython.double):
-        """Set the state to that of the expanded motion at t."""
-        i: cython.int
-        self.present.loops.evaluate(self.series, terms, t, self.workspace)
-        for i in range(self.n):
-            self.y[i] = self.workspace[i]
-
-    @cython.cfunc
-    def leave(self, event: cython.int, sample: cython.double, a: cython.double):
+    @cython.nogil
+    @cython.exceptval(-1)
+    def leave(self, event: cython.int, sample: cython.double, a: cython.double) -> cython.int:
         """Jump to the phase that follows an event."""
-        phase: PhaseAtStep = self.present
-        kind: cython.int = phase.kind[event]
-        i: cython.int
+        outcome: cython.int = 2 * event
         self.end = sample * self.h
-        self.log.append((self.end, self.place, event))
-        if kind == ASKED:
-            self.ask(phase.events[event], a)
-            return
-        for i in range(self.n):
-            self.workspace[i] = self.y[i]
-            self.old_sizes[i] = self.sizes[i]
-        for i in range(self.n):
-            self.y[i] = row_times(phase.jump, event, i, self.workspace, self.n)
-            self.sizes[i] = row_times(phase.jump_size, event, i, self.old_sizes, self.n)
-        if kind == ENDS:
+        self.journal.happen(self.end, self.now, event)
+        if self.phases.following(self.now, outcome) == ASKED:
+            with cython.gil:
+                self.ask(event, a)
+            return 0
+        self.take(outcome)
+        if self.phases.rests(self.now, event, self.y, a):
+            outcome += 1
+            self.take(outcome)
+        following: cython.int = self.phases.following(self.now, outcome)
+        if following == UNKNOWN:
+            with cython.gil:
+                left = self.met[self.now][1].events[event]
+                following = self.enter(left.target if outcome == 2 * event else left.rest.target)
+                self.phases.lead(self.now, outcome, following)
+        if following == ENDS:
             self.ended = True
-        elif phase.following[event] is None:
-            self.enter(phase.events[event].target)
-            phase.following[event] = self.place
         else:
-            self.place = phase.following[event]
-            self.present = self.phases[self.place]
+            self.now = following
+        return 0
 
     @cython.cfunc
-    def ask(self, event, a: cython.double):
-        """Let an event in Python say what follows."""
-        y, sizes = np.asarray(self.y), np.asarray(self.sizes)
-        y[:], target = event.follow(y, a)
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def take(self, outcome: cython.int) -> cython.void:
+        """Multiply the state by the matrix of an outcome."""
+        if self.phases.jump(self.now, outcome, False, self.y, self.workspace):
+            self.phases.jump(self.now, outcome, True, self.sizes, self.workspace)
+
+    @cython.cfunc
+    def ask(self, event: cython.int, a: cython.double):
+        """Let a function say what follows an event."""
+        y, sizes = np.asarray(self.y)[: self.n], np.asarray(self.sizes)[: self.n]
+        y[:], target = self.met[self.now][1].of(self.which).events[event].ask(y, a)
         np.maximum(sizes, np.abs(y), out=sizes)
         if target is None:
             self.ended = True
         else:
-            self.enter(target)
+            self.now = self.enter(target)
 
     @cython.cfunc
-    def raise_peaks(self, terms: cython.int, stop: cython.double, sample: cython.double, part: cython.double):
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def raise_peaks(
+        self, terms: cython.int, stop: cython.double, sample: cython.double, part: cython.double
+    ) -> cython.void:
         """Raise the peaks to those of the expanded motion."""
         j: cython.int
         start: cython.double
-        high: cython.double[::1] = self.peaks_.high
         for j in range(self.outputs):
             start = self.series[0, self.states + j]
-            if (start if self.one_sided[j] > 0.0 else fabs(start)) + self.away[j] > high[j]:
+            if (start if self.one_sided[j] > 0.0 else fabs(start)) + self.away[j] > self.high[j]:
                 self.raise_peak(j, terms, stop, 1e300, sample, part)
 
     @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
     def raise_peak(
         self,
         j: cython.int,
@@ -484,34 +523,34 @@ class Run:
         bound: cython.double,
         sample: cython.double,
         part: cython.double,
-    ):
+    ) -> cython.void:
         """Raise the peak of an output to that of its polynomial, which is known to be at most `bound`."""
         k: cython.int
-        sign: cython.double
         t: cython.double = 0.0
+        upwards: cython.double = 0.0  # the sign of its first change, so that a mirrored motion has the same peaks
         found: cython.double = self.series[0, self.states + j]
         one_sided: cython.bint = self.one_sided[j] > 0.0
-        high: cython.double[::1] = self.peaks_.high
-        when: cython.double[::1] = self.peaks_.when
         for k in range(terms):
             self.q[k] = self.series[k, self.states + j]
+            if upwards == 0.0:
+                upwards = 1.0 if one_sided or self.q[k] > 0.0 else -1.0 if self.q[k] < 0.0 else 0.0
+            self.q[k] *= upwards
+        found *= upwards
+        while terms > 2 and fabs(self.q[terms - 1]) < NOTHING * self.away[j]:
+            terms -= 1
         while True:
             found = min(found if one_sided else fabs(found), bound)
-            if found > high[j]:
-                high[j], when[j] = found, sample + t * part
+            if found > self.high[j]:
+                self.high[j], self.when[j] = found, sample + t * part
             if t >= stop or self.away[j] == 0.0:
                 return
-            sign = 0.0
-            for k in range(terms - 1, 0, -1):
-                sign = sign * t + k * self.q[k]
-            sign = 1.0 if sign >= 0.0 else -1.0
-            for k in range(1, terms):
-                self.slope[k - 1] = sign * k * self.q[k]
-            t = min(first_fall(self.slope, 0, terms - 1, t + APART, stop), stop)
+            t = next_turn(self.q, self.slope, terms, t + APART, stop)
             found = value(self.q, terms, t)
 
     @cython.cfunc
-    def search(self, a: cython.const[cython.double][::1], finish: cython.bint):
+    @cython.nogil
+    @cython.exceptval(-1)
+    def search(self, a: cython.const[cython.double][::1], finish: cython.bint) -> cython.int:
         """Drop candidates below the peaks found so far; search the others at the end, or if there is no room."""
         r: cython.int
         j: cython.int
@@ -522,31 +561,32 @@ class Run:
         u: cython.double
         part: cython.double
         rows: cython.double[:, ::1] = self.peaks_.candidates
-        high: cython.double[::1] = self.peaks_.high
-        for r in range(self.peaks_.count):
+        for r in range(self.peaks_.count()):
             higher = False
             for j in range(self.outputs):
-                higher = higher or rows[r, 2 + self.n + j] > high[j]
+                higher = higher or rows[r, 2 + self.n + j] > self.high[j]
             if higher:
                 rows[kept, :] = rows[r, :]
                 kept += 1
-        self.peaks_.count = kept
+        self.peaks_.keep(kept)
         if kept == 0 or (not finish and kept <= CANDIDATES // 2):
-            return
-        y, present, place = np.array(self.y), self.present, self.place
+            return 0
+        now: cython.int = self.now
+        self.before[:] = self.y
         for r in range(kept):
-            self.place, i = int(rows[r, 0]), int(rows[r, 1])
-            self.present = self.phases[self.place]
-            self.y[:] = rows[r, 2 : 2 + self.n]
+            self.now, i = cython.cast(cython.int, rows[r, 0]), cython.cast(cython.int, rows[r, 1])
+            self.y[: self.n] = rows[r, 2 : 2 + self.n]
             self.n_searched += 1
             u = 0.0
             while u < 1.0:
-                PyErr_CheckSignals()
+                self.look_up()
                 part, terms = self.expand(a[i], a[i + 1], u)
                 for j in range(self.outputs):
-                    if rows[r, 2 + self.n + j] > high[j]:
+                    if rows[r, 2 + self.n + j] > self.high[j]:
                         self.raise_peak(j, terms, 1.0, rows[r, 2 + self.n + j], self.passed + i + u, part)
-                self.move(terms, 1.0)
+                self.phases.evaluate(self.series, terms, 1.0, self.y)
                 u = u + part if part < 1.0 - u else 1.0
-        self.present, self.place, self.peaks_.count = present, place, 0
-        np.asarray(self.y)[:] = y
+        self.now = now
+        self.y[:] = self.before
+        self.peaks_.keep(0)
+        return 0

@@ -13,6 +13,14 @@ Key = Hashable
 MAX_STATES, MAX_ROWS = 320, 640  # as in march.h
 
 
+class StepTooLongError(InputError):
+    """Within one time step a motion grows beyond all numbers; `rate` is the largest growth in 1/s."""
+
+    def __init__(self, message: str, rate: float) -> None:
+        super().__init__(message)
+        self.rate = rate
+
+
 @dataclass(frozen=True, init=False)
 class StateLayout:
     """Names of the places in a state vector, in their order, each with the number of places.
@@ -55,6 +63,27 @@ class StateLayout:
 
 
 @dataclass(frozen=True, eq=False)
+class Rest:
+    """What follows an event instead, where row · y + direct a + constant <= 0 for the state y after its jump.
+
+    Attributes
+    ----------
+    row : ndarray, shape (n,)
+    target : hashable
+        Key of the next phase; None ends the run.
+    constant, direct : float
+    jump : ndarray, shape (n, n), optional
+        Matrix by which the state after the jump is multiplied.
+    """
+
+    row: Array
+    target: Key | None
+    constant: float | Array = 0.0
+    direct: float | Array = 0.0
+    jump: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Event:
     """A condition that holds while a phase lasts, and what follows when it fails.
 
@@ -74,33 +103,31 @@ class Event:
     jump : ndarray, shape (n, n), or callable, optional
         Matrix by which the state is multiplied; or a function of the state and the acceleration that returns the state
         and the key of the next phase, instead of `target`. Without it the state is continuous.
-    rest : tuple of ndarray (n,), float and key, optional
-        Where |row · y| after the jump is at most that number, the next phase is that of this key.
+    rest : Rest, optional
+        What follows if the motion is too slow after the jump, which must be a matrix.
     """
 
     name: str
     row: Array
     target: Key | None
-    constant: float = 0.0
-    direct: float = 0.0
-    scale: float = 1.0
+    constant: float | Array = 0.0
+    direct: float | Array = 0.0
+    scale: float | Array = 1.0
     jump: Array | Callable[[Array, float], tuple[Array, Key | None]] | None = None
-    rest: tuple[Array, float, Key] | None = None
+    rest: Rest | None = None
 
-    def follow(self, state: Array, acceleration: float) -> tuple[Array, Key | None]:
-        """The state after the jump, and the key of the phase that follows."""
-        if callable(self.jump):
-            found, key = self.jump(state.copy(), acceleration)
-            return array(f"the state after event {self.name!r}", found, state.shape), key
-        after = state if self.jump is None else self.jump @ state
-        if self.rest is not None and abs(float(self.rest[0] @ after)) <= self.rest[1]:
-            return after, self.rest[2]
-        return after, self.target
+    def ask(self, state: Array, acceleration: float) -> tuple[Array, Key | None]:
+        """The state after a jump that is a function, and the key of the phase that follows."""
+        assert callable(self.jump)
+        found, key = self.jump(state.copy(), acceleration)
+        return array(f"the state after event {self.name!r}", found, state.shape), key
 
 
 @dataclass(frozen=True, eq=False)
 class LinearPhase:
     """A phase: y' = A y + f a(t) + c with outputs C y + d a + e, while the conditions of its events hold.
+
+    For a stack of systems all arrays and numbers of the phase and of its events may have a first axis more.
 
     Attributes
     ----------
@@ -119,10 +146,15 @@ class LinearPhase:
     e: Array
     events: tuple[Event, ...] = ()
 
+    def of(self, place: int) -> "LinearPhase":
+        """The phase of one system of a stack."""
+        arrays = {name: getattr(self, name)[place] for name in ("A", "f", "c", "C", "d", "e")}
+        return LinearPhase(**arrays, events=tuple(_of(event, place, EVENT_NUMBERS) for event in self.events))
+
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """A hybrid system.
+    """A hybrid system, or a stack of systems that differ only in numbers.
 
     Attributes
     ----------
@@ -136,6 +168,8 @@ class System:
         Key of the first phase.
     one_sided : sequence of str
         Names of the outputs whose peak is the largest value, and not the largest magnitude.
+    count : int
+        Number of systems in the stack.
     """
 
     layout: StateLayout
@@ -143,6 +177,7 @@ class System:
     phase: Callable[[Any], LinearPhase]
     start: Key
     one_sided: Sequence[str] = field(default=())
+    count: int = 1
 
     def __post_init__(self) -> None:
         if not 0 < self.layout.size <= MAX_STATES:
@@ -172,39 +207,77 @@ class System:
             raise InputError(f"{place}a LinearPhase is needed, but {type(found).__name__} was given.")
         shapes = {"A": (n, n), "f": (n,), "c": (n,), "C": (m, n), "d": (m,), "e": (m,)}
         arrays = {
-            name: array(place + name, getattr(found, name), shape, finite=name in "Afc")
+            name: stacked(place + name, getattr(found, name), shape, self.count, finite=name in "Afc")
             for name, shape in shapes.items()
         }
-        for output, *row in zip(self.outputs, arrays["C"], arrays["d"], arrays["e"], strict=True):
-            array(f"{place}output {output!r}", np.hstack(row), (n + 2,))
+        wrong = ~np.isfinite(np.concatenate((arrays["C"], *(arrays[each][..., None] for each in "de")), axis=2)).all(
+            axis=(0, 2)
+        )
+        if wrong.any():
+            raise InputError(
+                f"{place}output {self.outputs[int(wrong.argmax())]!r} must be finite, but NaN or infinity was given."
+            )
         listed: Any = found.events
         if not isinstance(listed, tuple | list):
             raise InputError(f"{place}events must be a tuple, but {listed!r} was given.")
-        events = tuple(_checked(place, event, n) for event in found.events)
-        if up8(max(1, m)) + up8(len(events)) > MAX_ROWS:
+        events = tuple(_checked(place, event, n, self.count) for event in found.events)
+        if up8(max(1, m + len(events))) > MAX_ROWS:
             raise InputError(f"{place}{m} outputs and {len(events)} events are more than {MAX_ROWS} rows.")
         return replace(found, events=events, **arrays)
 
 
-def _checked(place: str, event: Any, n: int) -> Event:
+EVENT_NUMBERS = {"row": 1, "constant": 0, "direct": 0, "scale": 0, "jump": 2}  # and the number of their axes
+REST_NUMBERS = {"row": 1, "constant": 0, "direct": 0, "jump": 2}
+
+
+def _of(part: Any, place: int, names: dict[str, int]) -> Any:
+    """An event, or what follows instead, of one system of a stack."""
+    given = {name: getattr(part, name) for name in names}
+    found = {name: each if each is None or callable(each) else each[place] for name, each in given.items()}
+    if getattr(part, "rest", None) is not None:
+        found["rest"] = _of(part.rest, place, REST_NUMBERS)
+    return replace(part, **found)
+
+
+def _checked(place: str, event: Any, n: int, count: int) -> Event:
     if not isinstance(event, Event):
         raise InputError(f"{place}events must be of the class Event, but {event!r} was given.")
     place += f"event {event.name!r}: "
-    numbers = {name: float(array(place + name, getattr(event, name), ())) for name in ("constant", "direct", "scale")}
-    if numbers["scale"] <= 0.0:
+    found = _stacked(place, event, EVENT_NUMBERS, n, count)
+    if not (found["scale"] > 0.0).all():
         raise InputError(f"{place}scale must be positive, but {event.scale} was given.")
-    jump, rest = event.jump, event.rest
-    if jump is not None and not callable(jump):
-        jump = array(place + "jump", jump, (n, n))
+    rest: Any = event.rest
+    if rest is not None and not isinstance(rest, Rest):
+        raise InputError(f"{place}rest must be of the class Rest, but {rest!r} was given.")
+    if rest is not None and callable(event.jump):
+        raise InputError(f"{place}a jump that is a function says itself what follows, so that there can be no rest.")
+    if callable(event.jump) and count > 1:
+        raise InputError(f"{place}a stack of systems can have no jump that is a function.")
     if rest is not None:
-        row, limit, key = rest
-        rest = array(place + "rest", row, (n,)), float(array(place + "rest", limit, ())), key
-    return replace(event, row=array(place + "row", event.row, (n,)), jump=jump, rest=rest, **numbers)
+        rest = replace(rest, **_stacked(place + "rest: ", rest, REST_NUMBERS, n, count))
+    return replace(event, rest=rest, **found)
+
+
+def _stacked(place: str, part: Any, names: dict[str, int], n: int, count: int) -> dict[str, Any]:
+    found = {name: getattr(part, name) for name in names}
+    return {
+        name: each
+        if (name == "jump" and each is None) or callable(each)
+        else stacked(place + name, each, (n,) * names[name], count)
+        for name, each in found.items()
+    }
 
 
 def up8(count: int) -> int:
     """The next multiple of 8."""
     return -(-count // 8) * 8
+
+
+def stacked(name: str, values: Any, shape: tuple[int, ...], count: int, *, finite: bool = True) -> Array:
+    """Return a copy as `array` does, with a first axis for the systems of a stack, for all of which it may be given."""
+    if np.ndim(values) == len(shape) + 1:
+        return array(name, values, (count, *shape), finite=finite)
+    return np.repeat(array(name, values, shape, finite=finite)[None], count, axis=0)
 
 
 def array(name: str, values: Any, shape: tuple[int, ...], *, finite: bool = True) -> Array:

@@ -1,65 +1,175 @@
-"""The matrices of a phase for one time step, in the order in which the march reads them."""
+"""The matrices of a phase for one time step, for a stack of systems at once."""
 
 import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockflex._arrays import Array
 from rockflex.engine.system import LinearPhase, up8
 
-ROWS, BLOCK = 32, 8  # as in march.h
+AHEAD, BLOCK = 4, 16  # as in march.h
 LONGEST = 2.5  # rad that a mode may turn within one power series: some thirty terms, and a digit lost
 SMALL = 1e-18  # of a sum: terms that no longer change it
 FINEST = 8  # halvings of h/2 between which bounds allow for the growth of motion, at most
+FAST = 3.0  # rad that a mode turns within a step, from which on its amplitude bounds what it can do
+POOR = 1e6  # condition of a mode from which on its part is useless
 VAGUE = 1e100  # a bound that is as good as none, and does not overflow
 
 
 class Tables(NamedTuple):
-    """Fields as in `March`; the flat ones packed."""
+    """Fields as in `march.h`, each with a first axis for the systems."""
 
-    n: int
     outputs: int
-    conditions: int
-    halvings: int  # of the step, so that its power series converge
+    rows: int
+    halvings: NDArray[np.intc]  # of the step, so that its power series converge
+    block: Array
     step: Array
+    moves: Array
     now: Array
     slope: Array
     bend: Array
+    cap: Array
+    centre: Array
     sway: Array
     magnitude: Array
 
 
 @np.errstate(over="ignore", invalid="ignore")
 def tables_of(phase: LinearPhase, h: float) -> Tables:
-    """Compute the tables of a phase for steps of h."""
-    A, n, m, k = phase.A, len(phase.f), len(phase.d), len(phase.events)
-    outputs, conditions = up8(max(1, m)), up8(k)
-    rates = np.column_stack((A, phase.f, phase.c))
-    rows = np.zeros((outputs + conditions, n + 2))
-    rows[:m] = np.column_stack((phase.C, phase.d, phase.e))
-    rows[outputs + k :, -1] = 1.0  # conditions that are none
-    for row, event in zip(rows[outputs:], phase.events, strict=False):
-        row[:n], row[n], row[n + 1] = event.row, event.direct, event.constant
-    C = rows[:, :n]
+    """Compute the tables of a stack of phases for steps of h. Those of one system do not depend on the others."""
+    A, f, c = phase.A, phase.f, phase.c
+    (S, n), m, k = f.shape, phase.d.shape[1], len(phase.events)
+    rates = np.concatenate((A, f[..., None], c[..., None]), axis=2)
+    rows = np.zeros((S, m + k, n + 2))
+    rows[:, :m, :n], rows[:, :m, n], rows[:, :m, n + 1] = phase.C, phase.d, phase.e
+    for row, event in zip(rows[:, m:].swapaxes(0, 1), phase.events, strict=True):
+        row[:, :n], row[:, n], row[:, n + 1] = event.row, event.direct, event.constant
+    C = rows[..., :n]
 
-    turn, fine = radius(A * h), min(halvings_of(radius(np.abs(A) * h), 1.0), FINEST)
-    halvings = halvings_of(turn, LONGEST)
-    G = np.zeros((n + 3, n + 3))  # of y, a, its rise, and 1
-    G[:n, :n], G[:n, n], G[:n, n + 2], G[n, n + 1] = A * h, phase.f * h, phase.c * h, 1.0
-    changes = changes_of(G, max(halvings_of(turn, 1.0), fine) + 1)
-    whole = changes[0]
-    after = np.column_stack((whole[:n, :n], whole[:n, n] - whole[:n, n + 1], whole[:n, n + 1], whole[:n, n + 2]))
-    seen = C @ after
-    seen[:, :n] += C
-    seen[:, n + 1] += rows[:, n]
-    seen[:, n + 2] += rows[:, n + 1]
+    turn = radius(A * h)
+    halvings, squared = halvings_of(turn, LONGEST), halvings_of(turn, 1.0)
+    splits = [split_of(A[place], f[place], C[place], h) if turn[place] > FAST else None for place in range(S)]
+    most = max((len(each.parts) for each in splits if each is not None), default=0)
+    slow, driven = A.copy(), f.copy()
+    moves, (bend, cap, sway) = np.zeros((S, n + most, n)), np.zeros((3, S, m + k, n + 2 + most))
+    moves[:, :n] = np.eye(n)
+    centre = rows.copy()
+    for place, each in enumerate(splits):
+        if each is not None:
+            end = n + len(each.parts)
+            slow[place], driven[place], moves[place, :n], moves[place, n:end] = each[:4]
+            cap[place, :, n : n + 2], cap[place, :, n + 2 : end + 2] = each.cap @ each.push, each.cap
+            sway[place, :, n : n + 2], sway[place, :, n + 2 : end + 2] = each.sway @ each.push, each.sway
+            sway[place, :, n + 1] += each.jerk
+            centre[place] -= each.swing @ rates[place]
+    parted = np.array([each is not None for each in splits])
+    fine = np.minimum(halvings_of(radius(np.abs(slow) * h), 1.0), FINEST)
+    G = np.zeros((S, n + 3, n + 3))  # of y, a, its rise, and 1
+    G[:, :n, :n], G[:, :n, n], G[:, :n, n + 2], G[:, n, n + 1] = A * h, f * h, c * h, 1.0
+    step = np.empty((S, n, n + 3))
+    for kind in {*zip(squared.tolist(), fine.tolist(), parted.tolist(), strict=True)}:
+        some = np.flatnonzero((squared == kind[0]) & (fine == kind[1]) & (parted == kind[2]))
+        changes = changes_of(G[some], kind[0] if kind[2] else max(kind[0], kind[1]) + 1)
+        whole = changes[0][:, :n]
+        step[some, :, :n], step[some, :, n:] = whole[..., :n], whole[..., n:]
+        step[some, :, n] -= whole[..., n + 1]
+        of_states = changes_of(slow[some] * h, kind[1] + 1) if kind[2] else [each[:, :n, :n] for each in changes]
+        bend[some, :, : n + 2], least = bounds(slow[some], driven[some], C[some], of_states[1 : kind[1] + 2], h)
+        sway[some, :, : n + 2] += least
+    changes = changes_ahead(step)
+    now = np.concatenate((padded(rates), padded(rows)), axis=1)
+    return Tables(
+        outputs=m,
+        rows=m + k,
+        halvings=halvings.astype(np.intc),
+        block=np.concatenate((seen_ahead(rows, changes, 1), padded(changes[-1])), axis=1),
+        step=padded(step),
+        moves=padded(moves @ rates),
+        now=now,
+        slope=seen_ahead(C @ rates, changes, 0),
+        bend=padded(bend),
+        cap=padded(cap),
+        centre=seen_ahead(centre, changes if most else changes[:1], 0),
+        sway=padded(sway),
+        magnitude=np.abs(now),
+    )
 
-    now = np.concatenate((padded(rates), rows))
-    bend, sway = bounds(A, phase.f, C, [each[:n, :n] for each in changes[1 : fine + 2]], h)
-    step = np.concatenate((padded(after), seen))
-    flat = (packed(each) for each in (step, now, C @ rates, bend, sway, np.abs(now)))
-    return Tables(n, outputs, conditions, halvings, *flat)
+
+class Split(NamedTuple):
+    """The fast modes of a phase parted from the others, with y' = v + Σ V w, v' = A_s v + f_s a', w' = λ w + W f a'.
+
+    What they add to a row never gets further from its chord in a sample than 2 |C V/λ| |w|.
+    """
+
+    slow: Array  # A_s
+    driven: Array  # f_s
+    rest: Array  # v from y'
+    parts: Array  # real and imaginary parts of all w from y', (F, n)
+    push: Array  # by how much w may grow within a block, for the variation of a and for |a'|, (F, 2)
+    cap: Array  # of every row, factors of those parts' magnitudes in a bound of the distance from the chord, (R, F)
+    sway: Array  # the same for h³/96 times the third derivative
+    jerk: Array  # and its factor of |a'|, (R,)
+    swing: Array  # what they add to every row beside what changes linearly in a sample, from y', (R, n)
+
+
+def split_of(A: Array, f: Array, C: Array, h: float) -> Split | None:
+    """Part the fast modes from the others; None if that is ill-conditioned. It serves the bounds alone."""
+    roots, vectors = (np.asarray(each, dtype=np.complex128) for each in np.linalg.eig(A))
+    try:
+        inverse = np.linalg.inv(vectors)
+    except np.linalg.LinAlgError:
+        return None
+    fast = (np.abs(roots) * h > FAST) & (roots.imag >= 0.0)
+    V, W, root = vectors[:, fast], inverse[fast], roots[fast]
+    both = np.where(root.imag > 0.0, 2.0, 1.0)  # of a pair of conjugate modes
+    if not fast.any() or not (np.abs(W.T) * np.abs(V)).sum(axis=0).max() < POOR:
+        return None
+    share = np.real((V * both) @ W)
+    size = both * np.abs(C @ V) * np.exp(np.maximum(root.real, 0.0) * BLOCK * h)
+    bent = size * np.abs(root) ** 2 * (h**3 / 96.0)
+    push, fades = np.abs(W @ f), np.maximum(-root.real, 0.0)
+    soon = fades * BLOCK * h > 1.0
+    grown = np.column_stack((np.where(soon, 0.0, push), np.where(soon, push / np.maximum(fades, 1e-300), 0.0)))
+    return Split(
+        slow=A - np.real((V * (both * root)) @ W),
+        driven=f - share @ f,
+        rest=np.eye(len(A)) - share,
+        parts=np.asarray(np.concatenate((W.real, W.imag)), dtype=float),
+        push=np.concatenate((grown, np.zeros_like(grown))),
+        cap=np.tile(2.0 * size / np.abs(root), 2),
+        sway=np.tile(bent, 2),
+        jerk=(bent / np.abs(root)) @ push,
+        swing=np.real((C @ V * (both / root)) @ W),
+    )
+
+
+def changes_ahead(step: Array) -> list[Array]:
+    """The changes of the states after 0, 1, .. samples, from y, the accelerations at the samples, and 1."""
+    S, n, _ = step.shape
+    found = [np.zeros((S, n, n + AHEAD + 2))]
+    for k in range(AHEAD):
+        change = found[-1] + step[..., :n] @ found[-1]
+        change[..., :n] += step[..., :n]
+        change[..., n + k] += step[..., n]
+        change[..., n + k + 1] += step[..., n + 1]
+        change[..., -1] += step[..., n + 2]
+        found.append(change)
+    return found
+
+
+def seen_ahead(rows: Array, changes: list[Array], first: int) -> Array:
+    """The rows at the samples from the first on, one sample after another, from the same."""
+    (S, R, _), n = rows.shape, changes[0].shape[1]
+    found = np.zeros((S, up8((len(changes) - first) * R), changes[0].shape[2]))
+    for k in range(first, len(changes)):
+        seen = found[:, (k - first) * R : (k - first + 1) * R]
+        seen[...] = rows[..., :n] @ changes[k]
+        seen[..., :n] += rows[..., :n]
+        seen[..., n + k] += rows[..., n]
+        seen[..., -1] += rows[..., n + 1]
+    return found
 
 
 def bounds(A: Array, f: Array, C: Array, changes: list[Array], h: float) -> tuple[Array, Array]:
@@ -69,17 +179,19 @@ def bounds(A: Array, f: Array, C: Array, changes: list[Array], h: float) -> tupl
     |v(0)| and so on; between the places of a grid of h/2 the matrices grow at most by `growth`, entry by entry.
     `changes` are those of A in h/2, h/4, ..
     """
-    rows, n = C.shape
-    grid, step = np.concatenate((C @ A, C @ A @ A)), changes[0]
-    direct = np.abs(np.concatenate((C, C @ A)) @ f)
+    S, rows, n = C.shape
+    if rows == 0:
+        return np.zeros((S, 0, n + 2)), np.zeros((S, 0, n + 2))
+    grid, step = np.concatenate((C @ A, C @ A @ A), axis=1), changes[0]
+    direct = np.abs(np.concatenate((C, C @ A), axis=1) @ f[..., None])
     for _ in range(int(math.log2(2 * BLOCK))):
-        grid, step = np.concatenate((grid, grid + grid @ step)), 2.0 * step + step @ step
-    most = np.abs(grid).reshape(-1, 2 * rows, n).max(axis=0) @ growth(0.5 * h * A, changes)
-    found = np.column_stack((most, most @ np.abs(f), direct))
-    found[:rows] *= h**2 / 8.0
-    found[rows:] *= h**3 / 96.0
+        grid, step = np.concatenate((grid, grid + grid @ step), axis=1), 2.0 * step + step @ step
+    most = np.abs(grid).reshape(S, -1, 2 * rows, n).max(axis=1) @ growth(0.5 * h * A, changes)
+    found = np.concatenate((most, most @ np.abs(f)[..., None], direct), axis=2)
+    found[:, :rows] *= h**2 / 8.0
+    found[:, rows:] *= h**3 / 96.0
     found = np.minimum(np.nan_to_num(found, nan=VAGUE), VAGUE)
-    return found[:rows], found[rows:]
+    return found[:, :rows], found[:, rows:]
 
 
 def growth(G: Array, changes: list[Array]) -> Array:
@@ -87,27 +199,31 @@ def growth(G: Array, changes: list[Array]) -> Array:
 
     Between the places of a grid of 1/2^k it is at most e^B with B = |G|/2^k, itself at most 1 + B + B² + ...
     """
-    grid = np.eye(len(G))[None]
+    S, n, _ = G.shape
+    grid = np.tile(np.eye(n), (S, 1, 1))
     for step in reversed(changes[1:]):
-        grid = np.concatenate((grid, grid + grid @ step))
-    most, between = np.abs(grid).max(axis=0), np.abs(G) / 2.0 ** (len(changes) - 1)
-    turn = radius(between)
-    if turn <= 0.5:
-        return most @ np.linalg.inv(np.eye(len(G)) - between)
-    return most + most @ changes_of(between, halvings_of(turn, 1.0) + 1)[0]
+        grid = np.concatenate((grid, grid + grid @ step), axis=1)
+    most, between = np.abs(grid).reshape(S, -1, n, n).max(axis=1), np.abs(G) / 2.0 ** (len(changes) - 1)
+    found, turn = most.copy(), radius(between)
+    near, far = np.flatnonzero(turn <= 0.5), np.flatnonzero(~(turn <= 0.5))
+    if near.size:
+        found[near] = most[near] @ np.linalg.inv(np.eye(n) - between[near])
+    for each in far:
+        found[each] += most[each] @ changes_of(between[None, each], int(halvings_of(turn[each], 1.0)) + 1)[0][0]
+    return found
 
 
-def halvings_of(turn: float, longest: float) -> int:
+def halvings_of(turn: Any, longest: float) -> Any:
     """How often a step must be halved so that no mode turns by more than `longest`, in rad."""
-    return max(0, math.ceil(math.log2(min(max(turn / longest, 1e-300), 1e300))))
+    return np.maximum(0, np.ceil(np.log2(np.clip(turn / longest, 1e-300, 1e300)))).astype(int)
 
 
-def radius(A: Array) -> float:
-    """A close upper estimate of the spectral radius."""
+def radius(A: Array) -> Array:
+    """A close upper estimate of the spectral radius of each matrix."""
     power = A
     for _ in range(4):
         power = power @ power
-    return float(np.linalg.norm(power)) ** (1.0 / 16.0)
+    return np.asarray(np.sqrt((power * power).sum(axis=(1, 2))) ** (1.0 / 16.0))
 
 
 def changes_of(G: Array, halvings: int) -> list[Array]:
@@ -120,8 +236,10 @@ def changes_of(G: Array, halvings: int) -> list[Array]:
     total = term = X
     for k in range(2, 60):
         term = term @ X / k
+        ends = (np.abs(term) <= SMALL * np.abs(total)).all(axis=(1, 2))
+        term[ends] = 0.0  # so that no number of terms depends on the other matrices
         total = total + term
-        if (np.abs(term) <= SMALL * np.abs(total)).all():
+        if ends.all():
             break
     found = [total]
     for _ in range(halvings):
@@ -130,20 +248,7 @@ def changes_of(G: Array, halvings: int) -> list[Array]:
 
 
 def padded(table: Array) -> Array:
-    """The table with zeros below, to a multiple of 8 rows."""
-    full = np.zeros((up8(len(table)), *table.shape[1:]))
-    full[: len(table)] = table
+    """The tables with zeros below, to a multiple of 8 rows."""
+    full = np.zeros((len(table), up8(table.shape[1]), table.shape[2]))
+    full[:, : table.shape[1]] = table
     return full
-
-
-def packed(table: Array) -> Array:
-    """Column after column, in groups of 32 rows or, at the end, fewer."""
-    return aligned(np.concatenate([table[g : g + ROWS].T.ravel() for g in range(0, len(table), ROWS)]))
-
-
-def aligned(values: Any) -> Array:
-    """A copy that begins where a cache line does."""
-    room = np.empty(values.size + 8)
-    first = -(room.ctypes.data // 8) % 8
-    room[first : first + values.size] = values
-    return room[first : first + values.size]

@@ -83,7 +83,7 @@ from rockflex.models._sliding import SlidingModel
 from rockflex.models._springs import SpringModel
 from rockflex.models._stored import floor_accelerations, raised_weight_rate, stored_energies
 from rockflex.models._strike import Impact, impact_of, kinetic_energy, may_pass, stick, strike
-from rockflex.models._system import system_of
+from rockflex.models._system import GainsEnergyError, may_stack, system_of
 
 __all__ = [
     "BROKEN",
@@ -124,6 +124,7 @@ __all__ = [
     "Fence",
     "Field",
     "ForgottenLaw",
+    "GainsEnergyError",
     "Guard",
     "Impact",
     "ImpactLaw",
@@ -166,6 +167,7 @@ __all__ = [
     "lifted_springs",
     "lost_support_row",
     "may_pass",
+    "may_stack",
     "modal_displacement",
     "observe",
     "observe_all",

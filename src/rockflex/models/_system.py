@@ -1,110 +1,231 @@
-"""Simplified models as hybrid systems: their phases, events and outputs for `rockflex.engine`."""
+"""The simplified models on rigid ground as hybrid systems: phases, events and outputs for `rockflex.engine`."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._errors import SolverError
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
-from rockflex.engine import Event, LinearPhase, StateLayout, System
+from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System
 from rockflex.models._elements import CLOSED, LEFT, RIGHT
 from rockflex.models._impact import Restitution, SidedRestitution, VVELSimplified
 from rockflex.models._linear import LinearModel
-from rockflex.models._phase import LANDS, LIFTS, OVERTURNS, Exit, Key
-from rockflex.models._quantities import Quantities, lost_support_row, rows_of
+from rockflex.models._phase import Key
+from rockflex.models._quantities import GROUND, RIGHT_ROTATION, ROTATION, TURN, Quantities
 from rockflex.models._strike import WITHOUT, OwnLaw
 
-NAMES = {LIFTS: "uplift", LANDS: "impact", OVERTURNS: "overturning"}
+QUARTER_TURN = 0.5 * np.pi
+SMALL, LARGE = 1e-30, 1e30  # of numbers in SI units that certainly do not overflow
 GAIN = 1e-9  # relative gain of energy in an impact that is attributed to rounding
+CONTACT, OTHER = (CLOSED,), {RIGHT: (LEFT,), LEFT: (RIGHT,)}
 
 
-def system_of(model: LinearModel, quantities: Quantities, extremes: Quantities | None = None) -> System:
-    """Return a model without elements, on rigid ground that does not move vertically, as a hybrid system.
+class GainsEnergyError(SolverError):
+    """An impact law returns more energy than there was."""
 
-    Its outputs are the rotation, the quantities, the extremes, of which the largest value counts, and the loss of
-    support. The equations are those of Silva & Stojadinović 2024, Eqs. 15 and 23 to 25.
+
+def may_stack(model: LinearModel) -> bool:
+    """Return whether a model can be in a stack: at its impacts, if any, the state is multiplied by a matrix."""
+    p = model.properties
+    numbers = np.abs((*p.omega, p.i_theta, p.l0r, p.m_tot, p.half_width))
+    usual = bool((numbers > SMALL).all() and (numbers < LARGE).all())  # what overflows is told of one model
+    return usual and (not model.lifts or type(model.law) is VVELSimplified)
+
+
+def system_of(models: Sequence[LinearModel], quantities: Sequence[Quantities]) -> System:
+    """Return models without elements, on rigid ground that does not move vertically, as a stack of hybrid systems.
+
+    The models have equal numbers of modes and quantities, and all of them can lift, or none. The outputs are the
+    rotation, the quantities, and the loss of support, of which the largest value counts. The equations are those of
+    Silva & Stojadinović 2024, Eqs. 15 and 23 to 25.
     """
-    n, core = model.properties.n_modes, model.layout.core
-    layout = StateLayout(displacement=n, velocity=n, rotation=1, spin=1)
-    most = Quantities.none(n) if extremes is None else extremes
-    largest = [*(f"extreme {k}" for k in range(len(most))), "loss of support"]
-    turn = np.zeros((1, model.layout.columns))
-    turn[0, model.layout.rotation] = 1.0
+    first, N = models[0], models[0].properties.n_modes
+    if not all((each.properties.omega**2 > 0.0).all() for each in models):
+        raise FloatingPointError("underflow encountered in square")
+    names = ("rotation", *(f"quantity {k}" for k in range(len(quantities[0]))), "loss of support")
+    layout = StateLayout(displacement=N, velocity=N, rotation=1, spin=1)
+    stack = RigidGround(
+        model=first,
+        omega=np.array([each.properties.omega for each in models]),
+        zeta=np.array([each.properties.zeta for each in models]),
+        mass=np.array([each.properties.effective_mass for each in models]),
+        height=np.array([each.properties.effective_height for each in models]),
+        l0r=np.array([each.properties.l0r for each in models]),
+        m_tot=np.array([each.properties.m_tot for each in models]),
+        gravity=np.array([each.gravity for each in models]),
+        pivots={
+            side: np.array([(pivot.i_theta, pivot.arm) for pivot in (each.properties.pivot(side) for each in models)]).T
+            for side in (RIGHT, LEFT)
+        },
+        shares=np.array([each.shares for each in quantities]),
+        swings=np.array([each.swings for each in quantities]),
+    )
+    return System(layout, names, stack.phase, CONTACT, names[-1:], len(models))
 
-    def phase(key: Key) -> LinearPhase:
-        parts = turn, rows_of(model, quantities, key), rows_of(model, most, key), lost_support_row(model, key)[None]
-        rows = np.vstack(parts)
-        rates = np.zeros((core, model.layout.columns))
-        rates[np.arange(n), n + np.arange(n)] = 1.0
-        accelerations = model.accelerations(key)
-        rates[n : 2 * n] = accelerations[:n]
-        if model.is_free(key):
-            rates[2 * n, 2 * n + 1], rates[2 * n + 1] = 1.0, accelerations[n]
-        A, C = rates[:, :core], rows[:, :core]
-        return LinearPhase(A, rates[:, -2], rates[:, -1], C, rows[:, -2], rows[:, -1], _events(model, key))
 
-    names = ("rotation", *(f"quantity {k}" for k in range(len(quantities))), *largest)
-    return System(layout, names, phase, model.start(CLOSED), largest)
+@dataclass(frozen=True, eq=False)
+class RigidGround:
+    """The numbers of S models with N modes; rows have columns D, D', θ, θ', the ground acceleration and 1."""
 
+    model: LinearModel  # one of them
+    omega: Array  # (S, N)
+    zeta: Array
+    mass: Array
+    height: Array
+    l0r: Array  # (S,)
+    m_tot: Array
+    gravity: Array
+    pivots: dict[int, Array]  # of each side: I_θ and the arm, (2, S)
+    shares: Array = field(repr=False)  # (S, F, 3 N + 4)
+    swings: Array = field(repr=False)  # (S, F, 2)
 
-def _events(model: LinearModel, key: Key) -> tuple[Event, ...]:
-    """The conditions at the two limits of the guard of a phase."""
-    guard, core = model.phase(key).guard, model.layout.core
-    found = list[Event]()
-    for sign, limit, leads in ((1.0, guard.low, guard.below), (-1.0, guard.high, guard.above)):
-        if leads is None:
-            continue
-        row = sign * guard.row
-        found.append(
-            Event(
-                NAMES[leads.event],
-                row[:core],
-                None if leads.event == OVERTURNS else leads.key,
-                constant=float(row[-1] - sign * limit),
-                direct=float(row[-2]),
-                scale=abs(limit) or 1.0,
-                jump=_landing(model, leads) if leads.event == LANDS else None,
-            )
+    def phase(self, key: Key) -> LinearPhase:
+        """Return a phase: full contact, or rocking about one side."""
+        (S, N), side = self.omega.shape, key[0]
+        turn = self.turn(side)
+        accelerations = np.zeros((S, N, 2 * N + 4))  # D'': Eq. 15 or 23
+        modes = np.arange(N)
+        accelerations[:, modes, modes] = -(self.omega**2)
+        accelerations[:, modes, N + modes] = -2.0 * self.zeta * self.omega
+        accelerations[..., -2] = -1.0
+        accelerations -= self.height[..., None] * turn[:, None]
+        rates = np.zeros((S, 2 * N + 2, 2 * N + 4))
+        rates[:, modes, N + modes] = 1.0
+        rates[:, N : 2 * N], rates[:, -1] = accelerations, turn
+        rates[:, -2, 2 * N + 1] = side != CLOSED
+        rows = np.concatenate((self.rotation(), self.rows(side, accelerations, turn), self.lost_support(side, turn)), 1)
+        events = (self.landing(side), self.overturning(side)) if side != CLOSED else self.uplifts()
+        A, C = rates[..., :-2], rows[..., :-2]
+        return LinearPhase(A, rates[..., -2], rates[..., -1], C, rows[..., -2], rows[..., -1], events)
+
+    def rotation(self) -> Array:
+        """θ: a row, shape (S, 1, C)."""
+        found = np.zeros((len(self.l0r), 1, 2 * self.omega.shape[1] + 4))
+        found[..., -4] = 1.0
+        return found
+
+    def moment(self) -> Array:
+        """The overturning moment in contact, left-hand side of Eq. 24, in N m: a row, shape (S, C)."""
+        (S, N), arm = self.omega.shape, self.mass * self.height
+        found = np.zeros((S, 2 * N + 4))
+        found[:, :N], found[:, N : 2 * N] = -arm * self.omega**2, -arm * 2.0 * self.zeta * self.omega
+        found[:, -2] = self.l0r - arm.sum(axis=1)
+        return found
+
+    def turn(self, side: int) -> Array:
+        """θ'', Eq. 23 with D'' eliminated, in rad/s²: a row, shape (S, C)."""
+        if side == CLOSED:
+            return np.zeros_like(self.moment())
+        arm = self.pivots[side][1]
+        found = -self.moment()
+        found[:, -4] += self.l0r * self.gravity
+        found[:, -1] -= side * self.m_tot * self.gravity * arm
+        return found / self.free_inertia(side)[:, None]
+
+    def free_inertia(self, side: int) -> Array:
+        """I_θ - Σ m* h*² about a pivot in kg m²: the inertia of the rotation with free modes, shape (S,)."""
+        return self.pivots[side][0] - (self.mass * self.height**2).sum(axis=1)
+
+    def rows(self, side: int, accelerations: Array, turn: Array) -> Array:
+        """The quantities: rows, shape (S, F, C)."""
+        N, shares = self.omega.shape[1], self.shares
+        found = shares[..., 2 * N : 3 * N] @ accelerations + shares[..., TURN, None] * turn[:, None]
+        found[..., :N] += shares[..., :N] + shares[..., N : 2 * N] * (self.omega**2)[:, None]
+        found[..., -4] += shares[..., ROTATION] + shares[..., RIGHT_ROTATION] * (side == RIGHT)
+        found[..., -2] += shares[..., GROUND]
+        if side != CLOSED:
+            found[..., -3] += self.swings[..., 0] + self.swings[..., 1] * (side == RIGHT)
+        return found
+
+    def lost_support(self, side: int, turn: Array) -> Array:
+        """The decrease of ΣF_z below m_tot g in N, Eq. 22 for small rotations, the sign corrected, shape (S, 1, C)."""
+        found = np.zeros((len(turn), 1, turn.shape[1]))
+        if side != CLOSED:
+            found[:, 0] = -side * (self.m_tot * self.pivots[side][1])[:, None] * turn
+        found[:, 0, -1] -= self.m_tot * (self.gravity - GRAVITY)
+        return found
+
+    def uplifts(self) -> tuple[Event, ...]:
+        """The base lifts about a pivot when the overturning moment exceeds that of the weight (Eq. 24)."""
+        if not self.model.lifts:
+            return ()
+        found, moment = list[Event](), self.moment()
+        for side in (RIGHT, LEFT):
+            weight = self.m_tot * self.gravity * self.pivots[side][1]
+            row = side * moment
+            scale = np.where(weight > 0.0, weight, 1.0)
+            found.append(Event("uplift", row[:, :-2], (side,), weight, row[:, -2], scale))
+        return tuple(found)
+
+    def overturning(self, side: int) -> Event:
+        """The end of the run at a rotation of π/2."""
+        return Event("overturning", -side * self.rotation()[:, 0, :-2], None, QUARTER_TURN, scale=QUARTER_TURN)
+
+    def landing(self, side: int) -> Event:
+        """The impact, after which rocking may go on to the other side."""
+        row, law = side * self.rotation()[:, 0, :-2], self.model.law
+        if isinstance(law, SidedRestitution):
+            law = law.right if side == RIGHT else law.left
+        if isinstance(law, VVELSimplified) or (isinstance(law, Restitution) and law.e == 0.0):
+            return Event("impact", row, CONTACT, jump=self.struck(0.0))
+        if not isinstance(law, Restitution) or self.gains(side, law):
+            return Event("impact", row, CONTACT, jump=self.told(self.model))
+        turn = self.turn(-side)
+        back = law.shortest_excursion * side * turn  # what the rotation would lose within the shortest excursion
+        back[:, -3] += 2.0 * side
+        rest = Rest(-back[:, :-2], CONTACT, -back[:, -1], -back[:, -2], self.struck(0.0))
+        return Event("impact", row, OTHER[side], jump=self.struck(law.e), rest=rest)
+
+    def struck(self, e: float) -> Array:
+        """The jump at an impact: every mass keeps its velocity, and the rotation a share e of its own (Eq. 25)."""
+        S, N = self.omega.shape
+        found = np.zeros((S, 2 * N + 2, 2 * N + 2))
+        found[:, range(2 * N), range(2 * N)] = 1.0
+        found[:, N : 2 * N, -1], found[:, -1, -1] = (1.0 - e) * self.height, e
+        return found
+
+    def gains(self, side: int, law: Restitution) -> bool:
+        """Whether the restitution may gain energy: on an eccentric base, whose pivots have different inertias."""
+        return bool((law.e**2 * self.free_inertia(-side) > self.free_inertia(side)).any())
+
+    def told(self, model: LinearModel) -> Callable[[Array, float], tuple[Array, Key]]:
+        """The jump of a law that is not linear or not known, for a single model."""
+        N, height, own = (
+            model.properties.n_modes,
+            model.properties.effective_height,
+            OwnLaw(model.law, model.properties),
         )
-    return tuple(found)
+        turns = {side: self.turn(side)[0] for side in (RIGHT, LEFT)}
 
+        def land(state: Array, acceleration: float) -> tuple[Array, Key]:
+            before = energy(state, model.free_inertia(RIGHT if state[-1] < 0.0 else LEFT))
+            try:
+                velocity, spin = own.after(state[N : 2 * N], float(state[-1]))
+            except Exception as error:
+                raise InputError(f"The impact law {shown(model.law)} failed: {error}") from error
+            after, key = np.concatenate((state[:N], velocity, (0.0, spin))), CONTACT
+            if spin != 0.0:
+                key, law = (RIGHT,) if spin > 0.0 else (LEFT,), model.law
+                if isinstance(law, SidedRestitution):
+                    law = law.right if state[-1] < 0.0 else law.left
+                shortest = law.shortest_excursion if isinstance(law, Restitution) else WITHOUT.shortest_excursion
+                row = turns[key[0]]
+                back = -key[0] * float(row[:-2] @ after + row[-2] * acceleration + row[-1])
+                gained = energy(after, model.free_inertia(key[0])) - before
+                if 2.0 * abs(spin) < back * shortest:
+                    after[N : 2 * N] += height * spin
+                    after[-1], key = 0.0, CONTACT
+            else:
+                gained = energy(after, 0.0) - before
+            if gained > GAIN * before:
+                raise GainsEnergyError(f"The impact law {shown(model.law)} returns energy.")
+            return after, key
 
-def _landing(model: LinearModel, leads: Exit) -> Array | Callable[[Array, float], tuple[Array, Key]]:
-    """The jump at an impact: a matrix for Eq. 25, for other laws a function."""
-    n, height = model.properties.n_modes, model.properties.effective_height
-    stick = np.diag([1.0] * (2 * n) + [0.0, 0.0])
-    stick[n : 2 * n, 2 * n + 1] = height
-    if isinstance(model.law, VVELSimplified):
-        return stick
-    own = OwnLaw(model.law, model.properties)
-    (contact, right, left) = model.phase(leads.key).beside
+        def energy(state: Array, inertia: float) -> float:
+            velocity = state[N : 2 * N] + height * state[-1]
+            return 0.5 * inertia * state[-1] ** 2 + 0.5 * float(model.properties.effective_mass @ velocity**2)
 
-    def land(state: Array, acceleration: float) -> tuple[Array, Key]:
-        before = energy(state, model.free_inertia(RIGHT if state[-1] < 0.0 else LEFT))
-        state[-2] = 0.0
-        velocity, spin = own.after(state[n : 2 * n], float(state[-1]))
-        after = np.concatenate((state[:n], velocity, (0.0, spin)))
-        key = contact if spin == 0.0 else right if spin > 0.0 else left
-        gained = energy(after, 0.0 if spin == 0.0 else model.free_inertia(key[0])) - before
-        if spin != 0.0:
-            law = model.law
-            if isinstance(law, SidedRestitution):
-                law = law.right if state[-1] < 0.0 else law.left
-            shortest = law.shortest_excursion if isinstance(law, Restitution) else WITHOUT.shortest_excursion
-            row = model.angular_acceleration(key)
-            back = -key[0] * (row[: 2 * n + 2] @ after + row[-2] * acceleration + row[-1])
-            if 2.0 * abs(spin) < back * shortest:
-                after, key = stick @ after, contact
-        if gained > GAIN * before:
-            raise SolverError(
-                f"The impact law {shown(model.law)} returns energy. A law can only lose energy: correct its `after`, "
-                "or lower its restitution."
-            )
-        return after, key
-
-    def energy(state: Array, inertia: float) -> float:
-        velocity = state[n : 2 * n] + height * state[-1]
-        return 0.5 * inertia * state[-1] ** 2 + 0.5 * float(model.properties.effective_mass @ velocity**2)
-
-    return land
+        return land

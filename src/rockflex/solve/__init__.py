@@ -8,7 +8,7 @@ from rockflex.solve._task import Task, WorkLimitError
 from rockflex.solve.batch import Excitation
 from rockflex.solve.engine import Engine
 from rockflex.solve.exact.closed_form import ClosedForm
-from rockflex.solve.hybrid import HybridEngine, takes
+from rockflex.solve.hybrid import HybridEngine, gather, takes
 from rockflex.solve.interruption import RunStoppedError, asked_to_stop, check_interruption, stopping_when
 
 __all__ = [
@@ -25,6 +25,7 @@ __all__ = [
     "WorkLimitError",
     "asked_to_stop",
     "check_interruption",
+    "gather",
     "pace_of",
     "preparing",
     "stopping_when",

@@ -7,6 +7,8 @@ from rockflex.models import RockingModel
 from rockflex.solve._task import Task
 from rockflex.solve.status import Status
 
+LONGEST_FALL = 300.0  # e-folds of the rotation within a time step; more would overflow
+
 
 def failure_of(model: RockingModel, status: Status, samples: int, dt: float, state: Array) -> SolverError:
     """Return the error for a run that ended with a status after a number of completed samples."""
@@ -23,6 +25,14 @@ def failure_of_law(model: RockingModel, failure: BaseException) -> BaseException
     error = InputError(f"{Status.BROKEN.what.format(law=shown(model.law))}: {failure}")
     error.__cause__ = failure
     return error
+
+
+def failure_of_step(rate: float, dt: float) -> InputError:
+    """Return the error for a time step within which a rotation that grows at a rate in 1/s overflows."""
+    return InputError(
+        f"The time step of {dt:g} s is too long: a rocking rotation of this structure grows e-fold in "
+        f"{1.0 / rate:.3g} s. Give the motion at a step of at most {LONGEST_FALL / rate:.3g} s."
+    )
 
 
 def failure_of_limit(task: Task, samples: int, work_limit: float | None, state: Array) -> SolverError:

@@ -4,7 +4,6 @@ from contextlib import AbstractContextManager
 
 from rockflex._computable import computable
 from rockflex.models import Quantities, RockingModel
-from rockflex.solve.bare import BarePhases, is_bare
 from rockflex.solve.phases import CompiledPhases
 
 
@@ -22,12 +21,8 @@ def _described(model: RockingModel) -> str:
     )
 
 
-def phases_of(
-    model: RockingModel, quantities: Quantities, extremes: Quantities | None, *, many: bool
-) -> CompiledPhases | BarePhases:
+def phases_of(model: RockingModel, quantities: Quantities, extremes: Quantities | None) -> CompiledPhases:
     """Return the phases of a model, with that in which runs start."""
-    if many and extremes is None and is_bare(model):
-        return BarePhases(model, quantities)
     phases = CompiledPhases(model, quantities, extremes or Quantities.none(model.layout.modes))
     with preparing(model):
         # An integrated model has few and cheap phases; otherwise each is compiled when it is needed.

@@ -1,18 +1,20 @@
 """The specification of a run, the check of its work against a limit, and the messages if it is exceeded."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._errors import InputError
+from rockflex._errors import InputError, SolverError
 from rockflex.models import HEADER, RockingModel
 from rockflex.solve._pace import Pace, Work, pace_of
 
 HISTORY = 4e9  # bytes
 SWIFT = 10.0  # rad per time step, beyond which overdamped fast motions are excluded
 UNITS = (("years", 3.2e7), ("days", 86_400.0), ("h", 3600.0), ("min", 60.0), ("s", 0.0))
+SIZES = 64  # largest number of sizes of tasks remembered
 LIFT = 'Or raise work_limit, or lift it: work_limit=None ("none" in a file and on the command line).'
 
 
@@ -138,6 +140,30 @@ class Task:
             return self.free_vibration
         slowest = float(self.model.properties.omega.min(initial=math.inf))
         return 2.0 * math.pi / slowest
+
+
+class Gate:
+    """The tasks of a model that have passed the check of their work, so that others of the same size need none."""
+
+    def __init__(self) -> None:
+        self._accepted = set[tuple[object, ...]]()
+
+    def refused(self, tasks: Sequence[Task], limit: float | None) -> dict[int, InputError | SolverError]:
+        """Check tasks against the work limit, and return the errors by their places."""
+        found: dict[int, InputError | SolverError] = {}
+        for place, task in enumerate(tasks):
+            size = task.size
+            if size is not None and (size, limit) in self._accepted:
+                continue
+            try:
+                task.check(limit)
+            except WorkLimitError as error:
+                found[place] = error
+                continue
+            if len(self._accepted) >= SIZES:
+                self._accepted.clear()
+            self._accepted.add((size, limit))
+        return found
 
 
 def _lasting(seconds: float) -> str:

@@ -18,9 +18,8 @@ from rockflex.solve._pace import Pace, pace_of
 from rockflex.solve._preparing import phases_of, preparing
 from rockflex.solve._solution import Solution
 from rockflex.solve._solutions import Solutions
-from rockflex.solve._task import Task, WorkLimitError
+from rockflex.solve._task import Gate, Task
 from rockflex.solve.adaptive.layout import Integrator, stages_of
-from rockflex.solve.bare import BarePhases
 from rockflex.solve.batch import (
     BEGUN,
     BROKEN,
@@ -44,7 +43,6 @@ from rockflex.solve.status import Status
 EVENTS = 512  # initial room in a history for states between samples
 SLICE_OF_WORK = 0.1  # s
 TOLERANCE = 1e-10  # relative, of a step
-SIZES = 64  # largest number of sizes of tasks remembered
 
 # Separate entries, because their argument types differ: the first has no vector field and is compiled without
 # integrator.
@@ -64,8 +62,6 @@ class Engine:
         Quantities of which only the largest value matters, not the magnitude.
     tolerance
         Relative error tolerance per step of integrated phases.
-    many
-        Whether engines of many structures are needed: a kernel then prepares them, which must itself be compiled first.
     """
 
     def __init__(
@@ -74,8 +70,6 @@ class Engine:
         quantities: Quantities,
         extremes: Quantities | None = None,
         tolerance: float = TOLERANCE,
-        *,
-        many: bool = False,
     ) -> None:
         self.model = model
         most = 0 if extremes is None else len(extremes)
@@ -86,8 +80,8 @@ class Engine:
         self._signed = self._n_peaks + model.turning
         self._impact, self._failures = impact_of(model.law, model.properties)
         self._desks = desks_of(model.layout, self._n_rows + model.most_fences)
-        self._accepted = set[tuple[object, ...]]()
-        self._phases = phases_of(model, quantities, extremes, many=many)
+        self._gate = Gate()
+        self._phases = phases_of(model, quantities, extremes)
         self._flow = None
         if isinstance(model, NonlinearModel):
             with preparing(model):
@@ -167,7 +161,7 @@ class Engine:
             If the runs were stopped from outside.
         """
         tasks = [self.task(run, dt, free_vibration, history=history) for run in runs]
-        failures = self._refused(tasks, work_limit)
+        failures = self._gate.refused(tasks, work_limit)
         if len(failures) == len(tasks):
             start, log = np.zeros(self.model.layout.size), self._log(tasks[0], history=False)
             return self._solutions(batch_of([None] * len(tasks), progress_at_start(0), start, log), dt, failures)
@@ -205,7 +199,7 @@ class Engine:
     def _resumed(
         self,
         status: int,
-        phases: CompiledPhases | BarePhases,
+        phases: CompiledPhases,
         task: Task,
         work_limit: float | None,
         log: Log,
@@ -226,7 +220,7 @@ class Engine:
             return log._replace(history=np.concatenate((log.history, np.zeros_like(log.history))))
         return log
 
-    def _check_tables(self, phases: CompiledPhases | BarePhases, task: Task, work_limit: float | None) -> None:
+    def _check_tables(self, phases: CompiledPhases, task: Task, work_limit: float | None) -> None:
         """Check the work of a run before the tables of a dense phase are computed, which may take longest of all."""
         if phases.dense:
             fastest = max(self.pace.fastest, phases.fastest)
@@ -235,23 +229,6 @@ class Engine:
     @cached_property
     def _at_rest(self) -> tuple[Key, Array]:
         return self.model.initial(None)
-
-    def _refused(self, tasks: Sequence[Task], limit: float | None) -> dict[int, InputError | SolverError]:
-        """Check tasks against the work limit, unless others of the same size were accepted, and return the errors."""
-        found: dict[int, InputError | SolverError] = {}
-        for place, task in enumerate(tasks):
-            size = task.size
-            if size is not None and (size, limit) in self._accepted:
-                continue
-            try:
-                task.check(limit)
-            except WorkLimitError as error:
-                found[place] = error
-                continue
-            if len(self._accepted) >= SIZES:
-                self._accepted.clear()
-            self._accepted.add((size, limit))
-        return found
 
     def _log(self, task: Task, *, history: bool) -> Log:
         rows, free = self._n_rows, task.free_vibration
@@ -267,7 +244,7 @@ class Engine:
             signed=self._signed,
         )
 
-    def _place(self, phases: CompiledPhases | BarePhases, key: Key) -> int:
+    def _place(self, phases: CompiledPhases, key: Key) -> int:
         """Return the index of the phase in which a run starts."""
         if phases.knows(key):
             return phases.place(key)

@@ -1,43 +1,140 @@
-"""Runs on the engine for hybrid systems, behind a switch: the environment variable ROCKFLEX_ENGINE is "hybrid".
+"""Runs on `rockflex.engine`: the simplified models without elements, on rigid ground that does not move vertically."""
 
-It takes the simplified models without elements on rigid ground, with the interface of `Engine`.
-"""
-
-import os
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from functools import cached_property
 from typing import TypeGuard, cast
 
 import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError, SolverError
-from rockflex.engine import Run
-from rockflex.models import GROUND, HEADER, SIDE, TIME, Key, LinearModel, Quantities, RockingModel, system_of
+from rockflex.engine import Run, StepTooLongError
+from rockflex.models import (
+    GROUND,
+    HEADER,
+    SIDE,
+    TIME,
+    GainsEnergyError,
+    Key,
+    LinearModel,
+    Quantities,
+    RockingModel,
+    may_stack,
+    system_of,
+)
 from rockflex.solve._beginning import QUIET, course_of
-from rockflex.solve._failures import failure_of, failure_of_law
+from rockflex.solve._failures import failure_of, failure_of_limit, failure_of_step
+from rockflex.solve._pace import SEARCH, Pace, pace_of
+from rockflex.solve._preparing import preparing
+from rockflex.solve._solution import Solution
 from rockflex.solve._solutions import Ends, Solutions
+from rockflex.solve._task import Gate, Task
 from rockflex.solve.batch import Excitation
-from rockflex.solve.engine import SLICE_OF_WORK, Engine
+from rockflex.solve.engine import Engine
 from rockflex.solve.interruption import check_interruption
 from rockflex.solve.records import END
 from rockflex.solve.status import Status
 
+STACK = 64  # systems in one stack, at most
+FAILURES = {"accumulation": Status.CHATTER, "growth": Status.INFINITE}
+
 
 def takes(model: RockingModel) -> TypeGuard[LinearModel]:
-    """Return whether the switch is on, and the model one of those that the engine can run so far."""
-    return os.environ.get("ROCKFLEX_ENGINE") == "hybrid" and type(model) is LinearModel and not model.elements
+    """Return whether a model is one of those that the engine runs."""
+    return type(model) is LinearModel and not model.elements
 
 
-class HybridEngine(Engine):
-    """A model on the engine for hybrid systems."""
+class Stack:
+    """Models that differ only in numbers, and the solvers that have their phases."""
 
-    def __init__(
-        self, model: LinearModel, quantities: Quantities, extremes: Quantities | None = None, *, many: bool = False
-    ) -> None:
-        super().__init__(model, quantities, extremes, many=many)
-        self._system = system_of(model, quantities, extremes)
-        self._free = defaultdict[float, list[Run]](list)
+    def __init__(self, models: Sequence[LinearModel], quantities: Sequence[Quantities]) -> None:
+        with preparing(models[0]):
+            self.system = system_of(models, quantities)
+        self._solvers = defaultdict[float, list[Run]](list)
+
+    def taken(self, dt: float) -> Run:
+        """Return a solver that no other thread uses."""
+        try:
+            return self._solvers[dt].pop()
+        except IndexError:
+            return Run(self.system, dt)
+
+    def returned(self, solver: Run) -> None:
+        """Keep a solver for the next run."""
+        self._solvers[solver.h].append(solver)
+
+
+class HybridEngine:
+    """A model on the engine for hybrid systems, with the interface of `Engine`; that one runs vertical motion.
+
+    Parameters
+    ----------
+    model
+        The model.
+    quantities
+        Quantities whose peaks are computed.
+    """
+
+    dense = False
+
+    def __init__(self, model: LinearModel, quantities: Quantities) -> None:
+        self.model, self.quantities = model, quantities
+        self._place, self._gate = 0, Gate()
+        self._n_peaks = 1 + len(quantities)
+
+    @cached_property
+    def stack(self) -> Stack:
+        """The stack of the model, by itself unless it has been gathered."""
+        return Stack([self.model], [self.quantities])
+
+    @cached_property
+    def shaken(self) -> Engine:
+        """The engine for vertical motion of the ground."""
+        return Engine(self.model, self.quantities)
+
+    @property
+    def size(self) -> int:
+        """Memory of all tables in bytes, roughly."""
+        n, rows = self.stack.system.layout.size, self._n_peaks + 3
+        return 8 * 3 * (n + 6) * (5 * n + 10 * rows)
+
+    @cached_property
+    def pace(self) -> Pace:
+        """The properties that determine the work of runs."""
+        p, found = self.model.properties, pace_of(self.model, self._n_peaks + 1)
+        levers, drag = p.effective_mass * p.effective_height**2, 2.0 * p.zeta * p.omega
+        free = min((self.model.free_inertia(side) for side in self.model.sides[1:]), default=np.inf)
+        # The sum of the rates at which the motion fades while the base rocks; on a very narrow base one root has it all
+        fades = float((drag * (1.0 + levers / free)).sum())
+        return replace(found, fastest=max(found.fastest, fades), dense=True)
+
+    def task(self, run: Excitation, dt: float, free_vibration: float | None = 0.0, *, history: bool = False) -> Task:
+        """Return the task of a run, which estimates its work."""
+        return Task(self.model, self.pace, run.acceleration, dt, free_vibration, history, run.scale)
+
+    def gather(self, stack: Stack, place: int) -> None:
+        """Share a stack with other models."""
+        vars(self)["stack"], self._place = stack, place
+
+    def run(
+        self,
+        acceleration: Array,
+        dt: float,
+        *,
+        free_vibration: float | None = 0.0,
+        state: Array | tuple[Key, Array] | None = None,
+        history: bool = False,
+        work_limit: float | None = None,
+        vertical: Array | None = None,
+    ) -> Solution:
+        """Run one record as `run_all` does, and return its solution or raise its error."""
+        runs = [Excitation(acceleration, vertical)]
+        found = self.run_all(
+            runs, dt, free_vibration=free_vibration, state=state, history=history, work_limit=work_limit
+        )
+        return found.one(0)
 
     def run_all(
         self,
@@ -48,77 +145,104 @@ class HybridEngine(Engine):
         state: Array | tuple[Key, Array] | None = None,
         history: bool = False,
         work_limit: float | None = None,
-        slice_of_work: float = SLICE_OF_WORK,
     ) -> Solutions:
         """As in `Engine`."""
-        if any(run.vertical is not None for run in runs):
-            return super().run_all(
-                runs,
-                dt,
-                free_vibration=free_vibration,
-                state=state,
-                history=history,
-                work_limit=work_limit,
-                slice_of_work=slice_of_work,
+        if runs[0].vertical is not None:
+            return self.shaken.run_all(
+                runs, dt, free_vibration=free_vibration, state=state, history=history, work_limit=work_limit
             )
         tasks = [self.task(run, dt, free_vibration, history=history) for run in runs]
-        failures = self._refused(tasks, work_limit)
-        key, start = state if isinstance(state, tuple) else self.model.initial(state)
-        free = self._free[dt]
-        solver = free.pop() if free else Run(self._system, dt)
-        rows, states = len(self._system.outputs), None
-        found = Ends(
-            ends=np.zeros(len(runs), dtype=END),
-            peaks=np.zeros((len(runs), rows)),
-            times=np.zeros((len(runs), rows)),
-            states=np.zeros((len(runs), start.size)),
+        failures = self._gate.refused(tasks, work_limit)
+        key, start = (
+            self._at_rest if state is None else state if isinstance(state, tuple) else self.model.initial(state)
         )
+        count, rows, states = len(runs), self._n_peaks + 1, None
+        found = Ends(
+            np.zeros(count, END), np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, start.size))
+        )
+        with preparing(self.model):
+            solver = self.stack.taken(dt)
+        solver.watch, solver.limit = check_interruption, self._samples_in(work_limit)
         for place, run in enumerate(runs):
-            check_interruption()
             if place in failures:
                 continue
-            solver.restart(start, key)
-            end = found.ends[place]
+            check_interruption()
             try:
-                end.status = self._follow(solver, run, dt, free_vibration, history=history)
-                end.samples = round(solver.time / dt)
-                if end.status < 0:
-                    failures[place] = failure_of(self.model, Status(end.status), int(end.samples), dt, solver.state)
+                solver.restart(start, key, self._place)
+                status = self._follow(solver, run, dt, free_vibration, history=history)
             except (InputError, SolverError) as error:
-                failures[place] = error
+                failures[place] = self._failure(error, solver, tasks[place], work_limit)
                 continue
-            names = [name for _, _, name in solver.events]
-            end.uplifts, end.impacts = names.count("uplift"), names.count("impact")
-            found.peaks[place], found.times[place] = np.array(list(solver.peaks.values())).T
+            samples = round(solver.time / dt)
+            found.ends[place] = (status, samples, 0.0, *solver.tally("uplift", "impact"))
+            if status < 0:
+                failures[place] = failure_of(self.model, Status(status), samples, dt, solver.state)
+            found.peaks[place], found.times[place] = solver.highest
             found.states[place] = solver.state
             if history:
                 states = self._states(solver)
-        free.append(solver)
-        return Solutions(found, dt, self._n_peaks, self._signed, failures, states)
+        self.stack.returned(solver)
+        return Solutions(found, dt, self._n_peaks, self._n_peaks, failures, states)
+
+    @cached_property
+    def _at_rest(self) -> tuple[Key, Array]:
+        return self.model.initial(None)
+
+    def _failure(
+        self, error: InputError | SolverError, solver: Run, task: Task, work_limit: float | None
+    ) -> InputError | SolverError:
+        """The error of a run that could not be solved, with its time and state."""
+        if isinstance(error, StepTooLongError):
+            return failure_of_step(error.rate, task.dt)
+        samples = int(solver.time / task.dt)
+        if solver.failure == "work":
+            return failure_of_limit(task, samples, work_limit, solver.state)
+        status = Status.GAINED if isinstance(error, GainsEnergyError) else FAILURES.get(solver.failure)
+        return error if status is None else failure_of(self.model, status, samples, task.dt, solver.state)
+
+    def _samples_in(self, work_limit: float | None) -> int:
+        """The number of samples that a work limit in s allows."""
+        if work_limit is None:
+            return 2**62
+        sample, look, *_ = self.pace.prices(history=False)
+        return int(min(work_limit / (sample + SEARCH * look), 2.0**62))
 
     def _follow(self, solver: Run, run: Excitation, dt: float, free: float | None, *, history: bool) -> int:
         """Run the record and the free vibration; the status at the end."""
-        try:
-            solver.advance(run.acceleration * run.scale, history)
-            samples = course_of(self.model, dt, free).free
-            if free is None:
-                if solver.settle(samples, history=history):
-                    return Status.SETTLED
-                return Status.OVERTURNED if solver.ended else Status.UNSETTLED
-            while samples > 0 and not solver.ended:
-                check_interruption()
-                piece = min(samples, QUIET.size - 1)
-                solver.advance(QUIET[: piece + 1], history)
-                samples -= piece
-        except (InputError, SolverError):
-            raise
-        except Exception as error:
-            raise failure_of_law(self.model, error) from error
+        solver.advance(run.acceleration * run.scale, history)
+        if free == 0.0:
+            return Status.OVERTURNED if solver.ended else Status.ENDED
+        samples = course_of(self.model, dt, free).free
+        if free is None:
+            if solver.settle(samples, history=history):
+                return Status.SETTLED
+            return Status.OVERTURNED if solver.ended else Status.UNSETTLED
+        while samples > 0 and not solver.ended:
+            piece = min(samples, QUIET.size - 1)
+            solver.advance(QUIET[: piece + 1], history)
+            samples -= piece
         return Status.OVERTURNED if solver.ended else Status.ENDED
 
     def _states(self, solver: Run) -> Array:
         times, keys, ground, states = solver.history
         rows = np.zeros((times.size, HEADER + self.model.layout.size))
         rows[:, TIME], rows[:, GROUND], rows[:, HEADER:] = times, ground, states
-        rows[:, SIDE] = [key[0] for key in cast("list[Key]", keys)]
+        side, rotation = rows[:, SIDE], rows[:, HEADER + self.model.layout.rotation]
+        side[:] = [key[0] for key in cast("list[Key]", keys)]
+        rotation[side * rotation < 0.0] = 0.0  # by rounding
+        rotation[:-1][(times[1:] == times[:-1]) & (side[:-1] != 0.0) & (rotation[1:] == 0.0)] = 0.0  # before an impact
         return rows
+
+
+def gather(engines: Iterable[HybridEngine]) -> None:
+    """Let engines of many models that differ only in numbers share their preparation."""
+    alike = defaultdict[tuple[int, ...], list[HybridEngine]](list)
+    for each in engines:
+        if may_stack(each.model) and "stack" not in vars(each):
+            alike[each.model.properties.n_modes, len(each.quantities), each.model.lifts].append(each)
+    for some in alike.values():
+        for first in range(0, len(some), STACK):
+            part = some[first : first + STACK]
+            stack = Stack([each.model for each in part], [each.quantities for each in part])
+            for place, each in enumerate(part):
+                each.gather(stack, place)

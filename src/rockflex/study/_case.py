@@ -1,17 +1,15 @@
 """One run: a model tied to a structure, with the options of its runs, under a motion at a scale."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from rockflex._errors import InputError, SolverError
 from rockflex.models import Quantities, RockingModel
 from rockflex.motion import GroundMotion
 from rockflex.response import Response, asked_of, extremes_of, respond
-from rockflex.solve import Engine, Excitation, HybridEngine, Solution, Solutions, Task, preparing, takes
+from rockflex.solve import Engine, Excitation, HybridEngine, Solution, Solutions, Task, gather, preparing, takes
 from rockflex.study._arguments import WORK_LIMIT
 from rockflex.study._initial import InitialState
-
-MANY = 256  # structures from which it is worth while to compile the kernel that prepares them, and to start processes
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,8 +32,6 @@ class Case:
         Whether the peaks of the floors are tracked.
     extra
         Additional quantities whose peaks are tracked.
-    many
-        Whether many structures have a case like this, see `Engine`.
     engine
         The engine of the model, ready to run records.
 
@@ -52,8 +48,7 @@ class Case:
     history: bool = False
     floors: bool = False
     extra: Quantities | None = None
-    many: bool = False
-    engine: Engine = field(init=False, repr=False)
+    engine: Engine | HybridEngine = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         if self.free_vibration is None and self.model.bouc_wen is not None:
@@ -66,10 +61,7 @@ class Case:
             asked = asked_of(self.model, floors=self.floors)
         asked = asked if self.extra is None else asked + self.extra
         most = extremes_of(self.model)
-        if takes(self.model):
-            engine = HybridEngine(self.model, asked, most, many=self.many)
-        else:
-            engine = Engine(self.model, asked, most, many=self.many)
+        engine = HybridEngine(self.model, asked) if takes(self.model) else Engine(self.model, asked, most)
         object.__setattr__(self, "engine", engine)
 
     def task(self, motion: GroundMotion, scale: float = 1.0) -> Task:
@@ -119,6 +111,11 @@ class Case:
             return self.run(motion, scale)
         except (InputError, SolverError) as error:
             return error
+
+
+def prepare_together(cases: Iterable[object]) -> None:
+    """Let those of many cases that differ only in numbers share their preparation."""
+    gather(case.engine for case in cases if isinstance(case, Case) and isinstance(case.engine, HybridEngine))
 
 
 def is_shaken(motion: GroundMotion) -> bool:

@@ -22,7 +22,7 @@ from rockflex.study._arguments import (
     ground_under,
     properties_of,
 )
-from rockflex.study._case import MANY, Case
+from rockflex.study._case import Case, prepare_together
 from rockflex.study._initial import InitialState
 from rockflex.study._peaks import Peaks, Scaled, peaks_among, peaks_of
 from rockflex.study._prepared import FIXED
@@ -35,6 +35,7 @@ from rockflex.study._yielding import hysteresis_of
 if TYPE_CHECKING:
     import pandas as pd
 
+MANY = 256  # structures from which it is worth while to start processes
 CHUNK = 64  # runs a task: long enough to hide a task's cost, short enough to share the work evenly
 
 # Some runs of a structure: its index, the first and the last of them, and its case for each model, once prepared.
@@ -133,9 +134,7 @@ def simulate_many(
         try:
             properties = properties_of(everything[index])
             below = ground_under(properties, ground)
-            return Case(
-                chosen[which].of(properties, impact, yielding[which], below), **options, many=len(everything) >= MANY
-            )
+            return Case(chosen[which].of(properties, impact, yielding[which], below), **options)
         except InputError as error:
             return str(error)
 
@@ -173,6 +172,7 @@ def simulate_many(
         for index, _, _, cases in task:  # all of them first, so that the code that prepares stays in the cache
             for which, case in enumerate(cases):
                 cases[which] = case or case_of(index, which)
+        prepare_together(case for *_, cases in task for case in cases)
         for index, first, last, cases in task:
             for which, runs in parts_of(range(first, last)).items():
                 rows = [begun + place - first for place in runs]

@@ -10,11 +10,10 @@ import numpy as np
 
 from rockflex._kernel import KERNELS, notice
 from rockflex._numba import folder_of
-from rockflex.models import Model
+from rockflex.modal import Tendon
 from rockflex.motion import GroundMotion, rotated_spectrum
 from rockflex.response import Response
-from rockflex.structure import LumpedStructure
-from rockflex.study._case import Case
+from rockflex.structure import LumpedStructure, Restrained
 from rockflex.study._simulate import simulate
 
 
@@ -104,8 +103,8 @@ def _runs(model: str) -> Response:
     return simulate(_structure(), _motion(), model)
 
 
-def _many() -> None:
-    Case(Model(2).of(_structure().rocking()), many=True).run(_motion())
+def _tied() -> None:
+    simulate(Restrained(_structure(), Tendon(1e3, 1e5)), _motion(), "MDOF-S")
 
 
 def _motion() -> GroundMotion:
@@ -123,8 +122,7 @@ def _spectra() -> None:
 
 
 STEPS: dict[str, Callable[[], object]] = {
-    "simplified models": lambda: _runs("MDOF-S"),
+    "simplified models with elements": _tied,
     "complete and yielding models": _complete,
-    "many structures": _many,
     "response spectra": _spectra,
 }

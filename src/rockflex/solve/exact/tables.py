@@ -12,10 +12,10 @@ import numpy as np
 from scipy.linalg import expm
 
 from rockflex._arrays import Array
-from rockflex._errors import InputError
 from rockflex._numba_vectors import padded
 from rockflex._vectors import BLOCK
 from rockflex.models import SUMS, Phase, RockingModel
+from rockflex.solve._failures import LONGEST_FALL, failure_of_step
 from rockflex.solve.exact.basis import Basis, Drift
 from rockflex.solve.exact.entries import modes_of
 from rockflex.solve.exact.powers import put_powers
@@ -42,8 +42,6 @@ from rockflex.solve.layout import (
 )
 from rockflex.solve.records import PHASE
 
-LONGEST_FALL = 300.0  # e-folds of the rotation within a time step; more would overflow
-
 
 def check_step(basis: Basis, dt: float) -> None:
     """Check that no rotation overflows within a time step.
@@ -55,10 +53,7 @@ def check_step(basis: Basis, dt: float) -> None:
     """
     fall = float(basis.roots.real.max())
     if fall * dt > LONGEST_FALL:
-        raise InputError(
-            f"The time step of {dt:g} s is too long: a rocking rotation of this structure grows e-fold in "
-            f"{1.0 / fall:.3g} s. Give the motion at a step of at most {LONGEST_FALL / fall:.3g} s."
-        )
+        raise failure_of_step(fall, dt)
 
 
 def levels_of(fastest: float, dt: float) -> int:

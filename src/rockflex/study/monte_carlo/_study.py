@@ -11,6 +11,7 @@ from rockflex._schema import PLAIN, Key
 from rockflex.modal import Ground, RockingProperties
 from rockflex.motion import Suite, intensities
 from rockflex.study._arguments import factors_of
+from rockflex.study._case import prepare_together
 from rockflex.study._results import RESULTS
 from rockflex.study._tables import Columns, Row, kinds_of
 from rockflex.study.cloud._study import Factors
@@ -22,6 +23,7 @@ from rockflex.study.plan._spec import RunsSpec
 
 MOST = 2**32 - 1  # structures with different random numbers
 TRIED = 20  # structures, at most, until one can be built
+TOGETHER = 64  # structures that are prepared together
 OF_STRUCTURE = "resisting_moment recentring_ratio"
 _RUN = "structure number motion group magnitude distance_km model scale nominal_limit zeta_1 error"
 _COLUMNS = (*_RUN.split(), *OF_STRUCTURE.split(), *(measure.name for measure in intensities()), "status", *RESULTS)
@@ -204,24 +206,31 @@ class MonteCarloPlan(ChunkedPlan):
         return sorted(order[: self._per_structure].tolist())
 
     def rows(self, units: Sequence[int]) -> list[Row]:
-        """Draw a structure a unit, and simulate it."""
-        return [row for unit in units for row in self._runs_of(unit)]
+        """Draw a structure a unit, and simulate it; some at a time, which are prepared together."""
+        parts = (units[first : first + TOGETHER] for first in range(0, len(units), TOGETHER))
+        return [row for part in parts for row in self._rows(part)]
 
-    def _runs_of(self, unit: int) -> Iterator[Row]:
+    def _rows(self, units: Sequence[int]) -> Iterator[Row]:
+        drawn = [self._drawn(unit) for unit in units]
+        prepare_together(case for _, bench in drawn if bench is not None for case in bench.cases(0))
+        for unit, (row, bench) in zip(units, drawn, strict=True):
+            if bench is None:
+                yield from (self.bench.head(*run) | row for run in self._runs(unit))
+            else:
+                yield from (found | row for found in bench.run_all([*self._runs(unit)]))
+
+    def _drawn(self, unit: int) -> tuple[Row, Bench | None]:
+        """Return what describes a structure, and the bench for its runs, or the error and none."""
         row: Row = {"number": unit}
         try:
             row |= self.population.variables.draw(self.seed, unit)
             properties = self.population.build(row)
             ground = self.population.ground_under(properties, row)
         except InputError as error:
-            for run in self._runs(unit):
-                yield self.bench.head(*run) | row | {"error": str(error)}
-            return
+            return row | {"error": str(error)}, None
         row |= facts_of(properties)
         row |= {"resisting_moment": properties.resisting_moment, "recentring_ratio": properties.recentring_ratio}
-        bench = self.bench.with_structure(properties, ground)
-        for found in bench.run_all([*self._runs(unit)]):
-            yield found | row
+        return row, self.bench.with_structure(properties, ground)
 
     def _runs(self, number: int) -> Iterator[tuple[int, int, int, float]]:
         models = range(len(self.bench.labels))

@@ -23,7 +23,7 @@ from rockflex.study._arguments import (
     properties_of,
     work_limit_of,
 )
-from rockflex.study._case import MANY, Case
+from rockflex.study._case import Case, prepare_together
 from rockflex.study._ground_table import GroundTable
 from rockflex.study._peaks import peaks_of
 from rockflex.study._prepared import FIXED
@@ -144,6 +144,7 @@ class Bench:
         alike = dict[tuple[int, int], list[int]]()
         for place, (structure, _, model, _) in enumerate(runs):
             alike.setdefault((structure, model), []).append(place)
+        prepare_together(self._case(*pair) for pair in alike)
         rows: list[Row] = [self.head(*run) for run in runs]
         for (structure, model), places in alike.items():
             some = [(runs[place][1], runs[place][3]) for place in places]
@@ -211,14 +212,17 @@ class Bench:
             found = self._cases[structure, model] = self._new_case(structure, model)
         return found
 
+    def cases(self, structure: int) -> list[Case | str]:
+        """Return the cases of a structure with all models, or the reasons why there are none."""
+        return [self._case(structure, model) for model in range(len(self.labels))]
+
     def _new_case(self, structure: int, model: int) -> Case | str:
         given = self.assumptions
         try:
             properties = self.structures[structure]
             ground = ground_under(properties, given.ground)
             tied = given.models[model].of(properties, given.impact, self._yielding[model], ground)
-            many = len(self.structures) >= MANY
-            return Case(tied, given.free_vibration, work_limit=given.work_limit, history=given.history, many=many)
+            return Case(tied, given.free_vibration, work_limit=given.work_limit, history=given.history)
         except InputError as error:
             return str(error)
 

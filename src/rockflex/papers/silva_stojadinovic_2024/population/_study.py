@@ -16,7 +16,7 @@ from rockflex.papers.silva_stojadinovic_2024.population._prototypes import STORY
 from rockflex.progress import ProgressChoice
 from rockflex.response import Response, respond
 from rockflex.study._arguments import WORK_LIMIT, free_vibration_time, work_limit_of
-from rockflex.study._case import Case
+from rockflex.study._case import Case, prepare_together
 from rockflex.study._modal_combination import SecondMode, combine, second_mode
 from rockflex.study._results import result_columns, results_of
 from rockflex.study._subjects import Motions, motions_of
@@ -37,7 +37,7 @@ COMBINED = "max_second_displacement_mdof srss_top_displacement srss_base_shear s
 
 Result = TypeVar("Result")
 
-TOGETHER = 16  # structures whose tables fit into a core's cache
+TOGETHER = 64  # structures that are prepared together
 MOST = 2**32 - 1  # pairs with different random numbers
 
 
@@ -134,6 +134,7 @@ class PopulationPlan(ChunkedPlan):
         structures = [each.frame().rocking() for each in drawn]
         seconds = [second_mode(*each) for each in zip(structures, motions, strict=True)]
         cases = [_attempt(self._cases, properties) for properties in structures]
+        prepare_together(case for each in cases if isinstance(each, list) for case in each)
         solved = [_attempt(_solutions, *each) for each in zip(cases, motions, strict=True)]
         rows = list[Row]()
         given = zip(units, drawn, motions, structures, seconds, cases, solved, strict=True)
@@ -157,7 +158,7 @@ class PopulationPlan(ChunkedPlan):
         models = LinearModel("MDOF-S", properties), LinearModel("2DOF-S", properties.truncated(1))
         extra = [modal_displacement(model, min(model.properties.n_modes, 2) - 1) for model in models]
         return [
-            Case(model, self.free_vibration, work_limit=self.work_limit, extra=each, many=True)
+            Case(model, self.free_vibration, work_limit=self.work_limit, extra=each)
             for model, each in zip(models, extra, strict=True)
         ]
 

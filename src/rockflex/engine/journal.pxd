@@ -1,0 +1,15 @@
+cimport cython
+
+
+@cython.final
+cdef class Journal:
+    cdef int n, n_events
+    cdef Py_ssize_t n_nodes
+    cdef double[::1] times
+    cdef int[:, ::1] exits, often
+    cdef double[:, ::1] rows
+    cdef int[::1] places
+
+    cpdef bint wants(self, double a) noexcept nogil
+    cpdef int keep(self, double sample, double a, double[::1] y, int place) except -1 nogil
+    cpdef int happen(self, double time, int place, int event) except -1 nogil
