@@ -131,8 +131,8 @@ def test_a_base_too_wide_to_lift_is_fixed(given_, motion, model):
     fixed = simulate(structure, motion, "1DOF-fixed" if model == "2DOF-C" else "fixed")
     free = simulate(structure, motion, model)
     assert free.status == "no_uplift"
-    assert_same_peaks(fixed, free, 1e-12)
-    np.testing.assert_allclose(free.base_moment, fixed.base_moment, rtol=0.0, atol=1e-12 * fixed.max_base_moment)
+    assert_same_peaks(fixed, free, 1e-11)
+    np.testing.assert_allclose(free.base_moment, fixed.base_moment, rtol=0.0, atol=1e-11 * fixed.max_base_moment)
 
 
 @examples(30)

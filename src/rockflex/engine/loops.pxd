@@ -22,6 +22,7 @@ cdef extern from "march.h" nogil:
         double *candidates
         double *seen
         int resumes, count, room, width, looks
+        void *workspace
         long long work
     ctypedef struct Phase:
         Tables tables
@@ -34,6 +35,7 @@ cdef extern from "march.h" nogil:
     ctypedef struct Loops:
         const char *level
         int group
+        size_t workspace
         void (*product)(int columns, int rows, const double *table, const double *x, double *out) noexcept nogil
         int (*expand)(const Tables *p, double h, double a, double rise, const double *y, int room, int width, double *series) noexcept nogil
         void (*evaluate)(int rows, int terms, int width, const double *series, double t, double *out) noexcept nogil

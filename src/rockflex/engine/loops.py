@@ -6,7 +6,7 @@ from itertools import pairwise
 import cython
 import numpy as np
 from cython.cimports.libc.math import fabs
-from cython.cimports.libc.stdlib import calloc, free, realloc
+from cython.cimports.libc.stdlib import calloc, free, malloc, realloc
 
 from rockflex.engine.system import up8
 
@@ -46,11 +46,17 @@ class Peaks:
     def __init__(self, one_sided, states, room):
         outputs: cython.int = one_sided.shape[0]
         self.high_, self.when_ = np.zeros(outputs), np.zeros(outputs)
-        self.seen, self.candidates = np.zeros(MAX_ROWS), np.zeros((room + 1, 2 + states + outputs))
+        self.seen, self.candidates = np.zeros(MAX_ROWS + 8), np.zeros((room + 1, 2 + states + outputs))
         self.log.high, self.log.when = cython.address(self.high_[0]), cython.address(self.when_[0])
         self.log.seen, self.log.candidates = cython.address(self.seen[0]), cython.address(self.candidates[0, 0])
         self.log.room, self.log.width = room, 2 + states + outputs
+        self.log.workspace = malloc(LOOPS.workspace)
+        if self.log.workspace == cython.NULL:
+            raise MemoryError
         self.begin(one_sided)
+
+    def __dealloc__(self):
+        free(self.log.workspace)
 
     def begin(self, one_sided: cython.double[::1]):
         """Begin anew."""

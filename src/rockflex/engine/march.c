@@ -2,7 +2,6 @@
 #include "march.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 #if defined(__SSE2__)
 #include <immintrin.h>
@@ -232,12 +231,16 @@ typedef struct { /* samples of a product, a bit for each */
     unsigned at_end, within, fails; /* in which a peak is at the end, may be within, and in which a condition may fail */
 } Asking;
 
+typedef struct { /* of rows, one sample after another */
+    double lowest[FLAT], highest[FLAT], slopes[FLAT + MAX_ROWS], centres[FLAT + MAX_ROWS], sway[FLAT];
+} Bounds;
+
 /* Closer bounds of the rows in every sample of a product, and the samples that still ask. A row stays
    near its chord by the change of its slope and its third derivative, or near what fast modes swing about. */
 static Asking asking(const Tables *p, const double *x, const double *before, const double *after, Block *b,
-                     const Watch *w, double *lowest, double *highest) {
+                     const Watch *w, Bounds *bounds) {
     const int rows = p->rows, columns = p->n + AHEAD + 2, whole = up8((AHEAD + 1) * rows);
-    double slopes[FLAT + MAX_ROWS], centres[FLAT + MAX_ROWS], sway[FLAT];
+    double *slopes = bounds->slopes, *centres = bounds->centres, *sway = bounds->sway;
     Asking found = {0};
     if (!b->fine) product(p->parts + 2, up8(rows), p->sway, b->moves, b->sway);
     b->fine = 1;
@@ -255,7 +258,7 @@ static Asking asking(const Tables *p, const double *x, const double *before, con
             vec c0 = at(centres + f), c1 = at(centres + rows + f), away = 0.5 * at(w->cap + f) + 0.25 * at(w->bend4 + f);
             low = larger(low, -larger(-c0, -c1) - away), high = -larger(-high, -larger(c0, c1) - away);
         }
-        put(lowest + f, low), put(highest + f, high);
+        put(bounds->lowest + f, low), put(bounds->highest + f, high);
         vec limit = at(w->limit + f), end = counts(w, f, r1), top = larger(counts(w, f, low), counts(w, f, high));
         mask above = top > limit, within = top > larger(limit, end), condition = w->flip[f / LANES] < 0;
         if (any(above))
@@ -288,11 +291,20 @@ static inline void raise_peaks(const Tables *p, const double *rows, double sampl
 
 typedef double States[AHEAD + 1][MAX_STATES]; /* at the samples of a product */
 
+typedef struct { /* room for one march; on the stack of a thread it might be too large */
+    double rows[MAX_ROWS + FLAT + MAX_STATES], now[WIDE];
+    Watch watch;
+    Block block;
+    Bounds bounds;
+    States states;
+} Workspace;
+
 /* Look at the samples of a product that ask for it, whose rows have these bounds. Returns how many there are before the
    first in which a condition may fail. */
 static int inspect(const Tables *p, int phase, const double *a, int i, int samples, Asking asking, const double *rows,
-                   const double *lowest, const double *highest, States y, int *known, Watch *w, Log *log) {
+                   const Bounds *bounds, States y, int *known, Watch *w, Log *log) {
     const int n = p->n, m = p->outputs, count = p->rows;
+    const double *lowest = bounds->lowest, *highest = bounds->highest;
     int k = 0;
     for (; k < samples; k++, rows += count, lowest += count, highest += count) {
         const double *r1 = rows + count;
@@ -328,13 +340,13 @@ static int inspect(const Tables *p, int phase, const double *a, int i, int sampl
    does not change the motion. */
 static int march(const Tables *p, int phase, const double *a, int i, int last, double *y, Log *log) {
     const int n = p->n, states = up8(n), rows = p->rows, flat = up8(AHEAD * rows);
-    double room[MAX_ROWS + FLAT + MAX_STATES], x[MAX_STATES + AHEAD + 2], now[WIDE], padded[AHEAD + 1];
-    double *after = room + up8(rows), *before = after - rows, *change = after + flat;
-    double lowest[FLAT], highest[FLAT];
-    States at_samples;
-    Block block;
-    Watch watch;
-    begin_watch(p, log, &watch);
+    Workspace *room = log->workspace;
+    double x[MAX_STATES + AHEAD + 2], padded[AHEAD + 1];
+    double *after = room->rows + up8(rows), *before = after - rows, *change = after + flat, *now = room->now;
+    Block *block = &room->block;
+    Watch *watch = &room->watch;
+    double(*at_samples)[MAX_STATES] = room->states;
+    begin_watch(p, log, watch);
     memcpy(x, y, sizeof *x * n);
     if (log->resumes) {
         memcpy(before, log->seen, sizeof *x * rows);
@@ -342,7 +354,7 @@ static int march(const Tables *p, int phase, const double *a, int i, int last, d
         x[n] = a[i], x[n + 1] = 1.0;
         product(n + 2, states + up8(rows), p->now, x, now);
         memcpy(before, now + states, sizeof *x * rows);
-        raise_peaks(p, before, i, &watch, log);
+        raise_peaks(p, before, i, watch, log);
     }
     log->looks = log->resumes = 0;
     for (int left = 0; i < last && !log->looks; left -= AHEAD) {
@@ -352,7 +364,7 @@ static int march(const Tables *p, int phase, const double *a, int i, int last, d
                 log->resumes = 1;
                 break;
             }
-            begin_block(p, a + i, last - i < BLOCK ? last - i : BLOCK, x, &block, &watch);
+            begin_block(p, a + i, last - i < BLOCK ? last - i : BLOCK, x, block, watch);
             left = BLOCK;
         }
         int samples = last - i < AHEAD ? last - i : AHEAD;
@@ -365,13 +377,13 @@ static int march(const Tables *p, int phase, const double *a, int i, int last, d
         x[n + AHEAD + 1] = 1.0;
         product(n + AHEAD + 2, flat + states, p->block, x, after);
         int passed = samples;
-        int look = asks(&watch, before, after);
+        int look = asks(watch, before, after);
         if (log->states || samples < AHEAD || look) {
             int known = 0; /* samples after which the state is known */
             memcpy(at_samples[0], x, sizeof *x * n);
             if (look) {
-                Asking which = asking(p, x, before, after, &block, &watch, lowest, highest);
-                passed = inspect(p, phase, ground, i, samples, which, before, lowest, highest, at_samples, &known, &watch, log);
+                Asking which = asking(p, x, before, after, block, watch, &room->bounds);
+                passed = inspect(p, phase, ground, i, samples, which, before, &room->bounds, at_samples, &known, watch, log);
             }
             if (log->states || passed < AHEAD)
                 for (; known < passed; known++) advance(p, ground + known, at_samples[known], at_samples[known + 1]);
@@ -392,4 +404,4 @@ static int march(const Tables *p, int phase, const double *a, int i, int last, d
     return i;
 }
 
-const Loops JOIN(rockflex_loops_, LEVEL) = {TEXT(LEVEL), UNITS * 8, product, expand, evaluate, amounts, spread, march};
+const Loops JOIN(rockflex_loops_, LEVEL) = {TEXT(LEVEL), UNITS * 8, sizeof(Workspace), product, expand, evaluate, amounts, spread, march};

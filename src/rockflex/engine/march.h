@@ -5,11 +5,13 @@
 #ifndef ROCKFLEX_MARCH_H
 #define ROCKFLEX_MARCH_H
 
+#include <stddef.h>
+
 enum {
     AHEAD = 4,        /* samples in one product */
     BLOCK = 16,       /* samples that share bounds */
     MAX_STATES = 320,
-    MAX_ROWS = 640    /* outputs and conditions */
+    MAX_ROWS = 4096   /* outputs and conditions */
 };
 
 typedef struct {
@@ -37,6 +39,7 @@ typedef struct {
     double *seen;            /* rows where the march has stopped for want of room */
     int resumes;             /* whether it has: it goes on from there with the same bits */
     int count, room, width;  /* rows of candidates, at most so many; doubles in a row */
+    void *workspace;         /* of `Loops.workspace` bytes */
     int looks;               /* whether the march has stopped before a sample in which a condition may fail */
     long long work;          /* samples and expansions so far */
 } Log;
@@ -54,6 +57,7 @@ enum { UNKNOWN = -1, ENDS = -2, ASKED = -3 };
 typedef struct { /* the loops for one level of vector instructions */
     const char *level;
     int group; /* rows in a group of a table, at most */
+    size_t workspace;
     void (*product)(int columns, int rows, const double *table, const double *x, double *out);
     int (*expand)(const Tables *p, double h, double a, double rise, const double *y, int room, int width, double *series);
     void (*evaluate)(int rows, int terms, int width, const double *series, double t, double *out);

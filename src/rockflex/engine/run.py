@@ -37,7 +37,7 @@ CANDIDATES = cython.declare(cython.int, 64)  # samples that are kept for a close
 STRETCH = cython.declare(cython.int, 65536)  # samples, or what counts like them, without a look at Ctrl-C
 QUIET = cython.declare(cython.int, 64)  # samples without excitation before it is asked whether all is at rest
 NOTHING = cython.declare(cython.double, 1e-18)  # of the change of an output: a term that is left out in a search
-EXPANSION = cython.declare(cython.int, 32)  # samples that a power series counts like
+EXPANSION = cython.declare(cython.int, 16)  # samples that a power series counts like
 
 
 @cython.cclass
@@ -192,7 +192,7 @@ class Run:
 
     @property
     def work(self):
-        """Samples so far, and power series, each of which counts like 32 samples: the same on every machine."""
+        """Samples so far, and power series, each of which counts like 16 samples: the same on every machine."""
         return self.peaks_.work()
 
     @property

@@ -10,7 +10,7 @@ from rockflex._arrays import Array
 from rockflex._errors import InputError
 
 Key = Hashable
-MAX_STATES, MAX_ROWS = 320, 640  # as in march.h
+MAX_STATES, MAX_ROWS = 320, 4096  # as in march.h
 
 
 class StepTooLongError(InputError):

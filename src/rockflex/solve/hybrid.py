@@ -10,7 +10,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError, SolverError
-from rockflex.engine import Run, StepTooLongError
+from rockflex.engine import MAX_STATES, Run, StepTooLongError
 from rockflex.models import (
     GROUND,
     HEADER,
@@ -37,13 +37,14 @@ from rockflex.solve.interruption import check_interruption
 from rockflex.solve.records import END
 from rockflex.solve.status import Status
 
+SHARE = 0.5  # of the estimated time of a sample that one takes here
 STACK = 64  # systems in one stack, at most
 FAILURES = {"accumulation": Status.CHATTER, "growth": Status.INFINITE}
 
 
 def takes(model: RockingModel) -> TypeGuard[LinearModel]:
     """Return whether a model is one of those that the engine runs."""
-    return type(model) is LinearModel and not model.elements
+    return type(model) is LinearModel and not model.elements and model.layout.core <= MAX_STATES
 
 
 class Stack:
@@ -108,7 +109,7 @@ class HybridEngine:
         free = min((self.model.free_inertia(side) for side in self.model.sides[1:]), default=np.inf)
         # The sum of the rates at which the motion fades while the base rocks; on a very narrow base one root has it all
         fades = float((drag * (1.0 + levers / free)).sum())
-        return replace(found, fastest=max(found.fastest, fades), dense=True)
+        return replace(found, fastest=fades, dense=True) if fades > 20.0 * found.fastest else found
 
     def task(self, run: Excitation, dt: float, free_vibration: float | None = 0.0, *, history: bool = False) -> Task:
         """Return the task of a run, which estimates its work."""
@@ -205,7 +206,7 @@ class HybridEngine:
         if work_limit is None:
             return 2**62
         sample, look, *_ = self.pace.prices(history=False)
-        return int(min(work_limit / (sample + SEARCH * look), 2.0**62))
+        return int(min(work_limit / (SHARE * (sample + SEARCH * look)), 2.0**62))
 
     def _follow(self, solver: Run, run: Excitation, dt: float, free: float | None, *, history: bool) -> int:
         """Run the record and the free vibration; the status at the end."""
