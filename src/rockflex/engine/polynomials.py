@@ -8,6 +8,8 @@ if cython.compiled:
     from cython.cimports.libc.math import fabs, sqrt
 
 NEVER = cython.declare(cython.double, 2.0)
+APART = cython.declare(cython.double, 1e-9)  # between two peaks
+NOTHING = cython.declare(cython.double, 1e-18)  # of the magnitudes of all terms: one that is left out
 
 
 @cython.ccall
@@ -76,15 +78,38 @@ def first_fall(
 @cython.ccall
 @cython.nogil
 @cython.exceptval(check=False)
-def next_turn(
-    q: cython.double[::1], slope: cython.double[::1], terms: cython.int, start: cython.double, stop: cython.double
-) -> cython.double:
-    """Where the slope of a polynomial has its next zero, or `stop`; the slope is written beside it."""
+def highest(
+    q: cython.double[::1], slope: cython.double[::1], terms: cython.int, stop: cython.double, one_sided: cython.bint
+) -> tuple[cython.double, cython.double]:
+    """The highest value in [0, stop], or magnitude unless one-sided, and where it is; q and slope are changed.
+
+    The polynomial is turned so that it begins upwards: a mirrored motion has the same peaks.
+    """
     k: cython.int
-    sign: cython.double = 0.0
-    for k in range(terms - 1, 0, -1):
-        sign = sign * start + k * q[k]
-    sign = 1.0 if sign >= 0.0 else -1.0
-    for k in range(1, terms):
-        slope[k - 1] = sign * k * q[k]
-    return min(first_fall(slope, 0, terms - 1, start, stop), stop)
+    t: cython.double = 0.0
+    when: cython.double = 0.0
+    most: cython.double
+    sign: cython.double = 1.0 if one_sided else 0.0
+    size: cython.double = 0.0
+    for k in range(terms):
+        if sign == 0.0:
+            sign = 1.0 if q[k] > 0.0 else -1.0 if q[k] < 0.0 else 0.0
+        q[k] *= sign
+        size += fabs(q[k]) if k > 0 else 0.0
+    while terms > 2 and fabs(q[terms - 1]) < NOTHING * size:
+        terms -= 1
+    most = q[0] if one_sided else fabs(q[0])
+    while t < stop:
+        t += APART
+        sign = 0.0
+        for k in range(terms - 1, 0, -1):
+            sign = sign * t + k * q[k]
+        sign = 1.0 if sign >= 0.0 else -1.0
+        for k in range(1, terms):
+            slope[k - 1] = sign * k * q[k]
+        t = min(first_fall(slope, 0, terms - 1, t, stop), stop)
+        size = value(q, terms, t)
+        size = size if one_sided else fabs(size)
+        if size > most:
+            most, when = size, t
+    return most, when

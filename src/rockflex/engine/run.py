@@ -11,7 +11,7 @@ import cython
 import numpy as np
 
 from rockflex._errors import InputError, SolverError
-from rockflex.engine.rest import at_rest
+from rockflex.engine.rest import at_rest, decay_of
 from rockflex.engine.system import StepTooLongError, acceleration, array, up8
 from rockflex.engine.tables import tables_of
 
@@ -20,23 +20,21 @@ if cython.compiled:
     from cython.cimports.libc.math import fabs, isfinite
     from cython.cimports.rockflex.engine.journal import Journal
     from cython.cimports.rockflex.engine.loops import ASKED, ENDS, UNKNOWN, Peaks, Phases
-    from cython.cimports.rockflex.engine.polynomials import first_fall, next_turn, value
+    from cython.cimports.rockflex.engine.polynomials import first_fall, highest
 else:
     from rockflex.engine.journal import Journal
     from rockflex.engine.loops_twin import ASKED, ENDS, UNKNOWN, Peaks, Phases, PyErr_CheckSignals
-    from rockflex.engine.polynomials import first_fall, next_turn, value
+    from rockflex.engine.polynomials import first_fall, highest
 
 TERMS = cython.declare(cython.int, 48)  # of a series, at most
 ORDERS = cython.declare(cython.int, 5)  # derivatives of a condition that may vanish at the start of a phase
 VANISHES = cython.declare(cython.double, 1e-12)  # of the sum of the magnitudes of its terms: a condition that is zero
 SNAP = cython.declare(cython.double, 1e-13)  # of a step: an event this close to its end is left to the next one
-APART = cython.declare(cython.double, 1e-9)  # of a step: between two peaks of a polynomial
 AT_ONCE = cython.declare(cython.int, 100)  # events at one instant, at most
 IN_SAMPLE = cython.declare(cython.int, 20000)  # events in one sample, at most
 CANDIDATES = cython.declare(cython.int, 64)  # samples that are kept for a closer look at their peaks
 STRETCH = cython.declare(cython.int, 65536)  # samples, or what counts like them, without a look at Ctrl-C
 QUIET = cython.declare(cython.int, 64)  # samples without excitation before it is asked whether all is at rest
-NOTHING = cython.declare(cython.double, 1e-18)  # of the change of an output: a term that is left out in a search
 EXPANSION = cython.declare(cython.int, 16)  # samples that a power series counts like
 
 
@@ -84,6 +82,7 @@ class Run:
     reached: cython.Py_ssize_t  # samples of this call of `advance` that have passed
     met: list  # phases met so far: keys and phases
     places: dict  # of the phases, by their keys
+    decays: dict  # of the phases in which a free vibration has been asked for its end, by place and system
     phases: Phases
     now: cython.int  # place of the present phase
     n: cython.int
@@ -99,6 +98,7 @@ class Run:
     away: cython.double[::1]  # of outputs and conditions: how far the expanded motion may get from its start
     sizes: cython.double[::1]  # of the states: magnitudes of the terms that they were summed from
     workspace: cython.double[::1]
+    scratch: cython.double[:, ::1]  # the states of a march, if there is a history; otherwise of one row
     before: cython.double[::1]  # the state, while the motion in another sample is expanded
     q: cython.double[::1]  # polynomials
     slope: cython.double[::1]
@@ -111,7 +111,7 @@ class Run:
     def __init__(self, system, h, state=None, key=None, which: cython.int = 0):
         if not (h > 0.0 and isfinite(h)):
             raise InputError(f"The time step must be a positive number, but {h!r} was given.")
-        self.system, self.h, self.met, self.places = system, h, [], {}
+        self.system, self.h, self.met, self.places, self.decays = system, h, [], {}, {}
         self.n, self.outputs = system.layout.size, len(system.outputs)
         self.states = up8(self.n)
         one_sided = np.zeros(up8(max(1, self.outputs)))
@@ -122,7 +122,7 @@ class Run:
         self.series, self.sums, self.away = np.zeros((TERMS, 0)), np.zeros((ORDERS, 0)), np.zeros(0)
         self.y, self.sizes, self.before = np.zeros(self.states), np.zeros(self.states), np.zeros(self.states)
         self.workspace, self.q, self.slope = np.zeros(self.states + 8), np.zeros(TERMS), np.zeros(TERMS)
-        self.journal = Journal(self.n)
+        self.journal, self.scratch = Journal(self.n), np.zeros((1, self.n))
         self.watch, self.limit, self.which = None, 2**62, 0
         self.restart(state, key, which)
 
@@ -242,23 +242,40 @@ class Run:
             If events accumulate without end, the motion grows without bound, the work reaches the limit, or the run has
             failed before.
         """
-        ground: cython.const[cython.double][::1] = acceleration(a)
+        self.proceed(acceleration(a), history)
+
+    @cython.cfunc
+    def proceed(self, ground: cython.const[cython.double][::1], history: cython.bint):
+        """Advance over the samples of an acceleration that has been checked."""
         if self.failed:
             raise SolverError("This run has been broken off by an error; begin it anew by `restart`.")
         self.failed = True
         self.peaks_.passed = self.passed
         i: cython.int
+        k: cython.int
         last: cython.int = ground.shape[0] - 1
         keeps: cython.bint = history and not self.ended
-        states: cython.double[:, ::1] = np.zeros((last + 1 if keeps and last > 0 else 1, self.n))
+        rows: cython.int = last + 1 if keeps and last > 0 else 1
+        if self.scratch.shape[0] < rows or (rows == 1 and self.scratch.shape[0] > 1):
+            self.scratch = np.zeros((rows, self.n))
         with cython.nogil:
-            i = self.advance_over(ground, keeps, states)
+            i = self.advance_over(ground, keeps, self.scratch)
         self.passed += i
         self.reached = 0
-        if not np.isfinite(self.y).all():
-            self.failure = "growth"
-            raise SolverError(f"The motion in the phase {self.key!r} grows without bound before t = {self.time:.9g}.")
+        for k in range(self.n):
+            if not isfinite(self.y[k]):
+                self.failure = "growth"
+                raise SolverError(
+                    f"The motion in the phase {self.key!r} grows without bound before t = {self.time:.9g}."
+                )
         self.failed = False
+
+    def coast(self, samples: int, *, history: bool = False) -> None:
+        """Advance without excitation over so many samples, in the same pieces as `settle`."""
+        quiet: cython.const[cython.double][::1] = np.zeros(QUIET + 1)
+        while samples > 0 and not self.ended:
+            self.proceed(quiet[: min(samples, QUIET) + 1], history)
+            samples -= QUIET
 
     @cython.cfunc
     @cython.nogil
@@ -313,15 +330,18 @@ class Run:
 
         At rest no condition can fail any more, and no output exceed its peak.
         """
-        quiet = np.zeros(QUIET + 1)
+        quiet: cython.const[cython.double][::1] = np.zeros(QUIET + 1)
         start: cython.Py_ssize_t = self.passed
         while not self.ended:
-            high, one_sided = np.array(self.high[: self.outputs]), np.array(self.one_sided[: self.outputs])
-            if at_rest(self.met[self.now][1].of(self.which), np.array(self.y[: self.n]), high, one_sided):
+            if (self.now, self.which) not in self.decays:
+                self.decays[self.now, self.which] = decay_of(self.met[self.now][1].of(self.which))
+            y, high, one_sided = np.asarray(self.y), np.asarray(self.high), np.asarray(self.one_sided)
+            outputs = slice(0, self.outputs)
+            if at_rest(self.decays[self.now, self.which], y[: self.n], high[outputs], one_sided[outputs]):
                 return True
             if self.passed - start >= most:
                 break
-            self.advance(quiet, history)
+            self.proceed(quiet, history)
         return False
 
     @cython.cfunc
@@ -526,26 +546,13 @@ class Run:
     ) -> cython.void:
         """Raise the peak of an output to that of its polynomial, which is known to be at most `bound`."""
         k: cython.int
-        t: cython.double = 0.0
-        upwards: cython.double = 0.0  # the sign of its first change, so that a mirrored motion has the same peaks
-        found: cython.double = self.series[0, self.states + j]
-        one_sided: cython.bint = self.one_sided[j] > 0.0
+        found: cython.double
+        t: cython.double
         for k in range(terms):
             self.q[k] = self.series[k, self.states + j]
-            if upwards == 0.0:
-                upwards = 1.0 if one_sided or self.q[k] > 0.0 else -1.0 if self.q[k] < 0.0 else 0.0
-            self.q[k] *= upwards
-        found *= upwards
-        while terms > 2 and fabs(self.q[terms - 1]) < NOTHING * self.away[j]:
-            terms -= 1
-        while True:
-            found = min(found if one_sided else fabs(found), bound)
-            if found > self.high[j]:
-                self.high[j], self.when[j] = found, sample + t * part
-            if t >= stop or self.away[j] == 0.0:
-                return
-            t = next_turn(self.q, self.slope, terms, t + APART, stop)
-            found = value(self.q, terms, t)
+        found, t = highest(self.q, self.slope, terms, 0.0 if self.away[j] == 0.0 else stop, self.one_sided[j] > 0.0)
+        if min(found, bound) > self.high[j]:
+            self.high[j], self.when[j] = min(found, bound), sample + t * part
 
     @cython.cfunc
     @cython.nogil

@@ -24,7 +24,7 @@ from rockflex.models import (
     may_stack,
     system_of,
 )
-from rockflex.solve._beginning import QUIET, course_of
+from rockflex.solve._beginning import course_of
 from rockflex.solve._failures import failure_of, failure_of_limit, failure_of_step
 from rockflex.solve._pace import SEARCH, Pace, pace_of
 from rockflex.solve._preparing import preparing
@@ -39,6 +39,7 @@ from rockflex.solve.status import Status
 
 SHARE = 0.5  # of the estimated time of a sample that one takes here
 STACK = 64  # systems in one stack, at most
+MEMORY = 64_000_000  # bytes of the tables of one stack
 FAILURES = {"accumulation": Status.CHATTER, "growth": Status.INFINITE}
 
 
@@ -98,8 +99,8 @@ class HybridEngine:
     @property
     def size(self) -> int:
         """Memory of all tables in bytes, roughly."""
-        n, rows = self.stack.system.layout.size, self._n_peaks + 3
-        return 8 * 3 * (n + 6) * (5 * n + 10 * rows)
+        n, rows = self.model.layout.core, self._n_peaks + 3
+        return 8 * len(self.model.sides) * (n + 6) * (5 * n + 14 * rows)
 
     @cached_property
     def pace(self) -> Pace:
@@ -218,10 +219,7 @@ class HybridEngine:
             if solver.settle(samples, history=history):
                 return Status.SETTLED
             return Status.OVERTURNED if solver.ended else Status.UNSETTLED
-        while samples > 0 and not solver.ended:
-            piece = min(samples, QUIET.size - 1)
-            solver.advance(QUIET[: piece + 1], history)
-            samples -= piece
+        solver.coast(samples, history=history)
         return Status.OVERTURNED if solver.ended else Status.ENDED
 
     def _states(self, solver: Run) -> Array:
@@ -242,8 +240,9 @@ def gather(engines: Iterable[HybridEngine]) -> None:
         if may_stack(each.model) and "stack" not in vars(each):
             alike[each.model.properties.n_modes, len(each.quantities), each.model.lifts].append(each)
     for some in alike.values():
-        for first in range(0, len(some), STACK):
-            part = some[first : first + STACK]
+        most = max(1, min(STACK, MEMORY // some[0].size))
+        for first in range(0, len(some), most):
+            part = some[first : first + most]
             stack = Stack([each.model for each in part], [each.quantities for each in part])
             for place, each in enumerate(part):
                 each.gather(stack, place)
