@@ -3,7 +3,8 @@ cimport cython
 
 @cython.final
 cdef class Journal:
-    cdef int n, n_events
+    cdef int n
+    cdef readonly int n_events
     cdef Py_ssize_t n_nodes
     cdef double[::1] times
     cdef int[:, ::1] exits, often

@@ -11,7 +11,7 @@ import cython
 import numpy as np
 
 from rockflex._errors import InputError, SolverError
-from rockflex.engine.rest import at_rest, decay_of
+from rockflex.engine.rest import decay_of, time_to_rest
 from rockflex.engine.system import StepTooLongError, acceleration, array, up8
 from rockflex.engine.tables import tables_of
 
@@ -44,10 +44,8 @@ class Run:
 
     Parameters
     ----------
-    system
-        The system.
-    h
-        Time step.
+    system, h
+        The system, and the time step.
     state : array_like, shape (n,)
         State at time 0; zero by default.
     key
@@ -62,8 +60,7 @@ class Run:
     ended
         Whether an event without a next phase has happened; otherwise the run stands at the end of a sample.
     failure : str
-        Why the run has failed: "accumulation" of events, "growth" without bound, "work" beyond the limit; otherwise
-        empty.
+        Why the run has failed: "accumulation" of events, "growth" without bound, "work" beyond the limit; or empty.
     watch : callable
         Called now and then during a run; it may end the run by an exception.
     limit : int
@@ -239,8 +236,7 @@ class Run:
         InputError
             If the acceleration is empty or not finite.
         SolverError
-            If events accumulate without end, the motion grows without bound, the work reaches the limit, or the run has
-            failed before.
+            If the run has failed, as `failure` says, or had failed before.
         """
         self.proceed(acceleration(a), history)
 
@@ -332,13 +328,18 @@ class Run:
         """
         quiet: cython.const[cython.double][::1] = np.zeros(QUIET + 1)
         start: cython.Py_ssize_t = self.passed
+        n_events: cython.int = -1
+        outputs, asks = slice(0, self.outputs), 0.0
         while not self.ended:
-            if (self.now, self.which) not in self.decays:
-                self.decays[self.now, self.which] = decay_of(self.met[self.now][1].of(self.which))
-            y, high, one_sided = np.asarray(self.y), np.asarray(self.high), np.asarray(self.one_sided)
-            outputs = slice(0, self.outputs)
-            if at_rest(self.decays[self.now, self.which], y[: self.n], high[outputs], one_sided[outputs]):
-                return True
+            if self.journal.n_events > n_events or self.passed * self.h >= asks:
+                n_events = self.journal.n_events
+                if (self.now, self.which) not in self.decays:
+                    self.decays[self.now, self.which] = decay_of(self.met[self.now][1].of(self.which))
+                y, high, one_sided = np.asarray(self.y), np.asarray(self.high), np.asarray(self.one_sided)
+                wait = time_to_rest(self.decays[self.now, self.which], y[: self.n], high[outputs], one_sided[outputs])
+                if wait == 0.0:
+                    return True
+                asks = self.passed * self.h + wait
             if self.passed - start >= most:
                 break
             self.proceed(quiet, history)
