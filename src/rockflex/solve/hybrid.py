@@ -52,7 +52,8 @@ class Stack:
     """Models that differ only in numbers, and the solvers that have their phases."""
 
     def __init__(self, models: Sequence[LinearModel], quantities: Sequence[Quantities]) -> None:
-        with preparing(models[0]):
+        self._first = models[0]  # of which a message speaks
+        with preparing(self._first):
             self.system = system_of(models, quantities)
         self._solvers = defaultdict[float, list[Run]](list)
 
@@ -61,7 +62,8 @@ class Stack:
         try:
             return self._solvers[dt].pop()
         except IndexError:
-            return Run(self.system, dt)
+            with preparing(self._first):
+                return Run(self.system, dt)
 
     def returned(self, solver: Run) -> None:
         """Keep a solver for the next run."""
@@ -162,15 +164,14 @@ class HybridEngine:
         found = Ends(
             np.zeros(count, END), np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, start.size))
         )
-        with preparing(self.model):
-            solver = self.stack.taken(dt)
+        solver = self.stack.taken(dt)
         solver.watch, solver.limit = check_interruption, self._samples_in(work_limit)
         for place, run in enumerate(runs):
             if place in failures:
                 continue
             check_interruption()
             try:
-                solver.restart(start, key, self._place)
+                solver.restart(None if state is None else start, key, self._place)  # at rest, or from the given state
                 status = self._follow(solver, run, dt, free_vibration, history=history)
             except (InputError, SolverError) as error:
                 failures[place] = self._failure(error, solver, tasks[place], work_limit)
