@@ -38,10 +38,9 @@ def timed(motion: rf.GroundMotion, model: str) -> tuple[rf.Response, float]:
 
 def main() -> None:
     """Print the peaks of every run, and write the figures."""
-    print("Loading the kernels (compiling, first time only) ...", flush=True)
-    rf.simulate(frame, motions[0])
+    rf.simulate(frame, motions[0])  # so that no run below loads a module
 
-    print(f"\n{'motion':18} {'model':7} {'status':10} {'θ_max':>9} {'top moves':>9} {'M_b':>8} {'V_b':>8} {'run':>8}")
+    print(f"{'motion':18} {'model':7} {'status':10} {'θ_max':>9} {'top moves':>9} {'M_b':>8} {'V_b':>8} {'run':>8}")
     print(f"{'':18} {'':7} {'':10} {'[rad]':>9} {'[m]':>9} {'[MN m]':>8} {'[kN]':>8} {'[ms]':>8}")
     for motion in motions:
         for model in MODELS:
