@@ -34,6 +34,7 @@ AT_ONCE = cython.declare(cython.int, 100)  # events at one instant, at most
 IN_SAMPLE = cython.declare(cython.int, 20000)  # events in one sample, at most
 CANDIDATES = cython.declare(cython.int, 64)  # samples that are kept for a closer look at their peaks
 STRETCH = cython.declare(cython.int, 65536)  # samples, or what counts like them, without a look at Ctrl-C
+SHORT = cython.declare(cython.int, 60000)  # samples times states that are run under the interpreter's lock
 QUIET = cython.declare(cython.int, 64)  # samples without excitation before it is asked whether all is at rest
 EXPANSION = cython.declare(cython.int, 16)  # samples that a power series counts like
 
@@ -46,17 +47,13 @@ class Run:
     ----------
     system, h
         The system, and the time step.
-    state : array_like, shape (n,)
-        State at time 0; zero by default.
-    key
-        Key of the phase at time 0; that of the system by default.
+    state, key
+        State, shape (n,), and key of the phase at time 0; zero, and that of the system, by default.
     which
         Which system of a stack.
 
     Attributes
     ----------
-    system, h, which
-        As given.
     ended
         Whether an event without a next phase has happened; otherwise the run stands at the end of a sample.
     failure : str
@@ -102,7 +99,7 @@ class Run:
     passed: cython.Py_ssize_t  # samples, before this call of `advance`
     end: cython.double  # time of the last event
     journal: Journal
-    n_looks: cython.int
+    n_looks: cython.int  # samples expanded for events, and for peaks
     n_searched: cython.int
 
     def __init__(self, system, h, state=None, key=None, which: cython.int = 0):
@@ -254,8 +251,11 @@ class Run:
         rows: cython.int = last + 1 if keeps and last > 0 else 1
         if self.scratch.shape[0] < rows or (rows == 1 and self.scratch.shape[0] > 1):
             self.scratch = np.zeros((rows, self.n))
-        with cython.nogil:
+        if last * self.n < SHORT:  # giving the lock away and waiting for it would take longer
             i = self.advance_over(ground, keeps, self.scratch)
+        else:
+            with cython.nogil:
+                i = self.advance_over(ground, keeps, self.scratch)
         self.passed += i
         self.reached = 0
         for k in range(self.n):
