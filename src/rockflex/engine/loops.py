@@ -129,7 +129,7 @@ class Phases:
         systems = tables.halvings.size
         outcomes = [outcome for event in events for outcome in (event, event.rest)]
         jumps = [None if outcome is None or callable(outcome.jump) else outcome.jump for outcome in outcomes]
-        rests = [None if event.rest is None else event.rest for event in events]
+        rests = [event.rest for event in events]
         parts = [
             *(packed(each) for each in tables[3:]),
             np.array([event.scale for event in events]).reshape(count, systems).T,

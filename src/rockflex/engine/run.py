@@ -512,7 +512,7 @@ class Run:
     def ask(self, event: cython.int, a: cython.double):
         """Let a function say what follows an event."""
         y, sizes = np.asarray(self.y)[: self.n], np.asarray(self.sizes)[: self.n]
-        y[:], target = self.met[self.now][1].of(self.which).events[event].ask(y, a)
+        y[:], target = self.met[self.now][1].events[event].ask(y, a)
         np.maximum(sizes, np.abs(y), out=sizes)
         if target is None:
             self.ended = True

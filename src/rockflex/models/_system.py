@@ -15,9 +15,9 @@ from rockflex.models._impact import Restitution, SidedRestitution, VVELSimplifie
 from rockflex.models._linear import LinearModel
 from rockflex.models._phase import Key
 from rockflex.models._quantities import GROUND, RIGHT_ROTATION, ROTATION, TURN, Quantities
+from rockflex.models._rocking_phase import QUARTER_TURN
 from rockflex.models._strike import WITHOUT, OwnLaw
 
-QUARTER_TURN = 0.5 * np.pi
 SMALL, LARGE = 1e-30, 1e30  # of numbers in SI units that certainly do not overflow
 GAIN = 1e-9  # relative gain of energy in an impact that is attributed to rounding
 CONTACT, OTHER = (CLOSED,), {RIGHT: (LEFT,), LEFT: (RIGHT,)}
