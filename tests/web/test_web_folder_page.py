@@ -108,6 +108,31 @@ def test_files_and_archives_and_what_is_wrong_with_them(visitor, folder) -> None
     assert "[object" not in page.locator("main").inner_text()
 
 
+def test_a_late_answer_about_the_record_leaves_the_message_about_the_files(visit) -> None:
+    visitor = visit("/")
+    page = visitor.page
+    page.evaluate(
+        """() => {
+          const { fetch } = window;
+          window.fetch = async (path, ...more) => {
+            const answer = await fetch(path, ...more);
+            if (path === "/api/folder?units=&dt=") window.refused = true;
+            if (path === "/api/record") await new Promise((resolve) => { window.letGo = resolve; });
+            return answer;
+          };
+        }"""
+    )
+    visitor.tab("earthquake")
+    page.wait_for_function("() => window.letGo")
+    page.get_by_label("Source").select_option("folder")
+    page.locator("#files").set_input_files([{"name": "a.zip", "mimeType": "application/zip", "buffer": b"no archive"}])
+    page.wait_for_function("() => window.refused")
+    page.evaluate("letGo()")
+    assert "a.zip is a damaged archive" in visitor.error("record.folder")
+    page.wait_for_load_state("networkidle")
+    assert "a.zip is a damaged archive" in visitor.error("record.folder")
+
+
 def test_it_is_a_suite_of_the_fragility_and_design_tabs(visitor, folder, frame) -> None:
     page = visitor.page
     visitor.tab("fragility")
