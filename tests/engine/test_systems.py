@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from types import ModuleType
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,16 +18,22 @@ from rockflex.engine import Event, LinearPhase, Run, StateLayout, System
 from rockflex.engine import run as compiled
 
 
-def uncompiled() -> ModuleType:
-    """The module `run` as Python, with the loops in NumPy."""
-    place = Path(str(compiled.__file__)).with_name("run.py")
-    source = place if place.exists() else Path(__file__).parents[2] / "src" / "rockflex" / "engine" / "run.py"
-    spec = importlib.util.spec_from_file_location("run_as_python", source)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+def uncompiled() -> SimpleNamespace:
+    """The modules of a run as Python, with the loops in NumPy."""
+    beside = Path(str(compiled.__file__)).parent
+    place = beside if (beside / "run.py").exists() else Path(__file__).parents[2] / "src" / "rockflex" / "engine"
+    names = [f"rockflex.engine.{name}" for name in ("batch", "rest", "series", "run")]
+    known = {name: sys.modules.pop(name) for name in names}
+    try:
+        for name in names:
+            spec = importlib.util.spec_from_file_location(name, place / f"{name.rpartition('.')[2]}.py")
+            assert spec is not None
+            assert spec.loader is not None
+            sys.modules[name] = importlib.util.module_from_spec(spec)
+            spec.loader.exec_module(sys.modules[name])
+        return SimpleNamespace(Run=sys.modules[names[-1]].Run, Batch=sys.modules[names[0]].Batch)
+    finally:
+        sys.modules.update(known)
 
 
 @pytest.fixture(scope="module", params=["compiled", "Python"])

@@ -23,10 +23,10 @@ PEAKS = (
 
 @pytest.fixture
 def hybrid(monkeypatch):
-    """As often as a list has entries, a run has been on the engine for hybrid systems."""
+    """As often as a list has entries, runs have been on the engine for hybrid systems."""
     calls = []
-    whole = HybridEngine._follow
-    monkeypatch.setattr(HybridEngine, "_follow", lambda *a, **k: calls.append(1) or whole(*a, **k))
+    whole = HybridEngine._samples_in
+    monkeypatch.setattr(HybridEngine, "_samples_in", lambda *a, **k: calls.append(1) or whole(*a, **k))
     return calls
 
 

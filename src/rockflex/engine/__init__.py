@@ -1,6 +1,7 @@
 """Hybrid systems: phases that are linear in the state, events, jumps and outputs. It knows no structure."""
 
+from rockflex.engine.batch import Batch
 from rockflex.engine.run import Run
 from rockflex.engine.system import MAX_STATES, Event, LinearPhase, Rest, StateLayout, StepTooLongError, System
 
-__all__ = ["MAX_STATES", "Event", "LinearPhase", "Rest", "Run", "StateLayout", "StepTooLongError", "System"]
+__all__ = ["MAX_STATES", "Batch", "Event", "LinearPhase", "Rest", "Run", "StateLayout", "StepTooLongError", "System"]

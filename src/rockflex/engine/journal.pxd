@@ -7,10 +7,13 @@ cdef class Journal:
     cdef readonly int n_events
     cdef Py_ssize_t n_nodes
     cdef double[::1] times
-    cdef int[:, ::1] exits, often
+    cdef int[:, ::1] exits
+    cdef int[::1] often
     cdef double[:, ::1] rows
     cdef int[::1] places
 
     cpdef bint wants(self, double a) noexcept nogil
     cpdef int keep(self, double sample, double a, double[::1] y, int place) except -1 nogil
-    cpdef int happen(self, double time, int place, int event) except -1 nogil
+    cpdef void begin(self) noexcept nogil
+    cpdef int count(self, int kind) noexcept nogil
+    cpdef int happen(self, double time, int place, int event, int kind) except -1 nogil

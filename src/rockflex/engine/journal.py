@@ -13,13 +13,13 @@ class Journal:
         self.n = n
         self.times, self.exits = np.zeros(64), np.zeros((64, 2), dtype=np.intc)
         self.rows, self.places = np.zeros((0, 2 + n)), np.zeros(0, dtype=np.intc)
-        self.often = np.zeros((4, 4), dtype=np.intc)
+        self.often = np.zeros(16, dtype=np.intc)
         self.begin()
 
     def begin(self):
         """Begin anew."""
         self.n_events = self.n_nodes = 0
-        self.often[:, :] = 0
+        self.often[:] = 0
 
     def wants(self, a):
         """Whether the history does not yet end at an acceleration."""
@@ -40,19 +40,16 @@ class Journal:
         self.n_nodes += 1
         return 0
 
-    def happen(self, time, place, event):
-        """Add an event."""
+    def happen(self, time, place, event, kind):
+        """Add an event of a kind."""
         if self.n_events == self.times.shape[0]:
             with cython.gil:
                 self.times = np.concatenate((self.times, np.zeros(self.n_events)))
                 self.exits = np.concatenate((self.exits, np.zeros((self.n_events, 2), dtype=np.intc)))
-        if place >= self.often.shape[0] or event >= self.often.shape[1]:
+        if kind >= self.often.shape[0]:
             with cython.gil:
-                rows, columns = max(2 * place, self.often.shape[0]), max(2 * event, self.often.shape[1])
-                larger = np.zeros((rows + 1, columns + 1), dtype=np.intc)
-                larger[: self.often.shape[0], : self.often.shape[1]] = self.often
-                self.often = larger
-        self.often[place, event] += 1
+                self.often = np.concatenate((self.often, np.zeros(kind, dtype=np.intc)))
+        self.often[kind] += 1
         self.times[self.n_events] = time
         self.exits[self.n_events, 0], self.exits[self.n_events, 1] = place, event
         self.n_events += 1
@@ -64,16 +61,9 @@ class Journal:
         places, numbers = np.array(self.exits[: self.n_events]).T.tolist()
         return np.array(self.times[: self.n_events]).tolist(), places, numbers
 
-    def tally(self):
-        """How often every event has happened: places, numbers, and counts."""
-        place: cython.int
-        event: cython.int
-        found = []
-        for place in range(self.often.shape[0]):
-            for event in range(self.often.shape[1]):
-                if self.often[place, event] > 0:
-                    found.append((place, event, self.often[place, event]))
-        return found
+    def count(self, kind):
+        """How often events of a kind have happened."""
+        return self.often[kind] if kind < self.often.shape[0] else 0
 
     @property
     def nodes(self):

@@ -50,6 +50,8 @@ cdef class Peaks:
     cdef double[::1] high_, when_, seen
     cdef readonly double[:, ::1] candidates
 
+    cdef void begin(self, double[::1] one_sided) noexcept nogil
+    cdef void pass_by(self, double samples) noexcept nogil
     cdef int looks(self) noexcept nogil
     cdef int count(self) noexcept nogil
     cdef void keep(self, int count) noexcept nogil

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import fabs
+from cython.cimports.libc.math import INFINITY, fabs
 from cython.cimports.libc.stdlib import calloc, free, malloc, realloc
 
 from rockflex.engine.system import up8
@@ -58,11 +58,11 @@ class Peaks:
     def __dealloc__(self):
         free(self.log.workspace)
 
-    def begin(self, one_sided: cython.double[::1]):
+    def begin(self, one_sided):
         """Begin anew."""
         j: cython.int
         for j in range(one_sided.shape[0]):
-            self.high_[j], self.when_[j] = -np.inf if one_sided[j] > 0.0 else 0.0, 0.0
+            self.high_[j], self.when_[j] = -INFINITY if one_sided[j] > 0.0 else 0.0, 0.0
         self.log.resumes = self.log.count = self.log.looks = 0
         self.log.passed, self.log.work = 0.0, 0
 
@@ -76,14 +76,9 @@ class Peaks:
         """The sample at which it was reached."""
         return np.asarray(self.when_)
 
-    @property
-    def passed(self):
-        """Number of samples before the first of the present acceleration."""
-        return self.log.passed
-
-    @passed.setter
-    def passed(self, value):
-        self.log.passed = value
+    def pass_by(self, samples):
+        """Say how many samples come before the first of the present acceleration."""
+        self.log.passed = samples
 
     def looks(self):
         """Whether the march has stopped before a sample in which a condition may fail."""
@@ -136,7 +131,7 @@ class Phases:
             *(jump.reshape(systems, -1) for jump in jumps if jump is not None),
             *(np.column_stack((rest.row, rest.direct, rest.constant)) for rest in rests if rest is not None),
         ]
-        offsets = np.cumsum([0, *(up8(part.shape[1]) for part in parts)])
+        offsets = np.cumsum([0, *(up8(part.shape[1]) for part in parts)], dtype=np.intp)
         content = aligned(systems, int(offsets[-1]))
         for part, first in zip(parts, offsets[:-1], strict=True):
             content[:, first : first + part.shape[1]] = part
@@ -173,7 +168,7 @@ class Phases:
     def point(self, place: cython.int, which: cython.int):
         """Take the tables of one system for one phase."""
         content, halvings, jumps, rests = self.contents[place]
-        offsets: cython.long[::1] = self.offsets[place]
+        offsets: cython.Py_ssize_t[::1] = self.offsets[place]
         row: cython.double[::1] = content[which]
         first: cython.p_double = cython.address(row[0])
         phase: cython.pointer(Phase) = cython.address(self.phases[place])

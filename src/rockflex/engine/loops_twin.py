@@ -30,6 +30,10 @@ class Peaks:
         self.kept = self.done = 0
         self.stopped, self.passed = False, 0.0
 
+    def pass_by(self, samples: float) -> None:
+        """Say how many samples come before the first of the present acceleration."""
+        self.passed = samples
+
     def looks(self) -> bool:
         """Whether the march has stopped before a sample in which a condition may fail."""
         return self.stopped

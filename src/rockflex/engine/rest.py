@@ -1,98 +1,131 @@
-"""Whether anything can still happen in a phase without excitation."""
+"""Whether anything can still happen in a phase without excitation. Declarations: `rest.pxd`."""
 
-import math
-from typing import NamedTuple
+from math import fabs, hypot, log
 
+import cython
 import numpy as np
-from numpy.typing import NDArray
 
-from rockflex._arrays import Array, Bools
-from rockflex.engine.system import LinearPhase
+if cython.compiled:
+    from cython.cimports.libc.math import fabs, hypot, log
 
-SOON = 1e-9  # s, or a share that is next to nothing
-ROUNDING = 1e-12  # of the sum of the magnitudes of its terms: a motion that is nothing but rounding
-
-
-class Decay(NamedTuple):
-    """The motion of a phase with a = 0 in its modes: y' = Σ V_k w_k e^{λ_k t}."""
-
-    phase: LinearPhase
-    rows: Array  # outputs and conditions, (R, n)
-    constants: Array  # (R,)
-    roots: NDArray[np.complex128]  # (n,)
-    vectors: NDArray[np.complex128]
-    inverse: NDArray[np.complex128] | None  # None if the modes are not independent
-    swings: bool  # whether all roots that are not zero are complex
-    fastest: float  # largest rate at which a mode fades, 1/s
-    held: NDArray[np.intp]  # places of modes with λ_k = 0, and of those that grow
-    grows: NDArray[np.intp]
-    seen: NDArray[np.complex128]  # C V_k/λ_k, (R, n), zero where held
+NEVER = cython.declare(cython.double, 1e300)  # s
+SOON = cython.declare(cython.double, 1e-9)  # s, or a share that is next to nothing
+ROUNDING = cython.declare(cython.double, 1e-12)  # of the magnitudes of its terms: a motion that is nothing but rounding
 
 
-def decay_of(phase: LinearPhase) -> Decay:
-    """Find the modes of a phase."""
-    roots, vectors = (np.asarray(each, dtype=np.complex128) for each in np.linalg.eig(phase.A))
-    try:
-        inverse = np.asarray(np.linalg.inv(vectors), dtype=np.complex128)
-    except np.linalg.LinAlgError:
-        inverse = None
-    rows = np.concatenate((phase.C, np.array([event.row for event in phase.events]).reshape(-1, len(roots))))
-    constants = np.concatenate((phase.e, np.array([event.constant for event in phase.events], dtype=float)))
-    still = np.abs(roots) <= ROUNDING * np.abs(roots).max(initial=1e-300)
-    seen = np.where(still, 0.0, (rows @ vectors) / np.where(still, 1.0, roots))
-    grows = ~still & (np.real(roots) > ROUNDING * np.abs(roots))
-    swings = bool((still | (np.imag(roots) != 0.0)).all())
-    return Decay(
-        phase,
-        rows,
-        constants,
-        roots,
-        vectors,
-        inverse,
-        swings,
-        float(-np.real(roots).min()),
-        np.flatnonzero(still),
-        np.flatnonzero(grows),
-        seen,
-    )
+@cython.final
+@cython.cclass
+class Decay:
+    """The motion of a phase with a = 0 in its modes: y' = Σ V_k w_k e^{λ_k t}.
 
-
-def moving(decay: Decay, parts: NDArray[np.complex128], scale: Array, some: NDArray[np.intp]) -> Bools:
-    """Which of some modes move by more than rounding."""
-    sizes = np.abs(decay.vectors[:, some]) * np.abs(parts[some])
-    return np.asarray((sizes > ROUNDING * scale[:, None]).any(axis=0))
-
-
-def time_to_rest(decay: Decay, state: Array, high: Array, one_sided: Array) -> float:
-    """Return 0 at rest: no condition can fail any more, and no output exceed its highest value, with a = 0.
-
-    Otherwise a time in which that cannot come, unless another phase does; a tiny one if nothing is known.
     Every row approaches C (y - Σ V_k w_k/λ_k) + e, and never gets further away from it than Σ |C V_k w_k/λ_k|; parts
     that do not oscillate stay on their side. States that are held have λ_k = 0 and w_k = 0.
     """
-    phase, rows, m = decay.phase, decay.rows, len(decay.phase.d)
-    if decay.inverse is None:
-        return np.inf
-    rate = phase.A @ state + phase.c
-    parts = decay.inverse @ rate
-    scale = np.abs(phase.A) @ np.abs(state) + np.abs(phase.c)  # of which the rates are sums
-    if decay.grows.size and moving(decay, parts, scale, decay.grows).any():
-        return SOON
-    strays = decay.seen * parts
-    end = rows @ state - np.real(strays.sum(axis=1)) + decay.constants
-    rounding = ROUNDING * (np.abs(rows) @ np.abs(state) + np.abs(decay.constants))
-    least = end - np.abs(strays).sum(axis=1) + rounding
-    if decay.swings and bool((least[m:] < 0.0).any()):
-        within, limit = (end - least + rounding)[m:], (end + rounding)[m:]
-        ratio = float((within / np.maximum(limit, SOON * within))[least[m:] < 0.0].max())
-        return math.log(ratio) / max(decay.fastest, SOON) if ratio < 1.0 / SOON else SOON
-    steady = np.imag(decay.roots) == 0.0
-    if moving(decay, parts, scale, decay.held).any():
-        return SOON
-    below, above = (
-        np.where(steady, np.maximum(side * np.real(strays), 0.0), np.abs(strays)).sum(axis=1) for side in (-1.0, 1.0)
-    )
-    if (np.where(below <= rounding, end + rounding, end - below)[m:] < 0.0).any():
-        return SOON
-    highest = np.where(one_sided > 0.0, (end + above)[:m], np.maximum(end + above, below - end)[:m])
-    return 0.0 if ((np.maximum(below, above) <= rounding)[:m] | (highest <= high + rounding[:m])).all() else SOON
+
+    def __init__(self, phase):
+        roots, vectors = (np.asarray(each, dtype=complex) for each in np.linalg.eig(phase.A))
+        try:
+            inverse, self.parted = np.linalg.inv(vectors), True
+        except np.linalg.LinAlgError:  # the modes are not independent
+            inverse, self.parted = vectors, False
+        rows = np.concatenate((phase.C, np.array([event.row for event in phase.events]).reshape(-1, len(roots))))
+        still = np.abs(roots) <= ROUNDING * np.abs(roots).max(initial=1e-300)
+        seen = np.where(still, 0.0, (rows @ vectors) / np.where(still, 1.0, roots))
+        grows = ~still & (roots.real > ROUNDING * np.abs(roots))
+        self.n, self.outputs, self.rows = len(roots), len(phase.C), np.ascontiguousarray(rows)
+        self.constants = np.concatenate((phase.e, [event.constant for event in phase.events]))
+        self.A, self.c = np.ascontiguousarray(phase.A), np.ascontiguousarray(phase.c)
+        self.inverse = np.ascontiguousarray([inverse.real, inverse.imag])
+        self.seen = np.ascontiguousarray([seen.real, seen.imag, np.abs(seen)])
+        self.sizes = np.abs(vectors)
+        kinds = np.where(still, 0, np.where(roots.imag == 0.0, 1, 2)) + np.where(grows, 4, 0)
+        self.kinds = kinds.astype(np.intc)
+        self.swings = bool((still | (roots.imag != 0.0)).all())
+        self.fastest = max(float(-roots.real.min(initial=0.0)), SOON)
+        self.rate, self.terms, self.parts = np.zeros(self.n), np.zeros(self.n), np.zeros((3, self.n))
+
+    def moves(self, kind):
+        """Whether a mode that is held (0), or one that grows (4), moves by more than rounding."""
+        i: cython.int
+        k: cython.int
+        for k in range(self.n):
+            if (self.kinds[k] == 0) if kind == 0 else (self.kinds[k] >= 4):
+                for i in range(self.n):
+                    if self.sizes[i, k] * self.parts[2, k] > ROUNDING * self.terms[i]:
+                        return True
+        return False
+
+    def look(self, j, y):
+        """Find where a row ends, what is rounding of it, and how far below, above and to both sides it may get."""
+        k: cython.int
+        swing: cython.double
+        stray: cython.double
+        end: cython.double = self.constants[j]
+        rounding: cython.double = fabs(self.constants[j])
+        below: cython.double = 0.0
+        above: cython.double = 0.0
+        away: cython.double = 0.0
+        for k in range(self.n):
+            end += self.rows[j, k] * y[k]
+            rounding += fabs(self.rows[j, k] * y[k])
+            stray = self.seen[0, j, k] * self.parts[0, k] - self.seen[1, j, k] * self.parts[1, k]
+            swing = self.seen[2, j, k] * self.parts[2, k]
+            end -= stray
+            away += swing
+            if self.kinds[k] % 4 == 1:
+                below += max(-stray, 0.0)
+                above += max(stray, 0.0)
+            else:
+                below += swing
+                above += swing
+        return end, ROUNDING * rounding, below, above, away
+
+    def time_to_rest(self, y, high, one_sided):
+        """Return 0 at rest: no condition can fail any more, and no output exceed its highest value, with a = 0.
+
+        Otherwise a time in which that cannot come, unless another phase does; a tiny one if nothing is known.
+        """
+        i: cython.int
+        j: cython.int
+        k: cython.int
+        total: cython.double
+        other: cython.double
+        end: cython.double
+        rounding: cython.double
+        below: cython.double
+        above: cython.double
+        away: cython.double
+        ratio: cython.double = 0.0
+        may_fail: cython.bint = False
+        if not self.parted:
+            return NEVER
+        for i in range(self.n):
+            total, other = self.c[i], fabs(self.c[i])
+            for k in range(self.n):
+                total += self.A[i, k] * y[k]
+                other += fabs(self.A[i, k] * y[k])
+            self.rate[i], self.terms[i] = total, other
+        for i in range(self.n):
+            total = other = 0.0
+            for k in range(self.n):
+                total += self.inverse[0, i, k] * self.rate[k]
+                other += self.inverse[1, i, k] * self.rate[k]
+            self.parts[0, i], self.parts[1, i], self.parts[2, i] = total, other, hypot(total, other)
+        if self.moves(4):
+            return SOON
+        for j in range(self.outputs, self.rows.shape[0]):
+            end, rounding, below, above, away = self.look(j, y)
+            if self.swings and end - away + rounding < 0.0:
+                ratio = max(ratio, away / max(end + rounding, SOON * away))
+            may_fail = may_fail or (end + rounding if below <= rounding else end - below) < 0.0
+        if ratio > 0.0:
+            return log(ratio) / self.fastest if ratio < 1.0 / SOON else SOON
+        if may_fail or self.moves(0):
+            return SOON
+        for j in range(self.outputs):
+            end, rounding, below, above, away = self.look(j, y)
+            if max(below, above) > rounding:
+                total = end + above if one_sided[j] > 0.0 else max(end + above, below - end)
+                if total > high[j] + rounding:
+                    return SOON
+        return 0.0

@@ -5,38 +5,35 @@ polynomials give the first event to rounding; then the state jumps, and the next
 sample. Peaks never decide how the state advances, so that what is asked of a run does not change it.
 """
 
-from math import fabs, isfinite
+from math import isfinite
 
 import cython
 import numpy as np
 
 from rockflex._errors import InputError, SolverError
-from rockflex.engine.rest import decay_of, time_to_rest
+from rockflex.engine.rest import Decay
 from rockflex.engine.system import StepTooLongError, acceleration, array, up8
 from rockflex.engine.tables import tables_of
 
 if cython.compiled:
     from cython.cimports.cpython.exc import PyErr_CheckSignals
-    from cython.cimports.libc.math import fabs, isfinite
+    from cython.cimports.libc.math import isfinite
+    from cython.cimports.rockflex.engine.batch import Batch
     from cython.cimports.rockflex.engine.journal import Journal
     from cython.cimports.rockflex.engine.loops import ASKED, ENDS, UNKNOWN, Peaks, Phases
-    from cython.cimports.rockflex.engine.polynomials import first_fall, highest
+    from cython.cimports.rockflex.engine.rest import Decay
+    from cython.cimports.rockflex.engine.series import Series
 else:
+    from rockflex.engine.batch import Batch
     from rockflex.engine.journal import Journal
     from rockflex.engine.loops_twin import ASKED, ENDS, UNKNOWN, Peaks, Phases, PyErr_CheckSignals
-    from rockflex.engine.polynomials import first_fall, highest
+    from rockflex.engine.series import Series
 
-TERMS = cython.declare(cython.int, 48)  # of a series, at most
-ORDERS = cython.declare(cython.int, 5)  # derivatives of a condition that may vanish at the start of a phase
-VANISHES = cython.declare(cython.double, 1e-12)  # of the sum of the magnitudes of its terms: a condition that is zero
-SNAP = cython.declare(cython.double, 1e-13)  # of a step: an event this close to its end is left to the next one
 AT_ONCE = cython.declare(cython.int, 100)  # events at one instant, at most
 IN_SAMPLE = cython.declare(cython.int, 20000)  # events in one sample, at most
 CANDIDATES = cython.declare(cython.int, 64)  # samples that are kept for a closer look at their peaks
 STRETCH = cython.declare(cython.int, 65536)  # samples, or what counts like them, without a look at Ctrl-C
-SHORT = cython.declare(cython.int, 60000)  # samples times states that are run under the interpreter's lock
 QUIET = cython.declare(cython.int, 64)  # samples without excitation before it is asked whether all is at rest
-EXPANSION = cython.declare(cython.int, 16)  # samples that a power series counts like
 
 
 @cython.cclass
@@ -59,7 +56,7 @@ class Run:
     failure : str
         Why the run has failed: "accumulation" of events, "growth" without bound, "work" beyond the limit; or empty.
     watch : callable
-        Called now and then during a run; it may end the run by an exception.
+        Called now and then, every 65 536 samples or so; it may end a run by an exception.
     limit : int
         The `work` that the run may take.
     """
@@ -76,7 +73,11 @@ class Run:
     reached: cython.Py_ssize_t  # samples of this call of `advance` that have passed
     met: list  # phases met so far: keys and phases
     places: dict  # of the phases, by their keys
+    kinds: cython.int[:, ::1]  # numbers of the names of events, by phase and event
+    names: dict  # those numbers by name
     decays: dict  # of the phases in which a free vibration has been asked for its end, by place and system
+    decay: Decay  # the last one, and its place
+    faded: cython.int
     phases: Phases
     now: cython.int  # place of the present phase
     n: cython.int
@@ -87,15 +88,15 @@ class Run:
     peaks_: Peaks
     high: cython.double[::1]
     when: cython.double[::1]
-    series: cython.double[:, ::1]  # a row of coefficients for each power: states, outputs, conditions
-    sums: cython.double[:, ::1]  # the same for the first powers: magnitudes of the terms of a coefficient
-    away: cython.double[::1]  # of outputs and conditions: how far the expanded motion may get from its start
+    series: Series
     sizes: cython.double[::1]  # of the states: magnitudes of the terms that they were summed from
     workspace: cython.double[::1]
-    scratch: cython.double[:, ::1]  # the states of a march, if there is a history; otherwise of one row
+    scratch: cython.double[:, ::1]  # the states of a march, if there is a history
+    unkept: cython.double[:, ::1]  # of one row: none are kept
+    quiet: cython.double[::1]
+    start: cython.double[::1]  # the state at time 0, and the place of its phase
+    first: cython.int
     before: cython.double[::1]  # the state, while the motion in another sample is expanded
-    q: cython.double[::1]  # polynomials
-    slope: cython.double[::1]
     passed: cython.Py_ssize_t  # samples, before this call of `advance`
     end: cython.double  # time of the last event
     journal: Journal
@@ -113,33 +114,42 @@ class Run:
         self.one_sided, self.phases = one_sided, Phases(one_sided, self.n)
         self.peaks_ = Peaks(one_sided, self.n, CANDIDATES)
         self.high, self.when = self.peaks_.high, self.peaks_.when
-        self.series, self.sums, self.away = np.zeros((TERMS, 0)), np.zeros((ORDERS, 0)), np.zeros(0)
         self.y, self.sizes, self.before = np.zeros(self.states), np.zeros(self.states), np.zeros(self.states)
-        self.workspace, self.q, self.slope = np.zeros(self.states + 8), np.zeros(TERMS), np.zeros(TERMS)
-        self.journal, self.scratch = Journal(self.n), np.zeros((1, self.n))
-        self.watch, self.limit, self.which = None, 2**62, 0
+        self.series = Series(self.phases, self.peaks_, one_sided, self.y, self.sizes, (self.n, self.outputs), h)
+        self.start, self.workspace, self.quiet = np.zeros(self.n), np.zeros(self.n), np.zeros(QUIET + 1)
+        self.journal, self.kinds, self.names = Journal(self.n), np.zeros((4, 4), dtype=np.intc), {}
+        self.scratch = self.unkept = np.zeros((1, self.n))
+        self.watch, self.limit, self.which, self.failure = None, 2**62, 0, ""
+        self.failed, self.faded, self.first, self.pause = False, -1, 0, 0
         self.restart(state, key, which)
 
     def restart(self, state=None, key=None, which: cython.int = 0):
         """Begin anew at time 0, with the phases met so far."""
-        i: cython.int
         if not 0 <= which < self.system.count:
             raise InputError(f"There are {self.system.count} systems in the stack, but number {which} was asked for.")
         if which != self.which:
-            self.which = which
+            self.which, self.faded = which, -1
             self.phases.select(which)
+        self.start = np.zeros(self.n) if state is None else array("the state", state, (self.n,))
+        self.begin()
+        self.now = self.first = self.enter(self.system.start if key is None else key)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def begin(self) -> cython.void:
+        """Begin anew from the same state."""
+        self.pause = min(self.limit + 1, max(self.pause - self.peaks_.work(), 0))
+        if self.failed:
+            with cython.gil:
+                self.failure = ""
         self.peaks_.begin(self.one_sided)
-        given: cython.double[::1] = self.before
-        if state is not None:
-            given = array("the state", state, (self.n,))
-        for i in range(self.n):
-            self.y[i] = given[i] if state is not None else 0.0
-            self.sizes[i] = 0.0
-        self.ended, self.failed, self.failure, self.passed, self.end, self.pause = False, False, "", 0, 0.0, 0
-        self.reached = 0
+        self.y[: self.n] = self.start
+        self.sizes[: self.n] = 0.0
+        self.ended = self.failed = False
+        self.passed = self.reached = self.n_looks = self.n_searched = 0
+        self.end, self.now = 0.0, self.first
         self.journal.begin()
-        self.n_looks = self.n_searched = 0
-        self.now = self.enter(self.system.start if key is None else key)
 
     @property
     def key(self):
@@ -177,12 +187,7 @@ class Run:
 
     def tally(self, *names):
         """Numbers of events of these names."""
-        found = dict.fromkeys(names, 0)
-        for place, event, often in self.journal.tally():
-            name = self.met[place][1].events[event].name
-            if name in found:
-                found[name] += often
-        return [found[name] for name in names]
+        return [self.journal.count(self.names[name]) if name in self.names else 0 for name in names]
 
     @property
     def work(self):
@@ -220,9 +225,14 @@ class Run:
         self.phases.point(place, self.which)
         self.met.append((key, phase))
         self.places[key] = place
-        width: cython.int = self.states + up8(tables.rows)
-        if self.series.shape[1] < width:
-            self.series, self.sums, self.away = np.zeros((TERMS, width)), np.zeros((ORDERS, width)), np.zeros(width)
+        self.series.widen(tables.rows)
+        if place >= self.kinds.shape[0] or len(phase.events) > self.kinds.shape[1]:
+            kinds = np.zeros((2 * place + 4, max(len(phase.events), self.kinds.shape[1])), dtype=np.intc)
+            kinds[: self.kinds.shape[0], : self.kinds.shape[1]] = self.kinds
+            self.kinds = kinds
+        number: cython.int
+        for number, event in enumerate(phase.events):
+            self.kinds[place, number] = self.names.setdefault(event.name, len(self.names))
         return place
 
     def advance(self, a, history: cython.bint = False):
@@ -235,43 +245,91 @@ class Run:
         SolverError
             If the run has failed, as `failure` says, or had failed before.
         """
-        self.proceed(acceleration(a), history)
+        ground: cython.const[cython.double][::1] = acceleration(a)
+        with cython.nogil:
+            self.proceed(ground, history)
+
+    def follow(self, batch: Batch, state=None, key=None, which: cython.int = 0, history: cython.bint = False):
+        """Do the runs of a batch, or go on with them, all from one state.
+
+        Raises
+        ------
+        InputError, SolverError
+            As `advance`, for the run `batch.place`; with 1 added to that, the next call goes on with the others.
+        """
+        number: cython.int
+        self.restart(state, key, which)
+        for number, name in enumerate(batch.names):
+            batch.kinds[number] = self.names.setdefault(name, len(self.names))
+        with cython.nogil:
+            self.follow_all(batch, history)
 
     @cython.cfunc
-    def proceed(self, ground: cython.const[cython.double][::1], history: cython.bint):
+    @cython.nogil
+    @cython.exceptval(-1)
+    def follow_all(self, batch: Batch, history: cython.bint) -> cython.int:
+        """Do the runs of a batch, which share the start."""
+        k: cython.int
+        rested: cython.bint
+        while batch.place < batch.count:
+            self.begin()
+            self.proceed(batch.scaled(), history)
+            rested = False
+            if batch.settles:
+                rested = self.settle_over(batch.free, history)
+            else:
+                self.coast_over(batch.free, history)
+            for k in range(batch.kinds.shape[0]):
+                batch.counts_[batch.place, k] = self.journal.count(batch.kinds[k])
+            batch.ended_[batch.place] = self.ended
+            batch.close(rested, self.end if self.ended else self.passed * self.h, self.h, self.high, self.when, self.y)
+        return 0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(-1)
+    def proceed(self, ground: cython.const[cython.double][::1], history: cython.bint) -> cython.int:
         """Advance over the samples of an acceleration that has been checked."""
-        if self.failed:
-            raise SolverError("This run has been broken off by an error; begin it anew by `restart`.")
-        self.failed = True
-        self.peaks_.passed = self.passed
         i: cython.int
         k: cython.int
         last: cython.int = ground.shape[0] - 1
-        keeps: cython.bint = history and not self.ended
-        rows: cython.int = last + 1 if keeps and last > 0 else 1
-        if self.scratch.shape[0] < rows or (rows == 1 and self.scratch.shape[0] > 1):
-            self.scratch = np.zeros((rows, self.n))
-        if last * self.n < SHORT:  # giving the lock away and waiting for it would take longer
-            i = self.advance_over(ground, keeps, self.scratch)
+        if self.failed:
+            with cython.gil:
+                raise SolverError("This run has been broken off by an error; begin it anew by `restart`.")
+        self.failed = True
+        self.peaks_.pass_by(self.passed)
+        if history and not self.ended:
+            if self.scratch.shape[0] <= max(last, 1):
+                with cython.gil:
+                    self.scratch = np.zeros((last + 2, self.n))
+            i = self.advance_over(ground, True, self.scratch)
         else:
-            with cython.nogil:
-                i = self.advance_over(ground, keeps, self.scratch)
+            i = self.advance_over(ground, False, self.unkept)
         self.passed += i
         self.reached = 0
         for k in range(self.n):
             if not isfinite(self.y[k]):
-                self.failure = "growth"
-                raise SolverError(
-                    f"The motion in the phase {self.key!r} grows without bound before t = {self.time:.9g}."
-                )
+                with cython.gil:
+                    self.failure = "growth"
+                    raise SolverError(
+                        f"The motion in the phase {self.key!r} grows without bound before t = {self.time:.9g}."
+                    )
         self.failed = False
+        return 0
 
     def coast(self, samples: int, *, history: bool = False) -> None:
         """Advance without excitation over so many samples, in the same pieces as `settle`."""
-        quiet: cython.const[cython.double][::1] = np.zeros(QUIET + 1)
+        self.coast_over(min(samples, 2**62), history)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(-1)
+    def coast_over(self, samples: cython.longlong, history: cython.bint) -> cython.int:
+        """Advance without excitation."""
         while samples > 0 and not self.ended:
-            self.proceed(quiet[: min(samples, QUIET) + 1], history)
+            self.proceed(self.quiet[: min(samples, QUIET) + 1], history)
             samples -= QUIET
+        return 0
 
     @cython.cfunc
     @cython.nogil
@@ -326,40 +384,39 @@ class Run:
 
         At rest no condition can fail any more, and no output exceed its peak.
         """
-        quiet: cython.const[cython.double][::1] = np.zeros(QUIET + 1)
-        start: cython.Py_ssize_t = self.passed
-        n_events: cython.int = -1
-        outputs, asks = slice(0, self.outputs), 0.0
-        while not self.ended:
-            if self.journal.n_events > n_events or self.passed * self.h >= asks:
-                n_events = self.journal.n_events
-                if (self.now, self.which) not in self.decays:
-                    self.decays[self.now, self.which] = decay_of(self.met[self.now][1].of(self.which))
-                y, high, one_sided = np.asarray(self.y), np.asarray(self.high), np.asarray(self.one_sided)
-                wait = time_to_rest(self.decays[self.now, self.which], y[: self.n], high[outputs], one_sided[outputs])
-                if wait == 0.0:
-                    return True
-                asks = self.passed * self.h + wait
-            if self.passed - start >= most:
-                break
-            self.proceed(quiet, history)
-        return False
+        return bool(self.settle_over(min(most, 2**62), history))
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def expand(self, start: cython.double, end: cython.double, u: cython.double) -> tuple[cython.double, cython.int]:
-        """Expand the motion from the place u of a sample, as far as a series serves: the part of it, and the terms."""
-        part: cython.double = min(1.0 - u, 0.5 ** self.phases.halvings(self.now))
-        terms: cython.int = 0
-        while True:
-            self.peaks_.add_work(EXPANSION)
-            terms = self.phases.expand(
-                self.now, part * self.h, start + (end - start) * u, (end - start) * part, self.y, self.series, self.away
-            )
-            if terms > 0:
-                return part, terms
-            part *= 0.5
+    @cython.exceptval(-1)
+    def settle_over(self, most: cython.longlong, history: cython.bint) -> cython.int:
+        """Advance without excitation until nothing can follow: 1, or 0 after `most` samples."""
+        start: cython.Py_ssize_t = self.passed
+        n_events: cython.int = -1
+        asks: cython.double = 0.0
+        wait: cython.double
+        while not self.ended:
+            if self.journal.n_events > n_events or self.passed * self.h >= asks:
+                n_events = self.journal.n_events
+                if self.faded != self.now:
+                    with cython.gil:
+                        self.fade()
+                wait = self.decay.time_to_rest(self.y, self.high, self.one_sided)
+                if wait == 0.0:
+                    return 1
+                asks = self.passed * self.h + wait
+            if self.passed - start >= most:
+                break
+            self.proceed(self.quiet, history)
+        return 0
+
+    @cython.cfunc
+    def fade(self):
+        """Find how motion fades in the present phase."""
+        key = self.now, self.which
+        if key not in self.decays:
+            self.decays[key] = Decay(self.met[self.now][1].of(self.which))
+        self.decay, self.faded = self.decays[key], self.now
 
     @cython.cfunc
     @cython.nogil
@@ -376,12 +433,13 @@ class Run:
         self.n_looks += 1
         while u < 1.0:
             self.look_up()
-            part, terms = self.expand(start, end, u)
-            t, event = self.first_event(terms, part * self.h, start + (end - start) * u, (end - start) * part)
+            part, terms = self.series.expand(self.now, start, end, u)
+            t, event = self.series.first_event(
+                self.now, terms, part * self.h, start + (end - start) * u, (end - start) * part
+            )
             if t > 0.0:
-                self.raise_peaks(terms, t, self.passed + i + u, part)
-                self.phases.amounts(self.series, terms, t, self.sizes)
-                self.phases.evaluate(self.series, terms, t, self.y)
+                self.series.raise_peaks(terms, t, self.passed + i + u, part)
+                self.series.move(terms, t)
                 at_once = 0
             if event < 0:
                 u = u + part if part < 1.0 - u else 1.0
@@ -410,76 +468,12 @@ class Run:
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def first_event(
-        self, terms: cython.int, h: cython.double, a: cython.double, rise: cython.double
-    ) -> tuple[cython.double, cython.int]:
-        """Where in the step the first condition fails, and which; 1 and -1 if none does.
-
-        At its start a condition may be zero, because the last event was its own, or due to rounding: then its first
-        derivative that is not zero decides, and the zeros are divided out. Of several conditions that have failed from
-        the start that of the lowest derivative, and then of the largest violation over its scale, is the first.
-        """
-        first_row: cython.int = self.states + self.outputs
-        e: cython.int
-        k: cython.int
-        row: cython.int
-        zeros: cython.int
-        summed: cython.int = 0
-        lowest: cython.int = ORDERS
-        found: cython.int = -1
-        worst: cython.double = 0.0
-        first: cython.double = 1.0
-        t: cython.double
-        for e in range(self.phases.events(self.now)):
-            row = first_row + e
-            if self.series[0, row] > self.away[self.outputs + e]:
-                continue
-            zeros = 0
-            while zeros < ORDERS:
-                if zeros == summed:
-                    self.sum_up(summed, h, a, rise)
-                    summed += 1
-                if fabs(self.series[zeros, row]) > VANISHES * self.sums[zeros, row]:
-                    break
-                zeros += 1
-            if zeros == ORDERS:
-                continue
-            if self.series[zeros, row] < 0.0:
-                t = -self.series[zeros, row] / self.phases.scale(self.now, e)
-                if zeros < lowest or (zeros == lowest and t > worst):
-                    lowest, worst, found, first = zeros, t, e, 0.0
-                continue
-            if first > 0.0:
-                for k in range(terms):
-                    self.q[k] = self.series[k, row]
-                t = first_fall(self.q, zeros, terms - zeros, 0.0, first)
-                if t <= 1.0 - SNAP and (t < first or found < 0):
-                    first, found = t, e
-        return first, found
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def sum_up(self, order: cython.int, h: cython.double, a: cython.double, rise: cython.double) -> cython.void:
-        """Sum the magnitudes of the terms of coefficients of an order: what their rounding is relative to."""
-        i: cython.int
-        for i in range(self.n):
-            self.workspace[i] = (
-                max(fabs(self.y[i]), self.sizes[i]) if order == 0 else self.sums[order - 1, i] * h / order
-            )
-        self.workspace[self.n] = fabs(a) if order == 0 else fabs(rise) if order == 1 else 0.0
-        self.workspace[self.n + 1] = 1.0 if order == 0 else 0.0
-        self.phases.magnitudes(self.now, self.workspace, self.sums[order])
-
-    @cython.cfunc
-    @cython.nogil
     @cython.exceptval(-1)
     def leave(self, event: cython.int, sample: cython.double, a: cython.double) -> cython.int:
         """Jump to the phase that follows an event."""
         outcome: cython.int = 2 * event
         self.end = sample * self.h
-        self.journal.happen(self.end, self.now, event)
+        self.journal.happen(self.end, self.now, event, self.kinds[self.now, event])
         if self.phases.following(self.now, outcome) == ASKED:
             with cython.gil:
                 self.ask(event, a)
@@ -521,42 +515,6 @@ class Run:
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def raise_peaks(
-        self, terms: cython.int, stop: cython.double, sample: cython.double, part: cython.double
-    ) -> cython.void:
-        """Raise the peaks to those of the expanded motion."""
-        j: cython.int
-        start: cython.double
-        for j in range(self.outputs):
-            start = self.series[0, self.states + j]
-            if (start if self.one_sided[j] > 0.0 else fabs(start)) + self.away[j] > self.high[j]:
-                self.raise_peak(j, terms, stop, 1e300, sample, part)
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def raise_peak(
-        self,
-        j: cython.int,
-        terms: cython.int,
-        stop: cython.double,
-        bound: cython.double,
-        sample: cython.double,
-        part: cython.double,
-    ) -> cython.void:
-        """Raise the peak of an output to that of its polynomial, which is known to be at most `bound`."""
-        k: cython.int
-        found: cython.double
-        t: cython.double
-        for k in range(terms):
-            self.q[k] = self.series[k, self.states + j]
-        found, t = highest(self.q, self.slope, terms, 0.0 if self.away[j] == 0.0 else stop, self.one_sided[j] > 0.0)
-        if min(found, bound) > self.high[j]:
-            self.high[j], self.when[j] = min(found, bound), sample + t * part
-
-    @cython.cfunc
-    @cython.nogil
     @cython.exceptval(-1)
     def search(self, a: cython.const[cython.double][::1], finish: cython.bint) -> cython.int:
         """Drop candidates below the peaks found so far; search the others at the end, or if there is no room."""
@@ -588,11 +546,11 @@ class Run:
             u = 0.0
             while u < 1.0:
                 self.look_up()
-                part, terms = self.expand(a[i], a[i + 1], u)
+                part, terms = self.series.expand(self.now, a[i], a[i + 1], u)
                 for j in range(self.outputs):
                     if rows[r, 2 + self.n + j] > self.high[j]:
-                        self.raise_peak(j, terms, 1.0, rows[r, 2 + self.n + j], self.passed + i + u, part)
-                self.phases.evaluate(self.series, terms, 1.0, self.y)
+                        self.series.raise_peak(j, terms, 1.0, rows[r, 2 + self.n + j], self.passed + i + u, part)
+                self.series.jump_to_end(terms)
                 u = u + part if part < 1.0 - u else 1.0
         self.now = now
         self.y[:] = self.before

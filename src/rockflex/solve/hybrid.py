@@ -4,13 +4,13 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import TypeGuard, cast
+from typing import Any, TypeGuard, cast
 
 import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError, SolverError
-from rockflex.engine import MAX_STATES, Run, StepTooLongError
+from rockflex.engine import MAX_STATES, Batch, Run, StepTooLongError
 from rockflex.models import (
     GROUND,
     HEADER,
@@ -40,6 +40,7 @@ from rockflex.solve.status import Status
 SHARE = 0.5  # of the estimated time of a sample that one takes here
 STACK = 64  # systems in one stack, at most
 MEMORY = 64_000_000  # bytes of the tables of one stack
+COUNTED = ("uplift", "impact")
 FAILURES = {"accumulation": Status.CHATTER, "growth": Status.INFINITE}
 
 
@@ -160,31 +161,32 @@ class HybridEngine:
         key, start = (
             self._at_rest if state is None else state if isinstance(state, tuple) else self.model.initial(state)
         )
-        count, rows, states = len(runs), self._n_peaks + 1, None
-        found = Ends(
-            np.zeros(count, END), np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, start.size))
+        allowed = [place for place in range(len(runs)) if place not in failures]
+        stack, settles = self.stack, free_vibration is None
+        batch = Batch(
+            stack.system,
+            [runs[place].acceleration for place in allowed],
+            [runs[place].scale for place in allowed],
+            free=0 if free_vibration == 0.0 else course_of(self.model, dt, free_vibration).free,
+            settles=settles,
+            names=COUNTED,
         )
-        solver = self.stack.taken(dt)
+        check_interruption()
+        solver = stack.taken(dt)
         solver.watch, solver.limit = check_interruption, self._samples_in(work_limit)
-        for place, run in enumerate(runs):
-            if place in failures:
-                continue
-            check_interruption()
+        while batch.place < len(allowed):
             try:
-                solver.restart(None if state is None else start, key, self._place)  # at rest, or from the given state
-                status = self._follow(solver, run, dt, free_vibration, history=history)
+                solver.follow(batch, None if state is None else start, key, self._place, history)
             except (InputError, SolverError) as error:
+                place = allowed[batch.place]
                 failures[place] = self._failure(error, solver, tasks[place], work_limit)
-                continue
-            samples = round(solver.time / dt)
-            found.ends[place] = (status, samples, 0.0, *solver.tally("uplift", "impact"))
-            if status < 0:
-                failures[place] = failure_of(self.model, Status(status), samples, dt, solver.state)
-            found.peaks[place], found.times[place] = solver.highest
-            found.states[place] = solver.state
-            if history:
-                states = self._states(solver)
-        self.stack.returned(solver)
+                batch.place += 1
+        found = _ends_of(batch, dt, allowed, len(runs), settles=settles)
+        for place in np.flatnonzero(found.ends["status"] < 0).tolist():
+            status, samples = Status(found.ends["status"][place]), int(found.ends["samples"][place])
+            failures.setdefault(place, failure_of(self.model, status, samples, dt, found.states[place]))
+        states = self._states(solver) if history and not failures else None
+        stack.returned(solver)
         return Solutions(found, dt, self._n_peaks, self._n_peaks, failures, states)
 
     @cached_property
@@ -210,19 +212,6 @@ class HybridEngine:
         sample, look, *_ = self.pace.prices(history=False)
         return int(min(work_limit / (SHARE * (sample + SEARCH * look)), 2.0**62))
 
-    def _follow(self, solver: Run, run: Excitation, dt: float, free: float | None, *, history: bool) -> int:
-        """Run the record and the free vibration; the status at the end."""
-        solver.advance(run.acceleration * run.scale, history)
-        if free == 0.0:
-            return Status.OVERTURNED if solver.ended else Status.ENDED
-        samples = course_of(self.model, dt, free).free
-        if free is None:
-            if solver.settle(samples, history=history):
-                return Status.SETTLED
-            return Status.OVERTURNED if solver.ended else Status.UNSETTLED
-        solver.coast(samples, history=history)
-        return Status.OVERTURNED if solver.ended else Status.ENDED
-
     def _states(self, solver: Run) -> Array:
         times, keys, ground, states = solver.history
         rows = np.zeros((times.size, HEADER + self.model.layout.size))
@@ -232,6 +221,26 @@ class HybridEngine:
         rotation[side * rotation < 0.0] = 0.0  # by rounding
         rotation[:-1][(times[1:] == times[:-1]) & (side[:-1] != 0.0) & (rotation[1:] == 0.0)] = 0.0  # before an impact
         return rows
+
+
+def _ends_of(batch: Batch, dt: float, allowed: Sequence[int], count: int, *, settles: bool) -> Ends:
+    """How the runs have ended; those that were not allowed are left out."""
+    ends = np.zeros(batch.count, END)
+    through = np.where(batch.rested, Status.SETTLED, Status.UNSETTLED) if settles else Status.ENDED
+    ends["status"] = np.where(batch.ended, Status.OVERTURNED, through)
+    ends["samples"] = np.rint(batch.times / dt)
+    ends["uplifts"], ends["impacts"] = batch.counts.T
+    found = Ends(ends, batch.high, batch.when, batch.states)
+    if len(allowed) == count:
+        return found
+    return Ends(*(_spread(each, allowed, count) for each in found))
+
+
+def _spread(values: Any, places: Sequence[int], count: int) -> Any:
+    """Put values at places along a first axis of zeros."""
+    found = np.zeros((count, *values.shape[1:]), values.dtype)
+    found[list(places)] = values
+    return found
 
 
 def gather(engines: Iterable[HybridEngine]) -> None:

@@ -1,0 +1,35 @@
+from collections.abc import Sequence
+
+from rockflex._arrays import Array, Bools, Integers
+from rockflex.engine.system import System
+
+class Batch:
+    place: int
+
+    def __init__(
+        self,
+        system: System,
+        records: Sequence[Array],
+        scales: Sequence[float] | Array | None = None,
+        free: int = 0,
+        settles: bool = False,
+        names: Sequence[str] = (),
+    ) -> None: ...
+    @property
+    def count(self) -> int: ...
+    @property
+    def names(self) -> tuple[str, ...]: ...
+    @property
+    def ended(self) -> Bools: ...
+    @property
+    def rested(self) -> Bools: ...
+    @property
+    def times(self) -> Array: ...
+    @property
+    def counts(self) -> Integers: ...
+    @property
+    def high(self) -> Array: ...
+    @property
+    def when(self) -> Array: ...
+    @property
+    def states(self) -> Array: ...
