@@ -1,18 +1,20 @@
 cdef extern from "march.h" nogil:
     int AHEAD, BLOCK, MAX_STATES, MAX_ROWS
     ctypedef struct Tables:
-        int n, outputs, rows, parts
+        int n, outputs, rows, shift, parts
         double h
         const double *block
         const double *step
         const double *moves
         const double *now
+        const double *outs
         const double *slope
         const double *bend
         const double *cap
         const double *centre
         const double *sway
         const double *magnitude
+        const double *most
         const double *one_sided
     ctypedef struct Log:
         double *high
@@ -41,6 +43,8 @@ cdef extern from "march.h" nogil:
         void (*evaluate)(int rows, int terms, int width, const double *series, double t, double *out) noexcept nogil
         void (*amounts)(int rows, int terms, int width, const double *series, double t, double *out) noexcept nogil
         void (*spread)(int rows, int terms, int width, const double *series, double *out) noexcept nogil
+        void (*reach)(const Tables *p, int terms, int width, const double *series, double *start, double *away) noexcept nogil
+        void (*complete)(const Tables *p, int terms, int width, double *series) noexcept nogil
         int (*march)(const Tables *p, int phase, const double *a, int i, int last, double *y, Log *log) noexcept nogil
     const Loops *rockflex_loops(const char *level)
 
@@ -67,14 +71,16 @@ cdef class Phases:
     cdef list contents, offsets
 
     cdef int events(self, int place) noexcept nogil
-    cdef int rows(self, int place) noexcept nogil
     cdef int halvings(self, int place) noexcept nogil
+    cdef int shift(self, int place) noexcept nogil
     cdef double scale(self, int place, int event) noexcept nogil
     cdef int following(self, int place, int outcome) noexcept nogil
     cdef int jump(self, int place, int outcome, bint magnitudes, double[::1] y, double[::1] workspace) noexcept nogil
     cdef int rests(self, int place, int event, double[::1] y, double a) noexcept nogil
     cdef int march(self, int place, const double[::1] a, int i, int last, double[::1] y, Peaks peaks, double[:, ::1] states) noexcept nogil
     cdef int expand(self, int place, double h, double a, double rise, double[::1] y, double[:, ::1] series, double[::1] away) noexcept nogil
+    cdef void reach(self, int place, int terms, double[:, ::1] series, double[::1] start, double[::1] away) noexcept nogil
+    cdef void complete(self, int place, int terms, double[:, ::1] series) noexcept nogil
     cdef void evaluate(self, double[:, ::1] series, int terms, double t, double[::1] out) noexcept nogil
     cdef void amounts(self, double[:, ::1] series, int terms, double t, double[::1] out) noexcept nogil
     cdef void magnitudes(self, int place, double[::1] x, double[::1] out) noexcept nogil

@@ -106,7 +106,7 @@ class Phases:
     """The phases that a run has met, each with the loops over its tables."""
 
     def __init__(self, one_sided, states):
-        self.one_sided, self.n, self.states = one_sided, states, up8(states)
+        self.one_sided, self.n, self.states = one_sided, states, up8(states + 2)
         self.contents, self.offsets, self.count = [], [], 0
 
     def __dealloc__(self):
@@ -126,7 +126,7 @@ class Phases:
         jumps = [None if outcome is None or callable(outcome.jump) else outcome.jump for outcome in outcomes]
         rests = [event.rest for event in events]
         parts = [
-            *(packed(each) for each in tables[3:]),
+            *(packed(each) for each in tables[4:]),
             np.array([event.scale for event in events]).reshape(count, systems).T,
             *(jump.reshape(systems, -1) for jump in jumps if jump is not None),
             *(np.column_stack((rest.row, rest.direct, rest.constant)) for rest in rests if rest is not None),
@@ -138,6 +138,7 @@ class Phases:
         self.phases = cython.cast(cython.pointer(Phase), realloc(self.phases, size))
         phase: cython.pointer(Phase) = cython.address(self.phases[self.count])
         phase.tables.n, phase.tables.outputs, phase.tables.rows = self.n, tables.outputs, tables.rows
+        phase.tables.shift = tables.shift
         phase.tables.parts, phase.tables.h = tables.bend.shape[2] - 2, h
         phase.events = count
         phase.jump = cython.cast(
@@ -174,15 +175,11 @@ class Phases:
         phase: cython.pointer(Phase) = cython.address(self.phases[place])
         t: cython.pointer(Tables) = cython.address(phase.tables)
         t.block, t.step, t.moves, t.now = first, first + offsets[1], first + offsets[2], first + offsets[3]
-        t.slope, t.bend, t.cap, t.centre = (
-            first + offsets[4],
-            first + offsets[5],
-            first + offsets[6],
-            first + offsets[7],
-        )
-        t.sway, t.magnitude, t.one_sided = first + offsets[8], first + offsets[9], cython.address(self.one_sided[0])
-        phase.scale, phase.halvings = first + offsets[10], halvings[which]
-        part: cython.int = 11
+        t.outs, t.slope, t.bend, t.cap = first + offsets[4], first + offsets[5], first + offsets[6], first + offsets[7]
+        t.centre, t.sway, t.magnitude = first + offsets[8], first + offsets[9], first + offsets[10]
+        t.most, t.one_sided = first + offsets[11], cython.address(self.one_sided[0])
+        phase.scale, phase.halvings = first + offsets[12], halvings[which]
+        part: cython.int = 13
         k: cython.int
         for k in range(2 * phase.events):
             if jumps[k] is not None:
@@ -201,13 +198,13 @@ class Phases:
         """Number of events of a phase."""
         return self.phases[place].events
 
-    def rows(self, place):
-        """Number of outputs and conditions of a phase."""
-        return self.phases[place].tables.rows
-
     def halvings(self, place):
         """How often the step must be halved so that power series converge."""
         return self.phases[place].halvings
+
+    def shift(self, place):
+        """Number of first states whose rates are as many states after them."""
+        return self.phases[place].tables.shift
 
     def scale(self, place, event):
         """Size of a violation of a condition."""
@@ -256,13 +253,24 @@ class Phases:
         )
 
     def expand(self, place, h, a, rise, y, series, away):
-        """Expand the motion; the number of terms, 0 if too many, and how far each row may get from its start."""
+        """Expand states and conditions; the number of terms, 0 if too many, and how far each condition may get."""
         width: cython.int = series.shape[1]
         tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
         first: cython.p_double = cython.address(series[0, 0])
         terms: cython.int = LOOPS.expand(tables, h, a, rise, cython.address(y[0]), series.shape[0], width, first)
-        LOOPS.spread(tables.rows, terms, width, first + self.states, cython.address(away[0]))
+        LOOPS.spread(tables.rows - tables.outputs, terms, width, first + self.states, cython.address(away[0]))
         return terms
+
+    def reach(self, place, terms, series, start, away):
+        """Outputs at the start of an expanded motion, and how far they may get from there."""
+        tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
+        first: cython.p_double = cython.address(series[0, 0])
+        LOOPS.reach(tables, terms, series.shape[1], first, cython.address(start[0]), cython.address(away[0]))
+
+    def complete(self, place, terms, series):
+        """Expand the outputs, too."""
+        tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
+        LOOPS.complete(tables, terms, series.shape[1], cython.address(series[0, 0]))
 
     def evaluate(self, series, terms, t, out):
         """Sum the series of the states at t."""
@@ -275,7 +283,7 @@ class Phases:
     def magnitudes(self, place, x, out):
         """Multiply the magnitudes of the matrices by those of the states, of the acceleration and of 1."""
         tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
-        rows: cython.int = self.states + up8_(tables.rows)
+        rows: cython.int = up8_(self.n - tables.shift + tables.rows - tables.outputs)
         LOOPS.product(self.n + 2, rows, tables.magnitude, cython.address(x[0]), cython.address(out[0]))
 
 

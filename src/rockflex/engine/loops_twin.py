@@ -95,13 +95,13 @@ class Phases:
         """Number of events of a phase."""
         return len(self.phases[place].events)
 
-    def rows(self, place: int) -> int:
-        """Number of outputs and conditions of a phase."""
-        return self.phases[place].tables.rows
-
     def halvings(self, place: int) -> int:
         """How often the step must be halved so that power series converge."""
         return int(self.phases[place].tables.halvings[self.which])
+
+    def shift(self, place: int) -> int:
+        """Number of first states whose rates are as many states after them."""
+        return self.phases[place].tables.shift
 
     def scale(self, place: int, event: int) -> float:
         """Size of a violation of a condition."""
@@ -133,7 +133,8 @@ class Phases:
         """Advance whole samples from i up to `last` as far as nothing happens; the number of the sample reached."""
         p, k, x = self.phases[place].tables, self.which, np.array(y[: self.n])
         m, n, h, rows = p.outputs, self.n, self.phases[place].h, p.rows
-        old = (p.now[k] @ np.array((*x, a[i], 1.0)))[self.states : self.states + rows]
+        start, rates = np.array((*x, a[i], 1.0)), n - p.shift
+        old = np.concatenate(((p.outs[k] @ start)[:m], (p.now[k] @ start)[rates : rates + rows - m]))
         bend = cap = sway = np.zeros(rows)
         peaks.stopped = False
 
@@ -191,19 +192,32 @@ class Phases:
         peaks.when[higher], peaks.high[higher] = peaks.passed + sample, found[higher]
 
     def expand(self, place: int, h: float, a: float, rise: float, y: Array, series: Array, away: Array) -> int:
-        """Expand the motion; the number of terms, 0 if too many, and how far each row may get from its start."""
-        now, rows = self.phases[place].tables.now[self.which], self.phases[place].tables.rows
-        x, most, calm, first, end = np.array(y[: self.n]), np.abs(y[: self.n]), 0, self.states, self.states + rows
+        """Expand states and conditions; the number of terms, 0 if too many, and how far each condition may get."""
+        p, count, first = self.phases[place].tables, self.events(place), self.states
+        now, rates = p.now[self.which], self.n - p.shift
+        x, most, calm = np.array(y[: self.n]), np.abs(y[: self.n]), 0
         for k in range(len(series)):
             z = now @ np.array((*x, (a, rise)[k] if k < 2 else 0.0, k == 0))
-            series[k, : self.n], series[k, first:end] = x, z[first:end]
-            x = z[: self.n] * (h / (k + 1))
+            series[k, : self.n], series[k, first : first + count] = x, z[rates : rates + count]
+            x = np.concatenate((x[p.shift : 2 * p.shift], z[: self.n - p.shift])) * (h / (k + 1))
             most = np.maximum(most, np.abs(x))
             calm = calm + 1 if k > 1 and (np.abs(x) <= 1e-17 * most).all() else 0
             if calm == 2:
-                away[:rows] = np.abs(series[1 : k + 1, first:end]).sum(axis=0)
+                away[:count] = np.abs(series[1 : k + 1, first : first + count]).sum(axis=0)
                 return k + 1
         return 0
+
+    def reach(self, place: int, terms: int, series: Array, start: Array, away: Array) -> None:
+        """Outputs at the start of an expanded motion, and how far they may get from there."""
+        p, wide = self.phases[place].tables, self.n + 2
+        start[: p.outputs] = (p.outs[self.which] @ series[0, :wide])[: p.outputs]
+        away[: p.outputs] = (p.most[self.which] @ np.abs(series[1:terms, :wide]).sum(axis=0))[: p.outputs]
+
+    def complete(self, place: int, terms: int, series: Array) -> None:
+        """Expand the outputs, too."""
+        p, first = self.phases[place].tables, self.states + up8(self.events(place))
+        for row in series[:terms]:
+            row[first : first + p.outputs] = (p.outs[self.which] @ row[: self.n + 2])[: p.outputs]
 
     def evaluate(self, series: Array, terms: int, t: float, out: Array) -> None:
         """Sum the series of the states at t."""

@@ -87,27 +87,46 @@ static void product(int columns, int rows, const double *table, const double *x,
     }
 }
 
-/* Power series of states, outputs and conditions over a step h, a row for every term, from the acceleration a that
-   changes by `rise`. Returns the number of terms at which it has converged to rounding; 0 if there is no room. */
+/* to = factor · from; the largest magnitudes are kept. Whether one of them still changes by more than rounding. */
+static inline int follow(int count, const double *from, double factor, double *most, double *to) {
+    mask moves = {0};
+    int i = 0, some;
+    for (; i + LANES <= count; i += LANES) {
+        vec next = at(from + i) * factor, top = larger(at(most + i), absolute(next));
+        moves |= absolute(next) > top * 1e-17;
+        put(to + i, next), put(most + i, top);
+    }
+    some = any(moves);
+    for (; i < count; i++) {
+        to[i] = from[i] * factor;
+        if (fabs(to[i]) > most[i]) most[i] = fabs(to[i]);
+        some |= fabs(to[i]) > most[i] * 1e-17;
+    }
+    return some;
+}
+
+/* Power series of states and conditions over a step h, from the acceleration a that changes by `rise`: a row for every
+   term, with states, acceleration, 1 and, from `up8(n + 2)` on, conditions. Returns the number of terms at which it has
+   converged to rounding; 0 if there is no room. */
 static int expand(const Tables *p, double h, double a, double rise, const double *y, int room, int width,
                   double *series) {
-    const int n = p->n, states = up8(n), rows = up8(p->rows);
-    double x[MAX_STATES + 2], z[WIDE], most[MAX_STATES];
-    memset(x, 0, sizeof *x * states);
+    const int n = p->n, s = p->shift, rates = n - s, first = up8(n + 2), conditions = p->rows - p->outputs;
+    double z[WIDE], most[2][MAX_STATES], *x = series, *next;
+    memset(x, 0, sizeof *x * first);
     memcpy(x, y, sizeof *x * n);
-    for (int i = 0; i < states; i++) most[i] = fabs(x[i]);
-    for (int k = 0, calm = 0; k < room; k++, series += width) {
-        memcpy(series, x, sizeof *x * states);
-        x[n] = k == 0 ? a : k == 1 ? rise : 0.0, x[n + 1] = k == 0;
-        product(n + 2, states + rows, p->now, x, z);
-        memcpy(series + states, z + states, sizeof *z * rows);
-        mask moves = {0};
-        for (int i = 0; i < states; i += LANES) {
-            vec next = at(z + i) * all(h / (k + 1)), top = larger(at(most + i), absolute(next));
-            moves |= absolute(next) > top * 1e-17;
-            put(x + i, next), put(most + i, top);
-        }
-        calm = k > 1 && !any(moves) ? calm + 1 : 0;
+    x[n] = a, x[n + 1] = 1.0;
+    for (int i = 0; i < s; i++) most[0][i] = fabs(x[i]);
+    for (int i = 0; i < rates; i++) most[1][i] = fabs(x[s + i]);
+    for (int k = 0, calm = 0; k < room; k++, x = next) {
+        product(n + 2, up8(rates + conditions), p->now, x, z);
+        for (int j = 0; j < conditions; j++) x[first + j] = z[rates + j];
+        if (k + 1 == room) break;
+        next = x + width;
+        int moves = follow(s, x + s, h / (k + 1), most[0], next);
+        moves |= follow(rates, z, h / (k + 1), most[1], next + s);
+        next[n] = k == 0 ? rise : 0.0;
+        for (int i = n + 1; i < first; i++) next[i] = 0.0;
+        calm = k > 1 && !moves ? calm + 1 : 0;
         if (calm == 2) return k + 1;
     }
     return 0;
@@ -140,30 +159,58 @@ static void spread(int rows, int terms, int width, const double *series, double 
     }
 }
 
+/* Outputs at the start of a series, and how far they may get from there. */
+static void reach(const Tables *p, int terms, int width, const double *series, double *start, double *away) {
+    double strays[MAX_STATES + 16];
+    product(p->n + 2, up8(p->outputs), p->outs, series, start);
+    spread(up8(p->n + 2), terms, width, series, strays);
+    product(p->n + 2, up8(p->outputs), p->most, strays, away);
+}
+
+/* The series of the outputs, after those of states and conditions. */
+static void complete(const Tables *p, int terms, int width, double *series) {
+    const int first = up8(p->n + 2) + up8(p->rows - p->outputs);
+    for (int k = 0; k < terms; k++, series += width) product(p->n + 2, up8(p->outputs), p->outs, series, series + first);
+}
+
 typedef struct { /* what is known of every row, once for each sample of a product, one sample after another */
     int flat;      /* of them, to a multiple of 8 */
-    unsigned char sample[FLAT];                  /* the sample of each */
-    mask flip[FLAT / LANES], keep[FLAT / LANES]; /* a value counts as (value ^ flip) & keep */
-    double limit[FLAT];                          /* the peak, or 0, which a condition must not pass */
-    double bend4[FLAT], over[FLAT], cap[FLAT];   /* in this block: 4 b and 1/16 b with b = h²/8 |r''|, and the cap */
+    unsigned char *sample;      /* the sample of each */
+    mask *flip, *keep;          /* a value counts as (value ^ flip) & keep */
+    double *limit;              /* the peak, or 0, which a condition must not pass */
+    double *bend4, *over, *cap; /* in this block: 4 b and 1/16 b with b = h²/8 |r''|, and the cap */
 } Watch;
 
 typedef struct { /* bounds that hold for the samples of a block */
     int fine;    /* whether `sway` is known */
-    double moves[2 * MAX_STATES + 2], bend[MAX_ROWS], sway[MAX_ROWS];
+    double *moves, *bend, *sway;
 } Block;
 
-static void begin_watch(const Tables *p, const Log *log, Watch *w) {
-    const int m = p->outputs, rows = p->rows;
+enum { LINE = 8 }; /* doubles in a line of the cache */
+
+/* Some of the room. Arrays lie close together, and do not begin at the same place of a page, so that all fit in the cache. */
+static double *taken(double **from, int count) {
+    double *found = *from;
+    *from += up8(count) + LINE;
+    return found;
+}
+
+static void begin_watch(const Tables *p, const Log *log, Watch *w, double **arena) {
+    const int m = p->outputs, rows = p->rows, flat = up8(AHEAD * rows);
+    w->flat = flat, w->sample = (unsigned char *)taken(arena, flat / 8);
+    w->flip = (mask *)taken(arena, flat), w->keep = (mask *)taken(arena, flat), w->limit = taken(arena, flat);
+    w->bend4 = taken(arena, flat), w->over = taken(arena, flat), w->cap = taken(arena, flat);
     long long *flip = (long long *)w->flip, *keep = (long long *)w->keep;
-    w->flat = up8(AHEAD * rows);
     for (int k = 0, f = 0; k < AHEAD; k++)
         for (int j = 0; j < rows; j++, f++) {
             flip[f] = j < m ? 0 : (long long)(1ULL << 63);
             keep[f] = j < m && !(p->one_sided[j] > 0.0) ? 0x7fffffffffffffffLL : -1;
             w->limit[f] = j < m ? log->high[j] : -1e-300, w->sample[f] = k;
         }
-    for (int f = AHEAD * rows; f < w->flat; f++) flip[f] = keep[f] = 0, w->limit[f] = INFINITY, w->bend4[f] = w->over[f] = w->cap[f] = 0.0;
+    for (int f = AHEAD * rows; f < flat; f++) {
+        flip[f] = keep[f] = 0, w->sample[f] = 0;
+        w->limit[f] = INFINITY, w->bend4[f] = w->over[f] = w->cap[f] = 0.0;
+    }
 }
 
 static inline double counted(const Watch *w, int f, double value) {
@@ -232,7 +279,7 @@ typedef struct { /* samples of a product, a bit for each */
 } Asking;
 
 typedef struct { /* of rows, one sample after another */
-    double lowest[FLAT], highest[FLAT], slopes[FLAT + MAX_ROWS], centres[FLAT + MAX_ROWS], sway[FLAT];
+    double *lowest, *highest, *slopes, *centres, *sway;
 } Bounds;
 
 /* Closer bounds of the rows in every sample of a product, and the samples that still ask. A row stays
@@ -291,12 +338,11 @@ static inline void raise_peaks(const Tables *p, const double *rows, double sampl
 
 typedef double States[AHEAD + 1][MAX_STATES]; /* at the samples of a product */
 
+enum { MOVES = 2 * MAX_STATES + 2 };
+
 typedef struct { /* room for one march; on the stack of a thread it might be too large */
-    double rows[MAX_ROWS + FLAT + MAX_STATES], now[WIDE];
-    Watch watch;
-    Block block;
-    Bounds bounds;
     States states;
+    double arena[2 * MAX_ROWS + FLAT + MAX_STATES + MOVES + 2 * MAX_ROWS + 7 * FLAT + 5 * FLAT + 2 * MAX_ROWS + 32 * LINE];
 } Workspace;
 
 /* Look at the samples of a product that ask for it, whose rows have these bounds. Returns how many there are before the
@@ -341,19 +387,27 @@ static int inspect(const Tables *p, int phase, const double *a, int i, int sampl
 static int march(const Tables *p, int phase, const double *a, int i, int last, double *y, Log *log) {
     const int n = p->n, states = up8(n), rows = p->rows, flat = up8(AHEAD * rows);
     Workspace *room = log->workspace;
+    double *arena = room->arena;
     double x[MAX_STATES + AHEAD + 2], padded[AHEAD + 1];
-    double *after = room->rows + up8(rows), *before = after - rows, *change = after + flat, *now = room->now;
-    Block *block = &room->block;
-    Watch *watch = &room->watch;
+    double *after = taken(&arena, up8(rows) + flat + states) + up8(rows), *before = after - rows, *change = after + flat;
+    Watch seen = {0}, *watch = &seen;
+    Block block = {0};
+    Bounds bounds;
     double(*at_samples)[MAX_STATES] = room->states;
-    begin_watch(p, log, watch);
+    block.moves = taken(&arena, MOVES), block.bend = taken(&arena, rows), block.sway = taken(&arena, rows);
+    bounds.lowest = taken(&arena, flat), bounds.highest = taken(&arena, flat), bounds.sway = taken(&arena, flat);
+    bounds.slopes = taken(&arena, flat + up8(rows)), bounds.centres = taken(&arena, flat + up8(rows));
+    begin_watch(p, log, watch, &arena);
     memcpy(x, y, sizeof *x * n);
     if (log->resumes) {
         memcpy(before, log->seen, sizeof *x * rows);
     } else {
+        const int rates = n - p->shift, conditions = rows - p->outputs;
         x[n] = a[i], x[n + 1] = 1.0;
-        product(n + 2, states + up8(rows), p->now, x, now);
-        memcpy(before, now + states, sizeof *x * rows);
+        product(n + 2, up8(rates + conditions), p->now, x, after);
+        memcpy(before + p->outputs, after + rates, sizeof *x * conditions);
+        product(n + 2, up8(p->outputs), p->outs, x, after);
+        memcpy(before, after, sizeof *x * p->outputs);
         raise_peaks(p, before, i, watch, log);
     }
     log->looks = log->resumes = 0;
@@ -364,7 +418,7 @@ static int march(const Tables *p, int phase, const double *a, int i, int last, d
                 log->resumes = 1;
                 break;
             }
-            begin_block(p, a + i, last - i < BLOCK ? last - i : BLOCK, x, block, watch);
+            begin_block(p, a + i, last - i < BLOCK ? last - i : BLOCK, x, &block, watch);
             left = BLOCK;
         }
         int samples = last - i < AHEAD ? last - i : AHEAD;
@@ -382,8 +436,8 @@ static int march(const Tables *p, int phase, const double *a, int i, int last, d
             int known = 0; /* samples after which the state is known */
             memcpy(at_samples[0], x, sizeof *x * n);
             if (look) {
-                Asking which = asking(p, x, before, after, block, watch, &room->bounds);
-                passed = inspect(p, phase, ground, i, samples, which, before, &room->bounds, at_samples, &known, watch, log);
+                Asking which = asking(p, x, before, after, &block, watch, &bounds);
+                passed = inspect(p, phase, ground, i, samples, which, before, &bounds, at_samples, &known, watch, log);
             }
             if (log->states || passed < AHEAD)
                 for (; known < passed; known++) advance(p, ground + known, at_samples[known], at_samples[known + 1]);
@@ -404,4 +458,5 @@ static int march(const Tables *p, int phase, const double *a, int i, int last, d
     return i;
 }
 
-const Loops JOIN(rockflex_loops_, LEVEL) = {TEXT(LEVEL), UNITS * 8, sizeof(Workspace), product, expand, evaluate, amounts, spread, march};
+const Loops JOIN(rockflex_loops_, LEVEL) = {TEXT(LEVEL), UNITS * 8, sizeof(Workspace), product, expand, evaluate, amounts, spread,
+                                            reach, complete, march};

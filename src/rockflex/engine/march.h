@@ -16,18 +16,21 @@ enum {
 
 typedef struct {
     int n, outputs, rows; /* states, outputs, outputs and conditions */
+    int shift;            /* the first states, whose rates are as many states after them: y'[i] = y[shift + i] */
     int parts;            /* of y', whose magnitudes bound the rows */
     double h;
     const double *block;     /* columns y, a0, a1 .., 1: rows after each of the next samples, then change of the states */
     const double *step;      /* columns y, a0, a1, 1: change of the states in one sample */
     const double *moves;     /* columns y, a, 1: parts of y', those of slow modes and amplitudes of fast ones */
-    const double *now;       /* columns y, a, 1: rates of the states, rows */
+    const double *now;       /* columns y, a, 1: rates of the other states, conditions */
+    const double *outs;      /* the same columns: outputs */
     const double *slope;     /* columns y, a0, a1 .., 1: rates of the rows at these samples, without the part of a' */
     const double *bend;      /* columns: n parts, variation of a, largest |a'|, other parts: h²/8 |r''| in a block */
     const double *cap;       /* the same columns: distance from the chord due to fast modes */
     const double *centre;    /* columns y, a0, a1 .., 1: at these samples, what they swing about, within half of that */
     const double *sway;      /* the same columns: h³/96 |r'''| */
     const double *magnitude; /* |now| */
+    const double *most;      /* |outs| */
     const double *one_sided; /* 1 for outputs whose largest value counts, 0 where it is the largest magnitude */
 } Tables;
 
@@ -63,6 +66,8 @@ typedef struct { /* the loops for one level of vector instructions */
     void (*evaluate)(int rows, int terms, int width, const double *series, double t, double *out);
     void (*amounts)(int rows, int terms, int width, const double *series, double t, double *out);
     void (*spread)(int rows, int terms, int width, const double *series, double *out);
+    void (*reach)(const Tables *p, int terms, int width, const double *series, double *start, double *away);
+    void (*complete)(const Tables *p, int terms, int width, double *series);
     int (*march)(const Tables *p, int phase, const double *a, int i, int last, double *y, Log *log);
 } Loops;
 

@@ -78,7 +78,7 @@ def first_fall(
 @cython.ccall
 @cython.nogil
 @cython.exceptval(check=False)
-def highest(
+def highest_of(
     q: cython.double[::1], slope: cython.double[::1], terms: cython.int, stop: cython.double, one_sided: cython.bint
 ) -> tuple[cython.double, cython.double]:
     """The highest value in [0, stop], or magnitude unless one-sided, and where it is; q and slope are changed.

@@ -89,6 +89,7 @@ class Run:
     high: cython.double[::1]
     when: cython.double[::1]
     series: Series
+    unbounded: cython.double[::1]  # of outputs whose highest values are not known
     sizes: cython.double[::1]  # of the states: magnitudes of the terms that they were summed from
     workspace: cython.double[::1]
     scratch: cython.double[:, ::1]  # the states of a march, if there is a history
@@ -108,7 +109,7 @@ class Run:
             raise InputError(f"The time step must be a positive number, but {h!r} was given.")
         self.system, self.h, self.met, self.places, self.decays = system, h, [], {}, {}
         self.n, self.outputs = system.layout.size, len(system.outputs)
-        self.states = up8(self.n)
+        self.states = up8(self.n + 2)
         one_sided = np.zeros(up8(max(1, self.outputs)))
         one_sided[[list(system.outputs).index(name) for name in system.one_sided]] = 1.0
         self.one_sided, self.phases = one_sided, Phases(one_sided, self.n)
@@ -119,6 +120,7 @@ class Run:
         self.start, self.workspace, self.quiet = np.zeros(self.n), np.zeros(self.n), np.zeros(QUIET + 1)
         self.journal, self.kinds, self.names = Journal(self.n), np.zeros((4, 4), dtype=np.intc), {}
         self.scratch = self.unkept = np.zeros((1, self.n))
+        self.unbounded = np.full(up8(max(1, self.outputs)), np.inf)
         self.watch, self.limit, self.which, self.failure = None, 2**62, 0, ""
         self.failed, self.faded, self.first, self.pause = False, -1, 0, 0
         self.restart(state, key, which)
@@ -225,7 +227,7 @@ class Run:
         self.phases.point(place, self.which)
         self.met.append((key, phase))
         self.places[key] = place
-        self.series.widen(tables.rows)
+        self.series.widen(len(phase.events))
         if place >= self.kinds.shape[0] or len(phase.events) > self.kinds.shape[1]:
             kinds = np.zeros((2 * place + 4, max(len(phase.events), self.kinds.shape[1])), dtype=np.intc)
             kinds[: self.kinds.shape[0], : self.kinds.shape[1]] = self.kinds
@@ -426,20 +428,17 @@ class Run:
         u: cython.double = 0.0  # the part of the sample that has passed
         part: cython.double
         t: cython.double
-        terms: cython.int
         event: cython.int
         at_once: cython.int = 0
         in_sample: cython.int = 0
         self.n_looks += 1
         while u < 1.0:
             self.look_up()
-            part, terms = self.series.expand(self.now, start, end, u)
-            t, event = self.series.first_event(
-                self.now, terms, part * self.h, start + (end - start) * u, (end - start) * part
-            )
+            part = self.series.expand(self.now, start, end, u)
+            t, event = self.series.first_event()
             if t > 0.0:
-                self.series.raise_peaks(terms, t, self.passed + i + u, part)
-                self.series.move(terms, t)
+                self.series.raise_peaks(t, self.passed + i + u, self.unbounded)
+                self.series.move(t)
                 at_once = 0
             if event < 0:
                 u = u + part if part < 1.0 - u else 1.0
@@ -522,7 +521,6 @@ class Run:
         j: cython.int
         i: cython.int
         kept: cython.int = 0
-        terms: cython.int
         higher: cython.bint
         u: cython.double
         part: cython.double
@@ -546,11 +544,9 @@ class Run:
             u = 0.0
             while u < 1.0:
                 self.look_up()
-                part, terms = self.series.expand(self.now, a[i], a[i + 1], u)
-                for j in range(self.outputs):
-                    if rows[r, 2 + self.n + j] > self.high[j]:
-                        self.series.raise_peak(j, terms, 1.0, rows[r, 2 + self.n + j], self.passed + i + u, part)
-                self.series.jump_to_end(terms)
+                part = self.series.expand(self.now, a[i], a[i + 1], u)
+                self.series.raise_peaks(1.0, self.passed + i + u, rows[r, 2 + self.n :])
+                self.series.skip()
                 u = u + part if part < 1.0 - u else 1.0
         self.now = now
         self.y[:] = self.before

@@ -23,17 +23,20 @@ class Tables(NamedTuple):
 
     outputs: int
     rows: int
+    shift: int
     halvings: NDArray[np.intc]  # of the step, so that its power series converge
     block: Array
     step: Array
     moves: Array
     now: Array
+    outs: Array
     slope: Array
     bend: Array
     cap: Array
     centre: Array
     sway: Array
     magnitude: Array
+    most: Array
 
 
 @np.errstate(over="ignore", invalid="ignore")
@@ -79,22 +82,35 @@ def tables_of(phase: LinearPhase, h: float) -> Tables:
         bend[some, :, : n + 2], least = bounds(slow[some], driven[some], C[some], of_states[1 : kind[1] + 2], h)
         sway[some, :, : n + 2] += least
     changes = changes_ahead(step)
-    now = np.concatenate((padded(rates), padded(rows)), axis=1)
+    shift = shift_of(rates)
+    now, outs = padded(np.concatenate((rates[:, shift:], rows[:, m:]), axis=1)), padded(rows[:, :m])
     return Tables(
         outputs=m,
         rows=m + k,
+        shift=shift,
         halvings=halvings.astype(np.intc),
         block=np.concatenate((seen_ahead(rows, changes, 1), padded(changes[-1])), axis=1),
         step=padded(step),
         moves=padded(moves @ rates),
         now=now,
+        outs=outs,
         slope=seen_ahead(C @ rates, changes, 0),
         bend=padded(bend),
         cap=padded(cap),
         centre=seen_ahead(centre, changes if most else changes[:1], 0),
         sway=padded(sway),
         magnitude=np.abs(now),
+        most=np.abs(outs),
     )
+
+
+def shift_of(rates: Array) -> int:
+    """The number of first states whose rates are as many states after them, as positions before their velocities."""
+    n = rates.shape[1]
+    for shift in range(n // 2, 0, -1):
+        if (rates[:, :shift] == np.eye(shift, n + 2, shift)).all():
+            return shift
+    return 0
 
 
 class Split(NamedTuple):
