@@ -13,6 +13,8 @@ cdef extern from "march.h" nogil:
         const double *cap
         const double *centre
         const double *sway
+        const double *jolt
+        const double *direct
         const double *magnitude
         const double *most
         const double *one_sided

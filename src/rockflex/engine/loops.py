@@ -176,10 +176,15 @@ class Phases:
         t: cython.pointer(Tables) = cython.address(phase.tables)
         t.block, t.step, t.moves, t.now = first, first + offsets[1], first + offsets[2], first + offsets[3]
         t.outs, t.slope, t.bend, t.cap = first + offsets[4], first + offsets[5], first + offsets[6], first + offsets[7]
-        t.centre, t.sway, t.magnitude = first + offsets[8], first + offsets[9], first + offsets[10]
-        t.most, t.one_sided = first + offsets[11], cython.address(self.one_sided[0])
-        phase.scale, phase.halvings = first + offsets[12], halvings[which]
-        part: cython.int = 13
+        t.centre, t.sway, t.jolt, t.direct = (
+            first + offsets[8],
+            first + offsets[9],
+            first + offsets[10],
+            first + offsets[11],
+        )
+        t.magnitude, t.most, t.one_sided = first + offsets[12], first + offsets[13], cython.address(self.one_sided[0])
+        phase.scale, phase.halvings = first + offsets[14], halvings[which]
+        part: cython.int = 15
         k: cython.int
         for k in range(2 * phase.events):
             if jumps[k] is not None:

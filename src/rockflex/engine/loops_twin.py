@@ -16,6 +16,13 @@ def PyErr_CheckSignals() -> None:  # noqa: N802
     """Do nothing: the interpreter looks at Ctrl-C by itself."""
 
 
+def lowest_of(r0: float, change: float, first: float, last: float) -> float:
+    """The least value of r0 + change t + t (1 - t) ((1 - t) first - t last) for t from 0 to 1."""
+    row = np.polynomial.Polynomial((r0, change + first, -2.0 * first - last, first + last))
+    level = [t.real for t in row.deriv().roots() if 0.0 < t.real < 1.0 and t.imag == 0.0]
+    return float(min(row(t) for t in (0.0, 1.0, *level)))
+
+
 class Peaks:
     """Highest values of the outputs, the samples at which they were reached, and samples that may have higher ones."""
 
@@ -135,7 +142,7 @@ class Phases:
         m, n, h, rows = p.outputs, self.n, self.phases[place].h, p.rows
         start, rates = np.array((*x, a[i], 1.0)), n - p.shift
         old = np.concatenate(((p.outs[k] @ start)[:m], (p.now[k] @ start)[rates : rates + rows - m]))
-        bend = cap = sway = np.zeros(rows)
+        bend = cap = sway = jolt = np.zeros(rows)
         peaks.stopped = False
 
         def at_start(table: Array, y: Array, b: float) -> Array:
@@ -150,7 +157,7 @@ class Phases:
                 changes = np.abs(np.diff(a[i : min(i + BLOCK, last) + 1]))
                 parts = np.abs(p.moves[k][: p.bend.shape[2] - 2] @ np.array((*x, a[i], 1.0)))
                 moves = np.array((*parts[:n], changes.sum(), changes.max() / h, *parts[n:]))
-                bend, cap, sway = (each[k][:rows] @ moves for each in (p.bend, p.cap, p.sway))
+                bend, cap, sway, jolt = (each[k][:rows] @ moves for each in (p.bend, p.cap, p.sway, p.jolt))
             if (i - first) % AHEAD == 0:
                 ground = np.array(a[i : min(i + AHEAD, last) + 1])
                 ground = np.concatenate((ground, np.zeros(AHEAD + 1 - ground.size)))
@@ -168,7 +175,11 @@ class Phases:
                 ends = [at_start(p.centre[k], z, b) for z, b in ((x, a[i]), (after, a[i + 1]))]
                 lowest = np.maximum(lowest, np.minimum(*ends) - 0.5 * cap - bend)
                 highest = np.minimum(highest, np.maximum(*ends) + 0.5 * cap + bend)
-            if (lowest[m:] <= 0.0).any():
+            ends = [each * h - (new - old - p.direct[k][:rows, 0] * (a[i + 1] - a[i])) for each in slopes]
+            if any(
+                lowest[j] <= 0.0 and lowest_of(old[j], new[j] - old[j], ends[0][j], ends[1][j]) <= jolt[j - m]
+                for j in range(m, rows)
+            ):
                 peaks.stopped = True
                 break
             above = np.maximum(self._counted(lowest[:m]), self._counted(highest[:m]))

@@ -182,8 +182,8 @@ typedef struct { /* what is known of every row, once for each sample of a produc
 } Watch;
 
 typedef struct { /* bounds that hold for the samples of a block */
-    int fine;    /* whether `sway` is known */
-    double *moves, *bend, *sway;
+    int fine;    /* whether `sway` and `jolt` are known */
+    double *moves, *bend, *sway, *jolt;
 } Block;
 
 enum { LINE = 8 }; /* doubles in a line of the cache */
@@ -282,14 +282,39 @@ typedef struct { /* of rows, one sample after another */
     double *lowest, *highest, *slopes, *centres, *sway;
 } Bounds;
 
+/* A lower bound of a row r0 + change t + t (1 - t) ((1 - t) first - t last) for t from 0 to 1, which `away` may take off. */
+static double lowest_of(double r0, double change, double first, double last, double away) {
+    double b = change + first, c = -2.0 * first - last, d = first + last, least = change < 0.0 ? r0 + change : r0;
+    double root = c * c - 3.0 * b * d;
+    if (root > 0.0) {
+        double q = -c - (c > 0.0 ? sqrt(root) : -sqrt(root)), at[2] = {q / (3.0 * d), b / q}; /* where it is level */
+        for (int k = 0; k < 2; k++)
+            if (at[k] > 0.0 && at[k] < 1.0) {
+                double value = r0 + at[k] * (b + at[k] * (c + at[k] * d));
+                if (value < least) least = value;
+            }
+    }
+    return least - away;
+}
+
+/* Whether the condition of a row may fail: it stays near the cubic through both ends of a sample, and their slopes. */
+static int may_fail(const Tables *p, const double *ground, int sample, double r0, double r1, double s0, double s1,
+                    int row, const Block *b) {
+    double change = r1 - r0, chord = change - p->direct[row] * (ground[sample + 1] - ground[sample]);
+    return !(lowest_of(r0, change, p->h * s0 - chord, p->h * s1 - chord, b->jolt[row - p->outputs]) > 0.0);
+}
+
 /* Closer bounds of the rows in every sample of a product, and the samples that still ask. A row stays
    near its chord by the change of its slope and its third derivative, or near what fast modes swing about. */
-static Asking asking(const Tables *p, const double *x, const double *before, const double *after, Block *b,
+static Asking asking(const Tables *p, const double *ground, const double *x, const double *before, const double *after, Block *b,
                      const Watch *w, Bounds *bounds) {
     const int rows = p->rows, columns = p->n + AHEAD + 2, whole = up8((AHEAD + 1) * rows);
     double *slopes = bounds->slopes, *centres = bounds->centres, *sway = bounds->sway;
     Asking found = {0};
-    if (!b->fine) product(p->parts + 2, up8(rows), p->sway, b->moves, b->sway);
+    if (!b->fine) {
+        product(p->parts + 2, up8(rows), p->sway, b->moves, b->sway);
+        product(p->parts + 2, up8(rows - p->outputs), p->jolt, b->moves, b->jolt);
+    }
     b->fine = 1;
     for (int k = 0; k < AHEAD; k++) memcpy(sway + k * rows, b->sway, sizeof *sway * rows);
     for (int f = AHEAD * rows; f < w->flat; f++) sway[f] = 0.0;
@@ -310,7 +335,8 @@ static Asking asking(const Tables *p, const double *x, const double *before, con
         mask above = top > limit, within = top > larger(limit, end), condition = w->flip[f / LANES] < 0;
         if (any(above))
             for (int k = 0; k < LANES; k++) {
-                if (above[k])
+                if (above[k] && !(condition[k] && !may_fail(p, ground, w->sample[f + k], r0[k], r1[k], s0[k], s1[k],
+                                                            (f + k) % rows, b)))
                     *(condition[k] ? &found.fails : within[k] ? &found.within : &found.at_end) |= 1u << w->sample[f + k];
             }
     }
@@ -342,7 +368,7 @@ enum { MOVES = 2 * MAX_STATES + 2 };
 
 typedef struct { /* room for one march; on the stack of a thread it might be too large */
     States states;
-    double arena[2 * MAX_ROWS + FLAT + MAX_STATES + MOVES + 2 * MAX_ROWS + 7 * FLAT + 5 * FLAT + 2 * MAX_ROWS + 32 * LINE];
+    double arena[2 * MAX_ROWS + FLAT + MAX_STATES + MOVES + 3 * MAX_ROWS + 7 * FLAT + 5 * FLAT + 2 * MAX_ROWS + 32 * LINE];
 } Workspace;
 
 /* Look at the samples of a product that ask for it, whose rows have these bounds. Returns how many there are before the
@@ -395,6 +421,7 @@ static int march(const Tables *p, int phase, const double *a, int i, int last, d
     Bounds bounds;
     double(*at_samples)[MAX_STATES] = room->states;
     block.moves = taken(&arena, MOVES), block.bend = taken(&arena, rows), block.sway = taken(&arena, rows);
+    block.jolt = taken(&arena, rows);
     bounds.lowest = taken(&arena, flat), bounds.highest = taken(&arena, flat), bounds.sway = taken(&arena, flat);
     bounds.slopes = taken(&arena, flat + up8(rows)), bounds.centres = taken(&arena, flat + up8(rows));
     begin_watch(p, log, watch, &arena);
@@ -436,7 +463,7 @@ static int march(const Tables *p, int phase, const double *a, int i, int last, d
             int known = 0; /* samples after which the state is known */
             memcpy(at_samples[0], x, sizeof *x * n);
             if (look) {
-                Asking which = asking(p, x, before, after, &block, watch, &bounds);
+                Asking which = asking(p, ground, x, before, after, &block, watch, &bounds);
                 passed = inspect(p, phase, ground, i, samples, which, before, &bounds, at_samples, &known, watch, log);
             }
             if (log->states || passed < AHEAD)

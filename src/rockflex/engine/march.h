@@ -29,6 +29,8 @@ typedef struct {
     const double *cap;       /* the same columns: distance from the chord due to fast modes */
     const double *centre;    /* columns y, a0, a1 .., 1: at these samples, what they swing about, within half of that */
     const double *sway;      /* the same columns: h³/96 |r'''| */
+    const double *jolt;      /* of conditions, the same columns: h⁴/384 |r''''|, not less than 1e100 if there are fast modes */
+    const double *direct;    /* of every row, the factor of a */
     const double *magnitude; /* |now| */
     const double *most;      /* |outs| */
     const double *one_sided; /* 1 for outputs whose largest value counts, 0 where it is the largest magnitude */

@@ -35,6 +35,8 @@ class Tables(NamedTuple):
     cap: Array
     centre: Array
     sway: Array
+    jolt: Array
+    direct: Array
     magnitude: Array
     most: Array
 
@@ -57,6 +59,7 @@ def tables_of(phase: LinearPhase, h: float) -> Tables:
     most = max((len(each.parts) for each in splits if each is not None), default=0)
     slow, driven = A.copy(), f.copy()
     moves, (bend, cap, sway) = np.zeros((S, n + most, n)), np.zeros((3, S, m + k, n + 2 + most))
+    jolt = np.full((S, k, n + 2 + most), VAGUE)
     moves[:, :n] = np.eye(n)
     centre = rows.copy()
     for place, each in enumerate(splits):
@@ -79,8 +82,11 @@ def tables_of(phase: LinearPhase, h: float) -> Tables:
         step[some, :, :n], step[some, :, n:] = whole[..., :n], whole[..., n:]
         step[some, :, n] -= whole[..., n + 1]
         of_states = changes_of(slow[some] * h, kind[1] + 1) if kind[2] else [each[:, :n, :n] for each in changes]
-        bend[some, :, : n + 2], least = bounds(slow[some], driven[some], C[some], of_states[1 : kind[1] + 2], h)
-        sway[some, :, : n + 2] += least
+        found = bounds(slow[some], driven[some], C[some], m, of_states[1 : kind[1] + 2], h)
+        bend[some, :, : n + 2] = found[0]
+        sway[some, :, : n + 2] += found[1]
+        if not kind[2]:
+            jolt[some, :, : n + 2], jolt[some, :, n + 2 :] = found[2], 0.0
     changes = changes_ahead(step)
     shift = shift_of(rates)
     now, outs = padded(np.concatenate((rates[:, shift:], rows[:, m:]), axis=1)), padded(rows[:, :m])
@@ -99,6 +105,8 @@ def tables_of(phase: LinearPhase, h: float) -> Tables:
         cap=padded(cap),
         centre=seen_ahead(centre, changes if most else changes[:1], 0),
         sway=padded(sway),
+        jolt=padded(jolt),
+        direct=padded(rows[:, :, n, None]),
         magnitude=np.abs(now),
         most=np.abs(outs),
     )
@@ -188,26 +196,29 @@ def seen_ahead(rows: Array, changes: list[Array], first: int) -> Array:
     return found
 
 
-def bounds(A: Array, f: Array, C: Array, changes: list[Array], h: float) -> tuple[Array, Array]:
-    """Factors of |y'|, of the variation of a and of |a'| in bounds of h²/8 |r''| and h³/96 |r'''| within a block.
+def bounds(A: Array, f: Array, C: Array, m: int, changes: list[Array], h: float) -> tuple[Array, Array, Array]:
+    """Factors of |y'|, of the variation of a and of |a'| in bounds of rows' derivatives within a block.
 
-    r'' = C A v + C f a' and r''' = C A² v + C A f a' with v = y' and v' = A v + f a'. So they are at most |C A e^{At}|
-    |v(0)| and so on; between the places of a grid of h/2 the matrices grow at most by `growth`, entry by entry.
-    `changes` are those of A in h/2, h/4, ..
+    They are those of h²/8 |r''| and h³/96 |r'''| of all rows and, from row m on, of h⁴/384 |r''''|. With v = y' and
+    v' = A v + f a' these are r'' = C A v + C f a', r''' = C A² v + C A f a' and so on, at most |C A e^{At}| |v(0)| and
+    so on; between the places of a grid of h/2 the matrices grow at most by `growth`, entry by entry. `changes` are
+    those of A in h/2, h/4, ..
     """
     S, rows, n = C.shape
+    ends = np.cumsum((rows, rows, rows - m))
     if rows == 0:
-        return np.zeros((S, 0, n + 2)), np.zeros((S, 0, n + 2))
-    grid, step = np.concatenate((C @ A, C @ A @ A), axis=1), changes[0]
-    direct = np.abs(np.concatenate((C, C @ A), axis=1) @ f[..., None])
+        return np.zeros((S, 0, n + 2)), np.zeros((S, 0, n + 2)), np.zeros((S, 0, n + 2))
+    once = C @ A
+    before = np.concatenate((C, once, once[:, m:] @ A), axis=1)
+    grid, step, direct = before @ A, changes[0], np.abs(before @ f[..., None])
     for _ in range(int(math.log2(2 * BLOCK))):
         grid, step = np.concatenate((grid, grid + grid @ step), axis=1), 2.0 * step + step @ step
-    most = np.abs(grid).reshape(S, -1, 2 * rows, n).max(axis=1) @ growth(0.5 * h * A, changes)
+    most = np.abs(grid).reshape(S, -1, ends[-1], n).max(axis=1) @ growth(0.5 * h * A, changes)
     found = np.concatenate((most, most @ np.abs(f)[..., None], direct), axis=2)
-    found[:, :rows] *= h**2 / 8.0
-    found[:, rows:] *= h**3 / 96.0
-    found = np.minimum(np.nan_to_num(found, nan=VAGUE), VAGUE)
-    return found[:, :rows], found[:, rows:]
+    parts = np.split(found, ends[:2], axis=1)
+    scaled = (part * factor for part, factor in zip(parts, (h**2 / 8.0, h**3 / 96.0, h**4 / 384.0), strict=True))
+    bend, sway, jolt = (np.minimum(np.nan_to_num(part, nan=VAGUE), VAGUE) for part in scaled)
+    return bend, sway, jolt
 
 
 def growth(G: Array, changes: list[Array]) -> Array:
