@@ -9,6 +9,7 @@ from cython.cimports.libc.math import INFINITY, fabs
 from cython.cimports.libc.stdlib import calloc, free, malloc, realloc
 
 from rockflex.engine.system import up8
+from rockflex.engine.tables import padded
 
 LEVELS = ("", "baseline", "v3", "v4")
 
@@ -128,7 +129,7 @@ class Phases:
         parts = [
             *(packed(each) for each in tables[4:]),
             np.array([event.scale for event in events]).reshape(count, systems).T,
-            *(jump.reshape(systems, -1) for jump in jumps if jump is not None),
+            *(np.concatenate((packed(padded(J)), packed(padded(np.abs(J)))), axis=1) for J in jumps if J is not None),
             *(np.column_stack((rest.row, rest.direct, rest.constant)) for rest in rests if rest is not None),
         ]
         offsets = np.cumsum([0, *(up8(part.shape[1]) for part in parts)], dtype=np.intp)
@@ -221,20 +222,15 @@ class Phases:
 
     def jump(self, place, outcome, magnitudes, y, workspace):
         """Multiply a state by the matrix of an outcome, or magnitudes by its magnitudes; whether there is one."""
-        matrix: cython.p_const_double = self.phases[place].jump[outcome]
+        table: cython.p_const_double = self.phases[place].jump[outcome]
         i: cython.int
-        j: cython.int
-        total: cython.double
-        if matrix == cython.NULL:
+        if table == cython.NULL:
             return 0
         for i in range(self.n):
             workspace[i] = y[i]
-        for i in range(self.n):
-            total = 0.0
-            for j in range(self.n):
-                total += (fabs(matrix[j]) if magnitudes else matrix[j]) * workspace[j]
-            y[i] = total
-            matrix += self.n
+        if magnitudes:
+            table += self.n * up8_(self.n)
+        LOOPS.product(self.n, up8_(self.n), table, cython.address(workspace[0]), cython.address(y[0]))
         return 1
 
     def rests(self, place, event, y, a):

@@ -179,6 +179,7 @@ typedef struct { /* what is known of every row, once for each sample of a produc
     mask *flip, *keep;          /* a value counts as (value ^ flip) & keep */
     double *limit;              /* the peak, or 0, which a condition must not pass */
     double *bend4, *over, *cap; /* in this block: 4 b and 1/16 b with b = h²/8 |r''|, and the cap */
+    double *quiet;              /* what counts may be so high at the ends of a sample, whatever is between */
 } Watch;
 
 typedef struct { /* bounds that hold for the samples of a block */
@@ -199,7 +200,7 @@ static void begin_watch(const Tables *p, const Log *log, Watch *w, double **aren
     const int m = p->outputs, rows = p->rows, flat = up8(AHEAD * rows);
     w->flat = flat, w->sample = (unsigned char *)taken(arena, flat / 8);
     w->flip = (mask *)taken(arena, flat), w->keep = (mask *)taken(arena, flat), w->limit = taken(arena, flat);
-    w->bend4 = taken(arena, flat), w->over = taken(arena, flat), w->cap = taken(arena, flat);
+    w->quiet = taken(arena, flat), w->bend4 = taken(arena, flat), w->over = taken(arena, flat), w->cap = taken(arena, flat);
     long long *flip = (long long *)w->flip, *keep = (long long *)w->keep;
     for (int k = 0, f = 0; k < AHEAD; k++)
         for (int j = 0; j < rows; j++, f++) {
@@ -261,6 +262,19 @@ static inline vec excess(vec change, vec bend4, vec over) {
 /* What counts of some rows. */
 static inline vec counts(const Watch *w, int f, vec row) {
     return (vec)(((mask)row ^ w->flip[f / LANES]) & w->keep[f / LANES]);
+}
+
+/* After a change of limits or bounds. */
+static void begin_quiet(Watch *w) {
+    for (int f = 0; f < w->flat; f += LANES)
+        put(w->quiet + f, at(w->limit + f) - 0.25000001 * at(w->bend4 + f) - at(w->cap + f));
+}
+
+/* Whether some rows are too high at the ends of samples for them to be passed over. */
+static int quiet(const Watch *w, const double *rows) {
+    mask some = {0};
+    for (int f = 0; f < w->flat; f += LANES) some |= counts(w, f, at(rows + f)) > at(w->quiet + f);
+    return !any(some);
 }
 
 /* Whether any sample of a product asks for a closer look. */
@@ -368,7 +382,7 @@ enum { MOVES = 2 * MAX_STATES + 2 };
 
 typedef struct { /* room for one march; on the stack of a thread it might be too large */
     States states;
-    double arena[2 * MAX_ROWS + FLAT + MAX_STATES + MOVES + 3 * MAX_ROWS + 7 * FLAT + 5 * FLAT + 2 * MAX_ROWS + 32 * LINE];
+    double arena[2 * MAX_ROWS + FLAT + MAX_STATES + MOVES + 3 * MAX_ROWS + 8 * FLAT + 5 * FLAT + 2 * MAX_ROWS + 32 * LINE];
 } Workspace;
 
 /* Look at the samples of a product that ask for it, whose rows have these bounds. Returns how many there are before the
@@ -438,7 +452,7 @@ static int march(const Tables *p, int phase, const double *a, int i, int last, d
         raise_peaks(p, before, i, watch, log);
     }
     log->looks = log->resumes = 0;
-    for (int left = 0; i < last && !log->looks; left -= AHEAD) {
+    for (int left = 0, calm = 0; i < last && !log->looks; left -= AHEAD) {
         if (left == 0) {
             if (log->count + BLOCK > log->room) {
                 memcpy(log->seen, before, sizeof *x * rows);
@@ -446,6 +460,7 @@ static int march(const Tables *p, int phase, const double *a, int i, int last, d
                 break;
             }
             begin_block(p, a + i, last - i < BLOCK ? last - i : BLOCK, x, &block, watch);
+            begin_quiet(watch);
             left = BLOCK;
         }
         int samples = last - i < AHEAD ? last - i : AHEAD;
@@ -458,13 +473,16 @@ static int march(const Tables *p, int phase, const double *a, int i, int last, d
         x[n + AHEAD + 1] = 1.0;
         product(n + AHEAD + 2, flat + states, p->block, x, after);
         int passed = samples;
-        int look = asks(watch, before, after);
+        int was_calm = left == BLOCK ? quiet(watch, before) : calm;
+        calm = quiet(watch, after);
+        int look = !(was_calm && calm) && asks(watch, before, after);
         if (log->states || samples < AHEAD || look) {
             int known = 0; /* samples after which the state is known */
             memcpy(at_samples[0], x, sizeof *x * n);
             if (look) {
                 Asking which = asking(p, ground, x, before, after, &block, watch, &bounds);
                 passed = inspect(p, phase, ground, i, samples, which, before, &bounds, at_samples, &known, watch, log);
+                begin_quiet(watch);
             }
             if (log->states || passed < AHEAD)
                 for (; known < passed; known++) advance(p, ground + known, at_samples[known], at_samples[known + 1]);

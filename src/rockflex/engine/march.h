@@ -53,7 +53,7 @@ typedef struct {
     Tables tables;
     int events, halvings;  /* of the step, so that its power series converge */
     const double *scale;   /* of every event */
-    const double **jump;   /* of every event, and of the rest after it: a matrix; null if the state is continuous */
+    const double **jump;   /* of every event, and of the rest after it: a matrix J and |J|; null if the state is continuous */
     const double **rest;   /* of every event: columns y, a, 1; null if nothing can follow instead */
     int *following;        /* of every event, and of the rest after it: place of the phase, or one of the numbers below */
 } Phase;
