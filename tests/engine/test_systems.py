@@ -111,7 +111,8 @@ def test_two_blocks_in_a_row(run_of):
     np.testing.assert_allclose([t for t, _, _ in run.events], (meets, *stops), rtol=1e-12)
     ends = gap + first**2 / (2.0 * m1 * GRAVITY), gap + size + second**2 / (2.0 * m2 * GRAVITY)
     np.testing.assert_allclose(run.state, (*ends, 0.0, 0.0), rtol=1e-12, atol=1e-14)
-    times, keys, _, states = run.history
+    times, places, _, states = run.history
+    keys = [run.keys[place] for place in places]
     at = np.flatnonzero(times == times[keys.index((True, True))])  # the impact: its state before and after
     np.testing.assert_allclose(states[at, 2:], [(before, 0.0), (first, second)], rtol=1e-12, atol=1e-14)
 

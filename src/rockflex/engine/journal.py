@@ -69,4 +69,4 @@ class Journal:
     def nodes(self):
         """Samples, places of phases, accelerations and states of the history."""
         rows = np.array(self.rows[: self.n_nodes])
-        return rows[:, 0], np.array(self.places[: self.n_nodes]).tolist(), rows[:, 1], rows[:, 2:]
+        return rows[:, 0], np.array(self.places[: self.n_nodes]), rows[:, 1], rows[:, 2:]

@@ -32,7 +32,10 @@ else:
 AT_ONCE = cython.declare(cython.int, 100)  # events at one instant, at most
 IN_SAMPLE = cython.declare(cython.int, 20000)  # events in one sample, at most
 CANDIDATES = cython.declare(cython.int, 64)  # samples that are kept for a closer look at their peaks
-STRETCH = cython.declare(cython.int, 65536)  # samples, or what counts like them, without a look at Ctrl-C
+STRETCH = cython.declare(
+    cython.int, 1 << 25
+)  # samples, or what counts like them, without a look at Ctrl-C: some 50 ms;
+PER_SAMPLE = cython.declare(cython.int, 64)  # divided by this and by n²/8
 QUIET = cython.declare(cython.int, 64)  # samples without excitation before it is asked whether all is at rest
 
 
@@ -56,7 +59,7 @@ class Run:
     failure : str
         Why the run has failed: "accumulation" of events, "growth" without bound, "work" beyond the limit; or empty.
     watch : callable
-        Called now and then, every 65 536 samples or so; it may end a run by an exception.
+        Called now and then, some ten times a second; it may end a run by an exception.
     limit : int
         The `work` that the run may take.
     """
@@ -67,6 +70,7 @@ class Run:
     ended = cython.declare(cython.bint, visibility="readonly")
     watch = cython.declare(object, visibility="public")
     limit = cython.declare(cython.longlong, visibility="public")
+    stretch: cython.int  # work without a look at Ctrl-C
     pause: cython.longlong  # the work at which the run looks up next
     failure = cython.declare(str, visibility="readonly")
     failed: cython.bint
@@ -110,6 +114,7 @@ class Run:
         self.system, self.h, self.met, self.places, self.decays = system, h, [], {}, {}
         self.n, self.outputs = system.layout.size, len(system.outputs)
         self.states = up8(self.n + 2)
+        self.stretch = STRETCH // (PER_SAMPLE + self.n * self.n // 8)
         one_sided = np.zeros(up8(max(1, self.outputs)))
         one_sided[[list(system.outputs).index(name) for name in system.one_sided]] = 1.0
         self.one_sided, self.phases = one_sided, Phases(one_sided, self.n)
@@ -203,9 +208,14 @@ class Run:
 
     @property
     def history(self):
-        """Times, keys, accelerations and states at samples and on both sides of every event, if they were kept."""
+        """Times, places of phases, accelerations and states at samples and on both sides of every event, if they were kept."""
         samples, places, accelerations, states = self.journal.nodes
-        return samples * self.h, [self.met[place][0] for place in places], accelerations, states
+        return samples * self.h, places, accelerations, states
+
+    @property
+    def keys(self):
+        """Keys of the phases met so far, by their places."""
+        return [key for key, _ in self.met]
 
     @cython.cfunc
     @cython.exceptval(-1)
@@ -348,7 +358,7 @@ class Run:
         if history and self.journal.wants(a[0]):
             self.journal.keep(self.passed, a[0], self.y, self.now)
         while i < last and not self.ended:
-            start, stop = i, min(last, (i // STRETCH + 1) * STRETCH)
+            start, stop = i, min(last, (i // self.stretch + 1) * self.stretch)
             i = self.phases.march(self.now, a, i, stop, self.y, self.peaks_, states)
             if i > start:
                 self.sizes[:] = 0.0
@@ -378,7 +388,7 @@ class Run:
                 if self.peaks_.work() > self.limit:
                     self.failure = "work"
                     raise SolverError(f"The run has reached the limit of its work, {self.limit} samples.")
-                self.pause = min(self.limit + 1, self.peaks_.work() + STRETCH)
+                self.pause = min(self.limit + 1, self.peaks_.work() + self.stretch)
         return 0
 
     def settle(self, most: int = 1_000_000, *, history: bool = False) -> bool:

@@ -1,6 +1,6 @@
 from collections.abc import Callable
 
-from rockflex._arrays import Array
+from rockflex._arrays import Array, Integers
 from rockflex.engine.batch import Batch
 from rockflex.engine.system import Key, System
 
@@ -46,4 +46,6 @@ class Run:
     @property
     def counts(self) -> tuple[int, int, int]: ...
     @property
-    def history(self) -> tuple[Array, list[Key], Array, Array]: ...
+    def history(self) -> tuple[Array, Integers, Array, Array]: ...
+    @property
+    def keys(self) -> list[Key]: ...

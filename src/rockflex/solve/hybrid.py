@@ -213,11 +213,11 @@ class HybridEngine:
         return int(min(work_limit / (SHARE * (sample + SEARCH * look)), 2.0**62))
 
     def _states(self, solver: Run) -> Array:
-        times, keys, ground, states = solver.history
+        times, places, ground, states = solver.history
         rows = np.zeros((times.size, HEADER + self.model.layout.size))
         rows[:, TIME], rows[:, GROUND], rows[:, HEADER:] = times, ground, states
         side, rotation = rows[:, SIDE], rows[:, HEADER + self.model.layout.rotation]
-        side[:] = [key[0] for key in cast("list[Key]", keys)]
+        side[:] = np.array([key[0] for key in cast("list[Key]", solver.keys)])[places]
         rotation[side * rotation < 0.0] = 0.0  # by rounding
         rotation[:-1][(times[1:] == times[:-1]) & (side[:-1] != 0.0) & (rotation[1:] == 0.0)] = 0.0  # before an impact
         return rows
