@@ -30,8 +30,9 @@ class Batch:
     ----------
     place : int
         The present run; so many have ended.
-    ended, rested : ndarray, shape (R,)
-        Whether an event without a next phase has happened, and whether nothing could happen any more.
+    outcomes : ndarray of int, shape (R,)
+        How each run has ended: 0 after all samples, 1 at an event without a next phase, 2 because nothing could happen
+        any more.
     times : ndarray, shape (R,)
         Times of the ends.
     counts : ndarray, shape (R, names)
@@ -43,67 +44,62 @@ class Batch:
     """
 
     def __init__(self, system, records, scales=None, free=0, settles=False, names=()):
-        places, distinct, first = {}, [], 0
+        count, places, distinct, first = len(records), {}, [], 0
         for each in records:
             if id(each) not in places:
                 distinct.append(acceleration(each))
-                places[id(each)] = first, first + distinct[-1].size, np.abs(distinct[-1]).max()
+                places[id(each)] = first, first + distinct[-1].size, float(np.abs(distinct[-1]).max())
                 first += distinct[-1].size
-        scales = np.ones(len(records)) if scales is None else np.array(scales, dtype=float)
-        if scales.shape != (len(records),):
-            raise InputError(f"There are {len(records)} records, but scales of shape {scales.shape}.")
-        for each, scale in zip(records, scales, strict=True):
-            if not np.isfinite(scale * places[id(each)][2]):
-                raise InputError(f"An acceleration times its scale must be finite, but the scale is {scale}.")
-        self.count, self.place, self.names = len(records), 0, tuple(names)
-        self.samples, self.scales = np.concatenate([np.zeros(1), *distinct])[1:], scales
+        scales = np.ones(count) if scales is None else np.array(scales, dtype=float)
+        if scales.shape != (count,):
+            raise InputError(f"There are {count} records, but scales of shape {scales.shape}.")
+        largest = scales * np.array([places[id(each)][2] for each in records], dtype=float)
+        if not np.isfinite(largest).all():
+            wrong = scales[np.argmin(np.isfinite(largest))]
+            raise InputError(f"An acceleration times its scale must be finite, but the scale is {wrong}.")
+        self.count, self.place, self.names, self.scales = count, 0, tuple(names), scales
+        self.samples = np.concatenate([np.zeros(1), *distinct])[1:]
         self.bounds = np.array([places[id(each)][:2] for each in records], dtype=np.intp).reshape(-1, 2)
-        self.record = np.zeros(max((each.size for each in distinct), default=0))
+        self.record = np.zeros(max([each.size for each in distinct], default=0))
         self.free, self.settles, self.outputs, self.n = (
             min(free, 2**62),
             settles,
             len(system.outputs),
             system.layout.size,
         )
-        self.ended_, self.rested_ = np.zeros((2, self.count), dtype=np.uint8)
-        self.times_, self.counts_ = np.zeros(self.count), np.zeros((self.count, len(self.names)), dtype=np.intc)
-        self.high_, self.when_ = np.zeros((2, self.count, self.outputs))
-        self.states_, self.kinds = np.zeros((self.count, self.n)), np.zeros(len(self.names), dtype=np.intc)
+        self.numbers = np.zeros((count, 1 + len(self.names)), dtype=np.intc)
+        self.values = np.zeros((count, 1 + 2 * self.outputs + self.n))
+        self.kinds = np.zeros(len(self.names), dtype=np.intc)
 
     @property
-    def ended(self):
-        """Whether each run has met an event without a next phase."""
-        return np.asarray(self.ended_) > 0
-
-    @property
-    def rested(self):
-        """Whether nothing could happen any more at its end."""
-        return np.asarray(self.rested_) > 0
+    def outcomes(self):
+        """How each run has ended: 0 after all samples, 1 at an event without a next phase, 2 at rest."""
+        return np.asarray(self.numbers)[:, 0]
 
     @property
     def times(self):
-        """Its time."""
-        return np.asarray(self.times_)
+        """Times of the ends."""
+        return np.asarray(self.values)[:, 0]
 
     @property
     def counts(self):
         """How often the events of each name have happened."""
-        return np.asarray(self.counts_)
+        return np.asarray(self.numbers)[:, 1:]
 
     @property
     def high(self):
         """Highest value of every output."""
-        return np.asarray(self.high_)
+        return np.asarray(self.values)[:, 1 : 1 + self.outputs]
 
     @property
     def when(self):
         """Its time."""
-        return np.asarray(self.when_)
+        return np.asarray(self.values)[:, 1 + self.outputs : 1 + 2 * self.outputs]
 
     @property
     def states(self):
         """The last states."""
-        return np.asarray(self.states_)
+        return np.asarray(self.values)[:, 1 + 2 * self.outputs :]
 
     def scaled(self):
         """The acceleration of the present run."""
@@ -114,13 +110,16 @@ class Batch:
             self.record[i] = self.samples[first + i] * self.scales[self.place]
         return self.record[:size]
 
-    def close(self, rested, time, h, high, when, y):
-        """Note how the present run has ended, but for its events, and go on to the next one."""
+    def close(self, outcome, time, h, high, when, y, journal):
+        """Note how the present run has ended, and go on to the next one."""
         k: cython.int
+        m: cython.int = self.outputs
         r: cython.int = self.place
-        self.rested_[r], self.times_[r] = rested, time
-        for k in range(self.outputs):
-            self.high_[r, k], self.when_[r, k] = high[k], when[k] * h
+        self.numbers[r, 0], self.values[r, 0] = outcome, time
+        for k in range(self.kinds.shape[0]):
+            self.numbers[r, 1 + k] = journal.count(self.kinds[k])
+        for k in range(m):
+            self.values[r, 1 + k], self.values[r, 1 + m + k] = high[k], when[k] * h
         for k in range(self.n):
-            self.states_[r, k] = y[k]
+            self.values[r, 1 + 2 * m + k] = y[k]
         self.place += 1

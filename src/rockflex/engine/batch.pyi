@@ -1,6 +1,6 @@
 from collections.abc import Sequence
 
-from rockflex._arrays import Array, Bools, Integers
+from rockflex._arrays import Array, Integers
 from rockflex.engine.system import System
 
 class Batch:
@@ -20,9 +20,7 @@ class Batch:
     @property
     def names(self) -> tuple[str, ...]: ...
     @property
-    def ended(self) -> Bools: ...
-    @property
-    def rested(self) -> Bools: ...
+    def outcomes(self) -> Integers: ...
     @property
     def times(self) -> Array: ...
     @property

@@ -281,7 +281,6 @@ class Run:
     @cython.exceptval(-1)
     def follow_all(self, batch: Batch, history: cython.bint) -> cython.int:
         """Do the runs of a batch, which share the start."""
-        k: cython.int
         rested: cython.bint
         while batch.place < batch.count:
             self.begin()
@@ -291,10 +290,15 @@ class Run:
                 rested = self.settle_over(batch.free, history)
             else:
                 self.coast_over(batch.free, history)
-            for k in range(batch.kinds.shape[0]):
-                batch.counts_[batch.place, k] = self.journal.count(batch.kinds[k])
-            batch.ended_[batch.place] = self.ended
-            batch.close(rested, self.end if self.ended else self.passed * self.h, self.h, self.high, self.when, self.y)
+            batch.close(
+                1 if self.ended else 2 if rested else 0,
+                self.end if self.ended else self.passed * self.h,
+                self.h,
+                self.high,
+                self.when,
+                self.y,
+                self.journal,
+            )
         return 0
 
     @cython.cfunc

@@ -41,6 +41,9 @@ SHARE = 0.5  # of the estimated time of a sample that one takes here
 STACK = 64  # systems in one stack, at most
 MEMORY = 64_000_000  # bytes of the tables of one stack
 COUNTED = ("uplift", "impact")
+OUTCOMES = np.array(  # for fixed times, and until settled
+    [[Status.ENDED, Status.OVERTURNED, Status.SETTLED], [Status.UNSETTLED, Status.OVERTURNED, Status.SETTLED]]
+)
 FAILURES = {"accumulation": Status.CHATTER, "growth": Status.INFINITE}
 
 
@@ -226,9 +229,7 @@ class HybridEngine:
 def _ends_of(batch: Batch, dt: float, allowed: Sequence[int], count: int, *, settles: bool) -> Ends:
     """How the runs have ended; those that were not allowed are left out."""
     ends = np.zeros(batch.count, END)
-    through = np.where(batch.rested, Status.SETTLED, Status.UNSETTLED) if settles else Status.ENDED
-    ends["status"] = np.where(batch.ended, Status.OVERTURNED, through)
-    ends["samples"] = np.rint(batch.times / dt)
+    ends["status"], ends["samples"] = OUTCOMES[int(settles)][batch.outcomes], np.rint(batch.times / dt)
     ends["uplifts"], ends["impacts"] = batch.counts.T
     found = Ends(ends, batch.high, batch.when, batch.states)
     if len(allowed) == count:
