@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import INFINITY, fabs
+from cython.cimports.libc.math import INFINITY
 from cython.cimports.libc.stdlib import calloc, free, malloc, realloc
 
 from rockflex.engine.system import up8

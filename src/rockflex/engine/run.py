@@ -208,7 +208,7 @@ class Run:
 
     @property
     def history(self):
-        """Times, places of phases, accelerations and states at samples and on both sides of every event, if they were kept."""
+        """Times, places of phases, accelerations and states at samples and on both sides of every event, if kept."""
         samples, places, accelerations, states = self.journal.nodes
         return samples * self.h, places, accelerations, states
 
@@ -462,12 +462,7 @@ class Run:
             in_sample += 1
             if at_once > AT_ONCE or in_sample > IN_SAMPLE:
                 with cython.gil:
-                    key, phase = self.met[self.now]
-                    self.failure = "accumulation"
-                    raise SolverError(
-                        f"Events of the phase {key!r}, such as {phase.events[event].name!r}, accumulate without end at "
-                        f"t = {(self.passed + i + u) * self.h:.9g}."
-                    )
+                    self.refuse(event, self.passed + i + u)
             if history and at_once == 1:
                 self.journal.keep(self.passed + i + u, start + (end - start) * u, self.y, self.now)
             self.leave(event, self.passed + i + u, start + (end - start) * u)
@@ -498,14 +493,33 @@ class Run:
         following: cython.int = self.phases.following(self.now, outcome)
         if following == UNKNOWN:
             with cython.gil:
-                left = self.met[self.now][1].events[event]
-                following = self.enter(left.target if outcome == 2 * event else left.rest.target)
-                self.phases.lead(self.now, outcome, following)
+                following = self.meet(event, outcome)
         if following == ENDS:
             self.ended = True
         else:
             self.now = following
         return 0
+
+    # What needs the interpreter's lock stands apart: a function with Python objects of its own takes it whenever it ends.
+
+    @cython.cfunc
+    @cython.exceptval(-1)
+    def meet(self, event: cython.int, outcome: cython.int) -> cython.int:
+        """Return the place of the phase that follows an outcome for the first time."""
+        left = self.met[self.now][1].events[event]
+        following: cython.int = self.enter(left.target if outcome == 2 * event else left.rest.target)
+        self.phases.lead(self.now, outcome, following)
+        return following
+
+    @cython.cfunc
+    def refuse(self, event: cython.int, sample: cython.double):
+        """Raise the error of events that accumulate."""
+        key, phase = self.met[self.now]
+        self.failure = "accumulation"
+        raise SolverError(
+            f"Events of the phase {key!r}, such as {phase.events[event].name!r}, accumulate without end at "
+            f"t = {sample * self.h:.9g}."
+        )
 
     @cython.cfunc
     @cython.nogil
