@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicHermiteSpline
 from scipy.linalg import expm
 
-from rockflex.engine import LinearPhase
+from rockflex.engine import Event, LinearPhase
 from rockflex.engine.tables import BLOCK, tables_of
 
 H, FINE = 0.02, 40  # time step, and places looked at in a sample
@@ -33,12 +34,14 @@ def test_bounds_of_a_block_hold(seed, turns, start):
     if start == "ramp":  # in one sample only
         a[1:] = a[1]
     y = rng.normal(size=n) if start == "anywhere" else -np.linalg.solve(A, f * a[0] + c)
-    stacked = LinearPhase(A[None], f[None], c[None], C[None], phase.d[None], phase.e[None])
+    zero, one = np.zeros(1), np.ones(1)
+    conditions = tuple(Event("", row[None], None, zero, zero, one) for row in C)
+    stacked = LinearPhase(A[None], f[None], c[None], C[None], phase.d[None], phase.e[None], conditions)
     tables = tables_of(stacked, H)
     slopes = np.diff(a) / H
     parts = np.abs(tables.moves[0] @ np.array((*y, a[0], 1.0)))[: tables.bend.shape[2] - 2]
     moves = np.array((*parts[:n], np.abs(np.diff(a)).sum(), np.abs(slopes).max(), *parts[n:]))
-    bend, cap, sway = (each[0, :4] @ moves for each in (tables.bend, tables.cap, tables.sway))
+    bend, cap, sway, jolt = (each[0, :4] @ moves for each in (tables.bend, tables.cap, tables.sway, tables.jolt))
 
     # The same motion in small steps, with y, a, a' and 1 as states.
     G = np.zeros((n + 3, n + 3))
@@ -53,10 +56,13 @@ def test_bounds_of_a_block_hold(seed, turns, start):
         v = points[:, :n] @ A.T + points[:, n, None] * f + c
         third = (C @ A @ (A @ v.T + (f * slope)[:, None])).T
         rows = points[:, :n] @ C.T
-        chord = rows[0] + np.linspace(0.0, 1.0, FINE + 1)[:, None] * (rows[-1] - rows[0])
+        t = np.linspace(0.0, 1.0, FINE + 1)[:, None]
+        chord = rows[0] + t * (rows[-1] - rows[0])
+        cubic = CubicHermiteSpline((0.0, 1.0), rows[[0, -1]], H * (C @ v[[0, -1]].T).T)(t[:, 0])
         off, ends = np.abs(rows - chord).max(axis=0), (C @ v[[0, -1]].T).T
         assert (off <= (bend + cap) * (1.0 + 1e-9) + 1e-13).all()
         assert (off <= (np.abs(ends[1] - ends[0]) * H / 8.0 + sway) * (1.0 + 1e-9) + 1e-13).all()
+        assert (np.abs(rows - cubic).max(axis=0) <= jolt * (1.0 + 1e-9) + 1e-13).all()
         bent, swayed = np.maximum(bent, off), np.maximum(swayed, H**3 / 96.0 * np.abs(third).max(axis=0))
         y = points[-1, :n]
     assert (swayed <= sway * (1.0 + 1e-9) + 1e-13).all()

@@ -53,7 +53,9 @@ class Batch:
         scales = np.ones(count) if scales is None else np.array(scales, dtype=float)
         if scales.shape != (count,):
             raise InputError(f"There are {count} records, but scales of shape {scales.shape}.")
-        largest = scales * np.array([places[id(each)][2] for each in records], dtype=float)
+        tops = np.array([places[id(each)][2] for each in records], dtype=float)
+        with np.errstate(over="ignore"):
+            largest = scales * tops
         if not np.isfinite(largest).all():
             wrong = scales[np.argmin(np.isfinite(largest))]
             raise InputError(f"An acceleration times its scale must be finite, but the scale is {wrong}.")

@@ -500,7 +500,7 @@ class Run:
             self.now = following
         return 0
 
-    # What needs the interpreter's lock stands apart: a function with Python objects of its own takes it whenever it ends.
+    # What needs the interpreter's lock stands apart: a function with Python objects of its own takes it when it ends.
 
     @cython.cfunc
     @cython.exceptval(-1)
