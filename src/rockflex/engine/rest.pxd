@@ -18,4 +18,4 @@ cdef class Decay:
 
     cdef bint moves(self, int kind) noexcept nogil
     cdef (double, double, double, double, double) look(self, int j, double[::1] y) noexcept nogil
-    cdef double time_to_rest(self, double[::1] y, double[::1] high, double[::1] one_sided) noexcept nogil
+    cpdef double time_to_rest(self, double[::1] y, double[::1] high, double[::1] one_sided) noexcept nogil
