@@ -87,7 +87,7 @@ class Run:
     n: cython.int
     states: cython.int  # rows of the states in tables and series, a multiple of 8
     outputs: cython.int
-    y: cython.double[::1]  # and zeros, to a multiple of 8; so in `sizes` and `before`
+    y: cython.double[::1]  # and room, to a multiple of 8; so in `sizes` and `before`
     one_sided: cython.double[::1]
     peaks_: Peaks
     high: cython.double[::1]
