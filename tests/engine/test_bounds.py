@@ -37,7 +37,7 @@ def test_bounds_of_a_block_hold(seed, turns, start):
     zero, one = np.zeros(1), np.ones(1)
     conditions = tuple(Event("", row[None], None, zero, zero, one) for row in C)
     stacked = LinearPhase(A[None], f[None], c[None], C[None], phase.d[None], phase.e[None], conditions)
-    tables = tables_of(stacked, H)
+    tables = tables_of(stacked, H, [])
     slopes = np.diff(a) / H
     parts = np.abs(tables.moves[0] @ np.array((*y, a[0], 1.0)))[: tables.bend.shape[2] - 2]
     moves = np.array((*parts[:n], np.abs(np.diff(a)).sum(), np.abs(slopes).max(), *parts[n:]))

@@ -1,5 +1,7 @@
 """Runs from one state, each under a record of its own, and what has become of them. Declarations: `batch.pxd`."""
 
+from math import isfinite
+
 import cython
 import numpy as np
 
@@ -53,12 +55,9 @@ class Batch:
         scales = np.ones(count) if scales is None else np.array(scales, dtype=float)
         if scales.shape != (count,):
             raise InputError(f"There are {count} records, but scales of shape {scales.shape}.")
-        tops = np.array([places[id(each)][2] for each in records], dtype=float)
-        with np.errstate(over="ignore"):
-            largest = scales * tops
-        if not np.isfinite(largest).all():
-            wrong = scales[np.argmin(np.isfinite(largest))]
-            raise InputError(f"An acceleration times its scale must be finite, but the scale is {wrong}.")
+        for scale, each in zip(scales.tolist(), records, strict=True):
+            if not isfinite(scale * places[id(each)][2]):
+                raise InputError(f"An acceleration times its scale must be finite, but the scale is {scale}.")
         self.count, self.place, self.names, self.scales = count, 0, tuple(names), scales
         self.samples = np.concatenate([np.zeros(1), *distinct])[1:]
         self.bounds = np.array([places[id(each)][:2] for each in records], dtype=np.intp).reshape(-1, 2)

@@ -1,6 +1,5 @@
 """The matrices of a phase for one time step, for a stack of systems at once."""
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +14,7 @@ SMALL = 1e-18  # of a sum: terms that no longer change it
 FINEST = 8  # halvings of h/2 between which bounds allow for the growth of motion, at most
 FAST = 3.0  # rad that a mode turns within a step, from which on its amplitude bounds what it can do
 POOR = 1e6  # condition of a mode from which on its part is useless
+TWINS = 4  # phases that may have a mirror image yet to come
 VAGUE = 1e100  # a bound that is as good as none, and does not overflow
 
 
@@ -41,9 +41,31 @@ class Tables(NamedTuple):
     most: Array
 
 
+class Twin(NamedTuple):
+    """A phase, and what its mirror image shares with it: bases that rock about their other edge."""
+
+    A: Array
+    f: Array
+    c: Array
+    C: Array  # of outputs and conditions
+    step: Array
+    bounds: tuple[Array, Array, Array]  # bend, sway and jolt
+
+    def sign(self, A: Array, f: Array, c: Array, C: Array) -> int:
+        """1 if this is the same motion, -1 with c reversed, and with any rows reversed; 0 if it is another one."""
+        if A.shape != self.A.shape or not (np.array_equal(A, self.A) and np.array_equal(f, self.f)):
+            return 0
+        if C.shape != self.C.shape or not ((self.C == C).all(axis=2) | (self.C == -C).all(axis=2)).all():
+            return 0
+        return 1 if np.array_equal(c, self.c) else -1 if np.array_equal(c, -self.c) else 0
+
+
 @np.errstate(over="ignore", invalid="ignore")
-def tables_of(phase: LinearPhase, h: float) -> Tables:
-    """Compute the tables of a stack of phases for steps of h. Those of one system do not depend on the others."""
+def tables_of(phase: LinearPhase, h: float, twins: list[Twin]) -> Tables:
+    """Compute the tables of a stack of phases for steps of h. Those of one system do not depend on the others.
+
+    `twins` are some earlier phases for the same h; this one is added.
+    """
     A, f, c = phase.A, phase.f, phase.c
     (S, n), m, k = f.shape, phase.d.shape[1], len(phase.events)
     rates = np.concatenate((A, f[..., None], c[..., None]), axis=2)
@@ -75,7 +97,11 @@ def tables_of(phase: LinearPhase, h: float) -> Tables:
     G = np.zeros((S, n + 3, n + 3))  # of y, a, its rise, and 1
     G[:, :n, :n], G[:, :n, n], G[:, :n, n + 2], G[:, n, n + 1] = A * h, f * h, c * h, 1.0
     step = np.empty((S, n, n + 3))
-    for kind in {*zip(squared.tolist(), fine.tolist(), parted.tolist(), strict=True)}:
+    twin, sign = next(((each, sign) for each in twins if (sign := each.sign(A, f, c, C))), (None, 0))
+    if twin is not None:
+        step[...], (bend, sway, jolt) = twin.step, twin.bounds
+        step[..., -1] *= sign
+    for kind in () if twin is not None else {*zip(squared.tolist(), fine.tolist(), parted.tolist(), strict=True)}:
         some = np.flatnonzero((squared == kind[0]) & (fine == kind[1]) & (parted == kind[2]))
         changes = changes_of(G[some], kind[0] if kind[2] else max(kind[0], kind[1]) + 1)
         whole = changes[0][:, :n]
@@ -87,6 +113,8 @@ def tables_of(phase: LinearPhase, h: float) -> Tables:
         sway[some, :, : n + 2] += found[1]
         if not kind[2]:
             jolt[some, :, : n + 2], jolt[some, :, n + 2 :] = found[2], 0.0
+    if twin is None and not most:
+        twins[:] = [*twins[1 - TWINS :], Twin(A, f, c, C, step, (bend, sway, jolt))]
     changes = changes_ahead(step)
     shift = shift_of(rates)
     now, outs = padded(np.concatenate((rates[:, shift:], rows[:, m:]), axis=1)), padded(rows[:, :m])
@@ -210,10 +238,12 @@ def bounds(A: Array, f: Array, C: Array, m: int, changes: list[Array], h: float)
         return np.zeros((S, 0, n + 2)), np.zeros((S, 0, n + 2)), np.zeros((S, 0, n + 2))
     once = C @ A
     before = np.concatenate((C, once, once[:, m:] @ A), axis=1)
-    grid, step, direct = before @ A, changes[0], np.abs(before @ f[..., None])
-    for _ in range(int(math.log2(2 * BLOCK))):
-        grid, step = np.concatenate((grid, grid + grid @ step), axis=1), 2.0 * step + step @ step
-    most = np.abs(grid).reshape(S, -1, ends[-1], n).max(axis=1) @ growth(0.5 * h * A, changes)
+    here, step, direct = before @ A, changes[0], np.abs(before @ f[..., None])
+    most = np.abs(here)
+    for _ in range(2 * BLOCK - 1):  # one place after another: a whole grid would not fit into the cache
+        here = here + here @ step
+        np.maximum(most, np.abs(here), out=most)
+    most = most @ growth(0.5 * h * A, changes)
     found = np.concatenate((most, most @ np.abs(f)[..., None], direct), axis=2)
     parts = np.split(found, ends[:2], axis=1)
     scaled = (part * factor for part, factor in zip(parts, (h**2 / 8.0, h**3 / 96.0, h**4 / 384.0), strict=True))
