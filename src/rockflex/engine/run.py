@@ -82,7 +82,7 @@ class Run:
     decays: dict  # of the phases in which a free vibration has been asked for its end, by place and system
     decay: Decay  # the last one, and its place
     faded: cython.int
-    twins: list  # of the last phases, see `tables_of`
+    mirrors: list  # of the last phases, see `tables_of`
     phases: Phases
     now: cython.int  # place of the present phase
     n: cython.int
@@ -112,7 +112,7 @@ class Run:
     def __init__(self, system, h, state=None, key=None, which: cython.int = 0):
         if not (h > 0.0 and isfinite(h)):
             raise InputError(f"The time step must be a positive number, but {h!r} was given.")
-        self.system, self.h, self.met, self.places, self.decays, self.twins = system, h, [], {}, {}, []
+        self.system, self.h, self.met, self.places, self.decays, self.mirrors = system, h, [], {}, {}, []
         self.n, self.outputs = system.layout.size, len(system.outputs)
         self.states = up8(self.n + 2)
         self.stretch = STRETCH // (PER_SAMPLE + self.n * self.n // 8)
@@ -229,7 +229,7 @@ class Run:
         if key in self.places:
             return self.places[key]
         phase = self.system.checked(key)
-        tables = tables_of(phase, self.h, self.twins)
+        tables = tables_of(phase, self.h, self.mirrors)
         if not np.isfinite(tables.step).all():
             words = f"phase {key!r}: the motion grows without bound within one time step of {self.h:.9g}."
             raise StepTooLongError(words, float(np.linalg.eigvals(phase.A).real.max()))

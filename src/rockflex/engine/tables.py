@@ -14,7 +14,7 @@ SMALL = 1e-18  # of a sum: terms that no longer change it
 FINEST = 8  # halvings of h/2 between which bounds allow for the growth of motion, at most
 FAST = 3.0  # rad that a mode turns within a step, from which on its amplitude bounds what it can do
 POOR = 1e6  # condition of a mode from which on its part is useless
-TWINS = 4  # phases that may have a mirror image yet to come
+MIRRORS = 4  # phases that may have a mirror image yet to come
 VAGUE = 1e100  # a bound that is as good as none, and does not overflow
 
 
@@ -41,7 +41,7 @@ class Tables(NamedTuple):
     most: Array
 
 
-class Twin(NamedTuple):
+class Mirror(NamedTuple):
     """A phase, and what its mirror image shares with it: bases that rock about their other edge."""
 
     A: Array
@@ -61,10 +61,10 @@ class Twin(NamedTuple):
 
 
 @np.errstate(over="ignore", invalid="ignore")
-def tables_of(phase: LinearPhase, h: float, twins: list[Twin]) -> Tables:
+def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
     """Compute the tables of a stack of phases for steps of h. Those of one system do not depend on the others.
 
-    `twins` are some earlier phases for the same h; this one is added.
+    `mirrors` are some earlier phases for the same h; this one is added.
     """
     A, f, c = phase.A, phase.f, phase.c
     (S, n), m, k = f.shape, phase.d.shape[1], len(phase.events)
@@ -97,11 +97,11 @@ def tables_of(phase: LinearPhase, h: float, twins: list[Twin]) -> Tables:
     G = np.zeros((S, n + 3, n + 3))  # of y, a, its rise, and 1
     G[:, :n, :n], G[:, :n, n], G[:, :n, n + 2], G[:, n, n + 1] = A * h, f * h, c * h, 1.0
     step = np.empty((S, n, n + 3))
-    twin, sign = next(((each, sign) for each in twins if (sign := each.sign(A, f, c, C))), (None, 0))
-    if twin is not None:
-        step[...], (bend, sway, jolt) = twin.step, twin.bounds
+    mirror, sign = next(((each, sign) for each in mirrors if (sign := each.sign(A, f, c, C))), (None, 0))
+    if mirror is not None:
+        step[...], (bend, sway, jolt) = mirror.step, mirror.bounds
         step[..., -1] *= sign
-    for kind in () if twin is not None else {*zip(squared.tolist(), fine.tolist(), parted.tolist(), strict=True)}:
+    for kind in () if mirror is not None else {*zip(squared.tolist(), fine.tolist(), parted.tolist(), strict=True)}:
         some = np.flatnonzero((squared == kind[0]) & (fine == kind[1]) & (parted == kind[2]))
         changes = changes_of(G[some], kind[0] if kind[2] else max(kind[0], kind[1]) + 1)
         whole = changes[0][:, :n]
@@ -113,8 +113,8 @@ def tables_of(phase: LinearPhase, h: float, twins: list[Twin]) -> Tables:
         sway[some, :, : n + 2] += found[1]
         if not kind[2]:
             jolt[some, :, : n + 2], jolt[some, :, n + 2 :] = found[2], 0.0
-    if twin is None and not most:
-        twins[:] = [*twins[1 - TWINS :], Twin(A, f, c, C, step, (bend, sway, jolt))]
+    if mirror is None and not most:
+        mirrors[:] = [*mirrors[1 - MIRRORS :], Mirror(A, f, c, C, step, (bend, sway, jolt))]
     changes = changes_ahead(step)
     shift = shift_of(rates)
     now, outs = padded(np.concatenate((rates[:, shift:], rows[:, m:]), axis=1)), padded(rows[:, :m])
