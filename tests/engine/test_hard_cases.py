@@ -260,3 +260,19 @@ def test_systems_of_every_size_up_to_the_limits(n, m, k):
     run.advance(np.ones(30), True)
     stands = -np.linalg.solve(A, np.ones(n))
     assert run.history[3][29] == pytest.approx(stands - scipy.linalg.expm(0.29 * A) @ stands, rel=1e-9, abs=1e-12)
+
+
+def test_velocities_that_differ_by_rounding_do_not_open_a_contact():
+    """Two masses side by side, one of which is pushed away: the others' velocities are equal but for rounding."""
+    A, c = np.zeros((4, 4)), np.array([0.0, 0.0, 1.0, 0.0])
+    A[:2, 2:] = np.eye(2)
+
+    def phase(key: str) -> LinearPhase:
+        meets = Event("meets", np.array([1.0, -1.0, 0.0, 0.0]), None)
+        return LinearPhase(A, np.zeros(4), c, np.eye(4), np.zeros(4), np.zeros(4), (meets,))
+
+    system = System(StateLayout(place=2, velocity=2), ("first", "second", "speed", "other"), phase, "apart")
+    run = Run(system, 0.01, [0.0, 0.0, 0.3, 0.1 + 0.2])
+    run.advance(np.zeros(101))
+    assert run.events == []
+    assert run.state[0] - run.state[1] == pytest.approx(0.5, rel=1e-12)
