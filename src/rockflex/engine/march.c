@@ -382,7 +382,7 @@ enum { MOVES = 2 * MAX_STATES + 2 };
 
 typedef struct { /* room for one march; on the stack of a thread it might be too large */
     States states;
-    double arena[2 * MAX_ROWS + FLAT + MAX_STATES + MOVES + 3 * MAX_ROWS + 8 * FLAT + 5 * FLAT + 2 * MAX_ROWS + 32 * LINE];
+    double arena[14 * FLAT + 7 * MAX_ROWS + MAX_STATES + MOVES + 32 * LINE]; /* what `march` takes, at most */
 } Workspace;
 
 /* Look at the samples of a product that ask for it, whose rows have these bounds. Returns how many there are before the

@@ -101,20 +101,21 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
     if mirror is not None:
         step[...], (bend, sway, jolt) = mirror.step, mirror.bounds
         step[..., -1] *= sign
-    for kind in () if mirror is not None else {*zip(squared.tolist(), fine.tolist(), parted.tolist(), strict=True)}:
-        some = np.flatnonzero((squared == kind[0]) & (fine == kind[1]) & (parted == kind[2]))
-        changes = changes_of(G[some], kind[0] if kind[2] else max(kind[0], kind[1]) + 1)
-        whole = changes[0][:, :n]
-        step[some, :, :n], step[some, :, n:] = whole[..., :n], whole[..., n:]
-        step[some, :, n] -= whole[..., n + 1]
-        of_states = changes_of(slow[some] * h, kind[1] + 1) if kind[2] else [each[:, :n, :n] for each in changes]
-        found = bounds(slow[some], driven[some], C[some], m, of_states[1 : kind[1] + 2], h)
-        bend[some, :, : n + 2] = found[0]
-        sway[some, :, : n + 2] += found[1]
-        if not kind[2]:
-            jolt[some, :, : n + 2], jolt[some, :, n + 2 :] = found[2], 0.0
-    if mirror is None and not most:
-        mirrors[:] = [*mirrors[1 - MIRRORS :], Mirror(A, f, c, C, step, (bend, sway, jolt))]
+    else:
+        for kind in {*zip(squared.tolist(), fine.tolist(), parted.tolist(), strict=True)}:
+            some = np.flatnonzero((squared == kind[0]) & (fine == kind[1]) & (parted == kind[2]))
+            changes = changes_of(G[some], kind[0] if kind[2] else max(kind[0], kind[1]) + 1)
+            whole = changes[0][:, :n]
+            step[some, :, :n], step[some, :, n:] = whole[..., :n], whole[..., n:]
+            step[some, :, n] -= whole[..., n + 1]
+            of_states = changes_of(slow[some] * h, kind[1] + 1) if kind[2] else [each[:, :n, :n] for each in changes]
+            found = bounds(slow[some], driven[some], C[some], m, of_states[1 : kind[1] + 2], h)
+            bend[some, :, : n + 2] = found[0]
+            sway[some, :, : n + 2] += found[1]
+            if not kind[2]:
+                jolt[some, :, : n + 2], jolt[some, :, n + 2 :] = found[2], 0.0
+        if not most:
+            mirrors[:] = [*mirrors[1 - MIRRORS :], Mirror(A, f, c, C, step, (bend, sway, jolt))]
     changes = changes_ahead(step)
     shift = shift_of(rates)
     now, outs = padded(np.concatenate((rates[:, shift:], rows[:, m:]), axis=1)), padded(rows[:, :m])
