@@ -22,6 +22,7 @@ const SLOW = 400; // ms after which a button says that it works
 const view = document.getElementById("view");
 const banner = document.getElementById("banner");
 const made = {};
+const messages = new WeakMap(); // the last ones by the element that they are about
 let early = null; // the tab chosen before the state was known
 
 export const app = {
@@ -36,13 +37,15 @@ export const app = {
   },
   // Query the server about the state; messages appear next to the fields of `root`, or in its foot.
   ask(path, root, extra = {}) {
+    const before = messages.get(root);
     return attempt(async () => {
       const answer = await ask(path, { state: app.state, ...extra });
-      app.complain(root, {});
+      if (messages.get(root) === before) app.complain(root, {}); // newer ones are about something else, such as a file
       return answer;
     }, (error) => app.complain(root, error.errors));
   },
   complain(root, errors) {
+    messages.set(root, errors);
     const left = showErrors(root, errors);
     const foot = root.querySelector(".foot");
     if (foot) foot.textContent = left.map(elsewhere).join(" ");

@@ -44,16 +44,11 @@ export default function earthquakeTab(app) {
     slider(`record.pulse.${key}`, label, spec, record.pulse[key], (value) => put({ pulse: { [key]: value } }))]));
   const scale = slider("scale", "Scale factor", { low: 0.01, high: 20, log: true }, app.state.scale,
     (value) => app.change({ scale: value }));
-  let loading = Promise.resolve(); // the query about the record, which clears the messages when it is answered
-  const told = async (errors) => {
-    await loading;
-    app.complain(element, errors);
-  };
-  const given = folder(app, told);
+  const given = folder(app, (errors) => app.complain(element, errors));
   const panels = {
     suite: h("div", {}, suite, thumbs.element),
     pulse: h("div", {}, shape, Object.values(sliders)),
-    upload: uploading(app, told),
+    upload: uploading(app, (errors) => app.complain(element, errors)),
     folder: given.element,
   };
 
@@ -142,7 +137,7 @@ export default function earthquakeTab(app) {
     drawing.hidden = missing;
     empty.hidden = !missing;
     if (missing) app.complain(element, {});
-    else loading = load();
+    else load();
   }
   return { element, refresh };
 }
