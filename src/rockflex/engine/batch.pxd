@@ -12,11 +12,11 @@ cdef class Batch:
     cdef long long free  # samples without excitation after each record
     cdef bint settles
     cdef int[::1] kinds  # of the events that are counted
-    cdef int[:, ::1] numbers  # a row for each run: how it has ended, and numbers of events
+    cdef int[:, ::1] numbers  # a row for each run: how it has ended, place of the phase, numbers of events
     cdef double[:, ::1] values  # a row for each run: time, highest values, their times, the last state
     cdef int outputs, n
 
     cdef double[::1] scaled(self) noexcept nogil
     cdef void close(
-        self, int outcome, double time, double h, double[::1] high, double[::1] when, double[::1] y, Journal journal
+        self, int outcome, int place, double time, double h, double[::1] high, double[::1] when, double[::1] y, Journal journal
     ) noexcept nogil

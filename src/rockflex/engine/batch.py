@@ -35,6 +35,8 @@ class Batch:
     outcomes : ndarray of int, shape (R,)
         How each run has ended: 0 after all samples, 1 at an event without a next phase, 2 because nothing could happen
         any more.
+    places : ndarray of int, shape (R,)
+        Place of the phase in which each run has ended, in `Run.keys`.
     times : ndarray, shape (R,)
         Times of the ends.
     counts : ndarray, shape (R, names)
@@ -68,7 +70,7 @@ class Batch:
             len(system.outputs),
             system.layout.size,
         )
-        self.numbers = np.zeros((count, 1 + len(self.names)), dtype=np.intc)
+        self.numbers = np.zeros((count, 2 + len(self.names)), dtype=np.intc)
         self.values = np.zeros((count, 1 + 2 * self.outputs + self.n))
         self.kinds = np.zeros(len(self.names), dtype=np.intc)
 
@@ -85,7 +87,12 @@ class Batch:
     @property
     def counts(self):
         """How often the events of each name have happened."""
-        return np.asarray(self.numbers)[:, 1:]
+        return np.asarray(self.numbers)[:, 2:]
+
+    @property
+    def places(self):
+        """Place of the phase in which each run has ended, in `Run.keys`."""
+        return np.asarray(self.numbers)[:, 1]
 
     @property
     def high(self):
@@ -111,14 +118,14 @@ class Batch:
             self.record[i] = self.samples[first + i] * self.scales[self.place]
         return self.record[:size]
 
-    def close(self, outcome, time, h, high, when, y, journal):
+    def close(self, outcome, place, time, h, high, when, y, journal):
         """Note how the present run has ended, and go on to the next one."""
         k: cython.int
         m: cython.int = self.outputs
         r: cython.int = self.place
-        self.numbers[r, 0], self.values[r, 0] = outcome, time
+        self.numbers[r, 0], self.numbers[r, 1], self.values[r, 0] = outcome, place, time
         for k in range(self.kinds.shape[0]):
-            self.numbers[r, 1 + k] = journal.count(self.kinds[k])
+            self.numbers[r, 2 + k] = journal.count(self.kinds[k])
         for k in range(m):
             self.values[r, 1 + k], self.values[r, 1 + m + k] = high[k], when[k] * h
         for k in range(self.n):

@@ -96,10 +96,10 @@ def highest_of(
             sign = 1.0 if q[k] > 0.0 else -1.0 if q[k] < 0.0 else 0.0
         q[k] *= sign
         size += fabs(q[k]) if k > 0 else 0.0
-    while terms > 2 and fabs(q[terms - 1]) < NOTHING * size:
+    while terms > 1 and fabs(q[terms - 1]) <= NOTHING * size:
         terms -= 1
     most = q[0] if one_sided else fabs(q[0])
-    while t < stop:
+    while t < stop and terms > 1:
         t += APART
         sign = 0.0
         for k in range(terms - 1, 0, -1):

@@ -293,6 +293,7 @@ class Run:
                 self.coast_over(batch.free, history)
             batch.close(
                 1 if self.ended else 2 if rested else 0,
+                self.now,
                 self.end if self.ended else self.passed * self.h,
                 self.h,
                 self.high,

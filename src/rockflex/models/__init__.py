@@ -32,8 +32,10 @@ from rockflex.models._kept import (
     values_of,
 )
 from rockflex.models._label import Model, RockingModel, parse_model
+from rockflex.models._landing import GainsEnergyError
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout, layout_of
 from rockflex.models._linear import LinearModel
+from rockflex.models._linear_system import ElementBase, element_base, linear_system_of
 from rockflex.models._named import (
     element_moves,
     element_speeds,
@@ -83,7 +85,7 @@ from rockflex.models._sliding import SlidingModel
 from rockflex.models._springs import SpringModel
 from rockflex.models._stored import floor_accelerations, raised_weight_rate, stored_energies
 from rockflex.models._strike import Impact, impact_of, kinetic_energy, may_pass, stick, strike
-from rockflex.models._system import GainsEnergyError, may_stack, system_of
+from rockflex.models._system import may_stack, system_of
 
 __all__ = [
     "BROKEN",
@@ -120,6 +122,7 @@ __all__ = [
     "BoucWen",
     "Dashpot",
     "Element",
+    "ElementBase",
     "Exit",
     "Fence",
     "Field",
@@ -150,6 +153,7 @@ __all__ = [
     "acting_side",
     "arm_of",
     "arms",
+    "element_base",
     "element_energies",
     "element_forces",
     "element_moves",
@@ -164,6 +168,7 @@ __all__ = [
     "inertia_left",
     "kinetic_energy",
     "layout_of",
+    "linear_system_of",
     "lifted_springs",
     "lost_support_row",
     "may_pass",

@@ -1,30 +1,23 @@
 """The simplified models on rigid ground as hybrid systems: phases, events and outputs for `rockflex.engine`."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
-from rockflex._errors import InputError, SolverError
-from rockflex._shown import shown
 from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System
 from rockflex.models._elements import CLOSED, LEFT, RIGHT
-from rockflex.models._impact import Restitution, SidedRestitution, VVELSimplified
+from rockflex.models._impact import Restitution, VVELSimplified
+from rockflex.models._landing import landing_of, sided
 from rockflex.models._linear import LinearModel
 from rockflex.models._phase import Key
 from rockflex.models._quantities import GROUND, RIGHT_ROTATION, ROTATION, TURN, Quantities
 from rockflex.models._rocking_phase import QUARTER_TURN
-from rockflex.models._strike import WITHOUT, OwnLaw
 
 SMALL, LARGE = 1e-30, 1e30  # of numbers in SI units that certainly do not overflow
-GAIN = 1e-9  # relative gain of energy in an impact that is attributed to rounding
-CONTACT, OTHER = (CLOSED,), {RIGHT: (LEFT,), LEFT: (RIGHT,)}
-
-
-class GainsEnergyError(SolverError):
-    """An impact law returns more energy than there was."""
+CONTACT, ALONE = (CLOSED,), {RIGHT: (RIGHT,), LEFT: (LEFT,)}
 
 
 def may_stack(model: LinearModel) -> bool:
@@ -166,18 +159,17 @@ class RigidGround:
 
     def landing(self, side: int) -> Event:
         """The impact, after which rocking may go on to the other side."""
-        row, law = side * self.rotation()[:, 0, :-2], self.model.law
-        if isinstance(law, SidedRestitution):
-            law = law.right if side == RIGHT else law.left
+        row, law = side * self.rotation()[:, 0, :-2], sided(self.model.law, -side)
         if isinstance(law, VVELSimplified) or (isinstance(law, Restitution) and law.e == 0.0):
             return Event("impact", row, CONTACT, jump=self.struck(0.0))
         if not isinstance(law, Restitution) or self.gains(side, law):
-            return Event("impact", row, CONTACT, jump=self.told(self.model))
+            turns = {each: self.turn(each)[0] for each in (RIGHT, LEFT)}
+            return Event("impact", row, CONTACT, jump=landing_of(self.model, {0: CONTACT, **ALONE}, turns))
         turn = self.turn(-side)
         back = law.shortest_excursion * side * turn  # what the rotation would lose within the shortest excursion
         back[:, -3] += 2.0 * side
         rest = Rest(-back[:, :-2], CONTACT, -back[:, -1], -back[:, -2], self.struck(0.0))
-        return Event("impact", row, OTHER[side], jump=self.struck(law.e), rest=rest)
+        return Event("impact", row, ALONE[-side], jump=self.struck(law.e), rest=rest)
 
     def struck(self, e: float) -> Array:
         """The jump at an impact: every mass keeps its velocity, and the rotation a share e of its own (Eq. 25)."""
@@ -190,42 +182,3 @@ class RigidGround:
     def gains(self, side: int, law: Restitution) -> bool:
         """Whether the restitution may gain energy: on an eccentric base, whose pivots have different inertias."""
         return bool((law.e**2 * self.free_inertia(-side) > self.free_inertia(side)).any())
-
-    def told(self, model: LinearModel) -> Callable[[Array, float], tuple[Array, Key]]:
-        """The jump of a law that is not linear or not known, for a single model."""
-        N, height, own = (
-            model.properties.n_modes,
-            model.properties.effective_height,
-            OwnLaw(model.law, model.properties),
-        )
-        turns = {side: self.turn(side)[0] for side in (RIGHT, LEFT)}
-
-        def land(state: Array, acceleration: float) -> tuple[Array, Key]:
-            before = energy(state, model.free_inertia(RIGHT if state[-1] < 0.0 else LEFT))
-            try:
-                velocity, spin = own.after(state[N : 2 * N], float(state[-1]))
-            except Exception as error:
-                raise InputError(f"The impact law {shown(model.law)} failed: {error}") from error
-            after, key = np.concatenate((state[:N], velocity, (0.0, spin))), CONTACT
-            if spin != 0.0:
-                key, law = (RIGHT,) if spin > 0.0 else (LEFT,), model.law
-                if isinstance(law, SidedRestitution):
-                    law = law.right if state[-1] < 0.0 else law.left
-                shortest = law.shortest_excursion if isinstance(law, Restitution) else WITHOUT.shortest_excursion
-                row = turns[key[0]]
-                back = -key[0] * float(row[:-2] @ after + row[-2] * acceleration + row[-1])
-                gained = energy(after, model.free_inertia(key[0])) - before
-                if 2.0 * abs(spin) < back * shortest:
-                    after[N : 2 * N] += height * spin
-                    after[-1], key = 0.0, CONTACT
-            else:
-                gained = energy(after, 0.0) - before
-            if gained > GAIN * before:
-                raise GainsEnergyError(f"The impact law {shown(model.law)} returns energy.")
-            return after, key
-
-        def energy(state: Array, inertia: float) -> float:
-            velocity = state[N : 2 * N] + height * state[-1]
-            return 0.5 * inertia * state[-1] ** 2 + 0.5 * float(model.properties.effective_mass @ velocity**2)
-
-        return land

@@ -1,4 +1,4 @@
-"""Runs on `rockflex.engine`: the simplified models without elements, on rigid ground that does not move vertically."""
+"""Runs on `rockflex.engine`: the linear models, on ground that does not move vertically."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
@@ -8,7 +8,7 @@ from typing import Any, TypeGuard, cast
 
 import numpy as np
 
-from rockflex._arrays import Array
+from rockflex._arrays import Array, Bools, Integers
 from rockflex._errors import InputError, SolverError
 from rockflex.engine import MAX_STATES, Batch, Run, StepTooLongError
 from rockflex.models import (
@@ -16,11 +16,14 @@ from rockflex.models import (
     HEADER,
     SIDE,
     TIME,
+    ElementBase,
     GainsEnergyError,
     Key,
     LinearModel,
     Quantities,
     RockingModel,
+    element_base,
+    linear_system_of,
     may_stack,
     system_of,
 )
@@ -49,16 +52,18 @@ FAILURES = {"accumulation": Status.CHATTER, "growth": Status.INFINITE}
 
 def takes(model: RockingModel) -> TypeGuard[LinearModel]:
     """Return whether a model is one of those that the engine runs."""
-    return type(model) is LinearModel and not model.elements and model.layout.core <= MAX_STATES
+    return isinstance(model, LinearModel) and model.layout.core + len(model.elements) <= MAX_STATES
 
 
 class Stack:
-    """Models that differ only in numbers, and the solvers that have their phases."""
+    """Models that differ only in numbers, or one with elements, and the solvers that have their phases."""
 
-    def __init__(self, models: Sequence[LinearModel], quantities: Sequence[Quantities]) -> None:
+    def __init__(
+        self, models: Sequence[LinearModel], quantities: Sequence[Quantities], base: ElementBase | None = None
+    ) -> None:
         self._first = models[0]  # of which a message speaks
         with preparing(self._first):
-            self.system = system_of(models, quantities)
+            self.system = system_of(models, quantities) if base is None else linear_system_of(base)
         self._solvers = defaultdict[float, list[Run]](list)
 
     def taken(self, dt: float) -> Run:
@@ -83,24 +88,34 @@ class HybridEngine:
         The model.
     quantities
         Quantities whose peaks are computed.
+    extremes
+        Quantities of which only the largest value matters, not the magnitude.
     """
 
     dense = False
 
-    def __init__(self, model: LinearModel, quantities: Quantities) -> None:
-        self.model, self.quantities = model, quantities
+    def __init__(self, model: LinearModel, quantities: Quantities, extremes: Quantities | None = None) -> None:
+        self.model, self.quantities, self.extremes = model, quantities, extremes
         self._place, self._gate = 0, Gate()
         self._n_peaks = 1 + len(quantities)
 
     @cached_property
+    def base(self) -> ElementBase | None:
+        """The base of a model with elements, on springs, or that slides; None for all others."""
+        if type(self.model) is LinearModel and not self.model.elements:
+            return None
+        most = Quantities.none(self.model.layout.modes) if self.extremes is None else self.extremes
+        return element_base(self.model, self.quantities, most)
+
+    @cached_property
     def stack(self) -> Stack:
         """The stack of the model, by itself unless it has been gathered."""
-        return Stack([self.model], [self.quantities])
+        return Stack([self.model], [self.quantities], self.base)
 
     @cached_property
     def shaken(self) -> Engine:
         """The engine for vertical motion of the ground."""
-        return Engine(self.model, self.quantities)
+        return Engine(self.model, self.quantities, self.extremes)
 
     @property
     def size(self) -> int:
@@ -161,9 +176,7 @@ class HybridEngine:
             )
         tasks = [self.task(run, dt, free_vibration, history=history) for run in runs]
         failures = self._gate.refused(tasks, work_limit)
-        key, start = (
-            self._at_rest if state is None else state if isinstance(state, tuple) else self.model.initial(state)
-        )
+        key, start = self._start(state)
         allowed = [place for place in range(len(runs)) if place not in failures]
         stack, settles = self.stack, free_vibration is None
         batch = Batch(
@@ -179,12 +192,14 @@ class HybridEngine:
         solver.watch, solver.limit = check_interruption, self._samples_in(work_limit)
         while batch.place < len(allowed):
             try:
-                solver.follow(batch, None if state is None else start, key, self._place, history)
+                solver.follow(batch, start, key, self._place, history)
             except (InputError, SolverError) as error:
                 place = allowed[batch.place]
                 failures[place] = self._failure(error, solver, tasks[place], work_limit)
                 batch.place += 1
-        found = _ends_of(batch, dt, allowed, len(runs), settles=settles)
+        found = _ends_of(
+            batch, self._of_model(solver.keys, batch.places, batch.states), dt, allowed, len(runs), settles=settles
+        )
         for place in np.flatnonzero(found.ends["status"] < 0).tolist():
             status, samples = Status(found.ends["status"][place]), int(found.ends["samples"][place])
             failures.setdefault(place, failure_of(self.model, status, samples, dt, found.states[place]))
@@ -192,9 +207,20 @@ class HybridEngine:
         stack.returned(solver)
         return Solutions(found, dt, self._n_peaks, self._n_peaks, failures, states)
 
+    def _start(self, state: Array | tuple[Key, Array] | None) -> tuple[Key, Array]:
+        """The phase and the states at the start."""
+        if state is None:
+            return self._at_rest
+        key, start = state if isinstance(state, tuple) else self.model.initial(state)
+        return key, start if self.base is None else self.base.state_of(key, start)
+
     @cached_property
     def _at_rest(self) -> tuple[Key, Array]:
-        return self.model.initial(None)
+        return self._start(self.model.initial(None))
+
+    def _of_model(self, keys: Sequence[Key], places: Array, states: Array, *, history: bool = False) -> Array:
+        """The states of the model, from those of the engine."""
+        return states if self.base is None else self.base.states_of_model(keys, places, states, history=history)
 
     def _failure(
         self, error: InputError | SolverError, solver: Run, task: Task, work_limit: float | None
@@ -216,22 +242,36 @@ class HybridEngine:
         return int(min(work_limit / (SHARE * (sample + SEARCH * look)), 2.0**62))
 
     def _states(self, solver: Run) -> Array:
-        times, places, ground, states = solver.history
+        kept = _kept(*solver.history[:2], solver.keys)
+        times, places, ground, states = (each[kept] for each in solver.history)
+        keys = cast("list[Key]", solver.keys)
         rows = np.zeros((times.size, HEADER + self.model.layout.size))
-        rows[:, TIME], rows[:, GROUND], rows[:, HEADER:] = times, ground, states
+        rows[:, TIME], rows[:, GROUND], rows[:, HEADER:] = (
+            times,
+            ground,
+            self._of_model(keys, places, states, history=True),
+        )
         side, rotation = rows[:, SIDE], rows[:, HEADER + self.model.layout.rotation]
-        side[:] = np.array([key[0] for key in cast("list[Key]", solver.keys)])[places]
+        side[:] = np.array([key[0] for key in keys])[places]
         rotation[side * rotation < 0.0] = 0.0  # by rounding
         rotation[:-1][(times[1:] == times[:-1]) & (side[:-1] != 0.0) & (rotation[1:] == 0.0)] = 0.0  # before an impact
         return rows
 
 
-def _ends_of(batch: Batch, dt: float, allowed: Sequence[int], count: int, *, settles: bool) -> Ends:
+def _kept(times: Array, places: Integers, keys: Sequence[Any]) -> Bools:
+    """Which states of a history are kept: none within one instant that the next one follows on the same side."""
+    side = np.array([key[0] for key in keys])[places]
+    kept = np.ones(times.size, dtype=bool)
+    kept[1:-1] = (times[1:-1] != times[:-2]) | (times[1:-1] != times[2:]) | (side[1:-1] != side[2:])
+    return kept
+
+
+def _ends_of(batch: Batch, states: Array, dt: float, allowed: Sequence[int], count: int, *, settles: bool) -> Ends:
     """How the runs have ended; those that were not allowed are left out."""
     ends = np.zeros(batch.count, END)
     ends["status"], ends["samples"] = OUTCOMES[int(settles)][batch.outcomes], np.rint(batch.times / dt)
     ends["uplifts"], ends["impacts"] = batch.counts.T
-    found = Ends(ends, batch.high, batch.when, batch.states)
+    found = Ends(ends, batch.high, batch.when, states)
     if len(allowed) == count:
         return found
     return Ends(*(_spread(each, allowed, count) for each in found))
@@ -248,7 +288,7 @@ def gather(engines: Iterable[HybridEngine]) -> None:
     """Let engines of many models that differ only in numbers share their preparation."""
     alike = defaultdict[tuple[int, ...], list[HybridEngine]](list)
     for each in engines:
-        if may_stack(each.model) and "stack" not in vars(each):
+        if each.base is None and may_stack(each.model) and "stack" not in vars(each):
             alike[each.model.properties.n_modes, len(each.quantities), each.model.lifts].append(each)
     for some in alike.values():
         most = max(1, min(STACK, MEMORY // some[0].size))

@@ -61,7 +61,7 @@ class Case:
             asked = asked_of(self.model, floors=self.floors)
         asked = asked if self.extra is None else asked + self.extra
         most = extremes_of(self.model)
-        engine = HybridEngine(self.model, asked) if takes(self.model) else Engine(self.model, asked, most)
+        engine = HybridEngine(self.model, asked, most) if takes(self.model) else Engine(self.model, asked, most)
         object.__setattr__(self, "engine", engine)
 
     def task(self, motion: GroundMotion, scale: float = 1.0) -> Task:

@@ -1,0 +1,80 @@
+"""The jump at an impact whose law is not linear, or a user's own: a function of the state, for `rockflex.engine`."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from rockflex._arrays import Array
+from rockflex._errors import InputError, SolverError
+from rockflex._shown import shown
+from rockflex.models._elements import CLOSED, LEFT, RIGHT
+from rockflex.models._impact import ImpactLaw, Restitution, SidedRestitution
+from rockflex.models._modal_model import ModalModel
+from rockflex.models._phase import Key
+from rockflex.models._strike import WITHOUT, OwnLaw
+
+GAIN = 1e-9  # relative gain of energy in an impact that is attributed to rounding
+
+
+class GainsEnergyError(SolverError):
+    """An impact law returns more energy than there was."""
+
+
+def landing_of(
+    model: ModalModel, keys: Mapping[int, Key], turns: Mapping[int, Array]
+) -> Callable[[Array, float], tuple[Array, Key]]:
+    """Return the jump at an impact, from the states [D, D', θ, θ', ..] and the acceleration.
+
+    Parameters
+    ----------
+    model
+        The model, with its law.
+    keys
+        The phases that may follow, by side.
+    turns
+        θ'' in those of a base that rocks: rows over the states, the acceleration and 1.
+
+    Returns
+    -------
+    callable
+        It raises `GainsEnergyError` if the law returns energy, and `InputError` if the law fails.
+    """
+    p, own = model.properties, OwnLaw(model.law, model.properties)
+    N, height, mass = p.n_modes, p.effective_height, p.effective_mass
+    modes, rotation, spin = slice(N, 2 * N), 2 * N, 2 * N + 1
+
+    def energy(state: Array, inertia: float) -> float:
+        velocity = state[modes] + height * state[spin]
+        return 0.5 * inertia * state[spin] ** 2 + 0.5 * float(mass @ velocity**2)
+
+    def land(state: Array, acceleration: float) -> tuple[Array, Key]:
+        before = energy(state, model.free_inertia(RIGHT if state[spin] < 0.0 else LEFT))
+        law = sided(model.law, state[spin])
+        try:
+            velocity, passed = own.after(state[modes], float(state[spin]))
+        except Exception as error:
+            raise InputError(f"The impact law {shown(model.law)} failed: {error}") from error
+        after, side = state.copy(), int(np.sign(passed))
+        after[modes], after[rotation], after[spin] = velocity, 0.0, passed
+        gained = energy(after, model.free_inertia(side) if side != CLOSED else 0.0) - before
+        if side != CLOSED:
+            shortest, row = (
+                law.shortest_excursion if isinstance(law, Restitution) else WITHOUT.shortest_excursion,
+                turns[side],
+            )
+            back = -side * float(row[:-2] @ after + row[-2] * acceleration + row[-1])
+            if 2.0 * abs(passed) < back * shortest:
+                after[modes] += height * passed
+                after[spin], side = 0.0, CLOSED
+        if gained > GAIN * before:
+            raise GainsEnergyError(f"The impact law {shown(model.law)} returns energy.")
+        return after, keys[side]
+
+    return land
+
+
+def sided(law: ImpactLaw, spin: float) -> ImpactLaw:
+    """Return the law of the edge about which the base rotated before an impact, by the sign of θ'."""
+    if isinstance(law, SidedRestitution):
+        return law.right if spin < 0.0 else law.left
+    return law

@@ -1,0 +1,449 @@
+"""Linear models with elements, on springs, or that slide, as hybrid systems: phases and events for `rockflex.engine`."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from rockflex._arrays import Array
+from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System
+from rockflex.models._bar import BROKEN_FOR_GOOD, Bar
+from rockflex.models._based import horizontal_reaction
+from rockflex.models._branch_code import code_of
+from rockflex.models._element import BROKEN, DOWN, UP
+from rockflex.models._elements import CLOSED, LEFT, RIGHT, arm_of, border_of, is_in_reach, memories, set_off
+from rockflex.models._impact import Restitution, VVELSimplified
+from rockflex.models._landing import landing_of, sided
+from rockflex.models._linear import LinearModel
+from rockflex.models._phase import Key
+from rockflex.models._quantities import Quantities, lost_support_row, rows_of
+from rockflex.models._rocking_phase import QUARTER_TURN
+from rockflex.models._sliding import LOST, STICK, SlidingModel
+from rockflex.models._spring_forces import LIFTED, LOADED, RECEDING
+from rockflex.models._springs import SpringModel
+
+TINY = 1e-300
+SOON = 1e-6  # of the weight: a base that would slide and lift at once slides first, and may then not lift
+
+
+def element_base(model: LinearModel, quantities: Quantities, extremes: Quantities) -> "ElementBase":
+    """Return the base of a linear model, on rigid ground or on springs."""
+    if isinstance(model, SpringModel):
+        return OnSprings(model, quantities, extremes)
+    return OnRigidGround(model, quantities, extremes)
+
+
+def linear_system_of(base: "ElementBase") -> System:
+    """Return a linear model as a hybrid system.
+
+    The states are the motion and the plastic stretches of the bars. The outputs are the rotation, the quantities,
+    and those of which the largest value counts: `extremes`, and the loss of support.
+    """
+    many, most = len(base.quantities), len(base.extremes)
+    names = ("rotation", *(f"quantity {k}" for k in range(many)), *(f"extreme {k}" for k in range(most)))
+    names += ("loss of support",)
+    return System(base.layout, names, base.phase, base.model.start(CLOSED), names[1 + many :])
+
+
+@dataclass(frozen=True, eq=False)
+class ElementBase:
+    """What the bases have in common: states, outputs, and the conversion from and to the states of the model.
+
+    A row has the columns of the states, the ground acceleration and 1.
+    """
+
+    model: LinearModel
+    quantities: Quantities
+    extremes: Quantities
+
+    @cached_property
+    def bars(self) -> dict[int, int]:
+        """The place in the states of the plastic stretch of each bar, by the place of the bar among the elements."""
+        bars = [place for place, each in enumerate(self.model.elements) if isinstance(each, Bar)]
+        return {place: self.model.layout.core + k for k, place in enumerate(bars)}
+
+    @cached_property
+    def layout(self) -> StateLayout:
+        """The states: modes, rotation, slip and heave, each with its rate, and plastic stretches."""
+        layout, N = self.model.layout, self.model.properties.n_modes
+        parts = {"displacement": N, "velocity": N, "rotation": 1, "spin": 1}
+        parts |= {"slip": 1, "slip_rate": 1} if layout.slip >= 0 else {}
+        parts |= {"heave": 1, "heave_rate": 1} if layout.heave >= 0 else {}
+        return StateLayout(**parts, plastic=len(self.bars))
+
+    @cached_property
+    def columns(self) -> list[int]:
+        """Where the columns of a row are in the rows of the model."""
+        layout, known = self.model.layout, memories(self.model.elements)
+        return [*range(layout.core), *(layout.memory + known[place] for place in self.bars), -2, -1]
+
+    def taken(self, rows: Array) -> Array:
+        """The columns of rows of the model."""
+        return rows[..., self.columns]
+
+    def blank(self) -> Array:
+        """A row of zeros."""
+        return np.zeros(self.layout.size + 2)
+
+    def unit(self, place: int) -> Array:
+        """The row of one state."""
+        row = self.blank()
+        row[place] = 1.0
+        return row
+
+    def event(self, name: str, row: Array, key: Key | None, scale: float, jump: object = None) -> Event:
+        """An event from the row of its condition."""
+        n = self.layout.size
+        return Event(name, row[:n], key, float(row[n + 1]), float(row[n]), max(scale, TINY), jump)  # pyright: ignore[reportArgumentType]
+
+    def phase(self, key: Key) -> LinearPhase:
+        """The phase of a key."""
+        model, n = self.model, self.layout.size
+        rows = np.vstack(
+            (
+                self.taken(self.unit_of_model(model.layout.rotation)),
+                self.taken(rows_of(model, self.quantities, key)),
+                self.taken(rows_of(model, self.extremes, key)),
+                self.taken(lost_support_row(model, key)),
+            )
+        )
+        rates = self.rates(key)
+        events = tuple(self.events(key))
+        return LinearPhase(rates[:, :n], rates[:, n], rates[:, n + 1], rows[:, :n], rows[:, n], rows[:, n + 1], events)
+
+    def unit_of_model(self, place: int) -> Array:
+        """The row of one entry of the state of the model."""
+        row = np.zeros(self.model.layout.columns)
+        row[place] = 1.0
+        return row
+
+    def rates(self, key: Key) -> Array:
+        """The rates of the states, shape (n, C)."""
+        model = self.model
+        layout, N, n = model.layout, model.properties.n_modes, self.layout.size
+        accelerations = self.taken(model.accelerations(key))
+        found = np.zeros((n, n + 2))
+        found[np.arange(N), N + np.arange(N)] = 1.0
+        found[N : 2 * N] = accelerations[:N]
+        for k, free in enumerate(model.arrow(key).freed):
+            place = layout.rotation + 2 * k
+            if free:
+                found[place, place + 1] = 1.0
+                found[place + 1] = accelerations[N + k]
+        branches = model.element_key(key)[1:]
+        for place, at in self.bars.items():
+            if branches[place] in (UP, DOWN):
+                found[at] = self.stretching(place, key)
+        return found
+
+    def stretch(self, place: int, key: Key) -> Array:
+        """The elongation of an element: a row."""
+        raise NotImplementedError
+
+    def stretching(self, place: int, key: Key) -> Array:
+        """The rate of the elongation of an element: a row."""
+        raise NotImplementedError
+
+    def events(self, key: Key) -> list[Event]:
+        """What ends a phase."""
+        raise NotImplementedError
+
+    def stops(self, place: int, key: Key, branch: int) -> list[tuple[Array, int, float]]:
+        """What ends the branch of an element: condition, next branch, and the scale of the condition."""
+        each, found = self.model.elements[place], list[tuple[Array, int, float]]()
+        for stop in each.stops(branch):
+            way = 1.0 if stop.upper else -1.0
+            row = -way * self.stretch(place, key)
+            row[-1] += way * stop.place
+            if place in self.bars:
+                row[self.bars[place]] += way * stop.recall
+            found.append((row, stop.branch, abs(stop.place)))
+        return found
+
+    def without(self, *places: int) -> Array:
+        """The jump that sets some states to zero."""
+        jump = np.eye(self.layout.size)
+        jump[list(places)] = 0.0
+        return jump
+
+    def state_of(self, key: Key, state: Array) -> Array:
+        """The states from the state of the model, whose memories are those at the start of the branches."""
+        model, known = self.model, memories(self.model.elements)
+        found = np.concatenate((state[: model.layout.core], np.zeros(len(self.bars))))
+        for place, at in self.bars.items():
+            branch = model.element_key(key)[1 + place]
+            found[at] = 0.0 if branch == BROKEN else state[model.layout.memory + known[place]]
+            offset = model.elements[place].turning(branch)
+            if offset is not None:
+                found[at] = self.stretch(place, key) @ np.append(found, (0.0, 1.0)) - offset
+        return found
+
+    def states_of_model(self, keys: Sequence[Key], places: Array, states: Array, *, history: bool = False) -> Array:
+        """The states of the model, shape (R, S), from states in phases whose keys are keys[places].
+
+        In a history the memory of a bar that yields is the plastic stretch at the start of its branch.
+        """
+        model, core, known = self.model, self.model.layout.core, memories(self.model.elements)
+        found = np.zeros((len(states), model.layout.size))
+        found[:, :core] = states[:, :core]
+        met = np.array([model.element_key(key)[1:] for key in keys], dtype=int).reshape(len(keys), -1)[places]
+        for place, index in known.items():
+            column, branch, each = found[:, model.layout.memory + index], met[:, place], model.elements[place]
+            if place in self.bars:
+                column[:] = states[:, self.bars[place]]
+                if history and len(column):
+                    begins = np.append(True, branch[1:] != branch[:-1]) | ~np.isin(branch, (UP, DOWN))
+                    column[:] = column[np.maximum.accumulate(np.where(begins, np.arange(len(column)), 0))]
+                column[branch == BROKEN] = BROKEN_FOR_GOOD
+            else:
+                column[:] = [each.mark(each_branch) or 0.0 for each_branch in branch.tolist()]
+        if model.layout.remembered > len(known):
+            more = np.array([self.marks(key) for key in keys])[places]
+            found[:, model.layout.memory + len(known) :] = more
+        return found
+
+    def marks(self, key: Key) -> tuple[float, ...]:
+        """The memories of the model that tell the branches of the base."""
+        del key
+        return ()
+
+
+@dataclass(frozen=True, eq=False)
+class OnRigidGround(ElementBase):
+    """A base that rocks about its edges, and may slide (Silva & Stojadinović 2024, Eqs. 15 and 23 to 25)."""
+
+    @property
+    def slides(self) -> bool:
+        """Whether the base may slide."""
+        return isinstance(self.model, SlidingModel)
+
+    def along(self, key: Key, base: Key) -> Key:
+        """The branches of base and elements, with those of the slip."""
+        return (*base, key[-1]) if self.slides else base
+
+    def stretch(self, place: int, key: Key) -> Array:
+        """The elongation of an element, r |θ|: a row."""
+        return self._reach(place, key) * self.unit(self.model.layout.rotation)
+
+    def stretching(self, place: int, key: Key) -> Array:
+        """The rate of the elongation of an element, r |θ|': a row."""
+        return self._reach(place, key) * self.unit(self.model.layout.spin)
+
+    def _reach(self, place: int, key: Key) -> float:
+        return key[0] * arm_of(self.model.properties, self.model.elements[place], key[0]) if key[0] != CLOSED else 0.0
+
+    def events(self, key: Key) -> list[Event]:
+        """What ends a phase: uplift, or the release of a held base; impact, overturning, elements; and the slip."""
+        model = self.model
+        found = list[Event]()
+        if model.is_free(key):
+            found += (self.landing(key), self.overturning(key), *self.changes(key), *self.turning(key))
+        elif model.lifts:
+            found += self.departures(key)
+        return found + (self.slip(key) if self.slides else [])
+
+    def departures(self, key: Key) -> list[Event]:
+        """The base begins to rotate when the forces of the phase that follows would turn it (Eq. 24)."""
+        model, base = self.model, self.model.element_key(key)
+        p, side = model.properties, base[0]
+        row = model.overturning_moment()
+        if self.slides:
+            row = row + (p.l0r - float(np.sum(p.effective_mass * p.effective_height))) * model.accelerations(key)[-1]
+        found, weight = list[Event](), p.m_tot * model.gravity * p.half_width
+        known = memories(model.elements)
+        for turn in (RIGHT, LEFT):
+            following = set_off(p, model.elements, (side or turn, *base[1:]), turn)
+            border = border_of(p, model.elements, following, model.gravity)
+            condition = turn * self.taken(row)
+            condition[-1] -= turn * float(border.constant[0])
+            if side != CLOSED:
+                condition[model.layout.rotation] += turn * float(border.stiffness[0, 0])
+            for place, at in self.bars.items():
+                condition[at] -= turn * float(border.recall[0, known[place]])
+            name = "uplift" if side == CLOSED else "release"
+            found.append(self.event(name, condition, self.along(key, following), weight))
+        return found
+
+    def overturning(self, key: Key) -> Event:
+        """The end of the run at a rotation of π/2."""
+        row = -key[0] * self.unit(self.model.layout.rotation)
+        row[-1] = QUARTER_TURN
+        return self.event("overturning", row, None, QUARTER_TURN)
+
+    def changes(self, key: Key) -> list[Event]:
+        """The elements that take other branches at some elongation."""
+        found, base = list[Event](), self.model.element_key(key)
+        for place, each in enumerate(self.model.elements):
+            arm = arm_of(self.model.properties, each, base[0])
+            reached = [is_in_reach(stop, arm) for stop in each.stops(base[1 + place])]
+            for within, (row, branch, scale) in zip(reached, self.stops(place, key, base[1 + place]), strict=True):
+                following = (*base[: place + 1], branch, *base[place + 2 :])
+                if within:
+                    found.append(self.event("change", row, self.along(key, following), scale))
+        return found
+
+    def turning(self, key: Key) -> list[Event]:
+        """The rotation turns back while elements yield or slide, whose branches then end."""
+        model, base, spin = self.model, self.model.element_key(key), self.model.layout.spin
+        p = model.properties
+        ways = [
+            each.direction(branch) * np.sign(arm_of(p, each, base[0]))
+            for each, branch in zip(model.elements, base[1:], strict=True)
+        ]
+        way = next((each for each in reversed(ways) if each), 0.0)
+        if way == 0.0:
+            return []
+        turned = set_off(p, model.elements, base, 0)
+        row = base[0] * way * self.unit(spin)
+        return [self.event("turn", row, self.along(key, turned), 1.0, self.without(spin))]
+
+    def landing(self, key: Key) -> Event:
+        """The impact, after which rocking may go on to the other side."""
+        model, side = self.model, key[0]
+        contact, other = self.beside(key, CLOSED), self.beside(key, -side)
+        row, law = side * self.unit(model.layout.rotation), sided(model.law, -side)
+        if isinstance(law, VVELSimplified) or (isinstance(law, Restitution) and law.e == 0.0):
+            return self.event("impact", row, contact, QUARTER_TURN, self.struck(0.0))
+        if not isinstance(law, Restitution) or self._gains(side, law):
+            keys = {each: self.beside(key, each) for each in (CLOSED, RIGHT, LEFT)}
+            turns = {each: self.turn(keys[each]) for each in (RIGHT, LEFT)}
+            return self.event("impact", row, contact, QUARTER_TURN, landing_of(model, keys, turns))
+        back = law.shortest_excursion * side * self.turn(other)  # what θ' would lose within the shortest excursion
+        back[model.layout.spin] += 2.0 * side
+        n = self.layout.size
+        rest = Rest(-back[:n], contact, -float(back[n + 1]), -float(back[n]), self.struck(0.0))
+        return Event("impact", row[:n], other, scale=QUARTER_TURN, jump=self.struck(law.e), rest=rest)
+
+    def beside(self, key: Key, side: int) -> Key:
+        """The phase after an impact, on one side or in contact."""
+        base = self.model.element_key(key)
+        return self.along(key, set_off(self.model.properties, self.model.elements, (side, *base[1:]), side))
+
+    def turn(self, key: Key) -> Array:
+        """θ'' in a phase: a row."""
+        return self.taken(self.model.angular_acceleration(key))
+
+    def struck(self, e: float) -> Array:
+        """The jump at an impact: every mass keeps its velocity, and the rotation a share e of its own (Eq. 25)."""
+        N, layout = self.model.properties.n_modes, self.model.layout
+        found = self.without(layout.rotation, layout.spin)
+        found[N : 2 * N, layout.spin] = (1.0 - e) * self.model.properties.effective_height
+        found[layout.spin, layout.spin] = e
+        return found
+
+    def _gains(self, side: int, law: Restitution) -> bool:
+        """Whether the restitution may gain energy: on an eccentric base, whose pivots have different inertias."""
+        return law.e**2 * self.model.free_inertia(-side) > self.model.free_inertia(side)
+
+    def slip(self, key: Key) -> list[Event]:
+        """The base begins to slide, ends it, or loses its pressure on the ground (Coulomb)."""
+        model = self.model
+        assert isinstance(model, SlidingModel)
+        before, slip, place = key[:-1], key[-1], model.layout.slip + 1
+        pressure, weight = model.pressure(key), model.properties.m_tot * model.gravity
+        if slip == STICK:
+            held = horizontal_reaction(model, model.accelerations(key))
+            # The ground pushes to the right on a base that would slide to the left.
+            rows = {-1: model.friction * pressure - held, 1: model.friction * pressure + held}
+            return [self.event("slip", self.taken(row), (*before, way), SOON * weight) for way, row in rows.items()]
+        way = 1 if slip > 0 else -1
+        sticks = (*before, -slip) if abs(slip) == LOST else (*before, STICK)
+        found = [self.event("stick", way * self.unit(place), sticks, 1.0, self.without(place))]
+        if abs(slip) == LOST:
+            return [*found, self.event("change", self.taken(-pressure), (*before, way), weight)]
+        return [*found, self.event("change", self.taken(pressure), (*before, LOST * way), weight)]
+
+    def marks(self, key: Key) -> tuple[float, ...]:
+        """The branch of the slip."""
+        return (float(key[-1]),)
+
+
+@dataclass(frozen=True, eq=False)
+class OnSprings(ElementBase):
+    """A base on springs that cannot pull: it rotates, heaves and may slide."""
+
+    model: SpringModel  # pyright: ignore[reportIncompatibleVariableOverride]
+
+    def stretch(self, place: int, key: Key) -> Array:
+        """The elongation of an element since the base was at rest: a row."""
+        del key
+        return self.taken(self.model.stretch(self.model.elements[place]))
+
+    def stretching(self, place: int, key: Key) -> Array:
+        """The rate of the elongation of an element: a row."""
+        del key
+        return self.taken(self.model.risen(self.model.elements[place].position)[1])
+
+    @cached_property
+    def heave_scale(self) -> float:
+        """The settlement of the springs under the weight, m."""
+        return self.weight / float(self.model.springs.stiffness.sum())
+
+    @property
+    def weight(self) -> float:
+        """m_tot g, N."""
+        return self.model.properties.m_tot * self.model.gravity
+
+    def events(self, key: Key) -> list[Event]:
+        """What ends a phase: springs that unload, lift or land; the slip; elements; overturning."""
+        turned = self.unit(self.model.layout.rotation)
+        tips = [way * turned for way in (-1.0, 1.0)]
+        for row in tips:
+            row[-1] = QUARTER_TURN
+        found = [self.event("overturning", row, None, QUARTER_TURN) for row in tips]
+        return [*self.of_springs(key), *self.of_slip(key), *self.of_elements(key), *found]
+
+    def of_springs(self, key: Key) -> list[Event]:
+        """A spring unloads, the base leaves it, or comes back to it."""
+        model, found, last = self.model, list[Event](), self.model.springs.n - 1
+        for j, branch in enumerate(key[1 : model.springs.n + 1]):
+            depth, push = self.taken(model.depths[j]), self.taken(model.pushes[j])
+            edge, damped, place = j in (0, last), model.springs.damping[j] > 0.0, 1 + j
+            opens, closes = ("uplift", "impact") if edge else ("change", "change")
+            unloaded = self.event("change" if damped else opens, push, None, self.weight)
+            if branch == LOADED:
+                found.append(replace(unloaded, target=_with(key, place, RECEDING if damped else LIFTED)))
+            elif branch == LIFTED:
+                found.append(self.event(closes, depth, _with(key, place, LOADED), self.heave_scale))
+            else:
+                found.append(self.event("change", -push, _with(key, place, LOADED), self.weight))
+                found.append(self.event(opens, -depth, _with(key, place, LIFTED), self.heave_scale))
+        return found
+
+    def of_slip(self, key: Key) -> list[Event]:
+        """The base begins to slide, or ends it."""
+        model = self.model
+        if model.friction is None:
+            return []
+        place, rate = model.springs.n + 1, model.layout.slip + 1
+        if key[place] != STICK:
+            row = key[place] * self.unit(rate)
+            return [self.event("stick", row, _with(key, place, STICK), 1.0, self.without(rate))]
+        held, grip = horizontal_reaction(model, model.accelerations(key)), model.grip(key)
+        # The ground pushes to the right on a base that would slide to the left.
+        return [
+            self.event("slip", self.taken(grip + way * held), _with(key, place, way), SOON * self.weight)
+            for way in (-1, 1)
+        ]
+
+    def of_elements(self, key: Key) -> list[Event]:
+        """An element takes another branch."""
+        model, found = self.model, list[Event]()
+        for k, each in enumerate(model.elements):
+            place = model.springs.n + 2 + k
+            for row, branch, scale in self.stops(k, key, key[place]):
+                found.append(self.event("change", row, _with(key, place, branch), scale or self.heave_scale))
+            way = each.direction(key[place])
+            if way:
+                row = way * self.stretching(k, key)
+                found.append(self.event("turn", row, _with(key, place, each.stopped(key[place])), 1.0))
+        return found
+
+    def marks(self, key: Key) -> tuple[float, ...]:
+        """The branches, as codes."""
+        return code_of(key[1:])
+
+
+def _with(key: Key, place: int, branch: int) -> Key:
+    return (*key[:place], branch, *key[place + 1 :])
