@@ -5,7 +5,7 @@ cimport cython
 cdef class Decay:
     cdef bint parted, swings  # whether the modes are independent; whether all that move oscillate
     cdef int n, outputs
-    cdef double fastest  # largest rate at which a mode fades, 1/s
+    cdef double fastest, tick  # largest rate at which a mode fades, 1/s; time in which the fastest mode turns by 1 rad
     cdef double[:, ::1] A
     cdef double[::1] c, constants
     cdef double[:, ::1] rows  # outputs and conditions, (R, n)

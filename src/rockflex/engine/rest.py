@@ -41,6 +41,7 @@ class Decay:
         kinds = np.where(still, 0, np.where(roots.imag == 0.0, 1, 2)) + np.where(grows, 4, 0)
         self.kinds = kinds.astype(np.intc)
         self.swings = bool((still | (roots.imag != 0.0)).all())
+        self.tick = 1.0 / max(float(np.abs(roots).max(initial=0.0)), SOON)
         self.fastest = max(float(-roots.real.min(initial=0.0)), SOON)
         self.rate, self.terms, self.parts = np.zeros(self.n), np.zeros(self.n), np.zeros((3, self.n))
 
@@ -67,7 +68,7 @@ class Decay:
         away: cython.double = 0.0
         for k in range(self.n):
             end += self.rows[j, k] * y[k]
-            rounding += fabs(self.rows[j, k] * y[k])
+            rounding += fabs(self.rows[j, k]) * (fabs(y[k]) + self.terms[k] * self.tick)
             stray = self.seen[0, j, k] * self.parts[0, k] - self.seen[1, j, k] * self.parts[1, k]
             swing = self.seen[2, j, k] * self.parts[2, k]
             end -= stray

@@ -1,4 +1,4 @@
-"""Linear models with elements, on springs, or that slide, as hybrid systems: phases and events for `rockflex.engine`."""
+"""Linear models with elements, on springs, or that slide, as hybrid systems for `rockflex.engine`."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from rockflex._arrays import Array
+from rockflex._arrays import Array, Integers
 from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System
 from rockflex.models._bar import BROKEN_FOR_GOOD, Bar
 from rockflex.models._based import horizontal_reaction
@@ -179,7 +179,7 @@ class ElementBase:
                 found[at] = self.stretch(place, key) @ np.append(found, (0.0, 1.0)) - offset
         return found
 
-    def states_of_model(self, keys: Sequence[Key], places: Array, states: Array, *, history: bool = False) -> Array:
+    def states_of_model(self, keys: Sequence[Key], places: Integers, states: Array, *, history: bool = False) -> Array:
         """The states of the model, shape (R, S), from states in phases whose keys are keys[places].
 
         In a history the memory of a bar that yields is the plastic stretch at the start of its branch.

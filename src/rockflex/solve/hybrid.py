@@ -198,7 +198,12 @@ class HybridEngine:
                 failures[place] = self._failure(error, solver, tasks[place], work_limit)
                 batch.place += 1
         found = _ends_of(
-            batch, self._of_model(solver.keys, batch.places, batch.states), dt, allowed, len(runs), settles=settles
+            batch,
+            self._of_model(cast("list[Key]", solver.keys), batch.places, batch.states),
+            dt,
+            allowed,
+            len(runs),
+            settles=settles,
         )
         for place in np.flatnonzero(found.ends["status"] < 0).tolist():
             status, samples = Status(found.ends["status"][place]), int(found.ends["samples"][place])
@@ -218,7 +223,7 @@ class HybridEngine:
     def _at_rest(self) -> tuple[Key, Array]:
         return self._start(self.model.initial(None))
 
-    def _of_model(self, keys: Sequence[Key], places: Array, states: Array, *, history: bool = False) -> Array:
+    def _of_model(self, keys: Sequence[Key], places: Integers, states: Array, *, history: bool = False) -> Array:
         """The states of the model, from those of the engine."""
         return states if self.base is None else self.base.states_of_model(keys, places, states, history=history)
 
@@ -242,9 +247,10 @@ class HybridEngine:
         return int(min(work_limit / (SHARE * (sample + SEARCH * look)), 2.0**62))
 
     def _states(self, solver: Run) -> Array:
-        kept = _kept(*solver.history[:2], solver.keys)
-        times, places, ground, states = (each[kept] for each in solver.history)
+        times, places, ground, states = solver.history
         keys = cast("list[Key]", solver.keys)
+        kept = _kept(times, np.array([key[0] for key in keys])[places])
+        times, places, ground, states = times[kept], places[kept], ground[kept], states[kept]
         rows = np.zeros((times.size, HEADER + self.model.layout.size))
         rows[:, TIME], rows[:, GROUND], rows[:, HEADER:] = (
             times,
@@ -258,9 +264,8 @@ class HybridEngine:
         return rows
 
 
-def _kept(times: Array, places: Integers, keys: Sequence[Any]) -> Bools:
+def _kept(times: Array, side: Integers) -> Bools:
     """Which states of a history are kept: none within one instant that the next one follows on the same side."""
-    side = np.array([key[0] for key in keys])[places]
     kept = np.ones(times.size, dtype=bool)
     kept[1:-1] = (times[1:-1] != times[:-2]) | (times[1:-1] != times[2:]) | (side[1:-1] != side[2:])
     return kept

@@ -1,17 +1,16 @@
 """A structure placed off the middle of its base."""
 
-from dataclasses import dataclass, replace
-from typing import SupportsIndex
+from dataclasses import dataclass
+from typing import Any
 
 from rockflex._checks import finite
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.modal import ModalProperties, RockingProperties
-from rockflex.structure._based import Based, is_structure
+from rockflex.structure._based import Based, Modified, is_structure
 
 
 @dataclass(frozen=True, init=False)
-class Eccentric:
+class Eccentric(Modified):
     """A structure whose masses lie on a vertical axis off the middle of its base.
 
     It rotates about the right edge of the base, at a distance B - e from the axis, or about the left edge, at B + e.
@@ -57,10 +56,5 @@ class Eccentric:
         vars(self).update(structure=structure, eccentricity=finite("eccentricity", eccentricity, "m"))
         self.rocking(1)  # checks that the axis and the tendons are within the base
 
-    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
-        """Return the first `n_modes` modes on a fixed base (default: all)."""
-        return self.structure.modal(n_modes)
-
-    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
-        """Return the parameters of the rocking structure with its first `n_modes` modes (default: all)."""
-        return replace(self.structure.rocking(n_modes), eccentricity=self.eccentricity)
+    def _changes(self) -> dict[str, Any]:
+        return {"eccentricity": self.eccentricity}

@@ -1,17 +1,17 @@
 """A structure with tendons, dissipators and dampers at its base."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
-from typing import SupportsIndex
+from dataclasses import dataclass
+from typing import Any
 
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.modal import BaseElement, ModalProperties, RockingProperties, Tendon, element_set
-from rockflex.structure._based import Based, is_structure
+from rockflex.modal import BaseElement, Tendon, element_set
+from rockflex.structure._based import Based, Modified, is_structure
 
 
 @dataclass(frozen=True, init=False)
-class Restrained:
+class Restrained(Modified):
     """A structure with elements between its base and the ground: tendons, dissipators, viscous and friction dampers.
 
     Unbonded post-tensioned tendons increase the resisting moment and add a restoring rotational stiffness (Silva &
@@ -61,10 +61,5 @@ class Restrained:
         """The tendons among the elements."""
         return tuple(each for each in self.elements if isinstance(each, Tendon))
 
-    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
-        """Return the first `n_modes` modes on a fixed base (default: all)."""
-        return self.structure.modal(n_modes)
-
-    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
-        """Return the parameters of the rocking structure with its first `n_modes` modes (default: all)."""
-        return replace(self.structure.rocking(n_modes), elements=self.elements)
+    def _changes(self) -> dict[str, Any]:
+        return {"elements": self.elements}
