@@ -7,7 +7,6 @@ import pytest
 from scipy.signal import StateSpace, lsim
 
 import rockflex as rf
-from rockflex.motion._rotation_kernel import rotated_peaks
 
 SUITE = rf.load_suite("fema-p695-far-field")
 FIRST, SECOND = SUITE["FF-1-a"], SUITE["FF-1-b"]
@@ -89,15 +88,13 @@ def test_zeros_are_appended_to_the_shorter_component():
     )
 
 
-def test_the_kernel_without_compilation():
-    first, second = FIRST.acceleration[400:460], SECOND.acceleration[400:460]
-    turns = np.stack((np.cos([0.0, 0.7]), np.sin([0.0, 0.7])), axis=1)
-    both = []
-    for function in (rotated_peaks, rotated_peaks.py_func):
-        peaks = np.empty(2)
-        function(first, second, FIRST.dt, 50.0, 0.05, turns, np.empty((5, 60)), peaks)
-        both.append(peaks)
-    np.testing.assert_allclose(both[0], both[1], rtol=1e-12)
+def test_a_spectrum_does_not_depend_on_what_else_is_asked():
+    spectrum = rf.rotated_spectrum(FIRST, SECOND, PERIODS)
+    backwards = rf.rotated_spectrum(FIRST, SECOND, PERIODS[::-1])
+    np.testing.assert_array_equal(backwards.sa[::-1], spectrum.sa)
+    np.testing.assert_array_equal(rf.rotated_spectrum(FIRST, SECOND, PERIODS[[3]]).sa[0], spectrum.sa[3])
+    mirrored = [rf.GroundMotion(-motion.acceleration, motion.dt) for motion in (FIRST, SECOND)]
+    np.testing.assert_array_equal(rf.rotated_spectrum(*mirrored, PERIODS).sa, spectrum.sa)
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,11 @@
 import math
 
-import mpmath
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from rockflex._errors import InputError
 from rockflex.motion import GroundMotion, half_sine_pulse, one_sine_pulse, rectangular_pulse
-from rockflex.motion._spectrum_kernel import unit_responses
 
 RECORD = GroundMotion(np.random.default_rng(3).normal(size=25), 0.1)
 
@@ -61,28 +59,6 @@ def test_slowly_growing_peaks_between_samples(period):
         assert spectrum.sv[0] == pytest.approx(sv, rel=1e-10)
 
 
-@pytest.mark.parametrize("zeta", [0.0, 0.05, 0.9])
-@pytest.mark.parametrize("x", [1e-8, 1e-3, 0.1, 0.4999, 0.5, 0.6, 3.0, 40.0])
-def test_unit_responses_against_fifty_digits(x, zeta):
-    omega, t = 2.5, x / 2.5
-    with mpmath.workdps(50):
-        w, z, tau = mpmath.mpf(omega), mpmath.mpf(zeta), mpmath.mpf(t)
-        damped = w * mpmath.sqrt(1 - z * z)
-        s = mpmath.exp(-z * w * tau) * mpmath.sin(damped * tau) / damped
-        ds = mpmath.exp(-z * w * tau) * mpmath.cos(damped * tau) - z * w * s
-        step = (1 - ds - 2 * z * w * s) / w**2
-        ramp = (tau - 2 * z * w * step - s) / w**2
-        expected = [float(value) for value in (ds, s, step, ramp)]
-    size = [1, t, t**2, t**3] if x < 0.5 else np.abs(expected) + np.array([1, 1, 1, t]) * 1e-2
-    for function in (unit_responses, unit_responses.py_func):
-        got = function(omega, zeta, t)
-        assert np.abs(np.array(got) - expected) / size == pytest.approx(0, abs=2e-13)
-
-
-def test_at_rest_the_unit_responses_begin():
-    assert unit_responses(3.0, 0.1, 0.0) == (1.0, 0.0, 0.0, 0.0)
-
-
 def test_period_zero_is_the_peak_ground_acceleration():
     spectrum = RECORD.spectrum([0.0, 1.0])
     assert (spectrum.sd[0], spectrum.sv[0], spectrum.psv[0], spectrum.sa[0]) == (0, 0, 0, RECORD.pga)
@@ -118,6 +94,17 @@ def test_free_vibration_after_the_record_is_not_included():
     # A pulse much shorter than the period: the peak comes later.
     pulse = half_sine_pulse(1.0, 0.1)
     assert pulse.sd(10.0, 0.0) == pytest.approx(pulse.pgd, rel=1e-3)
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.05])
+def test_a_spectrum_does_not_depend_on_what_else_is_asked(zeta):
+    periods = np.geomspace(1e-3, 20.0, 40)
+    spectrum, mirrored = RECORD.spectrum(periods, zeta), GroundMotion(-RECORD.acceleration, RECORD.dt)
+    backwards, (third,) = RECORD.spectrum(periods[::-1], zeta), RECORD.spectrum(periods[[3]], zeta).sd
+    for name in ("sd", "sv", "sa"):
+        assert getattr(backwards, name)[::-1].tolist() == getattr(spectrum, name).tolist()
+        assert getattr(mirrored.spectrum(periods, zeta), name).tolist() == getattr(spectrum, name).tolist()
+    assert third == spectrum.sd[3] == RECORD.sd(float(periods[3]), zeta)
 
 
 def test_results_are_read_only_and_in_order():

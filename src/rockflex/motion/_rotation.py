@@ -1,5 +1,6 @@
 """Response spectra of two horizontal components in all directions: RotD50 and RotD100."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,11 +11,11 @@ from rockflex._checks import in_range, instance, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
+from rockflex.engine.oscillator import rotated_peaks
 from rockflex.motion._periods import checked_periods
 from rockflex.motion._samples import Samples
 
 ANGLES: Array = np.radians(np.arange(180.0))
-_TURNS = np.stack((np.cos(ANGLES), np.sin(ANGLES)), axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,8 +126,6 @@ def rotated_spectrum(
     >>> spectrum.rotd50.round(2), spectrum.rotd100.round(2), spectrum.geometric_mean.round(2)
     (array([9.58]), array([13.06]), array([9.61]))
     """
-    from rockflex.motion._rotation_kernel import rotated_peaks
-
     one, other = instance("first", first, Samples), instance("second", second, Samples)
     if abs(one.dt - other.dt) > 1e-9 * one.dt:
         raise InputError(
@@ -137,18 +136,11 @@ def rotated_spectrum(
     zeta = in_range("damping_ratio", damping_ratio, 0.0, 1.0, hint="It is a fraction: 5 % is 0.05.")
     size = max(one.acceleration.size, other.acceleration.size)
     a1, a2 = (np.pad(each.acceleration, (0, size - each.acceleration.size)) for each in (one, other))
-    sa, states = np.empty((period.size, ANGLES.size)), np.empty((5, size))
-    for row, each in zip(sa, period, strict=True):
-        if each == 0.0:
-            row[:] = _largest(a1, a2)
-        else:
-            omega = 2 * np.pi / float(each)
-            rotated_peaks(a1, a2, one.dt, omega, zeta, _TURNS, states, row)
-            with np.errstate(over="ignore"):
-                row *= omega**2
+    moves, sa = period > 0, np.empty((period.size, ANGLES.size))
+    if not moves.all():
+        sa[~moves] = [np.max(np.abs(math.cos(angle) * a1 + math.sin(angle) * a2)) for angle in ANGLES]
+    omega = 2 * np.pi / period[moves]
+    sa[moves] = rotated_peaks(a1, a2, one.dt, omega, zeta, ANGLES)
+    with np.errstate(over="ignore"):
+        sa[moves] *= omega[:, None] ** 2
     return RotatedSpectrum(period, zeta, ANGLES, sa)
-
-
-def _largest(a1: Array, a2: Array) -> Array:
-    """Largest ground acceleration in each direction."""
-    return np.array([np.max(np.abs(c * a1 + s * a2)) for c, s in _TURNS])

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike
 from rockflex._arrays import Array
 from rockflex._checks import in_range
 from rockflex._values import Value
+from rockflex.engine.oscillator import peaks
 from rockflex.motion._periods import SHORTEST, checked_periods
-from rockflex.motion._spectrum_kernel import oscillator_peaks
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,8 @@ class ResponseSpectrum(Value):
 def largest_displacement(acceleration: Array, dt: float, period: float, damping_ratio: float) -> float:
     """Return the spectral displacement in m at one period; see `GroundMotion.spectrum`."""
     if type(period) is type(damping_ratio) is float and SHORTEST <= period < math.inf and 0.0 <= damping_ratio < 1.0:
-        return oscillator_peaks(acceleration, dt, 2 * np.pi / period, damping_ratio)[0]  # most are asked one by one
+        # Most are asked one by one, and each takes less than the checks of a whole spectrum.
+        return float(peaks(acceleration, dt, [2 * np.pi / period], damping_ratio)[0, 0])
     return float(response_spectrum(acceleration, dt, [period], damping_ratio).sd[0])
 
 
@@ -58,11 +59,10 @@ def response_spectrum(acceleration: Array, dt: float, periods: ArrayLike, dampin
     """Return the response spectrum of a sampled acceleration; see `GroundMotion.spectrum`."""
     period = checked_periods(periods)
     zeta = in_range("damping_ratio", damping_ratio, 0.0, 1.0, hint="It is a fraction: 5 % is 0.05.")
-    peaks = np.zeros((period.size, 2))
-    for i in np.flatnonzero(period):
-        peaks[i] = oscillator_peaks(acceleration, dt, 2 * np.pi / float(period[i]), zeta)
-    sd, sv = peaks.T.copy()
+    moves, found = period > 0, np.zeros((period.size, 2))
+    found[moves] = peaks(acceleration, dt, 2 * np.pi / period[moves], zeta)
+    sd, sv = found.T.copy()
     pga = np.full(period.size, np.max(np.abs(acceleration)))
     with np.errstate(over="ignore"):  # the acceleration is zero if the square of the period overflows
-        sa = np.divide(4 * np.pi**2 * sd, period**2, out=pga, where=period > 0)
+        sa = np.divide(4 * np.pi**2 * sd, period**2, out=pga, where=moves)
     return ResponseSpectrum(period, zeta, sd, sv, sa)

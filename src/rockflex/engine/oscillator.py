@@ -1,0 +1,440 @@
+"""Peaks of linear oscillators under an acceleration that is linear between samples, in closed form.
+
+The motion relative to the ground solves u'' + 2ζω u' + ω² u = -a(t), from rest. Between two samples it is a straight
+line and a free vibration, so that no time step is too long: any frequency and any sampling give exact peaks.
+"""
+
+from math import atan, cos, exp, fabs, hypot, pi, sin, sqrt
+
+import cython
+import numpy as np
+
+if cython.compiled:
+    from cython.cimports.libc.math import atan, cos, exp, fabs, hypot, sin, sqrt
+
+PI = cython.declare(cython.double, pi)
+ENDLESS = cython.declare(cython.double, np.inf)
+SHORT = cython.declare(cython.double, 0.5)  # ωt below which power series replace closed forms, which would cancel
+TERMS = cython.declare(cython.int, 16)  # of these series: the next one is below 0.5¹⁶/16! of the first
+COARSE = cython.declare(cython.Py_ssize_t, 256)  # samples from which peaks in all directions are first estimated
+
+
+def peaks(acceleration, h, frequencies, zeta):
+    """Largest |u| and |u'| during a record, those between samples included.
+
+    Parameters
+    ----------
+    acceleration : ndarray, shape (n,)
+        In m/s².
+    h : float
+        Time step in s.
+    frequencies : ndarray, shape (m,)
+        Circular frequencies ω > 0 in rad/s.
+    zeta : float
+        Fraction of critical damping, 0 <= ζ < 1.
+
+    Returns
+    -------
+    ndarray, shape (m, 2)
+        In m and m/s. They do not depend on the other frequencies.
+    """
+    a: cython.double[::1] = np.array(acceleration, dtype=float)
+    omegas: cython.double[::1] = np.array(frequencies, dtype=float)
+    motion: cython.double[:, ::1] = np.empty((2, a.shape[0]))
+    found = np.empty((omegas.shape[0], 2))
+    out: cython.double[:, ::1] = found
+    oscillator: Oscillator = Oscillator(h, zeta)
+    i: cython.Py_ssize_t
+    with cython.nogil:
+        for i in range(omegas.shape[0]):
+            oscillator.tune(omegas[i])
+            out[i, 0], out[i, 1] = oscillator.peaks(a, motion)
+    return found
+
+
+def rotated_peaks(first, second, h, frequencies, zeta, angles):
+    """Largest |u| under a₁ cos φ + a₂ sin φ during a record, those between samples included.
+
+    Parameters
+    ----------
+    first, second : ndarray, shape (n,)
+        Accelerations a₁ and a₂ in m/s².
+    h, frequencies, zeta
+        As in `peaks`.
+    angles : ndarray, shape (k,)
+        Directions φ in rad.
+
+    Returns
+    -------
+    ndarray, shape (m, k)
+        In m. They do not depend on the other frequencies and directions.
+
+    Raises
+    ------
+    ValueError
+        If the accelerations are not of the same length.
+    """
+    a: cython.double[:, ::1] = np.array((first, second), dtype=float)
+    omegas: cython.double[::1] = np.array(frequencies, dtype=float)
+    turns: cython.double[:, ::1] = np.array((np.cos(angles), np.sin(angles)))
+    motion: cython.double[:, ::1] = np.empty((5, a.shape[1]))
+    found = np.zeros((omegas.shape[0], turns.shape[1]))
+    out: cython.double[:, ::1] = found
+    oscillator: Oscillator = Oscillator(h, zeta)
+    i: cython.Py_ssize_t
+    with cython.nogil:
+        for i in range(omegas.shape[0]):
+            oscillator.tune(omegas[i])
+            oscillator.rotated(a, turns, motion, out[i])
+    return found
+
+
+@cython.final
+@cython.cclass
+class Oscillator:
+    """An oscillator of one damping and time step, tuned to one frequency after the other."""
+
+    h: cython.double
+    zeta: cython.double
+    omega: cython.double
+    square: cython.double  # ω²
+    drag: cython.double  # 2ζω
+    damped: cython.double  # circular frequency of the free vibration
+    bend: cython.double  # largest distance from the chord of a curve, and of the velocity's, for u'' up to 1
+    sway: cython.double
+    turns_once: cython.bint  # whether u'' changes its sign at most once between two samples
+    impulse: cython.double  # the responses at the next sample
+    step: cython.double
+    ramp: cython.double
+
+    def __init__(self, h: cython.double, zeta: cython.double):
+        self.h, self.zeta, self.bend = h, zeta, h * h / 8.0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def tune(self, omega: cython.double) -> cython.void:
+        """Take another frequency."""
+        self.omega, self.square, self.drag = omega, omega * omega, 2.0 * self.zeta * omega
+        self.damped = omega * sqrt(1.0 - self.zeta * self.zeta)
+        self.sway = min(0.5 * self.h, omega * self.bend)  # |u'''| is not larger than ω |u''|
+        self.turns_once = self.damped * self.h < PI
+        self.impulse, self.step, self.ramp = self.responses(self.h)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def responses(self, t: cython.double) -> tuple[cython.double, cython.double, cython.double]:
+        """The displacement at t > 0, from rest, under a unit impulse, a unit step and a unit ramp."""
+        k: cython.int
+        x: cython.double = self.omega * t
+        before: cython.double = 0.0
+        term: cython.double = t
+        impulse: cython.double = 0.0
+        step: cython.double = 0.0
+        ramp: cython.double = 0.0
+        if x < SHORT:
+            for k in range(1, TERMS + 1):
+                impulse += term
+                step += term * t / (k + 1)
+                ramp += term * t * t / ((k + 1) * (k + 2))
+                before, term = term, -(2.0 * self.zeta * x * k * term + x * x * before) / (k * (k + 1))
+            return impulse, step, ramp
+        term = exp(-self.zeta * x)
+        impulse = term * sin(self.damped * t) / self.damped
+        step = (1.0 - term * cos(self.damped * t) - 0.5 * self.drag * impulse) / self.square
+        ramp = (t - self.drag * step - impulse) / self.square
+        return impulse, step, ramp
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def state(
+        self, t: cython.double, u: cython.double, v: cython.double, a: cython.double, slope: cython.double
+    ) -> tuple[cython.double, cython.double, cython.double]:
+        """Displacement, velocity and relative acceleration at t > 0 after (u, v), under a + slope t."""
+        impulse: cython.double
+        step: cython.double
+        ramp: cython.double
+        force: cython.double = a + self.square * u
+        impulse, step, ramp = self.responses(t)
+        u += impulse * v - step * force - ramp * slope
+        v -= impulse * (force + self.drag * v) + step * (self.square * v + slope)
+        return u, v, self.acceleration(u, v, a + slope * t)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def acceleration(self, u: cython.double, v: cython.double, a: cython.double) -> cython.double:
+        """The relative acceleration u''."""
+        return -a - self.drag * v - self.square * u
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def quadrature(self, w: cython.double, v: cython.double, slope: cython.double) -> cython.double:
+        """What gives u''(t) = exp(-ζωt) (w cos ω_d t + q sin ω_d t), a free vibration, from (u'', u') at a sample."""
+        return -(slope + 0.5 * self.drag * w + self.square * v) / self.damped
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def march(self, a: cython.double[::1], us: cython.double[::1], vs: cython.double[::1]) -> cython.void:
+        """Fill displacements and velocities at the samples.
+
+        The change of the state is summed, not the state: over thousands of steps that rounds less.
+        """
+        k: cython.Py_ssize_t
+        u: cython.double = 0.0
+        v: cython.double = 0.0
+        uu: cython.double = self.square * self.step
+        uv: cython.double = self.impulse
+        u1: cython.double = self.ramp / self.h
+        u0: cython.double = self.step - u1
+        vu: cython.double = self.square * self.impulse
+        vv: cython.double = self.drag * self.impulse + uu
+        v1: cython.double = self.step / self.h
+        v0: cython.double = self.impulse - v1
+        change: cython.double
+        for k in range(a.shape[0]):
+            us[k], vs[k] = u, v
+            if k + 1 < a.shape[0]:
+                change = (uv * v - (u0 * a[k] + u1 * a[k + 1])) - uu * u
+                v -= (vv * v + (v0 * a[k] + v1 * a[k + 1])) + vu * u
+                u += change
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def peaks(self, a: cython.double[::1], motion: cython.double[:, ::1]) -> tuple[cython.double, cython.double]:
+        """Largest |u| and |u'| during a record, with room of two rows for the motion.
+
+        The peaks at samples are found first, so that few intervals may have a higher one inside.
+        """
+        k: cython.Py_ssize_t
+        last: cython.Py_ssize_t = a.shape[0] - 1
+        sd: cython.double = 0.0
+        sv: cython.double = 0.0
+        w: cython.double
+        slope: cython.double
+        size: cython.double
+        us: cython.double[::1] = motion[0]
+        vs: cython.double[::1] = motion[1]
+        self.march(a, us, vs)
+        for k in range(last + 1):
+            sd, sv = max(sd, fabs(us[k])), max(sv, fabs(vs[k]))
+        for k in range(last):
+            slope = (a[k + 1] - a[k]) / self.h
+            w = self.acceleration(us[k], vs[k], a[k])
+            size = fabs(w) + fabs(self.quadrature(w, vs[k], slope))  # |u''| is not larger until the next sample
+            if (
+                max(fabs(us[k]), fabs(us[k + 1])) + size * self.bend > sd
+                or max(fabs(vs[k]), fabs(vs[k + 1])) + size * self.sway > sv
+            ) and not self.monotonic(w, vs[k], us[k + 1], vs[k + 1], a[k + 1]):
+                sd, sv = self.inside(us[k], vs[k], a[k], slope, sd, sv)
+        return sd, sv
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def monotonic(
+        self, w: cython.double, v: cython.double, u1: cython.double, v1: cython.double, b: cython.double
+    ) -> cython.bint:
+        """Whether u and u' are, from (u'', u') at a sample to (u, u', a) at the next one."""
+        w1: cython.double = self.acceleration(u1, v1, b)
+        return (
+            self.turns_once
+            and ((w > 0.0 and w1 > 0.0) or (w < 0.0 and w1 < 0.0))
+            and ((v > 0.0 and v1 > 0.0) or (v < 0.0 and v1 < 0.0))
+        )
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def inside(
+        self,
+        u: cython.double,
+        v: cython.double,
+        a: cython.double,
+        slope: cython.double,
+        sd: cython.double,
+        sv: cython.double,
+    ) -> tuple[cython.double, cython.double]:
+        """Raise the peaks to those between a sample with the state (u, v) and the next one.
+
+        The zeros of u'', a free vibration, divide the interval into parts in which u' is monotonic.
+        """
+        w: cython.double = self.acceleration(u, v, a)
+        q: cython.double = self.quadrature(w, v, slope)
+        size: cython.double = hypot(w, q) / self.square
+        # The forced part of u is a line, here at the start of a part and at the end of the interval.
+        line: cython.double = (slope * self.drag / self.square - a) / self.square
+        fall: cython.double = slope / self.square
+        end: cython.double = line - fall * self.h
+        low: cython.double = 0.0
+        high: cython.double
+        v_low: cython.double = v
+        v_high: cython.double
+        rest: cython.double = size
+        # Of w and q alone the ratio is used, so that a mirrored record has the same bits.
+        zero: cython.double = (atan(-w / q) if q != 0.0 else 0.5 * PI) / self.damped
+        if not zero > 0.0:
+            zero += PI / self.damped
+        while low < self.h and (
+            max(fabs(line - fall * low), fabs(end)) + rest > sd or fabs(fall) + self.omega * rest > sv
+        ):
+            high = zero if zero < self.h else self.h
+            v_high = self.state(high, u, v, a, slope)[1]
+            sv = max(sv, fabs(v_high))
+            if (v_low < 0.0 and v_high > 0.0) or (v_low > 0.0 and v_high < 0.0):
+                sd = max(sd, fabs(self.turning(low, high, v_low, u, v, a, slope)))
+            low, v_low = high, v_high
+            zero += PI / self.damped
+            rest = size * exp(-self.zeta * self.omega * low)
+        return sd, sv
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def turning(
+        self,
+        low: cython.double,
+        high: cython.double,
+        v_low: cython.double,
+        u: cython.double,
+        v: cython.double,
+        a: cython.double,
+        slope: cython.double,
+    ) -> cython.double:
+        """The displacement at the zero in (low, high) of u', which is monotonic there."""
+        _k: cython.int
+        t: cython.double = 0.5 * (low + high)
+        guess: cython.double
+        u1: cython.double = u
+        v1: cython.double
+        w1: cython.double
+        for _k in range(60):
+            u1, v1, w1 = self.state(t, u, v, a, slope)
+            if (v1 > 0.0 and v_low > 0.0) or (v1 < 0.0 and v_low < 0.0):
+                low = t
+            else:
+                high = t
+            guess = t - v1 / w1 if w1 != 0.0 else low
+            # u is flat here: 1e-9 of the interval leaves an error of 1e-18 of its curvature.
+            if fabs(guess - t) <= 1e-9 * (high - low) or high - low <= 1e-9 * high:
+                break
+            t = guess if low < guess < high else 0.5 * (low + high)
+        return u1
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def rotated(
+        self,
+        a: cython.double[:, ::1],
+        turns: cython.double[:, ::1],
+        motion: cython.double[:, ::1],
+        peaks: cython.double[::1],
+    ) -> cython.void:
+        """Raise peaks from zero to the largest |u| in every direction, with room of five rows for the motion."""
+        k: cython.Py_ssize_t
+        last: cython.Py_ssize_t = a.shape[1] - 1
+        least: cython.double
+        farther: cython.double
+        self.march(a[0], motion[0], motion[1])
+        self.march(a[1], motion[2], motion[3])
+        for k in range(last + 1):
+            motion[4, k] = hypot(motion[0, k], motion[2, k])
+        for k in range(min(COARSE, last + 1)):
+            self.look_round(k * last // COARSE, turns, motion, peaks)
+        # Where the oscillator stays closer than the smallest peak so far, it raises none.
+        least = smallest(peaks)
+        for k in range(last + 1):
+            if motion[4, k] > least:
+                self.look_round(k, turns, motion, peaks)
+                least = smallest(peaks)
+        for k in range(last):
+            farther = self.reach(k, a, motion)
+            if max(motion[4, k], motion[4, k + 1]) + farther > least:
+                self.look_inside(k, farther, a, turns, motion, peaks)
+                least = smallest(peaks)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def look_round(
+        self,
+        k: cython.Py_ssize_t,
+        turns: cython.double[:, ::1],
+        motion: cython.double[:, ::1],
+        peaks: cython.double[::1],
+    ) -> cython.void:
+        """Raise the peaks to those at a sample."""
+        j: cython.Py_ssize_t
+        for j in range(peaks.shape[0]):
+            peaks[j] = max(peaks[j], fabs(turns[0, j] * motion[0, k] + turns[1, j] * motion[2, k]))
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def reach(self, k: cython.Py_ssize_t, a: cython.double[:, ::1], motion: cython.double[:, ::1]) -> cython.double:
+        """How much farther than at both ends the oscillator can get between a sample and the next one."""
+        i: cython.int
+        w: cython.double
+        slope: cython.double
+        size: cython.double = 0.0
+        for i in range(2):
+            slope = (a[i, k + 1] - a[i, k]) / self.h
+            w = self.acceleration(motion[2 * i, k], motion[2 * i + 1, k], a[i, k])
+            size += fabs(w) + fabs(self.quadrature(w, motion[2 * i + 1, k], slope))
+        return size * self.bend
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def look_inside(
+        self,
+        k: cython.Py_ssize_t,
+        farther: cython.double,
+        a: cython.double[:, ::1],
+        turns: cython.double[:, ::1],
+        motion: cython.double[:, ::1],
+        peaks: cython.double[::1],
+    ) -> cython.void:
+        """Raise the peaks to those between a sample and the next one."""
+        j: cython.Py_ssize_t
+        c: cython.double
+        s: cython.double
+        u: cython.double
+        v: cython.double
+        w: cython.double
+        u1: cython.double
+        v1: cython.double
+        a0: cython.double
+        a1: cython.double
+        slope: cython.double
+        size: cython.double
+        for j in range(peaks.shape[0]):
+            c, s = turns[0, j], turns[1, j]
+            u, u1 = c * motion[0, k] + s * motion[2, k], c * motion[0, k + 1] + s * motion[2, k + 1]
+            if max(fabs(u), fabs(u1)) + farther > peaks[j]:
+                v, v1 = c * motion[1, k] + s * motion[3, k], c * motion[1, k + 1] + s * motion[3, k + 1]
+                a0, a1 = c * a[0, k] + s * a[1, k], c * a[0, k + 1] + s * a[1, k + 1]
+                slope = (a1 - a0) / self.h
+                w = self.acceleration(u, v, a0)
+                size = fabs(w) + fabs(self.quadrature(w, v, slope))
+                if max(fabs(u), fabs(u1)) + size * self.bend > peaks[j] and not self.monotonic(w, v, u1, v1, a1):
+                    # With an infinite velocity only the displacement decides how far the search goes.
+                    peaks[j] = self.inside(u, v, a0, slope, peaks[j], ENDLESS)[0]
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def smallest(values: cython.double[::1]) -> cython.double:
+    """The smallest of some values; infinite if there are none."""
+    least: cython.double = ENDLESS
+    j: cython.Py_ssize_t
+    for j in range(values.shape[0]):
+        least = min(least, values[j])
+    return least
