@@ -13,7 +13,7 @@ cdef class Batch:
     cdef bint settles
     cdef int[::1] kinds  # of the events that are counted
     cdef int[:, ::1] numbers  # a row for each run: how it has ended, place of the phase, numbers of events
-    cdef double[:, ::1] values  # a row for each run: time, highest values, their times, the last state
+    cdef double[:, ::1] values  # a row for each run: time, highest values, their times, the last state or that at rest
     cdef int outputs, n
 
     cdef double[::1] scaled(self) noexcept nogil

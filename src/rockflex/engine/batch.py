@@ -44,7 +44,7 @@ class Batch:
     high, when : ndarray, shape (R, m)
         Highest value of every output, and its time.
     states : ndarray, shape (R, n)
-        The last ones.
+        The last ones; of runs that have come to rest, those that they approach.
     """
 
     def __init__(self, system, records, scales=None, free=0, settles=False, names=()):

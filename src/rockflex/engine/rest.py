@@ -35,13 +35,13 @@ class Decay:
         self.n, self.outputs, self.rows = len(roots), len(phase.C), np.ascontiguousarray(rows)
         self.constants = np.concatenate((phase.e, [event.constant for event in phase.events]))
         self.A, self.c = np.ascontiguousarray(phase.A), np.ascontiguousarray(phase.c)
-        self.inverse = np.ascontiguousarray([inverse.real, inverse.imag])
+        self.inverse = np.ascontiguousarray([inverse.real, inverse.imag, np.abs(inverse)])
         self.seen = np.ascontiguousarray([seen.real, seen.imag, np.abs(seen)])
-        self.sizes = np.abs(vectors)
+        self.sizes, ends = np.abs(vectors), np.where(still, 0.0, vectors / np.where(still, 1.0, roots))
+        self.ends = np.ascontiguousarray([ends.real, ends.imag])
         kinds = np.where(still, 0, np.where(roots.imag == 0.0, 1, 2)) + np.where(grows, 4, 0)
         self.kinds = kinds.astype(np.intc)
         self.swings = bool((still | (roots.imag != 0.0)).all())
-        self.tick = 1.0 / max(float(np.abs(roots).max(initial=0.0)), SOON)
         self.fastest = max(float(-roots.real.min(initial=0.0)), SOON)
         self.rate, self.terms, self.parts = np.zeros(self.n), np.zeros(self.n), np.zeros((3, self.n))
 
@@ -68,7 +68,7 @@ class Decay:
         away: cython.double = 0.0
         for k in range(self.n):
             end += self.rows[j, k] * y[k]
-            rounding += fabs(self.rows[j, k]) * (fabs(y[k]) + self.terms[k] * self.tick)
+            rounding += fabs(self.rows[j, k] * y[k])
             stray = self.seen[0, j, k] * self.parts[0, k] - self.seen[1, j, k] * self.parts[1, k]
             swing = self.seen[2, j, k] * self.parts[2, k]
             end -= stray
@@ -80,6 +80,14 @@ class Decay:
                 below += swing
                 above += swing
         return end, ROUNDING * rounding, below, above, away
+
+    def bring_to_rest(self, y):
+        """Replace the state, of which `time_to_rest` was asked, by the one about which it will be in the end."""
+        i: cython.int
+        k: cython.int
+        for i in range(self.n):
+            for k in range(self.n):
+                y[i] -= self.ends[0, i, k] * self.parts[0, k] - self.ends[1, i, k] * self.parts[1, k]
 
     def time_to_rest(self, y, high, one_sided):
         """Return 0 at rest: no condition can fail any more, and no output exceed its highest value, with a = 0.
@@ -107,10 +115,13 @@ class Decay:
                 other += fabs(self.A[i, k] * y[k])
             self.rate[i], self.terms[i] = total, other
         for i in range(self.n):
-            total = other = 0.0
+            total = other = rounding = 0.0
             for k in range(self.n):
                 total += self.inverse[0, i, k] * self.rate[k]
                 other += self.inverse[1, i, k] * self.rate[k]
+                rounding += self.inverse[2, i, k] * self.terms[k]
+            if hypot(total, other) <= ROUNDING * rounding:
+                total = other = 0.0
             self.parts[0, i], self.parts[1, i], self.parts[2, i] = total, other, hypot(total, other)
         if self.moves(4):
             return SOON

@@ -11,7 +11,7 @@ from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System
 from rockflex.models._bar import BROKEN_FOR_GOOD, Bar
 from rockflex.models._based import horizontal_reaction
 from rockflex.models._branch_code import code_of
-from rockflex.models._element import BROKEN, DOWN, UP
+from rockflex.models._element import BROKEN, ELASTIC, SLACK
 from rockflex.models._elements import CLOSED, LEFT, RIGHT, arm_of, border_of, is_in_reach, memories, set_off
 from rockflex.models._impact import Restitution, VVELSimplified
 from rockflex.models._landing import landing_of, sided
@@ -24,7 +24,6 @@ from rockflex.models._spring_forces import LIFTED, LOADED, RECEDING
 from rockflex.models._springs import SpringModel
 
 TINY = 1e-300
-SOON = 1e-6  # of the weight: a base that would slide and lift at once slides first, and may then not lift
 
 
 def element_base(model: LinearModel, quantities: Quantities, extremes: Quantities) -> "ElementBase":
@@ -37,7 +36,7 @@ def element_base(model: LinearModel, quantities: Quantities, extremes: Quantitie
 def linear_system_of(base: "ElementBase") -> System:
     """Return a linear model as a hybrid system.
 
-    The states are the motion and the plastic stretches of the bars. The outputs are the rotation, the quantities,
+    The states are the motion and the elastic stretches of the bars. The outputs are the rotation, the quantities,
     and those of which the largest value counts: `extremes`, and the loss of support.
     """
     many, most = len(base.quantities), len(base.extremes)
@@ -59,18 +58,21 @@ class ElementBase:
 
     @cached_property
     def bars(self) -> dict[int, int]:
-        """The place in the states of the plastic stretch of each bar, by the place of the bar among the elements."""
+        """The place in the states of the elastic stretch of each bar, by the place of the bar among the elements.
+
+        The plastic stretch m would be as good, but its rounding is that of the largest elongation so far.
+        """
         bars = [place for place, each in enumerate(self.model.elements) if isinstance(each, Bar)]
         return {place: self.model.layout.core + k for k, place in enumerate(bars)}
 
     @cached_property
     def layout(self) -> StateLayout:
-        """The states: modes, rotation, slip and heave, each with its rate, and plastic stretches."""
+        """The states: modes, rotation, slip and heave, each with its rate, and elastic stretches."""
         layout, N = self.model.layout, self.model.properties.n_modes
         parts = {"displacement": N, "velocity": N, "rotation": 1, "spin": 1}
         parts |= {"slip": 1, "slip_rate": 1} if layout.slip >= 0 else {}
         parts |= {"heave": 1, "heave_rate": 1} if layout.heave >= 0 else {}
-        return StateLayout(**parts, plastic=len(self.bars))
+        return StateLayout(**parts, elastic=len(self.bars))
 
     @cached_property
     def columns(self) -> list[int]:
@@ -78,9 +80,21 @@ class ElementBase:
         layout, known = self.model.layout, memories(self.model.elements)
         return [*range(layout.core), *(layout.memory + known[place] for place in self.bars), -2, -1]
 
-    def taken(self, rows: Array) -> Array:
-        """The columns of rows of the model."""
-        return rows[..., self.columns]
+    def taken(self, rows: Array, key: Key) -> Array:
+        """Rows of the model over the states, in which a plastic stretch m is δ + e_0 minus the elastic one."""
+        found = rows[..., self.columns]
+        for place, at in self.bars.items():
+            share = found[..., at].copy()
+            found[..., at] = -share
+            found += share[..., None] * self.stretch_in(place, key)
+        return found
+
+    def stretch_in(self, place: int, key: Key) -> Array:
+        """The whole stretch δ + e_0 of a bar: a row."""
+        row, bar = self.stretch(place, key), self.model.elements[place]
+        assert isinstance(bar, Bar)
+        row[-1] += bar.stretched
+        return row
 
     def blank(self) -> Array:
         """A row of zeros."""
@@ -102,27 +116,21 @@ class ElementBase:
         model, n = self.model, self.layout.size
         rows = np.vstack(
             (
-                self.taken(self.unit_of_model(model.layout.rotation)),
-                self.taken(rows_of(model, self.quantities, key)),
-                self.taken(rows_of(model, self.extremes, key)),
-                self.taken(lost_support_row(model, key)),
+                self.unit(model.layout.rotation),
+                self.taken(rows_of(model, self.quantities, key), key),
+                self.taken(rows_of(model, self.extremes, key), key),
+                self.taken(lost_support_row(model, key), key),
             )
         )
         rates = self.rates(key)
         events = tuple(self.events(key))
         return LinearPhase(rates[:, :n], rates[:, n], rates[:, n + 1], rows[:, :n], rows[:, n], rows[:, n + 1], events)
 
-    def unit_of_model(self, place: int) -> Array:
-        """The row of one entry of the state of the model."""
-        row = np.zeros(self.model.layout.columns)
-        row[place] = 1.0
-        return row
-
     def rates(self, key: Key) -> Array:
         """The rates of the states, shape (n, C)."""
         model = self.model
         layout, N, n = model.layout, model.properties.n_modes, self.layout.size
-        accelerations = self.taken(model.accelerations(key))
+        accelerations = self.taken(model.accelerations(key), key)
         found = np.zeros((n, n + 2))
         found[np.arange(N), N + np.arange(N)] = 1.0
         found[N : 2 * N] = accelerations[:N]
@@ -133,7 +141,7 @@ class ElementBase:
                 found[place + 1] = accelerations[N + k]
         branches = model.element_key(key)[1:]
         for place, at in self.bars.items():
-            if branches[place] in (UP, DOWN):
+            if branches[place] in (ELASTIC, SLACK):
                 found[at] = self.stretching(place, key)
         return found
 
@@ -154,11 +162,12 @@ class ElementBase:
         each, found = self.model.elements[place], list[tuple[Array, int, float]]()
         for stop in each.stops(branch):
             way = 1.0 if stop.upper else -1.0
-            row = -way * self.stretch(place, key)
-            row[-1] += way * stop.place
+            row = -self.stretch(place, key)
+            row[-1] += stop.place
             if place in self.bars:
-                row[self.bars[place]] += way * stop.recall
-            found.append((row, stop.branch, abs(stop.place)))
+                row += stop.recall * self.stretch_in(place, key)
+                row[self.bars[place]] -= stop.recall
+            found.append((way * row, stop.branch, abs(stop.place)))
         return found
 
     def without(self, *places: int) -> Array:
@@ -172,17 +181,23 @@ class ElementBase:
         model, known = self.model, memories(self.model.elements)
         found = np.concatenate((state[: model.layout.core], np.zeros(len(self.bars))))
         for place, at in self.bars.items():
-            branch = model.element_key(key)[1 + place]
-            found[at] = 0.0 if branch == BROKEN else state[model.layout.memory + known[place]]
-            offset = model.elements[place].turning(branch)
-            if offset is not None:
-                found[at] = self.stretch(place, key) @ np.append(found, (0.0, 1.0)) - offset
+            memory, offset = state[model.layout.memory + known[place]], self._offset(place, key)
+            stretch = self.stretch_in(place, key) @ np.append(found, (0.0, 1.0))
+            broken = model.element_key(key)[1 + place] == BROKEN
+            found[at] = 0.0 if broken else stretch - memory if offset is None else offset
         return found
+
+    def _offset(self, place: int, key: Key) -> float | None:
+        """The elastic stretch of a bar that yields; None if it does not."""
+        bar = self.model.elements[place]
+        assert isinstance(bar, Bar)
+        offset = bar.turning(self.model.element_key(key)[1 + place])
+        return None if offset is None else offset + bar.stretched
 
     def states_of_model(self, keys: Sequence[Key], places: Integers, states: Array, *, history: bool = False) -> Array:
         """The states of the model, shape (R, S), from states in phases whose keys are keys[places].
 
-        In a history the memory of a bar that yields is the plastic stretch at the start of its branch.
+        In a history the memory of a bar is its plastic stretch at the start of its branch.
         """
         model, core, known = self.model, self.model.layout.core, memories(self.model.elements)
         found = np.zeros((len(states), model.layout.size))
@@ -191,9 +206,10 @@ class ElementBase:
         for place, index in known.items():
             column, branch, each = found[:, model.layout.memory + index], met[:, place], model.elements[place]
             if place in self.bars:
-                column[:] = states[:, self.bars[place]]
-                if history and len(column):
-                    begins = np.append(True, branch[1:] != branch[:-1]) | ~np.isin(branch, (UP, DOWN))
+                stretches = np.array([self.stretch_in(place, key) for key in keys])[places]
+                column[:] = (stretches[:, :-2] * states).sum(axis=1) + stretches[:, -1] - states[:, self.bars[place]]
+                if history:
+                    begins = np.append(True, branch[1:] != branch[:-1])[: len(column)]
                     column[:] = column[np.maximum.accumulate(np.where(begins, np.arange(len(column)), 0))]
                 column[branch == BROKEN] = BROKEN_FOR_GOOD
             else:
@@ -244,23 +260,28 @@ class OnRigidGround(ElementBase):
         return found + (self.slip(key) if self.slides else [])
 
     def departures(self, key: Key) -> list[Event]:
-        """The base begins to rotate when the forces of the phase that follows would turn it (Eq. 24)."""
+        """The base begins to rotate when the forces of the phase that follows would turn it (Eq. 24).
+
+        Where it would lift and slide at once, that comes first of which the demand exceeds the capacity by more.
+        """
         model, base = self.model, self.model.element_key(key)
         p, side = model.properties, base[0]
-        row = model.overturning_moment()
+        moment = model.overturning_moment()
         if self.slides:
-            row = row + (p.l0r - float(np.sum(p.effective_mass * p.effective_height))) * model.accelerations(key)[-1]
+            moment = (
+                moment + (p.l0r - float(np.sum(p.effective_mass * p.effective_height))) * model.accelerations(key)[-1]
+            )
         found, weight = list[Event](), p.m_tot * model.gravity * p.half_width
         known = memories(model.elements)
         for turn in (RIGHT, LEFT):
             following = set_off(p, model.elements, (side or turn, *base[1:]), turn)
-            border = border_of(p, model.elements, following, model.gravity)
-            condition = turn * self.taken(row)
+            border, row = border_of(p, model.elements, following, model.gravity), moment.copy()
+            for place in self.bars:
+                row[model.layout.memory + known[place]] -= float(border.recall[0, known[place]])
+            condition = turn * self.taken(row, key)
             condition[-1] -= turn * float(border.constant[0])
             if side != CLOSED:
                 condition[model.layout.rotation] += turn * float(border.stiffness[0, 0])
-            for place, at in self.bars.items():
-                condition[at] -= turn * float(border.recall[0, known[place]])
             name = "uplift" if side == CLOSED else "release"
             found.append(self.event(name, condition, self.along(key, following), weight))
         return found
@@ -322,7 +343,7 @@ class OnRigidGround(ElementBase):
 
     def turn(self, key: Key) -> Array:
         """θ'' in a phase: a row."""
-        return self.taken(self.model.angular_acceleration(key))
+        return self.taken(self.model.angular_acceleration(key), key)
 
     def struck(self, e: float) -> Array:
         """The jump at an impact: every mass keeps its velocity, and the rotation a share e of its own (Eq. 25)."""
@@ -346,13 +367,16 @@ class OnRigidGround(ElementBase):
             held = horizontal_reaction(model, model.accelerations(key))
             # The ground pushes to the right on a base that would slide to the left.
             rows = {-1: model.friction * pressure - held, 1: model.friction * pressure + held}
-            return [self.event("slip", self.taken(row), (*before, way), SOON * weight) for way, row in rows.items()]
+            return [
+                self.event("slip", self.taken(row, key), (*before, way), model.friction * weight)
+                for way, row in rows.items()
+            ]
         way = 1 if slip > 0 else -1
         sticks = (*before, -slip) if abs(slip) == LOST else (*before, STICK)
         found = [self.event("stick", way * self.unit(place), sticks, 1.0, self.without(place))]
         if abs(slip) == LOST:
-            return [*found, self.event("change", self.taken(-pressure), (*before, way), weight)]
-        return [*found, self.event("change", self.taken(pressure), (*before, LOST * way), weight)]
+            return [*found, self.event("change", self.taken(-pressure, key), (*before, way), weight)]
+        return [*found, self.event("change", self.taken(pressure, key), (*before, LOST * way), weight)]
 
     def marks(self, key: Key) -> tuple[float, ...]:
         """The branch of the slip."""
@@ -368,12 +392,12 @@ class OnSprings(ElementBase):
     def stretch(self, place: int, key: Key) -> Array:
         """The elongation of an element since the base was at rest: a row."""
         del key
-        return self.taken(self.model.stretch(self.model.elements[place]))
+        return self.model.stretch(self.model.elements[place])[self.columns]
 
     def stretching(self, place: int, key: Key) -> Array:
         """The rate of the elongation of an element: a row."""
         del key
-        return self.taken(self.model.risen(self.model.elements[place].position)[1])
+        return self.model.risen(self.model.elements[place].position)[1][self.columns]
 
     @cached_property
     def heave_scale(self) -> float:
@@ -398,7 +422,7 @@ class OnSprings(ElementBase):
         """A spring unloads, the base leaves it, or comes back to it."""
         model, found, last = self.model, list[Event](), self.model.springs.n - 1
         for j, branch in enumerate(key[1 : model.springs.n + 1]):
-            depth, push = self.taken(model.depths[j]), self.taken(model.pushes[j])
+            depth, push = model.depths[j][self.columns], model.pushes[j][self.columns]
             edge, damped, place = j in (0, last), model.springs.damping[j] > 0.0, 1 + j
             opens, closes = ("uplift", "impact") if edge else ("change", "change")
             unloaded = self.event("change" if damped else opens, push, None, self.weight)
@@ -421,10 +445,10 @@ class OnSprings(ElementBase):
             row = key[place] * self.unit(rate)
             return [self.event("stick", row, _with(key, place, STICK), 1.0, self.without(rate))]
         held, grip = horizontal_reaction(model, model.accelerations(key)), model.grip(key)
+        scale = float(model.friction.max()) * self.weight
         # The ground pushes to the right on a base that would slide to the left.
         return [
-            self.event("slip", self.taken(grip + way * held), _with(key, place, way), SOON * self.weight)
-            for way in (-1, 1)
+            self.event("slip", self.taken(grip + way * held, key), _with(key, place, way), scale) for way in (-1, 1)
         ]
 
     def of_elements(self, key: Key) -> list[Event]:
