@@ -259,6 +259,11 @@ class HybridEngine:
         )
         side, rotation = rows[:, SIDE], rows[:, HEADER + self.model.layout.rotation]
         side[:] = np.array([key[0] for key in keys])[places]
+        memory = HEADER + self.model.layout.memory
+        for node in np.flatnonzero((times[1:-1] == times[:-2]) & (times[1:-1] == times[2:]))[::-1] + 1:
+            rows[node, memory:] = rows[
+                node + 1, memory:
+            ]  # a contact that does not last has the elements of what follows
         rotation[side * rotation < 0.0] = 0.0  # by rounding
         rotation[:-1][(times[1:] == times[:-1]) & (side[:-1] != 0.0) & (rotation[1:] == 0.0)] = 0.0  # before an impact
         return rows
