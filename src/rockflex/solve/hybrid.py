@@ -14,6 +14,7 @@ from rockflex.engine import MAX_STATES, Batch, Run, StepTooLongError
 from rockflex.models import (
     GROUND,
     HEADER,
+    RISE,
     SIDE,
     TIME,
     GainsEnergyError,
@@ -216,9 +217,9 @@ class HybridEngine:
         return int(min(work_limit / (SHARE * (sample + SEARCH * look)), 2.0**62))
 
     def _states(self, solver: Run) -> Array:
-        times, places, ground, states = solver.history
+        times, places, ground, states, rise = solver.history
         rows = np.zeros((times.size, HEADER + self.model.layout.size))
-        rows[:, TIME], rows[:, GROUND], rows[:, HEADER:] = times, ground, states
+        rows[:, TIME], rows[:, GROUND], rows[:, RISE], rows[:, HEADER:] = times, ground, rise, states
         side, rotation = rows[:, SIDE], rows[:, HEADER + self.model.layout.rotation]
         side[:] = np.array([key[0] for key in cast("list[Key]", solver.keys)])[places]
         rotation[side * rotation < 0.0] = 0.0  # by rounding
