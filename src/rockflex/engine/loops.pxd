@@ -1,5 +1,14 @@
 cdef extern from "march.h" nogil:
     int AHEAD, BLOCK, MAX_STATES, MAX_ROWS
+    ctypedef struct Shaken:
+        int fed, shift
+        const int *places
+        const double *now
+        const double *outs
+        const double *magnitude
+        const double *most
+    ctypedef struct Climb:
+        double start, rise
     ctypedef struct Tables:
         int n, outputs, rows, shift, parts
         double h
@@ -18,6 +27,7 @@ cdef extern from "march.h" nogil:
         const double *magnitude
         const double *most
         const double *one_sided
+        Shaken shaken
     ctypedef struct Log:
         double *high
         double *when
@@ -41,13 +51,14 @@ cdef extern from "march.h" nogil:
         int group
         size_t workspace
         void (*product)(int columns, int rows, const double *table, const double *x, double *out) noexcept nogil
-        int (*expand)(const Tables *p, double h, double a, double rise, const double *y, int room, int width, double *series) noexcept nogil
+        int (*expand)(const Tables *p, double h, double a, double rise, Climb v, const double *y, int room, int width, double *series) noexcept nogil
         void (*evaluate)(int rows, int terms, int width, const double *series, double t, double *out) noexcept nogil
         void (*amounts)(int rows, int terms, int width, const double *series, double t, double *out) noexcept nogil
         void (*spread)(int rows, int terms, int width, const double *series, double *out) noexcept nogil
-        void (*reach)(const Tables *p, int terms, int width, const double *series, double *start, double *away) noexcept nogil
-        void (*complete)(const Tables *p, int terms, int width, double *series) noexcept nogil
-        int (*march)(const Tables *p, int phase, const double *a, int i, int last, double *y, Log *log) noexcept nogil
+        void (*reach)(const Tables *p, Climb v, int terms, int width, const double *series, double *start, double *away) noexcept nogil
+        void (*complete)(const Tables *p, Climb v, int terms, int width, double *series) noexcept nogil
+        void (*magnitudes)(const Tables *p, Climb v, int order, const double *before, const double *x, double *out) noexcept nogil
+        int (*march)(const Tables *p, int phase, const double *a, const double *v, int i, int last, double *y, Log *log) noexcept nogil
     const Loops *rockflex_loops(const char *level)
 
 
@@ -70,19 +81,19 @@ cdef class Phases:
     cdef readonly int count
     cdef int n, states
     cdef double[::1] one_sided
-    cdef list contents, offsets
+    cdef list contents, offsets, shaken
 
     cdef int events(self, int place) noexcept nogil
     cdef int halvings(self, int place) noexcept nogil
-    cdef int shift(self, int place) noexcept nogil
+    cdef int shift(self, int place, (double, double) v) noexcept nogil
     cdef double scale(self, int place, int event) noexcept nogil
     cdef int following(self, int place, int outcome) noexcept nogil
     cdef int jump(self, int place, int outcome, bint magnitudes, double[::1] y, double[::1] workspace) noexcept nogil
-    cdef int rests(self, int place, int event, double[::1] y, double a) noexcept nogil
-    cdef int march(self, int place, const double[::1] a, int i, int last, double[::1] y, Peaks peaks, double[:, ::1] states) noexcept nogil
-    cdef int expand(self, int place, double h, double a, double rise, double[::1] y, double[:, ::1] series, double[::1] away) noexcept nogil
-    cdef void reach(self, int place, int terms, double[:, ::1] series, double[::1] start, double[::1] away) noexcept nogil
-    cdef void complete(self, int place, int terms, double[:, ::1] series) noexcept nogil
+    cdef int rests(self, int place, int event, double[::1] y, double a, double v) noexcept nogil
+    cdef int march(self, int place, const double[::1] a, const double[::1] v, int i, int last, double[::1] y, Peaks peaks, double[:, ::1] states) noexcept nogil
+    cdef int expand(self, int place, double h, double a, double rise, (double, double) v, double[::1] y, double[:, ::1] series, double[::1] away) noexcept nogil
+    cdef void reach(self, int place, (double, double) v, int terms, double[:, ::1] series, double[::1] start, double[::1] away) noexcept nogil
+    cdef void complete(self, int place, (double, double) v, int terms, double[:, ::1] series) noexcept nogil
     cdef void evaluate(self, double[:, ::1] series, int terms, double t, double[::1] out) noexcept nogil
     cdef void amounts(self, double[:, ::1] series, int terms, double t, double[::1] out) noexcept nogil
-    cdef void magnitudes(self, int place, double[::1] x, double[::1] out) noexcept nogil
+    cdef void magnitudes(self, int place, (double, double) v, int order, double[::1] before, double[::1] x, double[::1] out) noexcept nogil

@@ -21,9 +21,9 @@ class GainsEnergyError(SolverError):
 
 
 def landing_of(
-    model: ModalModel, keys: Mapping[int, Key], turns: Mapping[int, Array]
-) -> Callable[[Array, float], tuple[Array, Key]]:
-    """Return the jump at an impact, from the states [D, D', θ, θ', ..] and the acceleration.
+    model: ModalModel, keys: Mapping[int, Key], turns: Mapping[int, tuple[Array, Array]]
+) -> Callable[[Array, float, float], tuple[Array, Key]]:
+    """Return the jump at an impact, from the states [D, D', θ, θ', ..] and both accelerations.
 
     Parameters
     ----------
@@ -32,7 +32,8 @@ def landing_of(
     keys
         The phases that may follow, by side.
     turns
-        θ'' in those of a base that rocks: rows over the states, the acceleration and 1.
+        θ'' in those of a base that rocks: a row over the states, the acceleration and 1, and what each m/s² of vertical
+        acceleration adds to it.
 
     Returns
     -------
@@ -47,7 +48,7 @@ def landing_of(
         velocity = state[modes] + height * state[spin]
         return 0.5 * inertia * state[spin] ** 2 + 0.5 * float(mass @ velocity**2)
 
-    def land(state: Array, acceleration: float) -> tuple[Array, Key]:
+    def land(state: Array, acceleration: float, vertical: float) -> tuple[Array, Key]:
         before = energy(state, model.free_inertia(RIGHT if state[spin] < 0.0 else LEFT))
         law = sided(model.law, state[spin])
         try:
@@ -58,10 +59,8 @@ def landing_of(
         after[modes], after[rotation], after[spin] = velocity, 0.0, passed
         gained = energy(after, model.free_inertia(side) if side != CLOSED else 0.0) - before
         if side != CLOSED:
-            shortest, row = (
-                law.shortest_excursion if isinstance(law, Restitution) else WITHOUT.shortest_excursion,
-                turns[side],
-            )
+            shortest = law.shortest_excursion if isinstance(law, Restitution) else WITHOUT.shortest_excursion
+            row = turns[side][0] + vertical * turns[side][1]
             back = -side * float(row[:-2] @ after + row[-2] * acceleration + row[-1])
             if 2.0 * abs(passed) < back * shortest:
                 after[modes] += height * passed

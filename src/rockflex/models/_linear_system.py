@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -24,13 +25,16 @@ from rockflex.models._spring_forces import LIFTED, LOADED, RECEDING
 from rockflex.models._springs import SpringModel
 
 TINY = 1e-300
+MORE = 1e6  # m/s², of gravity: the terms that it adds outweigh the rounding of all others
 
 
-def element_base(model: LinearModel, quantities: Quantities, extremes: Quantities) -> "ElementBase":
-    """Return the base of a linear model, on rigid ground or on springs."""
+def element_base(
+    model: LinearModel, quantities: Quantities, extremes: Quantities, *, shaken: bool = False
+) -> "ElementBase":
+    """Return the base of a linear model, on rigid ground or on springs; `shaken` where the ground moves vertically."""
     if isinstance(model, SpringModel):
-        return OnSprings(model, quantities, extremes)
-    return OnRigidGround(model, quantities, extremes)
+        return OnSprings(model, quantities, extremes, shaken)
+    return OnRigidGround(model, quantities, extremes, shaken)
 
 
 def linear_system_of(base: "ElementBase") -> System:
@@ -55,6 +59,7 @@ class ElementBase:
     model: LinearModel
     quantities: Quantities
     extremes: Quantities
+    shaken: bool = False
 
     @cached_property
     def bars(self) -> dict[int, int]:
@@ -111,8 +116,37 @@ class ElementBase:
         n = self.layout.size
         return Event(name, row[:n], key, float(row[n + 1]), float(row[n]), max(scale, TINY), jump)  # pyright: ignore[reportArgumentType]
 
+    @cached_property
+    def heavier(self) -> "ElementBase":
+        """The same under more gravity: a vertical acceleration acts in the same way."""
+        return replace(self, model=replace(self.model, gravity=self.model.gravity + MORE), shaken=False)
+
     def phase(self, key: Key) -> LinearPhase:
         """The phase of a key."""
+        still = self.still(key)
+        if not self.shaken:
+            return still
+        more, place = self.heavier.still(key), self.model.layout.rotation
+        found = {"A_v": np.zeros_like(still.A), "C_v": np.zeros_like(still.C)}
+        found["A_v"][:, place] = (more.A - still.A)[
+            :, place
+        ] / MORE  # gravity acts on the rotation alone, and by itself
+        found["C_v"][:, place] = (more.C - still.C)[:, place] / MORE
+        found |= {"f_v": (more.c - still.c) / MORE, "d_v": (more.e - still.e) / MORE}
+        events = tuple(self._shaken(one, other) for one, other in zip(still.events, more.events, strict=True))
+        return replace(still, events=events, **found)
+
+    def _shaken(self, still: Any, more: Any) -> Any:
+        """An event, or what follows instead, with the terms of a vertical acceleration."""
+        row, place = np.zeros(self.layout.size), self.model.layout.rotation
+        row[place] = (more.row[place] - still.row[place]) / MORE
+        found = replace(still, row_v=row, direct_v=(more.constant - still.constant) / MORE)
+        if getattr(still, "rest", None) is not None:
+            found = replace(found, rest=self._shaken(still.rest, more.rest))
+        return found
+
+    def still(self, key: Key) -> LinearPhase:
+        """The phase of a key while the ground does not move vertically."""
         model, n = self.model, self.layout.size
         rows = np.vstack(
             (
@@ -328,7 +362,7 @@ class OnRigidGround(ElementBase):
             return self.event("impact", row, contact, QUARTER_TURN, self.struck(0.0))
         if not isinstance(law, Restitution) or self._gains(side, law):
             keys = {each: self.beside(key, each) for each in (CLOSED, RIGHT, LEFT)}
-            turns = {each: self.turn(keys[each]) for each in (RIGHT, LEFT)}
+            turns = {each: (self.turn(keys[each]), self.turn_by_weight(keys[each])) for each in (RIGHT, LEFT)}
             return self.event("impact", row, contact, QUARTER_TURN, landing_of(model, keys, turns))
         back = law.shortest_excursion * side * self.turn(other)  # what θ' would lose within the shortest excursion
         back[model.layout.spin] += 2.0 * side
@@ -344,6 +378,12 @@ class OnRigidGround(ElementBase):
     def turn(self, key: Key) -> Array:
         """θ'' in a phase: a row."""
         return self.taken(self.model.angular_acceleration(key), key)
+
+    def turn_by_weight(self, key: Key) -> Array:
+        """What each m/s² of vertical acceleration adds to θ'': a row."""
+        heavier = self.heavier
+        assert isinstance(heavier, OnRigidGround)
+        return (heavier.turn(key) - self.turn(key)) / MORE
 
     def struck(self, e: float) -> Array:
         """The jump at an impact: every mass keeps its velocity, and the rotation a share e of its own (Eq. 25)."""

@@ -1,4 +1,4 @@
-"""Runs on `rockflex.engine`: the linear models, on ground that does not move vertically."""
+"""Runs on `rockflex.engine`: the linear models."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
@@ -14,6 +14,7 @@ from rockflex.engine import MAX_STATES, Batch, Run, StepTooLongError
 from rockflex.models import (
     GROUND,
     HEADER,
+    RISE,
     SIDE,
     TIME,
     ElementBase,
@@ -35,7 +36,6 @@ from rockflex.solve._solution import Solution
 from rockflex.solve._solutions import Ends, Solutions
 from rockflex.solve._task import Gate, Task
 from rockflex.solve.batch import Excitation
-from rockflex.solve.engine import Engine
 from rockflex.solve.interruption import check_interruption
 from rockflex.solve.records import END
 from rockflex.solve.status import Status
@@ -80,7 +80,7 @@ class Stack:
 
 
 class HybridEngine:
-    """A model on the engine for hybrid systems, with the interface of `Engine`; that one runs vertical motion.
+    """A model on the engine for hybrid systems, with the interface of `Engine`.
 
     Parameters
     ----------
@@ -102,10 +102,13 @@ class HybridEngine:
     @cached_property
     def base(self) -> ElementBase | None:
         """The base of a model with elements, on springs, or that slides; None for all others."""
+        return self._base(shaken=False)
+
+    def _base(self, *, shaken: bool) -> ElementBase | None:
         if type(self.model) is LinearModel and not self.model.elements:
             return None
         most = Quantities.none(self.model.layout.modes) if self.extremes is None else self.extremes
-        return element_base(self.model, self.quantities, most)
+        return element_base(self.model, self.quantities, most, shaken=shaken)
 
     @cached_property
     def stack(self) -> Stack:
@@ -113,9 +116,9 @@ class HybridEngine:
         return Stack([self.model], [self.quantities], self.base)
 
     @cached_property
-    def shaken(self) -> Engine:
-        """The engine for vertical motion of the ground."""
-        return Engine(self.model, self.quantities, self.extremes)
+    def shaken(self) -> Stack:
+        """The same for ground that moves vertically, which other phases need only if there are elements."""
+        return self.stack if self.base is None else Stack([self.model], [self.quantities], self._base(shaken=True))
 
     @property
     def size(self) -> int:
@@ -170,15 +173,11 @@ class HybridEngine:
         work_limit: float | None = None,
     ) -> Solutions:
         """As in `Engine`."""
-        if runs[0].vertical is not None:
-            return self.shaken.run_all(
-                runs, dt, free_vibration=free_vibration, state=state, history=history, work_limit=work_limit
-            )
         tasks = [self.task(run, dt, free_vibration, history=history) for run in runs]
         failures = self._gate.refused(tasks, work_limit)
         key, start = self._start(state)
         allowed = [place for place in range(len(runs)) if place not in failures]
-        stack, settles = self.stack, free_vibration is None
+        stack, settles = self.stack if runs[0].vertical is None else self.shaken, free_vibration is None
         batch = Batch(
             stack.system,
             [runs[place].acceleration for place in allowed],
@@ -186,6 +185,7 @@ class HybridEngine:
             free=0 if free_vibration == 0.0 else course_of(self.model, dt, free_vibration).free,
             settles=settles,
             names=COUNTED,
+            verticals=[runs[place].vertical for place in allowed],
         )
         check_interruption()
         solver = stack.taken(dt)
@@ -247,23 +247,19 @@ class HybridEngine:
         return int(min(work_limit / (SHARE * (sample + SEARCH * look)), 2.0**62))
 
     def _states(self, solver: Run) -> Array:
-        times, places, ground, states = solver.history
+        times, places, ground, states, rise = solver.history
         keys = cast("list[Key]", solver.keys)
         kept = _kept(times, np.array([key[0] for key in keys])[places])
         times, places, ground, states = times[kept], places[kept], ground[kept], states[kept]
         rows = np.zeros((times.size, HEADER + self.model.layout.size))
-        rows[:, TIME], rows[:, GROUND], rows[:, HEADER:] = (
-            times,
-            ground,
-            self._of_model(keys, places, states, history=True),
-        )
+        rows[:, TIME], rows[:, GROUND], rows[:, RISE] = times, ground, rise[kept]
+        rows[:, HEADER:] = self._of_model(keys, places, states, history=True)
         side, rotation = rows[:, SIDE], rows[:, HEADER + self.model.layout.rotation]
         side[:] = np.array([key[0] for key in keys])[places]
         memory = HEADER + self.model.layout.memory
         for node in np.flatnonzero((times[1:-1] == times[:-2]) & (times[1:-1] == times[2:]))[::-1] + 1:
-            rows[node, memory:] = rows[
-                node + 1, memory:
-            ]  # a contact that does not last has the elements of what follows
+            # A contact that does not last has the elements of what follows.
+            rows[node, memory:] = rows[node + 1, memory:]
         rotation[side * rotation < 0.0] = 0.0  # by rounding
         rotation[:-1][(times[1:] == times[:-1]) & (side[:-1] != 0.0) & (rotation[1:] == 0.0)] = 0.0  # before an impact
         return rows
