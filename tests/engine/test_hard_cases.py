@@ -276,3 +276,16 @@ def test_velocities_that_differ_by_rounding_do_not_open_a_contact():
     run.advance(np.zeros(101))
     assert run.events == []
     assert run.state[0] - run.state[1] == pytest.approx(0.5, rel=1e-12)
+
+
+def test_an_output_that_does_not_change_but_by_rounding_is_no_search_for_a_peak():
+    """Two equal motions, whose difference is constant; their own magnitudes would allow it to change."""
+    C, twice = np.array([[1.0, -1.0, 0.0, 0.0]]), np.zeros((4, 4))
+    twice[0, 2] = twice[1, 3] = 1.0
+    falls = Event("passes", np.array([1.0, 0.0, 0.0, 0.0]), None)
+    phase = LinearPhase(twice, np.zeros(4), np.array([0.0, 0.0, -9.81, -9.81]), C, np.zeros(1), np.ones(1), (falls,))
+    system = System(StateLayout(places=2, speeds=2), ("difference",), lambda _: phase, "falls")
+    run = Run(system, 0.01, [0.123, 0.123, 0.5, 0.5])
+    run.advance(np.zeros(100))
+    assert run.ended
+    assert run.peaks["difference"][0] == 1.0
