@@ -40,7 +40,7 @@ def test_a_batch_has_the_bits_of_runs_one_by_one(engine, free, settles):
         assert [batch.high[r].tolist(), batch.when[r].tolist()] == run.highest.tolist()
         assert batch.counts[r].tolist() == run.tally("yielding", "unloading", "nothing")
         if rested:  # the state is that which the motion approaches
-            run.coast(3000)
+            run.coast(10_000)
             assert batch.states[r] == pytest.approx(run.state, rel=1e-12, abs=1e-12)
         else:
             assert batch.states[r].tolist() == run.state.tolist()
