@@ -19,9 +19,13 @@ from rockflex.models import (
     GainsEnergyError,
     Key,
     LinearModel,
+    NonlinearModel,
     Quantities,
     RockingModel,
+    key_of,
+    may_integrate,
     may_stack,
+    nonlinear_system,
     system_of,
 )
 from rockflex.solve._beginning import course_of
@@ -38,27 +42,34 @@ from rockflex.solve.records import END
 from rockflex.solve.status import Status
 
 SHARE = 0.5  # of the estimated time of a sample that one takes here
+STEP = 12.0  # samples that a step of a nonlinear model counts like
 STACK = 64  # systems in one stack, at most
 MEMORY = 64_000_000  # bytes of the tables of one stack
 COUNTED = ("uplift", "impact")
 OUTCOMES = np.array(  # for fixed times, and until settled
     [[Status.ENDED, Status.OVERTURNED, Status.SETTLED], [Status.UNSETTLED, Status.OVERTURNED, Status.SETTLED]]
 )
-FAILURES = {"accumulation": Status.CHATTER, "growth": Status.INFINITE}
+FAILURES = {"accumulation": Status.CHATTER, "growth": Status.INFINITE, "stall": Status.STALLED}
 
 
-def takes(model: RockingModel) -> TypeGuard[LinearModel]:
+def takes(model: RockingModel) -> TypeGuard[LinearModel | NonlinearModel]:
     """Return whether a model is one of those that the engine runs."""
+    if isinstance(model, NonlinearModel):
+        return may_integrate(model) and model.layout.size <= MAX_STATES
     return type(model) is LinearModel and not model.elements and model.layout.core <= MAX_STATES
 
 
 class Stack:
     """Models that differ only in numbers, and the solvers that have their phases."""
 
-    def __init__(self, models: Sequence[LinearModel], quantities: Sequence[Quantities]) -> None:
+    def __init__(self, models: Sequence[LinearModel | NonlinearModel], quantities: Sequence[Quantities]) -> None:
         self._first = models[0]  # of which a message speaks
+        linear = [each for each in models if isinstance(each, LinearModel)]
         with preparing(self._first):
-            self.system = system_of(models, quantities)
+            if isinstance(self._first, NonlinearModel):
+                self.system = nonlinear_system(self._first, quantities[0])
+            else:
+                self.system = system_of(linear, quantities)
         self._solvers = defaultdict[float, list[Run]](list)
 
     def taken(self, dt: float) -> Run:
@@ -87,7 +98,7 @@ class HybridEngine:
 
     dense = False
 
-    def __init__(self, model: LinearModel, quantities: Quantities) -> None:
+    def __init__(self, model: LinearModel | NonlinearModel, quantities: Quantities) -> None:
         self.model, self.quantities = model, quantities
         self._place, self._gate = 0, Gate()
         self._n_peaks = 1 + len(quantities)
@@ -112,6 +123,8 @@ class HybridEngine:
     def pace(self) -> Pace:
         """The properties that determine the work of runs."""
         p, found = self.model.properties, pace_of(self.model, self._n_peaks + 1)
+        if isinstance(self.model, NonlinearModel):
+            return found
         levers, drag = p.effective_mass * p.effective_height**2, 2.0 * p.zeta * p.omega
         free = min((self.model.free_inertia(side) for side in self.model.sides[1:]), default=np.inf)
         # The sum of the rates at which the motion fades while the base rocks; on a very narrow base one root has it all
@@ -164,6 +177,8 @@ class HybridEngine:
         key, start = (
             self._at_rest if state is None else state if isinstance(state, tuple) else self.model.initial(state)
         )
+        if isinstance(self.model, NonlinearModel):
+            key = key_of(self.model, key, start)
         allowed = [place for place in range(len(runs)) if place not in failures]
         stack, settles = self.stack, free_vibration is None
         batch = Batch(
@@ -212,7 +227,9 @@ class HybridEngine:
         """The number of samples that a work limit in s allows."""
         if work_limit is None:
             return 2**62
-        sample, look, *_ = self.pace.prices(history=False)
+        sample, look, _, step = self.pace.prices(history=False)
+        if isinstance(self.model, NonlinearModel):
+            return int(min(work_limit / step * STEP, 2.0**62))
         return int(min(work_limit / (SHARE * (sample + SEARCH * look)), 2.0**62))
 
     def _states(self, solver: Run) -> Array:
@@ -222,8 +239,18 @@ class HybridEngine:
         side, rotation = rows[:, SIDE], rows[:, HEADER + self.model.layout.rotation]
         side[:] = np.array([key[0] for key in cast("list[Key]", solver.keys)])[places]
         rotation[side * rotation < 0.0] = 0.0  # by rounding
+        if self.model.bouc_wen is not None:
+            rows = without_reversals(rows, solver.keys, places)
+            times, side, rotation = rows[:, TIME], rows[:, SIDE], rows[:, HEADER + self.model.layout.rotation]
         rotation[:-1][(times[1:] == times[:-1]) & (side[:-1] != 0.0) & (rotation[1:] == 0.0)] = 0.0  # before an impact
         return rows
+
+
+def without_reversals(rows: Array, keys: Sequence[Any], places: Any) -> Array:
+    """Leave out the states on both sides of a reversal of a hysteretic spring, which changes nothing else."""
+    own = np.array([list(key[:-1]) for key in keys])[places]
+    same = (rows[1:, TIME] == rows[:-1, TIME]) & (own[1:] == own[:-1]).all(axis=1) & (places[1:] != places[:-1])
+    return rows[~(np.append(same, False) | np.append(False, same))]
 
 
 def _ends_of(batch: Batch, dt: float, allowed: Sequence[int], count: int, *, settles: bool) -> Ends:
@@ -248,7 +275,7 @@ def gather(engines: Iterable[HybridEngine]) -> None:
     """Let engines of many models that differ only in numbers share their preparation."""
     alike = defaultdict[tuple[int, ...], list[HybridEngine]](list)
     for each in engines:
-        if may_stack(each.model) and "stack" not in vars(each):
+        if isinstance(each.model, LinearModel) and may_stack(each.model) and "stack" not in vars(each):
             alike[each.model.properties.n_modes, len(each.quantities), each.model.lifts].append(each)
     for some in alike.values():
         most = max(1, min(STACK, MEMORY // some[0].size))

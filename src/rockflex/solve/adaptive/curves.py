@@ -24,7 +24,7 @@ from rockflex.solve.adaptive.layout import (
 )
 from rockflex.solve.adaptive.step import choose_branch, place_at
 from rockflex.solve.adaptive.sums import place_stage
-from rockflex.solve.adaptive.tableau import C
+from rockflex.engine.tableau import C
 from rockflex.solve.exact.probe import cubic_range
 from rockflex.solve.layout import Log, Span, System, part_of
 from rockflex.solve.peaks import NEAR, raise_row, row_at, size_of

@@ -18,7 +18,7 @@ from rockflex.solve.adaptive.layout import (
     Stages,
 )
 from rockflex.solve.adaptive.sums import place_others, place_stage
-from rockflex.solve.adaptive.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, C
+from rockflex.engine.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, C
 from rockflex.solve.layout import LEFT, STEP, Span, System, is_shaken
 
 SHORTEST = 1e-13  # s: if a shorter step is needed, the motion cannot be integrated
