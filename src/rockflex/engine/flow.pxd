@@ -52,6 +52,7 @@ cdef class Flow:
     cdef bint curves_hide(self, int place) noexcept nogil
     cdef void look_within(self, int place, int stage, double t, double[::1] outs) noexcept nogil
     cdef void slopes_of(self, bint outputs, int place, double[::1] rates, double[::1] out) noexcept nogil
+    cdef bint clear(self, double t, double sample) noexcept nogil
     cdef int fill(self, double[:, ::1] series, double[::1] away) noexcept nogil
     cdef void complete(self, double[:, ::1] series, int first) noexcept nogil
     cdef void sum_up(self, int order, double[:, ::1] series, double[::1] sizes, double[::1] away, double[:, ::1] sums) noexcept nogil

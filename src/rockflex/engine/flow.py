@@ -210,6 +210,7 @@ class Flow:
         steps: cython.int
         u: cython.double
         part: cython.double
+        before: cython.double = self.peaks.before()
         until: cython.longlong = self.peaks.work() + STRETCH
         self.peaks.look(False)
         if not self.entered or self.place != place:
@@ -219,7 +220,7 @@ class Flow:
             self.known = True
         self.y[self.n], self.y[self.n + 1] = a[i], 1.0
         self.look(place, a[i], self.y, self.first, self.outs)
-        self.raise_to(self.outs, i)
+        self.raise_to(self.outs, before + i)
         self.phases.conditions_of(place, self.y, self.below)
         while i < last and self.peaks.work() < until:
             u, steps, self.kept_step = 0.0, 0, self.step
@@ -233,7 +234,7 @@ class Flow:
                         u = u + part if part < 1.0 - u else 1.0
                         steps += 1
                         self.accept()
-                        self.raise_to(self.ends, i + u)
+                        self.raise_to(self.ends, before + i + u)
                         self.outs[:], self.below[:] = self.ends, self.beyond
                         continue
                 if steps > 0:
@@ -280,7 +281,7 @@ class Flow:
         for j in range(self.outputs):
             value = self.counted(j, outs[j])
             if value > self.high[j]:
-                self.high[j], self.when[j] = value, self.peaks.before() + sample
+                self.high[j], self.when[j] = value, sample
 
     def slopes_of(self, outputs, place, rates, out):
         """Compute the rates of conditions or outputs over a step, apart from those of the acceleration."""
@@ -373,6 +374,23 @@ class Flow:
         self.phases.within(place, stage, self.part * self.h, self.y, self.work, self.spot)
         self.spot[self.n], self.spot[self.n + 1] = a, 1.0
         self.look(place, a, self.spot, self.work[stage], outs)
+
+    def clear(self, t, sample):
+        """Raise the peaks over the step up to t if none may be within; return whether that was all."""
+        j: cython.int
+        self.y[self.n], self.y[self.n + 1] = self.shaking[0], 1.0
+        self.look(self.place, self.shaking[0], self.y, self.first, self.outs)
+        self.raise_to(self.outs, sample)
+        self.look(self.place, self.shaking[0] + self.shaking[1], self.end, self.last, self.ends)
+        if t < 1.0:
+            for j in range(self.outputs):
+                if self.counted(j, self.ends[j]) > self.high[j]:
+                    return False
+        if self.peaks_hide(self.place) or self.curves_hide(self.place):
+            return False
+        if t == 1.0:
+            self.raise_to(self.ends, sample + self.part)
+        return True
 
     def fill(self, series, away):
         """Fill a series with the polynomials of states and conditions; return the number of terms."""

@@ -363,15 +363,17 @@ class Phases:
 
     def within(self, place, stage, h, y, work, out):
         """The state at which a stage of a step has been evaluated."""
+        k: cython.int
+        for k in range(self.phases[place].moving, self.n):
+            out[k] = y[k]
         self.sum_stages(place, stage, h, cython.address(y[0]), work, cython.address(out[0]))
 
     def sum_stages(self, place, stage, h, y, work, out):
-        """The moving states at a stage; the others are those at the start."""
+        """The moving states at a stage."""
         phase: cython.pointer(Phase) = cython.address(self.phases[place])
         rates: cython.p_double = cython.address(work[0, 0])
-        k: cython.int
         LOOPS.combine(
-            up8_(phase.moving),
+            phase.moving,
             COUNTS[stage],
             cython.address(WHICH[stage, 0]),
             cython.address(WEIGHTS[stage, 0]),
@@ -381,8 +383,6 @@ class Phases:
             work.shape[1],
             out,
         )
-        for k in range(phase.moving, self.n):
-            out[k] = y[k]
 
     def attempt(self, place, h, shaking, y, sizes, work, counted):
         """Take the stages of a step from the first one on; its end, and its error over the sizes of the states."""
@@ -395,6 +395,8 @@ class Phases:
         found: cython.double[2]
         stage: cython.int
         k: cython.int
+        for k in range(phase.moving, self.n):
+            end[k] = start[k]
         for stage in range(1, LAST + 1):
             self.sum_stages(place, stage, h, start, work, end)
             cython.cast(Field, field).rates(
@@ -428,7 +430,7 @@ class Phases:
     def combined(self, which, count, h, work, row):
         """A sum of stages in a row of the room for a step."""
         LOOPS.combine(
-            up8_(count),
+            count,
             COUNTS[which],
             cython.address(WHICH[which, 0]),
             cython.address(WEIGHTS[which, 0]),
@@ -450,6 +452,8 @@ class Phases:
         stage: cython.int
         k: cython.int
         i: cython.int
+        for i in range(phase.moving, self.n):
+            end[i] = y[i]
         for stage in range(LAST + 1, STAGES):
             self.sum_stages(place, stage, h, cython.address(y[0]), work, end)
             cython.cast(Field, field).rates(

@@ -149,6 +149,8 @@ class Series:
         first: cython.double
         completed: cython.bint = self.phases.nonlinear(self.place)
         if completed:
+            if self.flow.clear(stop, sample):
+                return
             self.reach_of_step()
         else:
             self.phases.reach(self.place, self.terms, self.series, self.start, self.reach)

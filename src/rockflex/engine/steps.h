@@ -1,22 +1,26 @@
 /* A step of a Runge-Kutta pair, for `march.c`: sums of stages, the error of a step, and its polynomial. */
 
-enum { STAGES = 16 };
+enum { FEW = 8 }; /* states */
 
-/* out = start + h Σ weights[k] rates[which[k]], the newest stage last; start may be null. */
+/* out = start + h Σ weights[k] rates[which[k]], the newest stage last; start may be null. Of a few states the newest rates
+   are read one by one (hence volatile), as they were written: a vector could not be loaded before all of it has reached
+   the cache. */
 static void combine(int count, int terms, const int *which, const double *weights, double h, const double *start,
                     const double *rates, int width, double *out) {
-    enum { REGISTERS = 8 / LANES };
-    double w[STAGES];
-    const double *from[STAGES];
-    for (int k = 0; k < terms; k++) w[k] = weights[k] * h, from[k] = rates + (size_t)which[k] * width;
-    for (int i = 0; i < count; i += 8) {
-        vec sum[REGISTERS] = {0};
-        for (int k = 0; k < terms; k++)
-#pragma GCC unroll 4
-            for (int j = 0; j < REGISTERS; j++) sum[j] += at(from[k] + i + j * LANES) * w[k];
-#pragma GCC unroll 4
-        for (int j = 0; j < REGISTERS; j++)
-            put(out + i + j * LANES, start ? at(start + i + j * LANES) + sum[j] : sum[j]);
+    const int older = count <= FEW ? terms - 1 : terms;
+    for (int i = 0; i < count; i += LANES) {
+        vec sum = {0};
+        for (int k = 0; k < older; k++) sum += at(rates + (size_t)which[k] * width + i) * weights[k];
+        sum = start ? at(start + i) + sum * h : sum * h;
+        if (i + LANES <= count)
+            put(out + i, sum);
+        else
+            for (int j = 0; i + j < count; j++) out[i + j] = sum[j];
+    }
+    if (older < terms) {
+        const volatile double *newest = rates + (size_t)which[older] * width;
+        const double weight = h * weights[older];
+        for (int i = 0; i < count; i++) out[i] += weight * newest[i];
     }
 }
 

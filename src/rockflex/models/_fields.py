@@ -5,6 +5,7 @@ observed, and 19, 25 and 29 for impacts. The state is that of `rockflex.models.S
 it runs as Python, too.
 """
 
+import math
 from math import asin, cos, fabs, pow, sin, sqrt
 
 import cython
@@ -35,6 +36,47 @@ LEFT_OUT = cython.declare(cython.int, 2)
 SWING = cython.declare(cython.int, 3)
 HORIZONTAL = cython.declare(cython.int, 4)
 VERTICAL = cython.declare(cython.int, 5)
+
+SMALL = cython.declare(cython.double, math.pi / 4)  # rad: the largest rotation for the series
+SMALLER = cython.declare(cython.double, 0.125)  # and for fewer terms
+# 1/n! with alternating signs, for sin θ = θ + θ³ (S_1 + S_2 θ² + ..) and cos θ = 1 + θ² (C_1 + C_2 θ² + ..); the first
+# term left out is below a quarter of rounding.
+S1 = cython.declare(cython.double, -1.0 / math.factorial(3))
+S2 = cython.declare(cython.double, 1.0 / math.factorial(5))
+S3 = cython.declare(cython.double, -1.0 / math.factorial(7))
+S4 = cython.declare(cython.double, 1.0 / math.factorial(9))
+S5 = cython.declare(cython.double, -1.0 / math.factorial(11))
+S6 = cython.declare(cython.double, 1.0 / math.factorial(13))
+S7 = cython.declare(cython.double, -1.0 / math.factorial(15))
+S8 = cython.declare(cython.double, 1.0 / math.factorial(17))
+C1 = cython.declare(cython.double, -1.0 / math.factorial(2))
+C2 = cython.declare(cython.double, 1.0 / math.factorial(4))
+C3 = cython.declare(cython.double, -1.0 / math.factorial(6))
+C4 = cython.declare(cython.double, 1.0 / math.factorial(8))
+C5 = cython.declare(cython.double, -1.0 / math.factorial(10))
+C6 = cython.declare(cython.double, 1.0 / math.factorial(12))
+C7 = cython.declare(cython.double, -1.0 / math.factorial(14))
+C8 = cython.declare(cython.double, 1.0 / math.factorial(16))
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def sine_and_cosine(theta: cython.double) -> tuple[cython.double, cython.double]:
+    """sin θ and cos θ, without a call of the C library in every stage of a step; terms in pairs make short chains."""
+    x: cython.double = theta * theta
+    z: cython.double = x * x
+    sine: cython.double
+    cosine: cython.double
+    if fabs(theta) <= SMALLER:
+        sine = (S1 + S2 * x) + z * (S3 + S4 * x)
+        cosine = (C1 + C2 * x) + z * ((C3 + C4 * x) + z * C5)
+        return theta + theta * x * sine, 1.0 + x * cosine
+    if fabs(theta) > SMALL:
+        return sin(theta), cos(theta)
+    sine = (S1 + S2 * x) + z * ((S3 + S4 * x) + z * ((S5 + S6 * x) + z * (S7 + S8 * x)))
+    cosine = (C1 + C2 * x) + z * ((C3 + C4 * x) + z * ((C5 + C6 * x) + z * (C7 + C8 * x)))
+    return theta + theta * x * sine, 1.0 + x * cosine
 
 
 @cython.cclass
@@ -162,8 +204,8 @@ class RockingField(Field):
         n: cython.int = self.n
         i: cython.int
         spin: cython.double = y[2 * n + 1]
-        sine: cython.double = sin(y[2 * n])
-        cosine: cython.double = cos(y[2 * n])
+        sine: cython.double
+        cosine: cython.double
         square: cython.double = spin * spin
         lever: cython.double = 1.0
         displaced: cython.double = 0.0
@@ -174,14 +216,16 @@ class RockingField(Field):
         carried: cython.double = 0.0
         spring: cython.double = 0.0
         inertia: cython.double = self.inertia
-        drive: cython.double = (self.gravity + a_v) * sine - a * cosine
+        share: cython.double
+        drive: cython.double
         behind: cython.double
         beside: cython.double
         arm: cython.double
         across: cython.double
+        sine, cosine = sine_and_cosine(y[2 * n])
         if self.hysteretic:
             spring = self.restoring(y, out, counted)
-        drive -= spring
+        drive = (self.gravity + a_v) * sine - a * cosine - spring
         for i in range(n):
             behind = y[i] - self.offset
             displaced += self.mass[i] * y[i]
@@ -190,6 +234,7 @@ class RockingField(Field):
             out[i] = y[n + i]
             out[n + i] = drive + square * behind - self.ratio * self.omega2[i] * y[i] - self.drag[i] * y[n + i]
             moment += self.mass[i] * self.height[i] * out[n + i]
+        share = -1.0 / inertia  # before the moment is known
         beside = self.total_mass * self.offset - displaced
         arm = beside * sine + self.weight_arm * cosine
         across = beside * cosine - self.weight_arm * sine
@@ -198,7 +243,7 @@ class RockingField(Field):
         if self.viscous or self.pulled:
             lever = sqrt(0.5 + 0.5 * cosine)
             moment += self.side * self.pull(y, P_MOMENT) * lever + self.pulls[P_DAMPING, 0] * lever * lever * spin
-        weighted = -moment / inertia
+        weighted = moment * share
         for i in range(n):
             out[n + i] -= self.height[i] * weighted
         out[2 * n], out[2 * n + 1] = spin, weighted
@@ -300,9 +345,9 @@ class RockingField(Field):
         kind: cython.int
         spin: cython.double = y[2 * n + 1]
         turn: cython.double = rates[2 * n + 1]
-        sine: cython.double = sin(y[2 * n])
-        cosine: cython.double = cos(y[2 * n])
-        upright: cython.double = sqrt(0.5 + 0.5 * cosine)  # cos θ/2
+        sine: cython.double
+        cosine: cython.double
+        upright: cython.double  # cos θ/2
         square: cython.double = spin * spin
         gravity: cython.double = self.gravity + a_v
         across: cython.double = self.total_mass * self.offset  # Σ m_i (s B - u_i)
@@ -314,7 +359,10 @@ class RockingField(Field):
         beside: cython.double
         half: cython.double
         coriolis: cython.double
-        drive: cython.double = a * cosine - gravity * sine + square * self.offset
+        drive: cython.double
+        sine, cosine = sine_and_cosine(y[2 * n])
+        upright = sqrt(0.5 + 0.5 * cosine)
+        drive = a * cosine - gravity * sine + square * self.offset
         for i in range(n):
             across -= self.mass[i] * y[i]
             speed += self.mass[i] * y[n + i]
