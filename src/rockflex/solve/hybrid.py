@@ -248,9 +248,14 @@ class HybridEngine:
 
 def without_reversals(rows: Array, keys: Sequence[Any], places: Any) -> Array:
     """Leave out the states on both sides of a reversal of a hysteretic spring, which changes nothing else."""
-    own = np.array([list(key[:-1]) for key in keys])[places]
-    same = (rows[1:, TIME] == rows[:-1, TIME]) & (own[1:] == own[:-1]).all(axis=1) & (places[1:] != places[:-1])
-    return rows[~(np.append(same, False) | np.append(False, same))]
+    own, times = np.array([list(key[:-1]) for key in keys])[places], rows[:, TIME]
+    together = times[1:] == times[:-1]
+    same = np.append(together & (own[1:] == own[:-1]).all(axis=1) & (places[1:] != places[:-1]), False)
+    first = ~np.append(False, same[:-1])  # of some states on both sides of reversals, of which the last one is left
+    begins = np.flatnonzero(first)
+    ends = np.append(begins[1:], times.size) - 1
+    beside = np.append(False, together)[begins] | np.append(together, False)[ends]
+    return rows[ends[(begins == ends) | beside]]
 
 
 def _ends_of(batch: Batch, dt: float, allowed: Sequence[int], count: int, *, settles: bool) -> Ends:
