@@ -22,8 +22,9 @@ cdef class Flow:
     cdef double kept_step  # the next step there
     cdef double[::1] nodes  # where outputs that are not linear are computed
     cdef double[:, ::1] fits, tilts  # their coefficients from that, and slopes of a cubic from its values
-    cdef list curved_outputs, velocity_places  # by phase
+    cdef list facts  # what follows, by phase
     cdef int[:, ::1] curved  # numbers of the outputs that are not linear, by phase; the first is how many
+    cdef double[:, ::1] least  # sizes of these outputs below which it does not matter how far they are from a peak
     cdef int[:, ::1] velocities  # places of the states that are the rates of the states, -1 if there are none
     cdef int[:, ::1] exact  # conditions of states that have such rates
     cdef double[::1] more  # what the constant states add to the conditions

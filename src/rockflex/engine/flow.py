@@ -95,8 +95,9 @@ class Flow:
         self.fits = np.linalg.inv(np.vander(np.asarray(self.nodes), increasing=True))
         self.tilts = np.array([[0.0, 1.0, 0.0, 0.0], [0.0, 1.0, 2.0, 3.0]]) @ CUBIC
         self.kept, self.vector = np.zeros(3 * self.states), np.zeros(self.states)
-        self.curved_outputs, self.velocity_places = [], []
+        self.facts = []
         self.curved, self.velocities = np.zeros((1, 1), dtype=np.intc), np.zeros((1, self.n), dtype=np.intc)
+        self.least = np.zeros((1, 1))
         self.exact, self.terms = np.zeros((1, 1), dtype=np.intc), TERMS
         self.outs, self.ends, self.early, self.late = np.zeros((4, up8(max(1, self.outputs))))
         self.widen(0)
@@ -113,20 +114,20 @@ class Flow:
     def know(self, phase, place):
         """Take a phase: its outputs that are not linear, and which states are rates of others."""
         n, m = self.n, self.outputs
-        velocities, curved = np.full(n, -1, dtype=np.intc), np.zeros(m + 1, dtype=np.intc)
+        velocities, curved, least = np.full(n, -1, dtype=np.intc), np.zeros(m + 1, dtype=np.intc), np.zeros(m + 1)
         velocities[list(phase.velocities)] = list(phase.velocities.values())
-        curved[0], curved[1 : 1 + len(phase.curved)] = len(phase.curved), phase.curved
+        count = len(phase.curved)
+        curved[0], curved[1 : 1 + count], least[1 : 1 + count] = count, list(phase.curved), list(phase.curved.values())
         if len(phase.events) > self.more.shape[0]:
             self.widen(len(phase.events))
         exact = [int(not event.row[0][velocities < 0].any()) for event in phase.events]
-        while len(self.curved_outputs) <= place:
-            self.curved_outputs.append(np.zeros(m + 1, dtype=np.intc))
-            self.velocity_places.append((np.full(n, -1, dtype=np.intc), []))
-        self.curved_outputs[place], self.velocity_places[place] = curved, (velocities, exact)
-        self.curved = np.array(self.curved_outputs)
-        self.velocities = np.array([each for each, _ in self.velocity_places])
-        most = max(max(len(each) for _, each in self.velocity_places), 1)
-        self.exact = np.array([each + [0] * (most - len(each)) for _, each in self.velocity_places], dtype=np.intc)
+        nothing = np.zeros(m + 1, dtype=np.intc), np.zeros(m + 1), np.full(n, -1, dtype=np.intc), []
+        self.facts += [nothing] * (place + 1 - len(self.facts))
+        self.facts[place] = curved, least, velocities, exact
+        known = list(zip(*self.facts, strict=True))
+        self.curved, self.least, self.velocities = np.array(known[0]), np.array(known[1]), np.array(known[2])
+        most = max(1, *map(len, known[3]))
+        self.exact = np.array([each + [0] * (most - len(each)) for each in known[3]], dtype=np.intc)
 
     def begin(self):
         """Begin a run anew."""
@@ -353,7 +354,8 @@ class Flow:
         for k in range(self.curved[place, 0]):
             j = self.curved[place, 1 + k]
             most = max(self.counted(j, self.outs[j]), self.counted(j, self.ends[j]))
-            if most <= self.high[j] - (1.0 - NEAR) * fabs(self.high[j]):
+            low = max(fabs(self.high[j]), self.least[place, 1 + k])
+            if most <= self.high[j] - (1.0 - NEAR) * low:
                 continue
             if not told:
                 self.look_within(place, EARLY, EARLY_AT, self.early)

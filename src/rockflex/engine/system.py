@@ -1,7 +1,8 @@
 """Hybrid systems: states, phases, events, jumps and outputs. Physics says what they are; `Run` advances them."""
 
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from dataclasses import field as initially
 from typing import Any
 
 import numpy as np
@@ -176,8 +177,9 @@ class NonlinearPhase:
         which nothing else depends.
     velocities : dict
         Places of the states whose rates are states, and places of these.
-    curved : tuple of int
-        Numbers of the outputs that `field` computes from their rows.
+    curved : dict
+        Numbers of the outputs that `field` computes from their rows, each with a size, zero or positive: a peak within
+        a step is looked for where the ends of the step are closer to the highest value than a quarter of that or of it.
     """
 
     field: Field | Callable[[Array, float, float], Array]
@@ -187,8 +189,8 @@ class NonlinearPhase:
     events: tuple[Event, ...]
     scale: Array
     counted: int | None = None
-    velocities: dict[int, int] = field(default_factory=dict)
-    curved: tuple[int, ...] = ()
+    velocities: dict[int, int] = initially(default_factory=dict)
+    curved: dict[int, float] = initially(default_factory=dict)
 
     def of(self, place: int) -> "NonlinearPhase":
         """The phase itself: there is no stack of them."""
@@ -220,7 +222,7 @@ class System:
     outputs: Sequence[str]
     phase: Callable[[Any], LinearPhase | NonlinearPhase]
     start: Key
-    one_sided: Sequence[str] = field(default=())
+    one_sided: Sequence[str] = initially(default=())
     count: int = 1
 
     def __post_init__(self) -> None:

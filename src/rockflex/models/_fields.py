@@ -372,7 +372,7 @@ class RockingField(Field):
         # An element points from its present anchor on the base to its position in contact: at θ/2 from the vertical.
         if self.pulled or self.viscous or self.pulls[P_PULL, 0] != 0.0:
             half = 0.5 * sine / upright
-            coriolis = self.pull(y, P_FORCE) + 2.0 * self.pulls[P_PULL, 0] * fabs(half)
+            coriolis = self.pull(y, P_FORCE) + 2.0 * self.pulls[P_PULL, 0] * self.side * half
             coriolis += self.pulls[P_DRAG, 0] * upright * self.side * spin
             aside, upwards = coriolis * half, coriolis * upright
         coriolis = 2.0 * spin * speed

@@ -28,6 +28,7 @@ from rockflex.models._strike import WITHOUT, OwnLaw
 from rockflex.models._system import GAIN, GainsEnergyError
 
 TREMOR = 0.01  # m/s²: the error of a step is relative to the response to it, or to a larger motion so far
+LIGHT = 0.05  # of the vertical reaction at rest: the least size of the loss of support
 BARELY = 1e-10  # of that response: a velocity that is zero at a reversal
 
 
@@ -95,6 +96,12 @@ class Rocks:
         hysteresis = [TREMOR / GRAVITY] * (model.bouc_wen is not None)
         velocities = TREMOR / p.omega
         self.scale = np.concatenate((TREMOR / p.omega**2, velocities, [rotation, rotation * fall], hysteresis))
+        light = LIGHT * p.resting_reaction
+        self.curved = {
+            place: light if kind == VERTICAL else 0.0
+            for place, kind in enumerate(self.numbers.kinds)
+            if kind != LINEAR
+        }
         self.barely = BARELY * float(velocities[0]) if p.n_modes else 0.0
 
     def phase(self, key: Key) -> LinearPhase | NonlinearPhase:
@@ -130,7 +137,7 @@ class Rocks:
             self.scale,
             layout.memory,
             {layout.rotation: layout.spin} | {k: layout.modes + k for k in modes},
-            tuple(np.flatnonzero(self.numbers.kinds).tolist()) if model.complete and side != CLOSED else (),
+            self.curved if side != CLOSED else {},
         )
 
     def full(self, key: Key, branch: int) -> Key:
