@@ -11,7 +11,7 @@ import cython
 import numpy as np
 
 from rockflex.engine.system import up8
-from rockflex.engine.tableau import C, STAGES
+from rockflex.engine.tableau import STAGES, C
 
 if cython.compiled:
     from cython.cimports.libc.math import INFINITY, fabs, isfinite, sqrt
@@ -312,7 +312,7 @@ class Flow:
                 self.slopes[e] + direct,
                 self.bends[e] + direct,
             )
-            if low <= 0.0:
+            if min(low, high) <= 0.0:
                 return True
         return False
 

@@ -153,7 +153,9 @@ class Phases:
         count: cython.int = len(events)
         systems = tables.halvings.size
         outcomes = [outcome for event in events for outcome in (event, event.rest)]
-        jumps = [outcome.jump if isinstance(getattr(outcome, "jump", None), np.ndarray) else None for outcome in outcomes]
+        jumps = [
+            outcome.jump if isinstance(getattr(outcome, "jump", None), np.ndarray) else None for outcome in outcomes
+        ]
         rests = [event.rest for event in events]
         parts = [
             *(packed(each) for each in tables[4:]),
@@ -499,9 +501,7 @@ class Phases:
     def outputs_of(self, place, x, out):
         """The outputs of y, a and 1, those that are not linear as their rows say."""
         tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
-        LOOPS.product(
-            self.n + 2, up8_(tables.outputs), tables.outs, cython.address(x[0]), cython.address(out[0])
-        )
+        LOOPS.product(self.n + 2, up8_(tables.outputs), tables.outs, cython.address(x[0]), cython.address(out[0]))
 
     def observe(self, place, a, a_v, y, rates, out):
         """Replace the outputs that are not linear."""

@@ -250,9 +250,7 @@ class System:
             raise InputError(f"The system has no phase {key!r}: {error!r}.") from error
         place, n, m = f"phase {key!r}: ", self.layout.size, len(self.outputs)
         if not isinstance(found, LinearPhase | NonlinearPhase):
-            raise InputError(
-                f"{place}a LinearPhase or NonlinearPhase is needed, but {type(found).__name__} was given."
-            )
+            raise InputError(f"{place}a LinearPhase or NonlinearPhase is needed, but {type(found).__name__} was given.")
         shapes: dict[str, tuple[int, ...]] = {"C": (m, n), "d": (m,), "e": (m,)}
         if isinstance(found, LinearPhase):
             shapes = {"A": (n, n), "f": (n,), "c": (n,), **shapes}
@@ -286,7 +284,8 @@ def _checked_field(place: str, phase: NonlinearPhase, n: int, m: int, count: int
     if not isinstance(found, Field):
         if not callable(found):
             raise InputError(f"{place}field must be a Field or a function, but {found!r} was given.")
-        found = Function(found, n)
+        function: Any = found
+        found = Function(function, n)
     scale, counted = np.asarray(phase.scale, dtype=float), n if phase.counted is None else phase.counted
     if scale.ndim != 1 or not 0 < scale.size <= n or not (scale > 0.0).all():
         raise InputError(f"{place}scale must be 1 to {n} positive numbers, but {phase.scale!r} was given.")

@@ -259,7 +259,11 @@ ERROR_5 = np.array(
 )
 
 
-def sums() -> tuple["np.ndarray[tuple[int, int], np.dtype[np.intc]]", "np.ndarray[tuple[int, int], np.dtype[np.float64]]", "np.ndarray[tuple[int], np.dtype[np.intc]]"]:
+def sums() -> tuple[
+    "np.ndarray[tuple[int, int], np.dtype[np.intc]]",
+    "np.ndarray[tuple[int, int], np.dtype[np.float64]]",
+    "np.ndarray[tuple[int], np.dtype[np.intc]]",
+]:
     """Return every sum of stages: which stages, their weights, and how many there are.
 
     That before each stage comes first, then those of ERROR_3, ERROR_5 and the four rows of DENSE.

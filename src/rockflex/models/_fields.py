@@ -1,12 +1,13 @@
 """The vector field of the nonlinear models, what they are observed by, and their jumps. Declarations: `_fields.pxd`.
 
 Equations are those of Silva & Stojadinović 2024: 13 to 15, 23, 37 and 38 for the rates, 3, 21 and 22 for what is
-observed, and 19, 25 and 29 for impacts. The state is that of `rockflex.models.StateLayout`. Cython compiles this module;
-it runs as Python, too.
+observed, and 19, 25 and 29 for impacts. The state is that of `rockflex.models.StateLayout`. Cython compiles this
+module; it runs as Python, too.
 """
 
 import math
-from math import asin, cos, fabs, pow, sin, sqrt
+from math import asin, cos, fabs, sin, sqrt
+from math import pow as power_of
 
 import cython
 import numpy as np
@@ -14,7 +15,8 @@ import numpy as np
 from rockflex.models._pulls import DAMPING, DRAG, FORCE, MOMENT, PULL, STIFFNESS
 
 if cython.compiled:
-    from cython.cimports.libc.math import asin, cos, fabs, pow, sin, sqrt
+    from cython.cimports.libc.math import asin, cos, fabs, sin, sqrt
+    from cython.cimports.libc.math import pow as power_of
     from cython.cimports.rockflex.engine.field import Field, Jump
 else:
     from rockflex.engine.field import Field, Jump
@@ -63,7 +65,7 @@ C8 = cython.declare(cython.double, 1.0 / math.factorial(16))
 @cython.nogil
 @cython.exceptval(check=False)
 def sine_and_cosine(theta: cython.double) -> tuple[cython.double, cython.double]:
-    """sin θ and cos θ, without a call of the C library in every stage of a step; terms in pairs make short chains."""
+    """Sin θ and cos θ, without a call of the C library in every stage of a step; terms in pairs make short chains."""
     x: cython.double = theta * theta
     z: cython.double = x * x
     sine: cython.double
@@ -275,7 +277,7 @@ class RockingField(Field):
         power: cython.double = z
         factor: cython.double
         if left == 0:
-            return pow(z, self.exponent)
+            return power_of(z, self.exponent)
         while left & 1 == 0:
             power *= power
             left >>= 1
@@ -335,7 +337,9 @@ class RockingField(Field):
             out[n + i] += self.height[i] * moment
         out[2 * n], out[2 * n + 1] = spin, moment
         if self.hysteretic:
-            out[2 * n + 2] = fabs(y[n]) / self.yields * (1.0 + (self.gamma + fabs(self.beta)) * self.power(fabs(y[2 * n + 2])))
+            out[2 * n + 2] = (
+                fabs(y[n]) / self.yields * (1.0 + (self.gamma + fabs(self.beta)) * self.power(fabs(y[2 * n + 2])))
+            )
 
     def observe(self, y, rates, a, a_v, out):
         """Replace the outputs that are not linear in large rotations: see `rockflex.models._observe`."""

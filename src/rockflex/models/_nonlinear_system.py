@@ -98,9 +98,7 @@ class Rocks:
         self.scale = np.concatenate((TREMOR / p.omega**2, velocities, [rotation, rotation * fall], hysteresis))
         light = LIGHT * p.resting_reaction
         self.curved = {
-            place: light if kind == VERTICAL else 0.0
-            for place, kind in enumerate(self.numbers.kinds)
-            if kind != LINEAR
+            place: light if kind == VERTICAL else 0.0 for place, kind in enumerate(self.numbers.kinds) if kind != LINEAR
         }
         self.barely = BARELY * float(velocities[0]) if p.n_modes else 0.0
 
@@ -208,11 +206,12 @@ class Rocks:
         if not isinstance(law, VVELSimplified | VVELComplete | Restitution):
             return Event("impact", self.rotation(side), contact, jump=self.told(known, branch)), tips
         p = self.model.properties
-        fields = [self.field(key, branch) for key in (known.key, known.beside[1 if side == LEFT else 2])]
+        own, beyond = (self.field(key, branch) for key in (known.key, known.beside[1 if side == LEFT else 2]))
         unseen = p.translational_inertia - float(p.effective_mass @ p.effective_height**2)
         jump = Landing(
             partial(_gains, self.model),
-            *fields,
+            own,
+            beyond,
             law.e if isinstance(law, Restitution) else 0.0,
             law.shortest_excursion if isinstance(law, Restitution) else WITHOUT.shortest_excursion,
             unseen if isinstance(law, VVELComplete) else None,
@@ -271,4 +270,3 @@ class Rocks:
 def _gains(model: NonlinearModel) -> GainsEnergyError:
     """The error of a law that returns energy."""
     return GainsEnergyError(f"The impact law {shown(model.law)} returns energy.")
-
