@@ -1,5 +1,7 @@
 """Phases that are not linear: closed forms, SciPy, and a linear phase; compiled, and the same code as plain Python."""
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -73,7 +75,7 @@ def test_a_spring_that_hits_a_wall_moves_as_scipy_says(run_of):
         return 0.05 - y[0]
 
     touches.terminal, touches.direction = True, -1
-    for t, until in zip(times[:-1], times[1:], strict=True):
+    for t, until in itertools.pairwise(times):
         now = t
         while now < until:
             moved = solve_ivp(
@@ -104,7 +106,7 @@ def test_a_peak_inside_a_sample_is_found(run_of):
 
 
 def linear_and_not():
-    """An oscillator that lifts off a floor and lands on it, with a linear phase and one that is not said to be linear."""
+    """What lifts off a floor and lands on it, with a linear phase, and with one that is not said to be."""
 
     def of(*, linear):
         floor, hit = np.array([1.0, 0.0]), np.diag([0.0, 0.0])

@@ -248,14 +248,13 @@ class HybridEngine:
 
 def without_reversals(rows: Array, keys: Sequence[Any], places: Any) -> Array:
     """Leave out the states on both sides of a reversal of a hysteretic spring, which changes nothing else."""
-    own, times = np.array([list(key[:-1]) for key in keys])[places], rows[:, TIME]
-    together = times[1:] == times[:-1]
-    same = np.append(together & (own[1:] == own[:-1]).all(axis=1) & (places[1:] != places[:-1]), False)
-    first = ~np.append(False, same[:-1])  # of some states on both sides of reversals, of which the last one is left
-    begins = np.flatnonzero(first)
-    ends = np.append(begins[1:], times.size) - 1
-    beside = np.append(False, together)[begins] | np.append(together, False)[ends]
-    return rows[ends[(begins == ends) | beside]]
+    own, times, kept = np.array([list(key[:-1]) for key in keys])[places], rows[:, TIME], np.ones(len(rows), dtype=bool)
+    pairs = (times[1:] == times[:-1]) & (own[1:] == own[:-1]).all(axis=1) & (places[1:] != places[:-1])
+    for k in np.flatnonzero(pairs).tolist():
+        follows = k > 0 and times[k - 1] == times[k] and places[k - 1] != places[k]  # another event
+        precedes = k + 2 < times.size and times[k + 2] == times[k]
+        kept[k], kept[k + 1] = kept[k] and follows, precedes
+    return rows[kept]
 
 
 def _ends_of(batch: Batch, dt: float, allowed: Sequence[int], count: int, *, settles: bool) -> Ends:
