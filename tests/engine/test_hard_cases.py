@@ -226,7 +226,7 @@ def test_what_is_tracked_besides_changes_no_bit(seed):
         zeros = np.zeros(m)
         phase = LinearPhase(A, f, np.zeros(2 * n), C[:m], zeros, zeros)
         run = Run(System(StateLayout(y=2 * n), range(m), lambda _: phase, "all"), 0.01)
-        run.advance(a, history)
+        run.advance(a, history=history)
         return run.state.tobytes(), [run.peaks[k] for k in range(3)]
 
     few = found(3, history=False)
@@ -257,7 +257,7 @@ def test_systems_of_every_size_up_to_the_limits(n, m, k):
     events = tuple(Event(f"event {j}", (-1) ** j * row, "all", 100.0 + j) for j in range(k))
     phase = LinearPhase(A, np.ones(n), np.zeros(n), rng.normal(size=(m, n)), zeros, zeros, events)
     run = Run(System(StateLayout(y=n), range(m), lambda _: phase, "all"), 0.01)
-    run.advance(np.ones(30), True)
+    run.advance(np.ones(30), history=True)
     stands = -np.linalg.solve(A, np.ones(n))
     assert run.history[3][29] == pytest.approx(stands - scipy.linalg.expm(0.29 * A) @ stands, rel=1e-9, abs=1e-12)
 

@@ -89,7 +89,7 @@ def test_a_spring_that_hits_a_wall_moves_as_scipy_says(run_of):
         found.append(state)
     assert len(hits) > 3
     np.testing.assert_allclose([t for t, _, _ in run.events], hits, rtol=1e-9)
-    kept, _, _, states = run.history
+    kept, _, _, states, _ = run.history
     at_samples = np.isin(kept, times)
     np.testing.assert_allclose(states[at_samples], np.array(found)[np.isin(times, kept)], rtol=0.0, atol=1e-9)
     # Where it turns back before it reaches the wall, the peak is inside a sample.

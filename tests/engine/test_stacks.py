@@ -87,7 +87,7 @@ def test_work_is_the_same_whatever_has_run_before():
     used = Run(bilinear(*SYSTEMS[0]), 0.005)
     used.advance(shaking(4))
     used.restart()
-    used.advance(a, True)
+    used.advance(a, history=True)
     assert used.work == fresh.work > a.size
     limited = Run(bilinear(*SYSTEMS[0]), 0.005)
     limited.limit = fresh.work
@@ -136,7 +136,7 @@ def test_fast_modes_cost_little_and_hide_no_peak(turns, damping):
     near = np.interp(places, np.arange(a.size), a)
     rounding = 1e-12 + 1e-13 * fast**2 / 25.0  # the slow frequency is a small difference of stiff terms
     dense, part = Run(run.system, h / fine), Run(run.system, h)
-    dense.advance(near, True)
+    dense.advance(near, history=True)
     part.advance(a[:101])
     for row, name in zip(C @ dense.history[3].T, run.system.outputs, strict=True):
         assert part.peaks[name][0] >= np.abs(row).max() * (1.0 - rounding)

@@ -102,7 +102,7 @@ def test_a_bilinear_oscillator_in_an_earthquake(run_of):
 def test_two_blocks_in_a_row(run_of):
     gap, size, e, (m1, m2), speed = 0.5, 0.2, 0.4, (0.3, 0.2), 2.5
     run = run_of(blocks(gap, size, e, (m1, m2)), 0.01, [0.0, gap + size, speed, 0.0])
-    run.advance(np.zeros(401), True)
+    run.advance(np.zeros(401), history=True)
     before = math.sqrt(speed**2 - 2.0 * m1 * GRAVITY * gap)
     meets = (speed - before) / (m1 * GRAVITY)
     first, second = 0.5 * (1.0 - e) * before, 0.5 * (1.0 + e) * before
@@ -111,7 +111,7 @@ def test_two_blocks_in_a_row(run_of):
     np.testing.assert_allclose([t for t, _, _ in run.events], (meets, *stops), rtol=1e-12)
     ends = gap + first**2 / (2.0 * m1 * GRAVITY), gap + size + second**2 / (2.0 * m2 * GRAVITY)
     np.testing.assert_allclose(run.state, (*ends, 0.0, 0.0), rtol=1e-12, atol=1e-14)
-    times, places, _, states = run.history
+    times, places, _, states, _ = run.history
     keys = [run.keys[place] for place in places]
     at = np.flatnonzero(times == times[keys.index((True, True))])  # the impact: its state before and after
     np.testing.assert_allclose(states[at, 2:], [(before, 0.0), (first, second)], rtol=1e-12, atol=1e-14)
@@ -136,7 +136,7 @@ def test_what_is_logged_changes_no_bit():
 
     def result(*, history: bool) -> tuple[object, ...]:
         run = Run(bilinear(9.0, 0.02, 0.1, 0.01), 0.01)
-        run.advance(a, history)
+        run.advance(a, history=history)
         return run.state.tobytes(), run.peaks, run.events
 
     assert result(history=False) == result(history=True) == result(history=False)

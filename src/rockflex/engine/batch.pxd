@@ -7,8 +7,8 @@ cdef class Batch:
     cdef public int place  # the present run
     cdef readonly int count
     cdef readonly tuple names
-    cdef double[::1] samples, scales, record  # of all records; factors; room for the longest one
-    cdef Py_ssize_t[:, ::1] bounds  # of the record of each run in them
+    cdef double[::1] samples, scales, record, rise  # of all records; factors; room for the longest one, twice
+    cdef Py_ssize_t[:, ::1] bounds  # of the record of each run in them, and of the vertical one
     cdef long long free  # samples without excitation after each record
     cdef bint settles
     cdef int[::1] kinds  # of the events that are counted
@@ -17,6 +17,7 @@ cdef class Batch:
     cdef int outputs, n
 
     cdef double[::1] scaled(self) noexcept nogil
+    cdef double[::1] scaled_vertical(self) noexcept nogil
     cdef void close(
         self, int outcome, double time, double h, double[::1] high, double[::1] when, double[::1] y, Journal journal
     ) noexcept nogil

@@ -27,6 +27,8 @@ class Batch:
         Whether a run ends before that once nothing can happen any more, as in `Run.settle`.
     names : sequence of str
         Names of the events that are counted.
+    verticals : sequence of ndarray, optional
+        Vertical accelerations, one for each record and as long, or None for none; they have the same factor.
 
     Attributes
     ----------
@@ -45,23 +47,32 @@ class Batch:
         The last ones.
     """
 
-    def __init__(self, system, records, scales=None, free=0, settles=False, names=()):
+    def __init__(self, system, records, scales=None, free=0, settles=False, names=(), verticals=None):
         count, places, distinct, first = len(records), {}, [], 0
-        for each in records:
-            if id(each) not in places:
+        verticals = [None] * count if verticals is None else list(verticals)
+        if len(verticals) != count:
+            raise InputError(f"There are {count} records, but {len(verticals)} vertical accelerations.")
+        for each in (*records, *verticals):
+            if each is not None and id(each) not in places:
                 distinct.append(acceleration(each))
                 places[id(each)] = first, first + distinct[-1].size, float(np.abs(distinct[-1]).max())
                 first += distinct[-1].size
         scales = np.ones(count) if scales is None else np.array(scales, dtype=float)
         if scales.shape != (count,):
             raise InputError(f"There are {count} records, but scales of shape {scales.shape}.")
-        for scale, each in zip(scales.tolist(), records, strict=True):
-            if not isfinite(scale * places[id(each)][2]):
+        places[id(None)] = 0, 0, 0.0
+        for each, other in zip(records, verticals, strict=True):
+            if other is not None and len(each) != len(other):
+                raise InputError(f"A vertical acceleration has {len(other)} samples, and its record {len(each)}.")
+        for scale, each, other in zip(scales.tolist(), records, verticals, strict=True):
+            if not isfinite(scale * max(places[id(each)][2], places[id(other)][2])):
                 raise InputError(f"An acceleration times its scale must be finite, but the scale is {scale}.")
         self.count, self.place, self.names, self.scales = count, 0, tuple(names), scales
         self.samples = np.concatenate([np.zeros(1), *distinct])[1:]
-        self.bounds = np.array([places[id(each)][:2] for each in records], dtype=np.intp).reshape(-1, 2)
-        self.record = np.zeros(max([each.size for each in distinct], default=0))
+        pairs = zip(records, verticals, strict=True)
+        bounds = [(*places[id(each)][:2], *places[id(other)][:2]) for each, other in pairs]
+        self.bounds = np.array(bounds, dtype=np.intp).reshape(-1, 4)
+        self.record, self.rise = np.zeros((2, max([each.size for each in distinct], default=0)))
         self.free, self.settles, self.outputs, self.n = (
             min(free, 2**62),
             settles,
@@ -110,6 +121,15 @@ class Batch:
         for i in range(size):
             self.record[i] = self.samples[first + i] * self.scales[self.place]
         return self.record[:size]
+
+    def scaled_vertical(self):
+        """Its vertical acceleration, empty if there is none."""
+        i: cython.Py_ssize_t
+        first: cython.Py_ssize_t = self.bounds[self.place, 2]
+        size: cython.Py_ssize_t = self.bounds[self.place, 3] - first
+        for i in range(size):
+            self.rise[i] = self.samples[first + i] * self.scales[self.place]
+        return self.rise[:size]
 
     def close(self, outcome, time, h, high, when, y, journal):
         """Note how the present run has ended, and go on to the next one."""

@@ -14,6 +14,7 @@ class Batch:
         free: int = 0,
         settles: bool = False,
         names: Sequence[str] = (),
+        verticals: Sequence[Array | None] | None = None,
     ) -> None: ...
     @property
     def count(self) -> int: ...

@@ -31,28 +31,28 @@ cdef class Flow:
     cdef double[::1] outs, ends, early, late  # outputs at four places of a step
     cdef double[::1] below, beyond  # conditions at both ends
     cdef double[::1] slopes, bends  # rates of rows at both ends
-    cdef double[::1] direct  # of conditions and of outputs: the factor of a
-    cdef double[::1] vector
+    cdef double[::1] vector, term
     cdef int[::1] doubt
 
     cdef void begin(self) noexcept nogil
     cdef void resume(self, bint counts) noexcept nogil
     cdef void forget(self) noexcept nogil
     cdef void enter(self, int place) noexcept nogil
-    cdef double take(self, int place, double start, double end, double u) noexcept nogil
+    cdef double take(self, int place, double start, double end, (double, double) v, double u) noexcept nogil
     cdef void accept(self) noexcept nogil
     cdef void leave(self) noexcept nogil
-    cdef int march(self, int place, const double[::1] a, int i, int last, double[:, ::1] states) noexcept nogil
+    cdef int march(self, int place, const double[::1] a, const double[::1] v, int i, int last, double[:, ::1] states) noexcept nogil
     cdef void keep(self) noexcept nogil
     cdef void restore(self) noexcept nogil
-    cdef void look(self, int place, double a, double[::1] y, double[::1] rates, double[::1] outs) noexcept nogil
+    cdef void look(self, int place, double a, double v, double[::1] y, double[::1] rates, double[::1] outs) noexcept nogil
+    cdef void look_ahead(self, int place) noexcept nogil
     cdef double counted(self, int j, double value) noexcept nogil
     cdef void raise_to(self, double[::1] outs, double sample) noexcept nogil
     cdef bint conditions_hide(self, int place) noexcept nogil
     cdef bint peaks_hide(self, int place) noexcept nogil
     cdef bint curves_hide(self, int place) noexcept nogil
     cdef void look_within(self, int place, int stage, double t, double[::1] outs) noexcept nogil
-    cdef void slopes_of(self, bint outputs, int place, double[::1] rates, double[::1] out) noexcept nogil
+    cdef void slopes_of(self, bint outputs, int place) noexcept nogil
     cdef bint clear(self, double t, double sample) noexcept nogil
     cdef int fill(self, double[:, ::1] series, double[::1] away) noexcept nogil
     cdef void complete(self, double[:, ::1] series, int first) noexcept nogil

@@ -94,7 +94,7 @@ class Flow:
         self.nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(CURVED) / (CURVED - 1))
         self.fits = np.linalg.inv(np.vander(np.asarray(self.nodes), increasing=True))
         self.tilts = np.array([[0.0, 1.0, 0.0, 0.0], [0.0, 1.0, 2.0, 3.0]]) @ CUBIC
-        self.kept, self.vector = np.zeros(3 * self.states), np.zeros(self.states)
+        self.kept, self.vector, self.term = np.zeros(3 * self.states), np.zeros(self.states), np.zeros(self.states)
         self.facts = []
         self.curved, self.velocities = np.zeros((1, 1), dtype=np.intc), np.zeros((1, self.n), dtype=np.intc)
         self.least = np.zeros((1, 1))
@@ -109,7 +109,7 @@ class Flow:
         """Make room for phases with so many conditions."""
         wide = up8(max(1, conditions))
         self.more, self.below, self.beyond = np.zeros((3, wide))
-        self.slopes, self.bends, self.direct = np.zeros((3, max(wide, up8(max(1, self.outputs)))))
+        self.slopes, self.bends = np.zeros((2, max(wide, up8(max(1, self.outputs)))))
 
     def know(self, phase, place):
         """Take a phase: its outputs that are not linear, and which states are rates of others."""
@@ -152,11 +152,8 @@ class Flow:
         for k in range(self.more.shape[0]):
             self.more[k] = 0.0
         self.phases.begin(place, self.y, self.more)
-        for k in range(self.n + 2):
-            self.vector[k] = 1.0 if k == self.n else 0.0
-        self.phases.conditions_of(place, self.vector, self.direct)
 
-    def take(self, place, start, end, u):
+    def take(self, place, start, end, v, u):
         """Take a step from the place u of a sample; return the part of the sample, -1 if none is short enough."""
         longest: cython.double = 1.0 - u
         part: cython.double = min(self.step, longest)
@@ -167,13 +164,13 @@ class Flow:
             return self.part
         if not self.entered or self.place != place:
             self.enter(place)
-        self.shaking[0], self.shaking[2], self.shaking[3] = start + (end - start) * u, 0.0, 0.0
+        self.shaking[0], self.shaking[2] = start + (end - start) * u, v[0] + (v[1] - v[0]) * u
         if not self.known:
             self.phases.rates(place, self.shaking[0], self.shaking[2], self.y, self.first, self.counts)
             self.known = True
         while True:
             self.peaks.add_work(WORK)
-            self.shaking[1] = (end - start) * part
+            self.shaking[1], self.shaking[3] = (end - start) * part, (v[1] - v[0]) * part
             error = self.phases.attempt(
                 place, part * self.h, self.shaking, self.y, self.largest, self.work, self.counts
             )
@@ -205,30 +202,34 @@ class Flow:
         """Note that the state has moved to a place within the step."""
         self.known = self.tried = False
 
-    def march(self, place, a, i, last, states):
+    def march(self, place, a, v, i, last, states):
         """Advance whole samples from i up to `last` as far as nothing happens; the number of the sample reached."""
         k: cython.int
         steps: cython.int
         u: cython.double
         part: cython.double
+        rise: cython.double = v[i] if v.shape[0] > 0 else 0.0
+        risen: cython.double = rise
         before: cython.double = self.peaks.before()
         until: cython.longlong = self.peaks.work() + STRETCH
         self.peaks.look(False)
         if not self.entered or self.place != place:
             self.enter(place)
         if not self.known:
-            self.phases.rates(place, a[i], 0.0, self.y, self.first, self.counts)
+            self.phases.rates(place, a[i], rise, self.y, self.first, self.counts)
             self.known = True
         self.y[self.n], self.y[self.n + 1] = a[i], 1.0
-        self.look(place, a[i], self.y, self.first, self.outs)
+        self.look(place, a[i], rise, self.y, self.first, self.outs)
         self.raise_to(self.outs, before + i)
-        self.phases.conditions_of(place, self.y, self.below)
+        self.phases.rows_of(place, False, self.y, self.y, (rise, 0.0, rise), self.below)
         while i < last and self.peaks.work() < until:
             u, steps, self.kept_step = 0.0, 0, self.step
+            if v.shape[0] > 0:
+                rise, risen = v[i], v[i + 1]
             while u < 1.0:
-                part = self.take(place, a[i], a[i + 1], u)
+                part = self.take(place, a[i], a[i + 1], (rise, risen), u)
                 if part > 0.0 and steps < OFTEN and not self.conditions_hide(place):
-                    self.look(place, self.shaking[0] + self.shaking[1], self.end, self.last, self.ends)
+                    self.look_ahead(place)
                     if not self.peaks_hide(place) and not self.curves_hide(place):
                         if steps == 0 and part < 1.0:
                             self.keep()
@@ -265,11 +266,16 @@ class Flow:
             self.first[k] = self.kept[2 * self.states + k]
         self.step, self.known = self.kept_step, True
 
-    def look(self, place, a, y, rates, outs):
-        """Compute the outputs."""
-        self.phases.outputs_of(place, y, outs)
+    def look(self, place, a, v, y, rates, outs):
+        """Compute the outputs under both accelerations."""
+        self.phases.rows_of(place, True, y, y, (v, 0.0, v), outs)
         if self.curved[place, 0] > 0:
-            self.phases.observe(place, a, 0.0, y, rates, outs)
+            self.phases.observe(place, a, v, y, rates, outs)
+
+    def look_ahead(self, place):
+        """Compute the outputs at the end of the step."""
+        a: cython.double = self.shaking[0] + self.shaking[1]
+        self.look(place, a, self.shaking[2] + self.shaking[3], self.end, self.last, self.ends)
 
     def counted(self, j, value):
         """What counts of an output."""
@@ -284,33 +290,34 @@ class Flow:
             if value > self.high[j]:
                 self.high[j], self.when[j] = value, sample
 
-    def slopes_of(self, outputs, place, rates, out):
-        """Compute the rates of conditions or outputs over a step, apart from those of the acceleration."""
+    def slopes_of(self, outputs, place):
+        """Compute the rates of conditions or outputs over a step, at both of its ends."""
         k: cython.int
-        for k in range(self.n + 2):
-            self.vector[k] = rates[k] * self.part * self.h if k < self.n else 0.0
-        if outputs:
-            self.vector[self.n] = self.shaking[1]
-            self.phases.outputs_of(place, self.vector, out)
-        else:
-            self.phases.conditions_of(place, self.vector, out)
+        v: cython.double = self.shaking[2]
+        for k in range(self.n):
+            self.vector[k] = self.first[k] * self.part * self.h
+        self.vector[self.n], self.vector[self.n + 1] = self.shaking[1], 0.0
+        self.phases.rows_of(
+            place, outputs, self.vector, self.y, (v, self.shaking[3], self.shaking[3]), self.slopes
+        )
+        v += self.shaking[3]
+        for k in range(self.n):
+            self.vector[k] = self.last[k] * self.part * self.h
+        self.phases.rows_of(
+            place, outputs, self.vector, self.end, (v, self.shaking[3], self.shaking[3]), self.bends
+        )
 
     def conditions_hide(self, place):
         """Whether a condition may fail within the step or at its end."""
         e: cython.int
         low: cython.double
         high: cython.double
-        direct: cython.double
-        self.phases.conditions_of(place, self.end, self.beyond)
-        self.slopes_of(False, place, self.first, self.slopes)
-        self.slopes_of(False, place, self.last, self.bends)
+        v: cython.double = self.shaking[2] + self.shaking[3]
+        self.phases.rows_of(place, False, self.end, self.end, (v, 0.0, v), self.beyond)
+        self.slopes_of(False, place)
         for e in range(self.phases.events(place)):
-            direct = self.direct[e] * self.shaking[1]
             low, high = range_of(
-                self.below[e] + self.more[e],
-                self.beyond[e] + self.more[e],
-                self.slopes[e] + direct,
-                self.bends[e] + direct,
+                self.below[e] + self.more[e], self.beyond[e] + self.more[e], self.slopes[e], self.bends[e]
             )
             if min(low, high) <= 0.0:
                 return True
@@ -332,8 +339,7 @@ class Flow:
             if self.doubt[j] == 0 or max(fabs(self.outs[j]), fabs(self.ends[j])) <= NEAR * self.high[j]:
                 continue
             if not sloped:
-                self.slopes_of(True, place, self.first, self.slopes)
-                self.slopes_of(True, place, self.last, self.bends)
+                self.slopes_of(True, place)
                 sloped = True
             low, high = range_of(self.outs[j], self.ends[j], self.slopes[j], self.bends[j])
             most = max(self.counted(j, self.outs[j]), self.counted(j, self.ends[j]))
@@ -375,15 +381,15 @@ class Flow:
         a: cython.double = self.shaking[0] + t * self.shaking[1]
         self.phases.within(place, stage, self.part * self.h, self.y, self.work, self.spot)
         self.spot[self.n], self.spot[self.n + 1] = a, 1.0
-        self.look(place, a, self.spot, self.work[stage], outs)
+        self.look(place, a, self.shaking[2] + t * self.shaking[3], self.spot, self.work[stage], outs)
 
     def clear(self, t, sample):
         """Raise the peaks over the step up to t if none may be within; return whether that was all."""
         j: cython.int
         self.y[self.n], self.y[self.n + 1] = self.shaking[0], 1.0
-        self.look(self.place, self.shaking[0], self.y, self.first, self.outs)
+        self.look(self.place, self.shaking[0], self.shaking[2], self.y, self.first, self.outs)
         self.raise_to(self.outs, sample)
-        self.look(self.place, self.shaking[0] + self.shaking[1], self.end, self.last, self.ends)
+        self.look_ahead(self.place)
         if t < 1.0:
             for j in range(self.outputs):
                 if self.counted(j, self.ends[j]) > self.high[j]:
@@ -400,16 +406,24 @@ class Flow:
         e: cython.int
         i: cython.int
         events: cython.int = self.phases.events(self.place)
-        self.terms = CURVED if self.curved[self.place, 0] > 0 else TERMS
+        v: cython.double = self.shaking[2]
+        rise: cython.double = self.shaking[3]
+        first: cython.double
+        self.terms = CURVED if self.curved[self.place, 0] > 0 else TERMS if v == 0.0 and rise == 0.0 else TERMS + 1
         self.phases.bend(self.place, self.part * self.h, self.shaking, self.y, self.work, series, self.counts)
-        for e in range(events):
-            series[0, self.states + e] += self.more[e]
-            away[e] = 0.0
-            for k in range(1, TERMS):
-                away[e] += fabs(series[k, self.states + e])
         for k in range(TERMS, self.terms):
-            for i in range(self.states + events):
+            for i in range(self.states):
                 series[k, i] = 0.0
+        for e in range(events):
+            away[e] = 0.0
+        for k in range(self.terms):
+            first = v if k == 0 else rise if k == 1 else 0.0
+            self.phases.rows_of(
+                self.place, False, series[k], series[max(k - 1, 0)], (v, rise if k > 0 else 0.0, first), self.beyond
+            )
+            for e in range(events):
+                series[k, self.states + e] = self.beyond[e] + (self.more[e] if k == 0 else 0.0)
+                away[e] += fabs(self.beyond[e]) if k > 0 else 0.0
         return self.terms
 
     def complete(self, series, first):
@@ -418,8 +432,9 @@ class Flow:
         k: cython.int
         r: cython.int
         a: cython.double
+        v: cython.double
         t: cython.double
-        self.phases.complete(self.place, self.terms, series)
+        self.phases.complete(self.place, (self.shaking[2], self.shaking[3]), self.terms, series)
         if self.curved[self.place, 0] == 0:
             return
         for k in range(self.curved[self.place, 0]):
@@ -427,11 +442,11 @@ class Flow:
                 series[r, first + self.curved[self.place, 1 + k]] = 0.0
         for r in range(CURVED):
             t = self.nodes[r]
-            a = self.shaking[0] + t * self.shaking[1]
+            a, v = self.shaking[0] + t * self.shaking[1], self.shaking[2] + t * self.shaking[3]
             self.phases.evaluate(series, TERMS, t, self.spot)
             self.spot[self.n], self.spot[self.n + 1] = a, 1.0
-            self.phases.rates(self.place, a, 0.0, self.spot, self.spot_rates, False)
-            self.look(self.place, a, self.spot, self.spot_rates, self.early)
+            self.phases.rates(self.place, a, v, self.spot, self.spot_rates, False)
+            self.look(self.place, a, v, self.spot, self.spot_rates, self.early)
             for k in range(self.curved[self.place, 0]):
                 j = self.curved[self.place, 1 + k]
                 for i in range(CURVED):
@@ -446,8 +461,11 @@ class Flow:
         i: cython.int
         e: cython.int
         v: cython.int
+        rise: cython.double
         length: cython.double = self.part * self.h
         events: cython.int = self.phases.events(self.place)
+        for i in range(self.n):
+            self.term[i] = self.vector[i]
         if order == 0:
             for i in range(self.n):
                 self.vector[i] = max(fabs(self.y[i]), sizes[i])
@@ -460,7 +478,9 @@ class Flow:
         if order <= 2:
             self.vector[self.n] = fabs(self.shaking[order]) if order < 2 else 0.0
             self.vector[self.n + 1] = 1.0 if order == 0 else 0.0
-            self.phases.magnitudes(self.place, self.vector, sums[order])
+            self.phases.magnitudes(
+                self.place, (self.shaking[2], self.shaking[3]), order, self.term, self.vector, sums[order]
+            )
         for e in range(events):
             if order == 0:
                 sums[0, e] += fabs(self.more[e])
@@ -470,8 +490,12 @@ class Flow:
             for i in range(self.n):
                 v = self.velocities[self.place, i]
                 self.vector[i] = 0.0 if v < 0 else self.first[v] * 0.5 * length * length
-            self.vector[self.n + 1] = 0.0
-            self.phases.conditions_of(self.place, self.vector, self.beyond)
+                self.term[i] = self.first[i] * length
+            self.vector[self.n] = self.vector[self.n + 1] = 0.0
+            rise = self.shaking[3]
+            self.phases.rows_of(
+                self.place, False, self.vector, self.term, (self.shaking[2], rise, 0.0), self.beyond
+            )
             for e in range(events):
                 if self.exact[self.place, e] == 0 or fabs(series[0, self.states + e]) > VANISHES * sums[0, e]:
                     continue

@@ -8,12 +8,16 @@ cdef class Journal:
     cdef Py_ssize_t n_nodes
     cdef double[::1] times
     cdef int[:, ::1] exits
-    cdef int[::1] often
+    cdef int[::1] often  # events of each kind
+    cdef int[:, ::1] kinds  # numbers of the names of events, by phase and event
+    cdef dict names  # those numbers by name
     cdef double[:, ::1] rows
     cdef int[::1] places
 
-    cpdef bint wants(self, double a) noexcept nogil
-    cpdef int keep(self, double sample, double a, double[::1] y, int place) except -1 nogil
+    cpdef bint wants(self, double a, double v) noexcept nogil
+    cpdef int keep(self, double sample, double a, double v, double[::1] y, int place) except -1 nogil
     cpdef void begin(self) noexcept nogil
     cpdef int count(self, int kind) noexcept nogil
-    cpdef int happen(self, double time, int place, int event, int kind) except -1 nogil
+    cpdef int kind(self, object name)
+    cpdef meet(self, int place, tuple events)
+    cpdef int happen(self, double time, int place, int event) except -1 nogil

@@ -12,36 +12,53 @@ class Journal:
     def __init__(self, n):
         self.n = n
         self.times, self.exits = np.zeros(64), np.zeros((64, 2), dtype=np.intc)
-        self.rows, self.places = np.zeros((0, 2 + n)), np.zeros(0, dtype=np.intc)
-        self.often = np.zeros(16, dtype=np.intc)
+        self.rows, self.places = np.zeros((0, 3 + n)), np.zeros(0, dtype=np.intc)
+        self.often, self.kinds, self.names = np.zeros(16, dtype=np.intc), np.zeros((4, 4), dtype=np.intc), {}
         self.begin()
+
+    def kind(self, name):
+        """The number of a name of events."""
+        return self.names.setdefault(name, len(self.names))
+
+    def meet(self, place, events):
+        """Take note of the events of a phase."""
+        rows, columns = np.shape(self.kinds)
+        if place >= rows or len(events) > columns:
+            kinds = np.zeros((2 * place + 4, max(len(events), columns)), dtype=np.intc)
+            kinds[:rows, :columns] = self.kinds
+            self.kinds = kinds
+        number: cython.int
+        for number, event in enumerate(events):
+            self.kinds[place, number] = self.kind(event.name)
 
     def begin(self):
         """Begin anew."""
         self.n_events = self.n_nodes = 0
         self.often[:] = 0
 
-    def wants(self, a):
+    def wants(self, a, v):
         """Whether the history does not yet end at an acceleration."""
-        return self.n_nodes == 0 or self.rows[self.n_nodes - 1, 1] != a
+        last: cython.Py_ssize_t = self.n_nodes - 1
+        return last < 0 or self.rows[last, 1] != a or self.rows[last, 2] != v
 
-    def keep(self, sample, a, y, place):
+    def keep(self, sample, a, v, y, place):
         """Add a state to the history."""
         k: cython.int
         if self.n_nodes == self.rows.shape[0]:
             with cython.gil:
                 more = 512 + self.n_nodes
-                self.rows = np.concatenate((self.rows, np.zeros((more, 2 + self.n))))
+                self.rows = np.concatenate((self.rows, np.zeros((more, 3 + self.n))))
                 self.places = np.concatenate((self.places, np.zeros(more, dtype=np.intc)))
-        self.rows[self.n_nodes, 0], self.rows[self.n_nodes, 1] = sample, a
+        self.rows[self.n_nodes, 0], self.rows[self.n_nodes, 1], self.rows[self.n_nodes, 2] = sample, a, v
         for k in range(self.n):
-            self.rows[self.n_nodes, 2 + k] = y[k]
+            self.rows[self.n_nodes, 3 + k] = y[k]
         self.places[self.n_nodes] = place
         self.n_nodes += 1
         return 0
 
-    def happen(self, time, place, event, kind):
-        """Add an event of a kind."""
+    def happen(self, time, place, event):
+        """Add an event of a phase."""
+        kind: cython.int = self.kinds[place, event]
         if self.n_events == self.times.shape[0]:
             with cython.gil:
                 self.times = np.concatenate((self.times, np.zeros(self.n_events)))
@@ -67,6 +84,6 @@ class Journal:
 
     @property
     def nodes(self):
-        """Samples, places of phases, accelerations and states of the history."""
+        """Samples, places of phases, accelerations, states, and vertical accelerations of the history."""
         rows = np.array(self.rows[: self.n_nodes])
-        return rows[:, 0], np.array(self.places[: self.n_nodes]), rows[:, 1], rows[:, 2:]
+        return rows[:, 0], np.array(self.places[: self.n_nodes]), rows[:, 1], rows[:, 3:], rows[:, 2]

@@ -1,5 +1,14 @@
 cdef extern from "march.h" nogil:
     int AHEAD, BLOCK, MAX_STATES, MAX_ROWS
+    ctypedef struct Shaken:
+        int fed, shift
+        const int *places
+        const double *now
+        const double *outs
+        const double *magnitude
+        const double *most
+    ctypedef struct Climb:
+        double start, rise
     ctypedef struct Tables:
         int n, outputs, rows, shift, parts
         double h
@@ -18,6 +27,7 @@ cdef extern from "march.h" nogil:
         const double *magnitude
         const double *most
         const double *one_sided
+        Shaken shaken
     ctypedef struct Log:
         double *high
         double *when
@@ -45,13 +55,14 @@ cdef extern from "march.h" nogil:
         int group
         size_t workspace
         void (*product)(int columns, int rows, const double *table, const double *x, double *out) noexcept nogil
-        int (*expand)(const Tables *p, double h, double a, double rise, const double *y, int room, int width, double *series) noexcept nogil
+        int (*expand)(const Tables *p, double h, double a, double rise, Climb v, const double *y, int room, int width, double *series) noexcept nogil
         void (*evaluate)(int rows, int terms, int width, const double *series, double t, double *out) noexcept nogil
         void (*amounts)(int rows, int terms, int width, const double *series, double t, double *out) noexcept nogil
         void (*spread)(int rows, int terms, int width, const double *series, double *out) noexcept nogil
-        void (*reach)(const Tables *p, int terms, int width, const double *series, double *start, double *away) noexcept nogil
-        void (*complete)(const Tables *p, int terms, int width, double *series) noexcept nogil
-        int (*march)(const Tables *p, int phase, const double *a, int i, int last, double *y, Log *log) noexcept nogil
+        void (*reach)(const Tables *p, Climb v, int terms, int width, const double *series, double *start, double *away) noexcept nogil
+        void (*complete)(const Tables *p, Climb v, int terms, int width, double *series) noexcept nogil
+        void (*magnitudes)(const Tables *p, Climb v, int order, const double *before, const double *x, double *out) noexcept nogil
+        int (*march)(const Tables *p, int phase, const double *a, const double *v, int i, int last, double *y, Log *log) noexcept nogil
         void (*combine)(int count, int terms, const int *which, const double *weights, double h, const double *start, const double *rates, int width, double *out) noexcept nogil
         void (*errors)(int count, const double *coarse, const double *fine, const double *size, const double *y, const double *end, const double *floor, double *out) noexcept nogil
         void (*powers)(int count, double h, const double *y, const double *end, const double *first, const double *last, const double *bends, int stride, int width, double *series) noexcept nogil
@@ -79,22 +90,23 @@ cdef class Phases:
     cdef readonly int count
     cdef int n, states
     cdef double[::1] one_sided
-    cdef list contents, offsets, fields
+    cdef list contents, offsets, shaken, fields
+    cdef double[::1] room
 
     cdef int events(self, int place) noexcept nogil
     cdef int halvings(self, int place) noexcept nogil
-    cdef int shift(self, int place) noexcept nogil
+    cdef int shift(self, int place, (double, double) v) noexcept nogil
     cdef double scale(self, int place, int event) noexcept nogil
     cdef int following(self, int place, int outcome) noexcept nogil
     cdef int jump(self, int place, int outcome, bint magnitudes, double[::1] y, double[::1] workspace) noexcept nogil
-    cdef int rests(self, int place, int event, double[::1] y, double a) noexcept nogil
-    cdef int march(self, int place, const double[::1] a, int i, int last, double[::1] y, Peaks peaks, double[:, ::1] states) noexcept nogil
-    cdef int expand(self, int place, double h, double a, double rise, double[::1] y, double[:, ::1] series, double[::1] away) noexcept nogil
-    cdef void reach(self, int place, int terms, double[:, ::1] series, double[::1] start, double[::1] away) noexcept nogil
-    cdef void complete(self, int place, int terms, double[:, ::1] series) noexcept nogil
+    cdef int rests(self, int place, int event, double[::1] y, double a, double v) noexcept nogil
+    cdef int march(self, int place, const double[::1] a, const double[::1] v, int i, int last, double[::1] y, Peaks peaks, double[:, ::1] states) noexcept nogil
+    cdef int expand(self, int place, double h, double a, double rise, (double, double) v, double[::1] y, double[:, ::1] series, double[::1] away) noexcept nogil
+    cdef void reach(self, int place, (double, double) v, int terms, double[:, ::1] series, double[::1] start, double[::1] away) noexcept nogil
+    cdef void complete(self, int place, (double, double) v, int terms, double[:, ::1] series) noexcept nogil
     cdef void evaluate(self, double[:, ::1] series, int terms, double t, double[::1] out) noexcept nogil
     cdef void amounts(self, double[:, ::1] series, int terms, double t, double[::1] out) noexcept nogil
-    cdef void magnitudes(self, int place, double[::1] x, double[::1] out) noexcept nogil
+    cdef void magnitudes(self, int place, (double, double) v, int order, double[::1] before, double[::1] x, double[::1] out) noexcept nogil
     cdef bint nonlinear(self, int place) noexcept nogil
     cdef int leap(self, int place, int event, double[::1] y, double a, double a_v) noexcept nogil
     cdef void begin(self, int place, double[::1] y, double[::1] more) noexcept nogil
@@ -105,7 +117,6 @@ cdef class Phases:
     cdef void within(self, int place, int stage, double h, double[::1] y, double[:, ::1] work, double[::1] out) noexcept nogil
     cdef double attempt(self, int place, double h, double[::1] shaking, double[::1] y, double[::1] sizes, double[:, ::1] work, bint counted) noexcept nogil
     cdef void bend(self, int place, double h, double[::1] shaking, double[::1] y, double[:, ::1] work, double[:, ::1] series, bint counted) noexcept nogil
-    cdef void conditions_of(self, int place, double[::1] x, double[::1] out) noexcept nogil
-    cdef void outputs_of(self, int place, double[::1] x, double[::1] out) noexcept nogil
+    cdef void rows_of(self, int place, bint outputs, double[::1] x, double[::1] before, (double, double, double) v, double[::1] out) noexcept nogil
     cdef void observe(self, int place, double a, double a_v, double[::1] y, double[::1] rates, double[::1] out) noexcept nogil
     cdef int moving(self, int place) noexcept nogil

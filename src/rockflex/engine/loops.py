@@ -136,7 +136,8 @@ class Phases:
 
     def __init__(self, one_sided, states):
         self.one_sided, self.n, self.states = one_sided, states, up8(states + 2)
-        self.contents, self.offsets, self.count, self.fields = [], [], 0, []
+        self.contents, self.offsets, self.shaken, self.count, self.fields = [], [], [], 0, []
+        self.room = np.zeros(2 * states + 8)
 
     def __dealloc__(self):
         k: cython.int
@@ -161,7 +162,7 @@ class Phases:
             *(packed(each) for each in tables[4:]),
             np.array([event.scale for event in events]).reshape(count, systems).T,
             *(np.concatenate((packed(padded(J)), packed(padded(np.abs(J)))), axis=1) for J in jumps if J is not None),
-            *(np.column_stack((rest.row, rest.direct, rest.constant)) for rest in rests if rest is not None),
+            *(conditions_of(rest) for rest in rests if rest is not None),
         ]
         offsets = np.cumsum([0, *(up8(part.shape[1]) for part in parts)], dtype=np.intp)
         content = aligned(systems, int(offsets[-1]))
@@ -172,6 +173,7 @@ class Phases:
         phase.tables.n, phase.tables.outputs, phase.tables.rows = self.n, tables.outputs, tables.rows
         phase.tables.shift = tables.shift
         phase.tables.parts, phase.tables.h = tables.bend.shape[2] - 2, h
+        phase.tables.shaken.now = cython.NULL
         phase.events = count
         phase.jump = cython.cast(
             cython.pointer(cython.p_const_double), calloc(2 * count + 1, cython.sizeof(cython.p_void))
@@ -195,7 +197,19 @@ class Phases:
                 phase.leaps[k] = cython.cast(cython.p_void, events[k].jump)
         self.contents.append((content, tables.halvings, jumps, rests, events))
         self.offsets.append(offsets)
+        self.shaken.append(None)
         self.count += 1
+
+    def shake(self, place, which, shaken):
+        """Take what a phase has under vertical acceleration, and point to what one system has; None if it has none."""
+        if shaken is not None:
+            parts = [packed(each) for each in shaken[2:]]
+            offsets = np.cumsum([0, *(up8(part.shape[1]) for part in parts)], dtype=np.intp)
+            content = aligned(parts[0].shape[0], int(offsets[-1]))
+            for part, first in zip(parts, offsets[:-1], strict=True):
+                content[:, first : first + part.shape[1]] = part
+            self.shaken[place] = content, offsets, np.array([*shaken.places, shaken.shift], dtype=np.intc)
+            self.point(place, which)
 
     def select(self, which: cython.int):
         """Take the tables of one system of the stack."""
@@ -231,6 +245,20 @@ class Phases:
             if rests[k] is not None:
                 phase.rest[k] = first + offsets[part]
                 part += 1
+        if self.shaken[place] is not None:
+            self.point_shaken(place, which)
+
+    def point_shaken(self, place: cython.int, which: cython.int):
+        """Take what one system has under vertical acceleration in one phase."""
+        content, bounds, numbers = self.shaken[place]
+        offsets: cython.Py_ssize_t[::1] = bounds
+        row: cython.double[::1] = content[which]
+        places: cython.int[::1] = numbers
+        first: cython.p_double = cython.address(row[0])
+        s: cython.pointer(Shaken) = cython.address(self.phases[place].tables.shaken)
+        s.fed, s.places = places.shape[0] - 1, cython.address(places[0])
+        s.shift = places[s.fed]
+        s.now, s.outs, s.magnitude, s.most = first, first + offsets[1], first + offsets[2], first + offsets[3]
 
     def lead(self, place, outcome, following):
         """Say which phase follows an outcome."""
@@ -244,9 +272,12 @@ class Phases:
         """How often the step must be halved so that power series converge."""
         return self.phases[place].halvings
 
-    def shift(self, place):
+    def shift(self, place, v):
         """Number of first states whose rates are as many states after them."""
-        return self.phases[place].tables.shift
+        tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
+        if tables.shaken.now != cython.NULL and (v[0] != 0.0 or v[1] != 0.0):
+            return tables.shaken.shift
+        return tables.shift
 
     def scale(self, place, event):
         """Size of a violation of a condition."""
@@ -269,7 +300,7 @@ class Phases:
         LOOPS.product(self.n, up8_(self.n), table, cython.address(workspace[0]), cython.address(y[0]))
         return 1
 
-    def rests(self, place, event, y, a):
+    def rests(self, place, event, y, a, v):
         """Whether the motion is too slow after an event."""
         row: cython.p_const_double = self.phases[place].rest[event]
         k: cython.int
@@ -279,35 +310,41 @@ class Phases:
         total = row[self.n] * a + row[self.n + 1]
         for k in range(self.n):
             total += row[k] * y[k]
+        if v != 0.0:
+            row += self.n + 2
+            total += v * row[self.n]
+            for k in range(self.n):
+                total += v * row[k] * y[k]
         return total <= 0.0
 
-    def march(self, place, a, i, last, y, peaks, states):
+    def march(self, place, a, v, i, last, y, peaks, states):
         """Advance whole samples from i up to `last` as far as nothing happens; the number of the sample reached."""
         log: cython.pointer(Log) = cython.address(peaks.log)
         log.states = cython.address(states[0, 0]) if states.shape[0] > 1 else cython.NULL
-        return LOOPS.march(
-            cython.address(self.phases[place].tables), place, cython.address(a[0]), i, last, cython.address(y[0]), log
-        )
+        vertical: cython.p_const_double = cython.address(v[0]) if v.shape[0] > 0 else cython.NULL
+        tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
+        return LOOPS.march(tables, place, cython.address(a[0]), vertical, i, last, cython.address(y[0]), log)
 
-    def expand(self, place, h, a, rise, y, series, away):
+    def expand(self, place, h, a, rise, v, y, series, away):
         """Expand states and conditions; the number of terms, 0 if too many, and how far each condition may get."""
         width: cython.int = series.shape[1]
         tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
         first: cython.p_double = cython.address(series[0, 0])
-        terms: cython.int = LOOPS.expand(tables, h, a, rise, cython.address(y[0]), series.shape[0], width, first)
+        room: cython.int = series.shape[0]
+        terms: cython.int = LOOPS.expand(tables, h, a, rise, climb(v), cython.address(y[0]), room, width, first)
         LOOPS.spread(tables.rows - tables.outputs, terms, width, first + self.states, cython.address(away[0]))
         return terms
 
-    def reach(self, place, terms, series, start, away):
+    def reach(self, place, v, terms, series, start, away):
         """Outputs at the start of an expanded motion, and how far they may get from there."""
         tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
         first: cython.p_double = cython.address(series[0, 0])
-        LOOPS.reach(tables, terms, series.shape[1], first, cython.address(start[0]), cython.address(away[0]))
+        LOOPS.reach(tables, climb(v), terms, series.shape[1], first, cython.address(start[0]), cython.address(away[0]))
 
-    def complete(self, place, terms, series):
+    def complete(self, place, v, terms, series):
         """Expand the outputs, too."""
         tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
-        LOOPS.complete(tables, terms, series.shape[1], cython.address(series[0, 0]))
+        LOOPS.complete(tables, climb(v), terms, series.shape[1], cython.address(series[0, 0]))
 
     def evaluate(self, series, terms, t, out):
         """Sum the series of the states at t."""
@@ -317,11 +354,13 @@ class Phases:
         """Sum the magnitudes of the terms of the states at t."""
         LOOPS.amounts(self.states, terms, series.shape[1], cython.address(series[0, 0]), t, cython.address(out[0]))
 
-    def magnitudes(self, place, x, out):
-        """Multiply the magnitudes of the matrices by those of the states, of the acceleration and of 1."""
+    def magnitudes(self, place, v, order, before, x, out):
+        """Multiply the magnitudes of the matrices by those of a term: of the states, of the accelerations and of 1."""
         tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
-        rows: cython.int = up8_(self.n - tables.shift + tables.rows - tables.outputs)
-        LOOPS.product(self.n + 2, rows, tables.magnitude, cython.address(x[0]), cython.address(out[0]))
+        LOOPS.magnitudes(
+            tables, climb(v), order, cython.address(before[0]), cython.address(x[0]), cython.address(out[0])
+        )
+
 
     # Phases that are not linear
 
@@ -444,9 +483,8 @@ class Phases:
         )
 
     def bend(self, place, h, shaking, y, work, series, counted):
-        """Fill the series with the polynomials of the states and the conditions over the step that was attempted."""
+        """Fill the series with the polynomials of the states over the step that was attempted."""
         phase: cython.pointer(Phase) = cython.address(self.phases[place])
-        tables: cython.pointer(Tables) = cython.address(phase.tables)
         field: cython.p_void = phase.field
         end: cython.p_double = cython.address(work[PLACE, 0])
         rates: cython.p_double = cython.address(work[0, 0])
@@ -483,25 +521,27 @@ class Phases:
             series.shape[1],
             cython.address(series[0, 0]),
         )
-        for k in range(TERMS):
-            LOOPS.product(
-                self.n + 2,
-                up8_(phase.events),
-                tables.now,
-                cython.address(series[k, 0]),
-                cython.address(series[k, 0]) + self.states,
-            )
+    def rows_of(self, place, outputs, x, before, v, out):
+        """The outputs or conditions of y, a and 1, those that are not linear as their rows say.
 
-    def conditions_of(self, place, x, out):
-        """The conditions of y, a and 1, apart from what the constant states add to them."""
+        Under vertical acceleration v[0] multiplies this term of the states and v[1] that before; v[2] is a term itself.
+        """
         tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
-        rows: cython.int = up8_(self.phases[place].events)
-        LOOPS.product(self.n + 2, rows, tables.now, cython.address(x[0]), cython.address(out[0]))
-
-    def outputs_of(self, place, x, out):
-        """The outputs of y, a and 1, those that are not linear as their rows say."""
-        tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
-        LOOPS.product(self.n + 2, up8_(tables.outputs), tables.outs, cython.address(x[0]), cython.address(out[0]))
+        shaken: cython.pointer(Shaken) = cython.address(tables.shaken)
+        rows: cython.int = up8_(tables.outputs if outputs else self.phases[place].events)
+        columns: cython.int = self.n + 2
+        given: cython.p_const_double = cython.address(x[0])
+        table: cython.p_const_double = tables.outs if outputs else tables.now
+        j: cython.int
+        if shaken.now != cython.NULL and (v[0] != 0.0 or v[1] != 0.0 or v[2] != 0.0):
+            for j in range(columns):
+                self.room[j] = x[j]
+            self.room[columns] = v[2]
+            for j in range(shaken.fed):
+                self.room[columns + 1 + j] = v[0] * x[shaken.places[j]] + v[1] * before[shaken.places[j]]
+            columns += 1 + shaken.fed
+            given, table = cython.address(self.room[0]), shaken.outs if outputs else shaken.now
+        LOOPS.product(columns, rows, table, given, cython.address(out[0]))
 
     def observe(self, place, a, a_v, y, rates, out):
         """Replace the outputs that are not linear."""
@@ -514,9 +554,25 @@ class Phases:
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
+def climb(v: tuple[cython.double, cython.double]) -> Climb:
+    """A vertical acceleration and its change, as C has them."""
+    found: Climb
+    found.start, found.rise = v[0], v[1]
+    return found
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
 def up8_(count: cython.int) -> cython.int:
     """The next multiple of 8."""
     return (count + 7) // 8 * 8
+
+
+def conditions_of(rest):
+    """What follows instead of an event: columns y, a, 1, then what a_v multiplies: y, 1."""
+    more = np.zeros_like(rest.row) if rest.row_v is None else rest.row_v
+    return np.column_stack((rest.row, rest.direct, rest.constant, more, rest.direct_v))
 
 
 def aligned(rows, columns):

@@ -7,11 +7,13 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex.engine.field import Field
+from rockflex.engine.shaken import ShakenTables
 from rockflex.engine.steps_twin import Steps
 from rockflex.engine.system import Event, up8
 from rockflex.engine.tables import AHEAD, BLOCK, Tables
 
 UNKNOWN, ENDS, ASKED = -1, -2, -3
+Climb = tuple[float, float]  # the vertical acceleration at the start of a series, and its change
 
 
 def PyErr_CheckSignals() -> None:  # noqa: N802
@@ -77,6 +79,7 @@ class PhaseLoops:
 
     def __init__(self, tables: Tables, events: Sequence[Event], h: float) -> None:
         self.tables, self.h, self.events = tables, h, events
+        self.shaken: ShakenTables | None = None
         self.field: Field | None = None
         self.outcomes: list[Any] = [outcome for event in events for outcome in (event, event.rest)]
         self.following = [
@@ -95,6 +98,23 @@ class Phases(Steps):
     def add(self, tables: Tables, events: Sequence[Event], h: float) -> None:
         """Take a phase; of each of its events it is not known yet what follows, or known to be the end, or asked."""
         self.phases.append(PhaseLoops(tables, events, h))
+
+    def shake(self, place: int, which: int, shaken: ShakenTables | None) -> None:
+        """Take what a phase has under vertical acceleration; None if it has none."""
+        del which
+        self.phases[place].shaken = shaken
+
+    def acts(self, place: int, v: Climb) -> ShakenTables | None:
+        """What a phase has under a vertical acceleration and its change; None if that does not act."""
+        return self.phases[place].shaken if any(v) else None
+
+    def term(self, place: int, v: Climb, k: int, before: Array, x: Array) -> Array:
+        """A term of a series: y, a, 1 and, if a vertical acceleration acts, that and what it multiplies."""
+        shaken = self.acts(place, v)
+        if shaken is None:
+            return np.asarray(x[: self.n + 2])
+        fed = v[0] * np.asarray(x)[shaken.places] + (v[1] * np.asarray(before)[shaken.places] if k else 0.0)
+        return np.concatenate((x[: self.n + 2], [v[k] if k < 2 else 0.0], fed))
 
     def point(self, place: int, which: int) -> None:
         """Take the tables of one system for one phase."""
@@ -117,9 +137,9 @@ class Phases(Steps):
         """How often the step must be halved so that power series converge."""
         return int(self.phases[place].tables.halvings[self.which])
 
-    def shift(self, place: int) -> int:
+    def shift(self, place: int, v: Climb) -> int:
         """Number of first states whose rates are as many states after them."""
-        return self.phases[place].tables.shift
+        return (self.acts(place, v) or self.phases[place].tables).shift
 
     def scale(self, place: int, event: int) -> float:
         """Size of a violation of a condition."""
@@ -139,20 +159,36 @@ class Phases(Steps):
         y[: self.n] = (np.abs(matrix) if magnitudes else matrix) @ np.array(y[: self.n])
         return True
 
-    def rests(self, place: int, event: int, y: Array, a: float) -> bool:
+    def rests(self, place: int, event: int, y: Array, a: float, v: float) -> bool:
         """Whether the motion is too slow after an event."""
         rest: Any = self.phases[place].events[event].rest
         if rest is None:
             return False
-        k = self.which
-        return bool(rest.row[k] @ np.asarray(y[: self.n]) + rest.direct[k] * a + rest.constant[k] <= 0.0)
+        k, x = self.which, np.asarray(y[: self.n])
+        more = rest.direct_v[k] + (0.0 if rest.row_v is None else rest.row_v[k] @ x)
+        return bool(rest.row[k] @ x + rest.direct[k] * a + rest.constant[k] + v * more <= 0.0)
 
-    def march(self, place: int, a: Array, i: int, last: int, y: Array, peaks: Peaks, states: Array) -> int:
-        """Advance whole samples from i up to `last` as far as nothing happens; the number of the sample reached."""
+    def march(self, place: int, a: Array, v: Array, i: int, last: int, y: Array, peaks: Peaks, states: Array) -> int:
+        """Advance whole samples from i up to `last` as far as nothing happens; the number of the sample reached.
+
+        All samples with vertical acceleration are left to power series.
+        """
+        end = last
+        if len(v) and self.phases[place].shaken is not None:
+            last = next((k for k in range(i, end) if v[k] or v[k + 1]), end)
+        i = self._march(place, a, float(v[i]) if len(v) else 0.0, i, last, y, peaks, states)
+        peaks.stopped = peaks.stopped or i == last < end
+        return i
+
+    def _march(
+        self, place: int, a: Array, rise: float, i: int, last: int, y: Array, peaks: Peaks, states: Array
+    ) -> int:
         p, k, x = self.phases[place].tables, self.which, np.array(y[: self.n])
         m, n, h, rows = p.outputs, self.n, self.phases[place].h, p.rows
-        start, rates = np.array((*x, a[i], 1.0)), n - p.shift
-        old = np.concatenate(((p.outs[k] @ start)[:m], (p.now[k] @ start)[rates : rates + rows - m]))
+        seen = self.acts(place, (rise, 0.0)) or p
+        start, rates = np.array((*x, a[i], 1.0)), n - seen.shift
+        start = self.term(place, (rise, 0.0), 0, start, start)
+        old = np.concatenate(((seen.outs[k] @ start)[:m], (seen.now[k] @ start)[rates : rates + rows - m]))
         bend = cap = sway = jolt = np.zeros(rows)
         peaks.stopped = False
 
@@ -213,14 +249,18 @@ class Phases(Steps):
         higher = np.flatnonzero(found > peaks.high[: found.size])
         peaks.when[higher], peaks.high[higher] = peaks.passed + sample, found[higher]
 
-    def expand(self, place: int, h: float, a: float, rise: float, y: Array, series: Array, away: Array) -> int:
+    def expand(
+        self, place: int, h: float, a: float, rise: float, v: Climb, y: Array, series: Array, away: Array
+    ) -> int:
         """Expand states and conditions; the number of terms, 0 if too many, and how far each condition may get."""
-        p, count, first = self.phases[place].tables, self.events(place), self.states
+        p, count, first = self.acts(place, v) or self.phases[place].tables, self.events(place), self.states
         now, rates = p.now[self.which], self.n - p.shift
         x, most, calm = np.array(y[: self.n]), np.abs(y[: self.n]), 0
         for k in range(len(series)):
-            z = now @ np.array((*x, (a, rise)[k] if k < 2 else 0.0, k == 0))
-            series[k, : self.n], series[k, first : first + count] = x, z[rates : rates + count]
+            series[k, : self.n], series[k, self.n : first] = x, 0.0
+            series[k, self.n : self.n + 2] = (a, rise)[k] if k < 2 else 0.0, k == 0
+            z = now @ self.term(place, v, k, series[k - 1], series[k])
+            series[k, first : first + count] = z[rates : rates + count]
             x = np.concatenate((x[p.shift : 2 * p.shift], z[: self.n - p.shift])) * (h / (k + 1))
             most = np.maximum(most, np.abs(x))
             calm = calm + 1 if k > 1 and (np.abs(x) <= 1e-17 * most).all() else 0
@@ -229,17 +269,20 @@ class Phases(Steps):
                 return k + 1
         return 0
 
-    def reach(self, place: int, terms: int, series: Array, start: Array, away: Array) -> None:
+    def reach(self, place: int, v: Climb, terms: int, series: Array, start: Array, away: Array) -> None:
         """Outputs at the start of an expanded motion, and how far they may get from there."""
-        p, wide = self.phases[place].tables, self.n + 2
-        start[: p.outputs] = (p.outs[self.which] @ series[0, :wide])[: p.outputs]
-        away[: p.outputs] = (p.most[self.which] @ np.abs(series[1:terms, :wide]).sum(axis=0))[: p.outputs]
+        m, p = self.phases[place].tables.outputs, self.acts(place, v) or self.phases[place].tables
+        rows = np.array([self.term(place, v, k, series[k - 1], series[k]) for k in range(terms)])
+        start[:m] = (p.outs[self.which] @ rows[0])[:m]
+        away[:m] = (p.most[self.which] @ np.abs(rows[1:]).sum(axis=0))[:m]
 
-    def complete(self, place: int, terms: int, series: Array) -> None:
+    def complete(self, place: int, v: Climb, terms: int, series: Array) -> None:
         """Expand the outputs, too."""
-        p, first = self.phases[place].tables, self.states + up8(self.events(place))
-        for row in series[:terms]:
-            row[first : first + p.outputs] = (p.outs[self.which] @ row[: self.n + 2])[: p.outputs]
+        m, first = self.phases[place].tables.outputs, self.states + up8(self.events(place))
+        p = self.acts(place, v) or self.phases[place].tables
+        for k in range(terms):
+            row = self.term(place, v, k, series[k - 1], series[k])
+            series[k, first : first + m] = (p.outs[self.which] @ row)[:m]
 
     def evaluate(self, series: Array, terms: int, t: float, out: Array) -> None:
         """Sum the series of the states at t."""
@@ -249,7 +292,7 @@ class Phases(Steps):
         """Sum the magnitudes of the terms of the states at t."""
         out[: self.n] = np.polynomial.polynomial.polyval(t, np.abs(series[:terms, : self.n]))
 
-    def magnitudes(self, place: int, x: Array, out: Array) -> None:
-        """Multiply the magnitudes of the matrices by those of the states, of the acceleration and of 1."""
-        magnitude = self.phases[place].tables.magnitude[self.which]
-        out[: len(magnitude)] = magnitude @ np.asarray(x)[: self.n + 2]
+    def magnitudes(self, place: int, v: Climb, order: int, before: Array, x: Array, out: Array) -> None:
+        """Multiply the magnitudes of the matrices by those of a term: of the states, of the accelerations and of 1."""
+        magnitude = (self.acts(place, v) or self.phases[place].tables).magnitude[self.which]
+        out[: len(magnitude)] = magnitude @ self.term(place, (abs(v[0]), abs(v[1])), order, before, x)

@@ -23,6 +23,7 @@
 #define JOIN(a, b) JOIN_(a, b)
 #define FLAT (AHEAD * MAX_ROWS) /* rows of the samples of one product, one sample after another */
 #define WIDE (MAX_STATES + MAX_ROWS)
+#define MORE (2 * MAX_STATES + 3) /* columns of a product under vertical acceleration, at most */
 
 typedef double vec __attribute__((vector_size(8 * LANES), aligned(8)));
 typedef double line __attribute__((vector_size(8 * LANES))); /* at the start of a cache line */
@@ -107,20 +108,36 @@ static inline int follow(int count, const double *from, double factor, double *m
     return some;
 }
 
+static int acts(const Tables *p, Climb v) { return p->shaken.now && (v.start != 0.0 || v.rise != 0.0); }
+
+/* Term k of a series, with the vertical acceleration v and what it multiplies; `before` is the term before. */
+static const double *shaken_term(const Tables *p, Climb v, int k, const double *before, const double *x, double *found) {
+    const int n = p->n;
+    memcpy(found, x, sizeof *x * (n + 2));
+    found[n + 2] = k == 0 ? v.start : k == 1 ? v.rise : 0.0;
+    for (int j = 0; j < p->shaken.fed; j++) {
+        int place = p->shaken.places[j];
+        found[n + 3 + j] = v.start * x[place] + (k > 0 ? v.rise * before[place] : 0.0);
+    }
+    return found;
+}
+
 /* Power series of states and conditions over a step h, from the acceleration a that changes by `rise`: a row for every
    term, with states, acceleration, 1 and, from `up8(n + 2)` on, conditions. Returns the number of terms at which it has
    converged to rounding; 0 if there is no room. */
-static int expand(const Tables *p, double h, double a, double rise, const double *y, int room, int width,
+static int expand(const Tables *p, double h, double a, double rise, Climb v, const double *y, int room, int width,
                   double *series) {
-    const int n = p->n, s = p->shift, rates = n - s, first = up8(n + 2), conditions = p->rows - p->outputs;
-    double z[WIDE], most[2][MAX_STATES], *x = series, *next;
+    const int shakes = acts(p, v), n = p->n, s = shakes ? p->shaken.shift : p->shift, rates = n - s;
+    const int first = up8(n + 2), conditions = p->rows - p->outputs, columns = shakes ? n + 3 + p->shaken.fed : n + 2;
+    const double *now = shakes ? p->shaken.now : p->now;
+    double z[WIDE], most[2][MAX_STATES], more[MORE], *x = series, *next;
     memset(x, 0, sizeof *x * first);
     memcpy(x, y, sizeof *x * n);
     x[n] = a, x[n + 1] = 1.0;
     for (int i = 0; i < s; i++) most[0][i] = fabs(x[i]);
     for (int i = 0; i < rates; i++) most[1][i] = fabs(x[s + i]);
     for (int k = 0, calm = 0; k < room; k++, x = next) {
-        product(n + 2, up8(rates + conditions), p->now, x, z);
+        product(columns, up8(rates + conditions), now, shakes ? shaken_term(p, v, k, x - width, x, more) : x, z);
         for (int j = 0; j < conditions; j++) x[first + j] = z[rates + j];
         if (k + 1 == room) break;
         next = x + width;
@@ -162,17 +179,46 @@ static void spread(int rows, int terms, int width, const double *series, double 
 }
 
 /* Outputs at the start of a series, and how far they may get from there. */
-static void reach(const Tables *p, int terms, int width, const double *series, double *start, double *away) {
-    double strays[MAX_STATES + 16];
+static void reach(const Tables *p, Climb v, int terms, int width, const double *series, double *start, double *away) {
+    double strays[MORE], more[MORE];
+    if (acts(p, v)) {
+        const int columns = p->n + 3 + p->shaken.fed;
+        memset(strays, 0, sizeof strays);
+        product(columns, up8(p->outputs), p->shaken.outs, shaken_term(p, v, 0, 0, series, more), start);
+        for (int k = 1; k < terms; k++) {
+            series += width, shaken_term(p, v, k, series - width, series, more);
+            for (int j = 0; j < columns; j++) strays[j] += fabs(more[j]);
+        }
+        product(columns, up8(p->outputs), p->shaken.most, strays, away);
+        return;
+    }
     product(p->n + 2, up8(p->outputs), p->outs, series, start);
     spread(up8(p->n + 2), terms, width, series, strays);
     product(p->n + 2, up8(p->outputs), p->most, strays, away);
 }
 
 /* The series of the outputs, after those of states and conditions. */
-static void complete(const Tables *p, int terms, int width, double *series) {
-    const int first = up8(p->n + 2) + up8(p->rows - p->outputs);
-    for (int k = 0; k < terms; k++, series += width) product(p->n + 2, up8(p->outputs), p->outs, series, series + first);
+static void complete(const Tables *p, Climb v, int terms, int width, double *series) {
+    const int first = up8(p->n + 2) + up8(p->rows - p->outputs), shakes = acts(p, v);
+    const int columns = shakes ? p->n + 3 + p->shaken.fed : p->n + 2;
+    const double *outs = shakes ? p->shaken.outs : p->outs;
+    double more[MORE];
+    for (int k = 0; k < terms; k++, series += width) {
+        const double *x = shakes ? shaken_term(p, v, k, series - width, series, more) : series;
+        product(columns, up8(p->outputs), outs, x, series + first);
+    }
+}
+
+/* The sums of the magnitudes that rates and conditions of an order are summed from, from those of the term x. */
+static void magnitudes(const Tables *p, Climb v, int order, const double *before, const double *x, double *out) {
+    const int shakes = acts(p, v), rows = up8(p->n - (shakes ? p->shaken.shift : p->shift) + p->rows - p->outputs);
+    double more[MORE];
+    if (shakes) {
+        Climb most = {fabs(v.start), fabs(v.rise)};
+        product(p->n + 3 + p->shaken.fed, rows, p->shaken.magnitude, shaken_term(p, most, order, before, x, more), out);
+    } else {
+        product(p->n + 2, rows, p->magnitude, x, out);
+    }
 }
 
 typedef struct { /* what is known of every row, once for each sample of a product, one sample after another */
@@ -369,6 +415,19 @@ static void advance(const Tables *p, const double *a, const double *y, double *n
     for (int k = 0; k < n; k++) next[k] = z[k] + y[k];
 }
 
+/* Outputs and conditions from y, a, 1 and a_v; there is room for rates and conditions. */
+static void rows_at(const Tables *p, const double *x, double v, double *room, double *rows) {
+    const Climb climb = {v, 0.0};
+    const int shakes = acts(p, climb), n = p->n, m = p->outputs, conditions = p->rows - m;
+    const int rates = n - (shakes ? p->shaken.shift : p->shift), columns = shakes ? n + 3 + p->shaken.fed : n + 2;
+    double more[MORE];
+    if (shakes) x = shaken_term(p, climb, 0, 0, x, more);
+    product(columns, up8(rates + conditions), shakes ? p->shaken.now : p->now, x, room);
+    memcpy(rows + m, room + rates, sizeof *x * conditions);
+    product(columns, up8(m), shakes ? p->shaken.outs : p->outs, x, room);
+    memcpy(rows, room, sizeof *x * m);
+}
+
 /* Raise the peaks to the outputs at a sample. */
 static inline void raise_peaks(const Tables *p, const double *rows, double sample, const Watch *w, Log *log) {
     for (int j = 0; j < p->outputs; j += LANES) {
@@ -426,7 +485,7 @@ static int inspect(const Tables *p, int phase, const double *a, int i, int sampl
 /* Advance whole samples from i, up to `last`. Returns the number of the sample at which the motion stands: before the
    first in which a condition may fail, or where a block begins for which there is no room for candidates. What is logged
    does not change the motion. */
-static int march(const Tables *p, int phase, const double *a, int i, int last, double *y, Log *log) {
+static int march(const Tables *p, int phase, const double *a, const double *v, int i, int last, double *y, Log *log) {
     const int n = p->n, states = up8(n), rows = p->rows, flat = up8(AHEAD * rows);
     Workspace *room = log->workspace;
     double *arena = room->arena;
@@ -445,15 +504,14 @@ static int march(const Tables *p, int phase, const double *a, int i, int last, d
     if (log->resumes) {
         memcpy(before, log->seen, sizeof *x * rows);
     } else {
-        const int rates = n - p->shift, conditions = rows - p->outputs;
         x[n] = a[i], x[n + 1] = 1.0;
-        product(n + 2, up8(rates + conditions), p->now, x, after);
-        memcpy(before + p->outputs, after + rates, sizeof *x * conditions);
-        product(n + 2, up8(p->outputs), p->outs, x, after);
-        memcpy(before, after, sizeof *x * p->outputs);
+        rows_at(p, x, v ? v[i] : 0.0, after, before);
         raise_peaks(p, before, i, watch, log);
     }
     log->looks = log->resumes = 0;
+    const int end = last;
+    if (v && p->shaken.now)
+        for (last = i; last < end && v[last] == 0.0 && v[last + 1] == 0.0;) last++;
     for (int left = 0, calm = 0; i < last && !log->looks; left -= AHEAD) {
         if (left == 0) {
             if (log->count + BLOCK > log->room) {
@@ -501,9 +559,10 @@ static int march(const Tables *p, int phase, const double *a, int i, int last, d
         i += passed;
         log->work += passed;
     }
+    if (i == last && last < end) log->looks = 1;
     memcpy(y, x, sizeof *x * n);
     return i;
 }
 
 const Loops JOIN(rockflex_loops_, LEVEL) = {TEXT(LEVEL), UNITS * 8, sizeof(Workspace), product, expand, evaluate, amounts, spread,
-                                            reach, complete, march, combine, errors, powers};
+                                            reach, complete, magnitudes, march, combine, errors, powers};

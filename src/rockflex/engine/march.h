@@ -14,6 +14,18 @@ enum {
     MAX_ROWS = 4096   /* outputs and conditions */
 };
 
+typedef struct { /* what a phase has under vertical acceleration; columns y, a, 1, a_v, and a_v times some states */
+    int fed, shift;        /* so many states are multiplied by a_v; as of Tables */
+    const int *places;     /* theirs */
+    const double *now;     /* rates of the other states, conditions; null if a_v does not act in this phase */
+    const double *outs;    /* outputs */
+    const double *magnitude, *most; /* |now| and |outs| */
+} Shaken;
+
+typedef struct { /* the vertical acceleration at the start of a power series, and its change */
+    double start, rise;
+} Climb;
+
 typedef struct {
     int n, outputs, rows; /* states, outputs, outputs and conditions */
     int shift;            /* the first states, whose rates are as many states after them: y'[i] = y[shift + i] */
@@ -34,6 +46,7 @@ typedef struct {
     const double *magnitude; /* |now| */
     const double *most;      /* |outs| */
     const double *one_sided; /* 1 for outputs whose largest value counts, 0 where it is the largest magnitude */
+    Shaken shaken;
 } Tables;
 
 typedef struct {
@@ -68,13 +81,15 @@ typedef struct { /* the loops for one level of vector instructions */
     int group; /* rows in a group of a table, at most */
     size_t workspace;
     void (*product)(int columns, int rows, const double *table, const double *x, double *out);
-    int (*expand)(const Tables *p, double h, double a, double rise, const double *y, int room, int width, double *series);
+    int (*expand)(const Tables *p, double h, double a, double rise, Climb v, const double *y, int room, int width,
+                  double *series);
     void (*evaluate)(int rows, int terms, int width, const double *series, double t, double *out);
     void (*amounts)(int rows, int terms, int width, const double *series, double t, double *out);
     void (*spread)(int rows, int terms, int width, const double *series, double *out);
-    void (*reach)(const Tables *p, int terms, int width, const double *series, double *start, double *away);
-    void (*complete)(const Tables *p, int terms, int width, double *series);
-    int (*march)(const Tables *p, int phase, const double *a, int i, int last, double *y, Log *log);
+    void (*reach)(const Tables *p, Climb v, int terms, int width, const double *series, double *start, double *away);
+    void (*complete)(const Tables *p, Climb v, int terms, int width, double *series);
+    void (*magnitudes)(const Tables *p, Climb v, int order, const double *before, const double *x, double *out);
+    int (*march)(const Tables *p, int phase, const double *a, const double *v, int i, int last, double *y, Log *log);
     void (*combine)(int count, int terms, const int *which, const double *weights, double h, const double *start, const double *rates, int width, double *out);
     void (*errors)(int count, const double *coarse, const double *fine, const double *size, const double *y, const double *end, const double *floor, double *out);
     void (*powers)(int count, double h, const double *y, const double *end, const double *first, const double *last, const double *bends, int stride, int width, double *series);

@@ -12,7 +12,8 @@ import numpy as np
 
 from rockflex._errors import InputError, SolverError
 from rockflex.engine.rest import Decay
-from rockflex.engine.system import NonlinearPhase, StepTooLongError, acceleration, array, up8
+from rockflex.engine.shaken import shaken_of
+from rockflex.engine.system import NonlinearPhase, StepTooLongError, acceleration, array, as_long, up8
 from rockflex.engine.tables import tables_of, tables_of_rows
 
 if cython.compiled:
@@ -34,10 +35,8 @@ else:
 AT_ONCE = cython.declare(cython.int, 100)  # events at one instant, at most
 IN_SAMPLE = cython.declare(cython.int, 20000)  # events in one sample, at most
 CANDIDATES = cython.declare(cython.int, 64)  # samples that are kept for a closer look at their peaks
-STRETCH = cython.declare(
-    cython.int, 1 << 25
-)  # samples, or what counts like them, without a look at Ctrl-C: some 50 ms;
-PER_SAMPLE = cython.declare(cython.int, 64)  # divided by this and by n²/8
+STRETCH = cython.declare(cython.int, 1 << 25)  # samples, or what counts like them, without a look at Ctrl-C: some
+PER_SAMPLE = cython.declare(cython.int, 64)  # 50 ms; divided by this and by n²/8
 QUIET = cython.declare(cython.int, 64)  # samples without excitation before it is asked whether all is at rest
 
 
@@ -79,8 +78,6 @@ class Run:
     reached: cython.Py_ssize_t  # samples of this call of `advance` that have passed
     met: list  # phases met so far: keys and phases
     places: dict  # of the phases, by their keys
-    kinds: cython.int[:, ::1]  # numbers of the names of events, by phase and event
-    names: dict  # those numbers by name
     decays: dict  # of the phases in which a free vibration has been asked for its end, by place and system
     decay: Decay  # the last one, and its place
     faded: cython.int
@@ -102,6 +99,9 @@ class Run:
     workspace: cython.double[::1]
     scratch: cython.double[:, ::1]  # the states of a march, if there is a history
     unkept: cython.double[:, ::1]  # of one row: none are kept
+    still: cython.double[::1]  # the vertical acceleration where there is none: empty
+    shakes: cython.bint  # whether there is one
+    shaken: set  # places of the phases that are prepared for it
     quiet: cython.double[::1]
     start: cython.double[::1]  # the state at time 0, and the place of its phase
     first: cython.int
@@ -129,11 +129,12 @@ class Run:
         self.flow = Flow(self.phases, self.peaks_, one_sided, self.y, counts, h)
         self.series = Series(self.phases, self.peaks_, self.flow, one_sided, self.y, self.sizes, counts, h)
         self.start, self.workspace, self.quiet = np.zeros(self.n), np.zeros(self.n), np.zeros(QUIET + 1)
-        self.journal, self.kinds, self.names = Journal(self.n), np.zeros((4, 4), dtype=np.intc), {}
+        self.journal = Journal(self.n)
         self.scratch = self.unkept = np.zeros((1, self.n))
         self.unbounded = np.full(up8(max(1, self.outputs)), np.inf)
         self.watch, self.limit, self.which, self.failure = None, 2**62, 0, ""
         self.failed, self.faded, self.first, self.pause = False, -1, 0, 0
+        self.still, self.shakes, self.shaken = np.zeros(0), False, set()
         self.restart(state, key, which)
 
     def restart(self, state=None, key=None, which: cython.int = 0):
@@ -195,13 +196,12 @@ class Run:
     @property
     def events(self):
         """Time, key of the phase that it ended, and name of every event."""
-        times, places, numbers = self.journal.events
-        met = [self.met[place] for place in places]
-        return [(t, m[0], m[1].events[e].name) for t, m, e in zip(times, met, numbers, strict=True)]
+        found = zip(*self.journal.events, strict=True)
+        return [(t, self.met[place][0], self.met[place][1].events[e].name) for t, place, e in found]
 
     def tally(self, *names):
         """Numbers of events of these names."""
-        return [self.journal.count(self.names[name]) if name in self.names else 0 for name in names]
+        return [self.journal.count(self.journal.kind(name)) for name in names]
 
     @property
     def work(self):
@@ -215,9 +215,12 @@ class Run:
 
     @property
     def history(self):
-        """Times, places of phases, accelerations and states at samples and on both sides of every event, if kept."""
-        samples, places, accelerations, states = self.journal.nodes
-        return samples * self.h, places, accelerations, states
+        """Times, places of phases, accelerations, states, and vertical accelerations, if kept.
+
+        There is one of each for every sample, and for both sides of every event.
+        """
+        samples, *others = self.journal.nodes
+        return samples * self.h, *others
 
     @property
     def keys(self):
@@ -249,28 +252,38 @@ class Run:
         self.met.append((key, phase))
         self.places[key] = place
         self.series.widen(len(phase.events))
-        if place >= self.kinds.shape[0] or len(phase.events) > self.kinds.shape[1]:
-            kinds = np.zeros((2 * place + 4, max(len(phase.events), self.kinds.shape[1])), dtype=np.intc)
-            kinds[: self.kinds.shape[0], : self.kinds.shape[1]] = self.kinds
-            self.kinds = kinds
-        number: cython.int
-        for number, event in enumerate(phase.events):
-            self.kinds[place, number] = self.names.setdefault(event.name, len(self.names))
+        self.journal.meet(place, phase.events)
+        if self.shakes:
+            self.shake()
         return place
 
-    def advance(self, a, history: cython.bint = False):
+    @cython.cfunc
+    @cython.with_gil
+    @cython.exceptval(-1)
+    def shake(self) -> cython.int:
+        """Prepare the phases met so far for vertical acceleration."""
+        for place in range(len(self.met)):
+            if place not in self.shaken:
+                self.phases.shake(place, self.which, shaken_of(self.met[place][1], self.h))
+                self.shaken.add(place)
+        return 0
+
+    def advance(self, a, vertical=None, history: cython.bint = False):
         """Advance over the samples of an acceleration, of which the first is that of the present time.
+
+        `vertical` has the vertical acceleration at the same samples.
 
         Raises
         ------
         InputError
-            If the acceleration is empty or not finite.
+            If an acceleration is empty or not finite, or they differ in length.
         SolverError
             If the run has failed, as `failure` says, or had failed before.
         """
         ground: cython.const[cython.double][::1] = acceleration(a)
+        rise: cython.const[cython.double][::1] = self.still if vertical is None else as_long(vertical, ground)
         with cython.nogil:
-            self.proceed(ground, history)
+            self.proceed(ground, rise, history)
 
     def follow(self, batch: Batch, state=None, key=None, which: cython.int = 0, history: cython.bint = False):
         """Do the runs of a batch, or go on with them, all from one state.
@@ -283,7 +296,7 @@ class Run:
         number: cython.int
         self.restart(state, key, which)
         for number, name in enumerate(batch.names):
-            batch.kinds[number] = self.names.setdefault(name, len(self.names))
+            batch.kinds[number] = self.journal.kind(name)
         with cython.nogil:
             self.follow_all(batch, history)
 
@@ -295,7 +308,7 @@ class Run:
         rested: cython.bint
         while batch.place < batch.count:
             self.begin()
-            self.proceed(batch.scaled(), history)
+            self.proceed(batch.scaled(), batch.scaled_vertical(), history)
             rested = False
             if batch.settles:
                 rested = self.settle_over(batch.free, history)
@@ -315,7 +328,9 @@ class Run:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(-1)
-    def proceed(self, ground: cython.const[cython.double][::1], history: cython.bint) -> cython.int:
+    def proceed(
+        self, ground: cython.const[cython.double][::1], rise: cython.const[cython.double][::1], history: cython.bint
+    ) -> cython.int:
         """Advance over the samples of an acceleration that has been checked."""
         i: cython.int
         k: cython.int
@@ -324,14 +339,17 @@ class Run:
             with cython.gil:
                 raise SolverError("This run has been broken off by an error; begin it anew by `restart`.")
         self.failed = True
+        self.shakes = rise.shape[0] > 0
+        if self.shakes:
+            self.shake()
         self.peaks_.pass_by(self.passed)
         if history and not self.ended:
             if self.scratch.shape[0] <= max(last, 1):
                 with cython.gil:
                     self.scratch = np.zeros((last + 2, self.n))
-            i = self.advance_over(ground, True, self.scratch)
+            i = self.advance_over(ground, rise, self.scratch)
         else:
-            i = self.advance_over(ground, False, self.unkept)
+            i = self.advance_over(ground, rise, self.unkept)
         self.passed += i
         self.reached = 0
         for k in range(self.n):
@@ -354,7 +372,7 @@ class Run:
     def coast_over(self, samples: cython.longlong, history: cython.bint) -> cython.int:
         """Advance without excitation."""
         while samples > 0 and not self.ended:
-            self.proceed(self.quiet[: min(samples, QUIET) + 1], history)
+            self.proceed(self.quiet[: min(samples, QUIET) + 1], self.still, history)
             samples -= QUIET
         return 0
 
@@ -362,37 +380,45 @@ class Run:
     @cython.nogil
     @cython.exceptval(-1)
     def advance_over(
-        self, a: cython.const[cython.double][::1], history: cython.bint, states: cython.double[:, ::1]
+        self, a: cython.const[cython.double][::1], v: cython.const[cython.double][::1], states: cython.double[:, ::1]
     ) -> cython.int:
-        """Advance over samples; return how many have passed."""
+        """Advance over samples, with a history if there is room for their states; return how many have passed."""
+        history: cython.bint = states.shape[0] > 1
         i: cython.int = 0
         j: cython.int
         start: cython.int
         stop: cython.int
         last: cython.int = a.shape[0] - 1
         self.flow.resume(history)
-        if history and self.journal.wants(a[0]):
-            self.journal.keep(self.passed, a[0], self.y, self.now)
+        if history and self.journal.wants(a[0], self.rise_at(v, 0)):
+            self.journal.keep(self.passed, a[0], self.rise_at(v, 0), self.y, self.now)
         while i < last and not self.ended:
             start, stop = i, min(last, (i // self.stretch + 1) * self.stretch)
             if self.phases.nonlinear(self.now):
-                i = self.flow.march(self.now, a, i, stop, states)
+                i = self.flow.march(self.now, a, v, i, stop, states)
             else:
-                i = self.phases.march(self.now, a, i, stop, self.y, self.peaks_, states)
+                i = self.phases.march(self.now, a, v, i, stop, self.y, self.peaks_, states)
             if i > start:
                 self.sizes[:] = 0.0
             if history:
                 for j in range(start + 1, i + 1):
-                    self.journal.keep(self.passed + j, a[j], states[j], self.now)
+                    self.journal.keep(self.passed + j, a[j], self.rise_at(v, j), states[j], self.now)
             self.reached = i
             if self.peaks_.looks():
-                self.traverse(i, a[i], a[i + 1], history)
+                self.traverse(i, a[i], a[i + 1], (self.rise_at(v, i), self.rise_at(v, i + 1)), history)
                 i += 1
             elif i < stop:
-                self.search(a, False)
+                self.search(a, v, False)
             self.look_up()
-        self.search(a, True)
+        self.search(a, v, True)
         return i
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def rise_at(self, v: cython.const[cython.double][::1], i: cython.int) -> cython.double:
+        """The vertical acceleration at a sample."""
+        return v[i] if v.shape[0] > 0 else 0.0
 
     @cython.cfunc
     @cython.nogil
@@ -411,9 +437,9 @@ class Run:
         return 0
 
     def settle(self, most: int = 1_000_000, *, history: bool = False) -> bool:
-        """Advance without excitation until nothing can follow, and return whether that was so after `most` samples.
+        """Advance without excitation until no condition can fail, and no output exceed its peak; whether that was so.
 
-        At rest no condition can fail any more, and no output exceed its peak.
+        It is at most so many samples.
         """
         return bool(self.settle_over(min(most, 2**62), history))
 
@@ -441,7 +467,7 @@ class Run:
                 asks = self.passed * self.h + wait
             if self.passed - start >= most:
                 break
-            self.proceed(self.quiet, history)
+            self.proceed(self.quiet, self.still, history)
         return 0
 
     @cython.cfunc
@@ -455,9 +481,18 @@ class Run:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(-1)
-    def traverse(self, i: cython.int, start: cython.double, end: cython.double, history: cython.bint) -> cython.int:
+    def traverse(
+        self,
+        i: cython.int,
+        start: cython.double,
+        end: cython.double,
+        v: tuple[cython.double, cython.double],
+        history: cython.bint,
+    ) -> cython.int:
         """Advance over a sample in which something may happen."""
         u: cython.double = 0.0  # the part of the sample that has passed
+        a: cython.double
+        rise: cython.double
         part: cython.double
         t: cython.double
         event: cython.int
@@ -466,7 +501,7 @@ class Run:
         self.n_looks += 1
         while u < 1.0:
             self.look_up()
-            part = self.series.expand(self.now, start, end, u)
+            part = self.series.expand(self.now, start, end, v, u)
             if part < 0.0:
                 with cython.gil:
                     self.stall(self.passed + i + u)
@@ -484,30 +519,31 @@ class Run:
             if at_once > AT_ONCE or in_sample > IN_SAMPLE:
                 with cython.gil:
                     self.refuse(event, self.passed + i + u)
+            a, rise = start + (end - start) * u, v[0] + (v[1] - v[0]) * u
             if history and at_once == 1:
-                self.journal.keep(self.passed + i + u, start + (end - start) * u, self.y, self.now)
-            self.leave(event, self.passed + i + u, start + (end - start) * u)
+                self.journal.keep(self.passed + i + u, a, rise, self.y, self.now)
+            self.leave(event, self.passed + i + u, a, rise)
             if self.ended:
                 return 0
             if history:
-                self.journal.keep(self.passed + i + u, start + (end - start) * u, self.y, self.now)
+                self.journal.keep(self.passed + i + u, a, rise, self.y, self.now)
         if history:
-            self.journal.keep(self.passed + i + 1, end, self.y, self.now)
+            self.journal.keep(self.passed + i + 1, end, v[1], self.y, self.now)
         return 0
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(-1)
-    def leave(self, event: cython.int, sample: cython.double, a: cython.double) -> cython.int:
+    def leave(self, event: cython.int, sample: cython.double, a: cython.double, v: cython.double) -> cython.int:
         """Jump to the phase that follows an event."""
         outcome: cython.int = 2 * event
-        chosen: cython.int = self.phases.leap(self.now, event, self.y, a, 0.0)
+        chosen: cython.int = self.phases.leap(self.now, event, self.y, a, v)
         self.flow.forget()
         self.end = sample * self.h
-        self.journal.happen(self.end, self.now, event, self.kinds[self.now, event])
+        self.journal.happen(self.end, self.now, event)
         if self.phases.following(self.now, outcome) == ASKED:
             with cython.gil:
-                self.ask(event, a)
+                self.ask(event, a, v)
             return 0
         if chosen >= 0:
             outcome += chosen
@@ -517,7 +553,7 @@ class Run:
                 raise self.met[self.now][1].events[event].jump.error()
         else:
             self.take(outcome)
-            if self.phases.rests(self.now, event, self.y, a):
+            if self.phases.rests(self.now, event, self.y, a, v):
                 outcome += 1
                 self.take(outcome)
         following: cython.int = self.phases.following(self.now, outcome)
@@ -581,10 +617,10 @@ class Run:
         raise SolverError(f"No step in the phase {key!r} is short enough at t = {sample * self.h:.9g}.")
 
     @cython.cfunc
-    def ask(self, event: cython.int, a: cython.double):
+    def ask(self, event: cython.int, a: cython.double, v: cython.double):
         """Let a function say what follows an event."""
         y, sizes = np.asarray(self.y)[: self.n], np.asarray(self.sizes)[: self.n]
-        y[:], target = self.met[self.now][1].events[event].ask(y, a)
+        y[:], target = self.met[self.now][1].events[event].ask(y, a, v)
         np.maximum(sizes, np.abs(y), out=sizes)
         if target is None:
             self.ended = True
@@ -594,40 +630,21 @@ class Run:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(-1)
-    def search(self, a: cython.const[cython.double][::1], finish: cython.bint) -> cython.int:
-        """Drop candidates below the peaks found so far; search the others at the end, or if there is no room."""
+    def search(
+        self, a: cython.const[cython.double][::1], v: cython.const[cython.double][::1], finish: cython.bint
+    ) -> cython.int:
+        """Search the samples that may have higher peaks: at the end, or if there is no room for more."""
         r: cython.int
-        j: cython.int
         i: cython.int
-        kept: cython.int = 0
-        higher: cython.bint
-        u: cython.double
-        part: cython.double
-        rows: cython.double[:, ::1] = self.peaks_.candidates
-        for r in range(self.peaks_.count()):
-            higher = False
-            for j in range(self.outputs):
-                higher = higher or rows[r, 2 + self.n + j] > self.high[j]
-            if higher:
-                rows[kept, :] = rows[r, :]
-                kept += 1
-        self.peaks_.keep(kept)
+        kept: cython.int = self.series.sift()
         if kept == 0 or (not finish and kept <= CANDIDATES // 2):
             return 0
-        now: cython.int = self.now
         self.before[:] = self.y
         for r in range(kept):
-            self.now, i = cython.cast(cython.int, rows[r, 0]), cython.cast(cython.int, rows[r, 1])
-            self.y[: self.n] = rows[r, 2 : 2 + self.n]
+            i = self.series.candidate(r)
             self.n_searched += 1
-            u = 0.0
-            while u < 1.0:
-                self.look_up()
-                part = self.series.expand(self.now, a[i], a[i + 1], u)
-                self.series.raise_peaks(1.0, self.passed + i + u, rows[r, 2 + self.n :])
-                self.series.skip()
-                u = u + part if part < 1.0 - u else 1.0
-        self.now = now
+            self.look_up()
+            self.series.search(r, a[i], a[i + 1], (self.rise_at(v, i), self.rise_at(v, i + 1)), self.passed + i)
         self.y[:] = self.before
         self.peaks_.keep(0)
         return 0

@@ -18,13 +18,18 @@ cdef class Series:
     cdef double[::1] start, reach  # of outputs: there, and how far they may get
     cdef int place, terms  # of the phase, and of the expansion
     cdef double part, a, rise  # the part of a sample that it covers, the acceleration at its start, and its change
+    cdef (double, double) v  # the same of the vertical acceleration
     cdef double[::1] workspace, q, slope
+    cdef double[::1] term  # of the series before that in `workspace`: magnitudes
 
-    cdef double expand(self, int place, double start, double end, double u) noexcept nogil
+    cdef double expand(self, int place, double start, double end, (double, double) v, double u) noexcept nogil
     cdef (double, int) first_event(self) noexcept nogil
     cdef void sum_up(self, int order) noexcept nogil
     cdef void skip(self) noexcept nogil
     cdef void move(self, double t) noexcept nogil
+    cdef int sift(self) noexcept nogil
+    cdef int candidate(self, int r) noexcept nogil
+    cdef void search(self, int r, double start, double end, (double, double) v, double sample) noexcept nogil
     cdef void raise_peaks(self, double stop, double sample, double[::1] highest) noexcept nogil
     cdef void reach_of_step(self) noexcept nogil
     cdef void raise_peak(self, int j, double stop, double sample, double highest) noexcept nogil

@@ -24,6 +24,7 @@ EXPANSION = cython.declare(cython.int, 16)  # samples that a power series counts
 
 
 @cython.final
+@cython.auto_pickle(False)
 @cython.cclass
 class Series:
     """The motion from the present state on, expanded anew at each call of `expand`."""
@@ -34,6 +35,7 @@ class Series:
         self.n, self.outputs = counts
         self.states, self.h, self.high, self.when = len(y), h, peaks.high, peaks.when
         self.workspace, self.q, self.slope = np.zeros(self.states + 8), np.zeros(TERMS), np.zeros(TERMS)
+        self.term, self.v = np.zeros(self.states + 8), (0.0, 0.0)
         self.series, self.sums, self.away = np.zeros((TERMS, 0)), np.zeros((ORDERS, 0)), np.zeros(0)
         self.start, self.reach = np.zeros((2, up8(max(1, self.outputs))))
 
@@ -43,23 +45,25 @@ class Series:
         if self.series.shape[1] < width:
             self.series, self.sums, self.away = np.zeros((TERMS, width)), np.zeros((ORDERS, width)), np.zeros(width)
 
-    def expand(self, place, start, end, u):
+    def expand(self, place, start, end, v, u):
         """Expand the motion from the place u of a sample, as far as a series serves; return the part of the sample.
 
-        In a phase that is not linear that is as far as a step goes; -1 if none is short enough.
+        `start` and `end` are the accelerations at the ends of the sample, those in v the vertical ones. In a phase that
+        is not linear the motion is expanded as far as a step goes; -1 if none is short enough.
         """
         self.place, self.a = place, start + (end - start) * u
         if self.phases.nonlinear(place):
-            self.part = self.flow.take(place, start, end, u)
+            self.part = self.flow.take(place, start, end, v, u)
             if self.part > 0.0:
                 self.terms = self.flow.fill(self.series, self.away)
             return self.part
         self.part = min(1.0 - u, 0.5 ** self.phases.halvings(place))
         while True:
             self.rise = (end - start) * self.part
+            self.v = v[0] + (v[1] - v[0]) * u, (v[1] - v[0]) * self.part
             self.peaks.add_work(EXPANSION)
             self.terms = self.phases.expand(
-                place, self.part * self.h, self.a, self.rise, self.y, self.series, self.away
+                place, self.part * self.h, self.a, self.rise, self.v, self.y, self.series, self.away
             )
             if self.terms > 0:
                 return self.part
@@ -72,7 +76,7 @@ class Series:
         derivative that is not zero decides, and the zeros are divided out. Of several conditions that have failed from
         the start that of the lowest derivative, and then of the largest violation over its scale, is the first.
         """
-        first_sum: cython.int = self.n - self.phases.shift(self.place)
+        first_sum: cython.int = self.n - self.phases.shift(self.place, self.v)
         e: cython.int
         k: cython.int
         row: cython.int
@@ -113,10 +117,11 @@ class Series:
     def sum_up(self, order):
         """Sum the magnitudes of the terms of coefficients of an order: what their rounding is relative to."""
         i: cython.int
-        shift: cython.int = self.phases.shift(self.place)
+        shift: cython.int = self.phases.shift(self.place, self.v)
         if self.phases.nonlinear(self.place):
             self.flow.sum_up(order, self.series, self.sizes, self.away, self.sums)
             return
+        self.term[:] = self.workspace
         if order == 0:
             for i in range(self.n):
                 self.workspace[i] = max(fabs(self.y[i]), self.sizes[i])
@@ -127,7 +132,7 @@ class Series:
                 self.workspace[i] = self.sums[order - 1, i - shift] * self.part * self.h / order
         self.workspace[self.n] = fabs(self.a) if order == 0 else fabs(self.rise) if order == 1 else 0.0
         self.workspace[self.n + 1] = 1.0 if order == 0 else 0.0
-        self.phases.magnitudes(self.place, self.workspace, self.sums[order])
+        self.phases.magnitudes(self.place, self.v, order, self.term, self.workspace, self.sums[order])
 
     def skip(self):
         """Move the state to the end of the part."""
@@ -143,6 +148,39 @@ class Series:
         self.phases.amounts(self.series, self.terms, t, self.sizes)
         self.phases.evaluate(self.series, self.terms, t, self.y)
 
+    def sift(self):
+        """Drop the samples that cannot have higher peaks than those found so far; the number of the others."""
+        r: cython.int
+        j: cython.int
+        kept: cython.int = 0
+        higher: cython.bint
+        rows: cython.double[:, ::1] = self.peaks.candidates
+        for r in range(self.peaks.count()):
+            higher = False
+            for j in range(self.outputs):
+                higher = higher or rows[r, 2 + self.n + j] > self.high[j]
+            if higher:
+                rows[kept, :] = rows[r, :]
+                kept += 1
+        self.peaks.keep(kept)
+        return kept
+
+    def candidate(self, r):
+        """The number of a sample that may have higher peaks."""
+        return cython.cast(cython.int, self.peaks.candidates[r, 1])
+
+    def search(self, r, start, end, v, sample):
+        """Raise the peaks to those within such a sample; the state is changed."""
+        u: cython.double = 0.0
+        part: cython.double
+        rows: cython.double[:, ::1] = self.peaks.candidates
+        self.y[: self.n] = rows[r, 2 : 2 + self.n]
+        while u < 1.0:
+            part = self.expand(cython.cast(cython.int, rows[r, 0]), start, end, v, u)
+            self.raise_peaks(1.0, sample + u, rows[r, 2 + self.n :])
+            self.skip()
+            u = u + part if part < 1.0 - u else 1.0
+
     def raise_peaks(self, stop, sample, highest):
         """Raise the peaks to those of the expanded motion up to `stop`, none of which is higher than its `highest`."""
         j: cython.int
@@ -153,12 +191,12 @@ class Series:
                 return
             self.reach_of_step()
         else:
-            self.phases.reach(self.place, self.terms, self.series, self.start, self.reach)
+            self.phases.reach(self.place, self.v, self.terms, self.series, self.start, self.reach)
         for j in range(self.outputs):
             first = self.start[j] if self.one_sided[j] > 0.0 else fabs(self.start[j])
             if min(first + self.reach[j], highest[j]) > self.high[j]:
                 if not completed:
-                    self.phases.complete(self.place, self.terms, self.series)
+                    self.phases.complete(self.place, self.v, self.terms, self.series)
                     completed = True
                 self.raise_peak(j, stop, sample, highest[j])
 

@@ -87,7 +87,7 @@ class Steps:
         return 0.0 if fifth == 0.0 else float(fifth / np.sqrt((fifth + 0.01 * third) * m))
 
     def bend(self, place: int, h: float, shaking: Array, y: Array, work: Array, series: Array, counted: bool) -> None:
-        """Fill the series with the polynomials of the states and the conditions over the step that was attempted."""
+        """Fill the series with the polynomials of the states over the step that was attempted."""
         rates, end = np.asarray(work)[:STAGES], np.array(work[TRIAL])
         count = self.phases[place].counted if counted else self.moving(place)
         for stage in range(LAST + 1, STAGES):
@@ -107,18 +107,22 @@ class Steps:
             series[1 : found.size, i] = found[1:]
             series[1, i] = first[i]
         series[0, self.n : self.n + 2], series[1, self.n] = (shaking[0], 1.0), shaking[1]
-        for row in series[:TERMS]:
-            self.conditions_of(place, row, row[self.states :])
 
-    def conditions_of(self, place: int, x: Array, out: Array) -> None:
-        """The conditions of y, a and 1, apart from what the constant states add to them."""
-        count = len(self._events(place))
-        out[:count] = self._tables(place).now[0, :count] @ np.asarray(x)[: self.n + 2]
+    def rows_of(
+        self, place: int, outputs: bool, x: Array, before: Array, v: tuple[float, float, float], out: Array
+    ) -> None:
+        """The outputs or conditions of y, a and 1, those that are not linear as their rows say.
 
-    def outputs_of(self, place: int, x: Array, out: Array) -> None:
-        """The outputs of y, a and 1, those that are not linear as their rows say."""
-        tables = self._tables(place)
-        out[: tables.outputs] = tables.outs[0, : tables.outputs] @ np.asarray(x)[: self.n + 2]
+        Under vertical acceleration v[0] multiplies this term of the states and v[1] that before; v[2] is a term itself.
+        """
+        tables, shaken, n = self._tables(place), self.phases[place].shaken, self.n
+        count = tables.outputs if outputs else len(self._events(place))
+        x, before = np.asarray(x), np.asarray(before)
+        table, given = tables.outs if outputs else tables.now, x[: n + 2]
+        if shaken is not None and any(v):
+            fed = v[0] * x[shaken.places] + v[1] * before[shaken.places]
+            table, given = shaken.outs if outputs else shaken.now, np.concatenate((given, (v[2],), fed))
+        out[:count] = table[0, :count] @ given
 
     def observe(self, place: int, a: float, a_v: float, y: Array, rates: Array, out: Array) -> None:
         """Replace the outputs that are not linear."""

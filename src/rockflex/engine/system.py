@@ -3,6 +3,7 @@
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 from dataclasses import field as initially
+from inspect import Parameter, signature
 from typing import Any
 
 import numpy as np
@@ -68,6 +69,8 @@ class StateLayout:
 class Rest:
     """What follows an event instead, where row · y + direct a + constant <= 0 for the state y after its jump.
 
+    Under a vertical acceleration a_v the sum has the terms direct_v a_v + a_v row_v · y, too.
+
     Attributes
     ----------
     row : ndarray, shape (n,)
@@ -76,6 +79,8 @@ class Rest:
     constant, direct : float
     jump : ndarray, shape (n, n), optional
         Matrix by which the state after the jump is multiplied.
+    row_v : ndarray, shape (n,), optional
+    direct_v : float
     """
 
     row: Array
@@ -83,6 +88,8 @@ class Rest:
     constant: float | Array = 0.0
     direct: float | Array = 0.0
     jump: Array | None = None
+    row_v: Array | None = None
+    direct_v: float | Array = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +101,8 @@ class Event:
     name : str
         What the event is called in the log.
     row : ndarray, shape (n,)
-        Condition: row · y + direct a + constant >= 0.
+        Condition: row · y + direct a + constant >= 0; under a vertical acceleration a_v the sum has the terms
+        direct_v a_v + a_v row_v · y, too.
     target : hashable
         Key of the next phase; None ends the run.
     constant, direct : float
@@ -104,12 +112,15 @@ class Event:
         scale is the event.
     jump : ndarray, shape (n, n), or Jump, or callable, optional
         Matrix by which the state is multiplied; or a compiled `Jump`, which may choose `other` instead of `target`; or
-        a function of the state and the acceleration that returns the state and the key of the next phase, instead of
-        `target`. Without it the state is continuous.
+        a function of the state, the acceleration and, if it takes a third argument, the vertical one, that returns the
+        state and the key of the next phase, instead of `target`. Without it the state is continuous.
     rest : Rest, optional
         What follows if the motion is too slow after the jump, which must be a matrix.
     other : hashable, optional
         Key of the phase that a compiled jump may choose.
+    row_v : ndarray, shape (n,), optional
+    direct_v : float
+        See `row`.
     """
 
     name: str
@@ -118,20 +129,31 @@ class Event:
     constant: float | Array = 0.0
     direct: float | Array = 0.0
     scale: float | Array = 1.0
-    jump: Array | Jump | Callable[[Array, float], tuple[Array, Key | None]] | None = None
+    jump: Array | Jump | Callable[..., tuple[Array, Key | None]] | None = None
     rest: Rest | None = None
     other: Key | None = None
+    row_v: Array | None = None
+    direct_v: float | Array = 0.0
+    third: bool = initially(init=False, default=False, repr=False)  # whether the jump asks for the vertical one, too
 
-    def ask(self, state: Array, acceleration: float) -> tuple[Array, Key | None]:
+    def __post_init__(self) -> None:
+        if callable(self.jump):
+            object.__setattr__(self, "third", _takes_three(self.jump))
+
+    def ask(self, state: Array, acceleration: float, vertical: float = 0.0) -> tuple[Array, Key | None]:
         """The state after a jump that is a function, and the key of the phase that follows."""
         assert callable(self.jump)
-        found, key = self.jump(state.copy(), acceleration)
+        more = (vertical,) if self.third else ()
+        found, key = self.jump(state.copy(), acceleration, *more)
         return array(f"the state after event {self.name!r}", found, state.shape), key
 
 
 @dataclass(frozen=True, eq=False)
 class LinearPhase:
     """A phase: y' = A y + f a(t) + c with outputs C y + d a + e, while the conditions of its events hold.
+
+    Under a vertical acceleration a_v it is y' = A y + f a + f_v a_v + a_v A_v y + c with outputs
+    C y + d a + d_v a_v + a_v C_v y + e. What is left out is zero.
 
     For a stack of systems all arrays and numbers of the phase and of its events may have a first axis more.
 
@@ -142,6 +164,10 @@ class LinearPhase:
     C : ndarray, shape (m, n)
     d, e : ndarray, shape (m,)
     events : tuple of Event
+    A_v : ndarray, shape (n, n), optional
+    f_v : ndarray, shape (n,), optional
+    C_v : ndarray, shape (m, n), optional
+    d_v : ndarray, shape (m,), optional
     """
 
     A: Array
@@ -151,16 +177,26 @@ class LinearPhase:
     d: Array
     e: Array
     events: tuple[Event, ...] = ()
+    A_v: Array | None = None
+    f_v: Array | None = None
+    C_v: Array | None = None
+    d_v: Array | None = None
 
     def of(self, place: int) -> "LinearPhase":
         """The phase of one system of a stack."""
-        arrays = {name: getattr(self, name)[place] for name in ("A", "f", "c", "C", "d", "e")}
+        given = {name: getattr(self, name) for name in ("A", "f", "c", "C", "d", "e", *VERTICAL)}
+        arrays = {name: each[place] for name, each in given.items() if each is not None}
         return LinearPhase(**arrays, events=tuple(_of(event, place, EVENT_NUMBERS) for event in self.events))
+
+
+VERTICAL = "A_v", "f_v", "C_v", "d_v"
 
 
 @dataclass(frozen=True, eq=False)
 class NonlinearPhase:
     """A phase: y' = F(y, a, a_v) with outputs C y + d a + e or of other forms, while the conditions of its events hold.
+
+    Under a vertical acceleration a_v the outputs have the terms d_v a_v + a_v C_v y, too.
 
     Attributes
     ----------
@@ -191,6 +227,8 @@ class NonlinearPhase:
     counted: int | None = None
     velocities: dict[int, int] = initially(default_factory=dict)
     curved: dict[int, float] = initially(default_factory=dict)
+    C_v: Array | None = None
+    d_v: Array | None = None
 
     def of(self, place: int) -> "NonlinearPhase":
         """The phase itself: there is no stack of them."""
@@ -260,9 +298,13 @@ class System:
             name: stacked(place + name, getattr(found, name), shape, self.count, finite=name in "Afc")
             for name, shape in shapes.items()
         }
-        wrong = ~np.isfinite(np.concatenate((arrays["C"], *(arrays[each][..., None] for each in "de")), axis=2)).all(
-            axis=(0, 2)
-        )
+        for name, shape in zip(VERTICAL, ((n, n), (n,), (m, n), (m,)), strict=True):
+            given = getattr(found, name, None)
+            if given is not None:
+                arrays[name] = stacked(place + name, given, shape, self.count, finite=name in ("A_v", "f_v"))
+        wrong = np.zeros(m, dtype=bool)
+        for name in arrays.keys() & {"C", "d", "e", "C_v", "d_v"}:
+            wrong |= ~np.isfinite(arrays[name]).all(axis=(0, 2) if name in {"C", "C_v"} else (0,))
         if wrong.any():
             raise InputError(
                 f"{place}output {self.outputs[int(wrong.argmax())]!r} must be finite, but NaN or infinity was given."
@@ -297,8 +339,19 @@ def _checked_field(place: str, phase: NonlinearPhase, n: int, m: int, count: int
     return replace(phase, field=found, scale=scale, counted=counted)
 
 
-EVENT_NUMBERS = {"row": 1, "constant": 0, "direct": 0, "scale": 0, "jump": 2}  # and the number of their axes
-REST_NUMBERS = {"row": 1, "constant": 0, "direct": 0, "jump": 2}
+EVENT_NUMBERS = {"row": 1, "constant": 0, "direct": 0, "scale": 0, "jump": 2, "row_v": 1, "direct_v": 0}
+REST_NUMBERS = {"row": 1, "constant": 0, "direct": 0, "jump": 2, "row_v": 1, "direct_v": 0}  # and numbers of their axes
+OPTIONAL = "jump", "row_v"
+
+
+def _takes_three(jump: Callable[..., object]) -> bool:
+    """Whether a jump asks for the vertical acceleration: whether it has a third argument without default."""
+    try:
+        asked = signature(jump).parameters.values()
+    except (TypeError, ValueError):  # as of some functions in C
+        return False
+    places = Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD
+    return sum(each.kind in places and each.default is Parameter.empty for each in asked) > 2
 
 
 def _of(part: Any, place: int, names: dict[str, int]) -> Any:
@@ -335,7 +388,7 @@ def _stacked(place: str, part: Any, names: dict[str, int], n: int, count: int) -
     found = {name: getattr(part, name) for name in names}
     return {
         name: each
-        if (name == "jump" and (each is None or isinstance(each, Jump))) or callable(each)
+        if (each is None and name in OPTIONAL) or callable(each) or isinstance(each, Jump)
         else stacked(place + name, each, (n,) * names[name], count)
         for name, each in found.items()
     }
@@ -376,4 +429,12 @@ def acceleration(values: Any) -> Array:
     if not np.isfinite(found).all():
         first = int(np.argmin(np.isfinite(found)))
         raise InputError(f"The acceleration must be finite, but sample {first} is {found[first]}.")
+    return found
+
+
+def as_long(vertical: Any, ground: Any) -> Array:
+    """Return a vertical acceleration as the loops need it, and refuse one that is not as long as the other."""
+    found = acceleration(vertical)
+    if found.size != len(ground):
+        raise InputError(f"The acceleration has {len(ground)} samples, but the vertical one has {found.size}.")
     return found

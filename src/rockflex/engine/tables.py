@@ -156,9 +156,9 @@ def tables_of_rows(phase: NonlinearPhase) -> Tables:
 
 def shift_of(rates: Array) -> int:
     """The number of first states whose rates are as many states after them, as positions before their velocities."""
-    n = rates.shape[1]
+    _, n, columns = rates.shape
     for shift in range(n // 2, 0, -1):
-        if (rates[:, :shift] == np.eye(shift, n + 2, shift)).all():
+        if (rates[:, :shift] == np.eye(shift, columns, shift)).all():
             return shift
     return 0
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -20,7 +20,7 @@ from rockflex.models._fields import Change, Landing, Reversal, RockingField
 from rockflex.models._impact import Restitution, SidedRestitution, VVELComplete, VVELSimplified
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import LINEAR, VERTICAL
-from rockflex.models._phase import Key, Phase
+from rockflex.models._phase import Guard, Key, Phase
 from rockflex.models._quantities import Quantities, lost_support_row, rows_of
 from rockflex.models._rocking_phase import QUARTER_TURN
 from rockflex.models._slider import Slider
@@ -77,6 +77,8 @@ class Rocks:
 
     def __init__(self, model: NonlinearModel, quantities: Quantities) -> None:
         self.model, self.quantities = model, quantities
+        # All forces are linear in gravity, and so in the vertical acceleration of the ground, which acts like more of it.
+        self.heavier = replace(model, gravity=model.gravity + 1.0)
         p, layout, curved = model.properties, model.layout, model.complete
         count = len(quantities)
         kinds = quantities.kinds.tolist() if curved else [LINEAR] * count
@@ -108,10 +110,8 @@ class Rocks:
         branch, own = (key[-1], key[:-1]) if model.bouc_wen is not None else (1, key)
         known = model.phase(own)
         side, n = own[0], layout.size
-        rows = np.zeros((len(self.quantities) + 2, n + 2))
-        rows[0, layout.rotation] = 1.0
-        for place, row in enumerate((*rows_of(model, self.quantities, own), lost_support_row(model, own))):
-            rows[1 + place, [*range(layout.moving), -2, -1]] = row
+        rows = self.rows(model, own)
+        more = self.rows(self.heavier, own) - rows
         outputs = rows[:, :n], rows[:, n], rows[:, n + 1]
         if side == CLOSED:
             stops, events = [], self.uplifts(known, branch)
@@ -124,7 +124,8 @@ class Rocks:
             rates[modes, layout.modes + modes] = 1.0
             of_modes = model.modal_accelerations(own)
             rates[layout.modes : 2 * layout.modes, [*range(layout.moving), n, n + 1]] = of_modes
-            return LinearPhase(rates[:, :n], rates[:, n], rates[:, n + 1], *outputs, events)
+            heavy = {"C_v": more[:, :n], "d_v": more[:, n + 1]}
+            return LinearPhase(rates[:, :n], rates[:, n], rates[:, n + 1], *outputs, events, **heavy)
         if model.bouc_wen is not None:
             events += (self.reversal(own, branch),)
         modes = range(layout.modes)
@@ -136,7 +137,17 @@ class Rocks:
             layout.memory,
             {layout.rotation: layout.spin} | {k: layout.modes + k for k in modes},
             self.curved if side != CLOSED else {},
+            more[:, :n],
+            more[:, n + 1],
         )
+
+    def rows(self, model: NonlinearModel, key: Key) -> Array:
+        """The outputs of a model in a phase: rows with columns for the state, a and 1."""
+        layout, found = model.layout, np.zeros((len(self.quantities) + 2, model.layout.size + 2))
+        found[0, layout.rotation] = 1.0
+        for place, row in enumerate((*rows_of(model, self.quantities, key), lost_support_row(model, key))):
+            found[1 + place, [*range(layout.moving), -2, -1]] = row
+        return found
 
     def full(self, key: Key, branch: int) -> Key:
         """The key of a phase from that of the model and the sign of the velocity of a hysteretic spring."""
@@ -144,21 +155,24 @@ class Rocks:
 
     def uplifts(self, known: Phase, branch: int) -> tuple[Event, ...]:
         """The base lifts where the overturning moment exceeds a limit (Eq. 16 or 24)."""
-        guard, layout, found = known.guard, self.model.layout, list[Event]()
-        first = layout.memory
+        guard, found, heavier = known.guard, list[Event](), self.heavier.phase(known.key).guard
         scale = max([abs(each) for each in (guard.low, guard.high) if 0.0 < abs(each) < np.inf], default=1.0)
-        for leads, sign, limit, recall in (
-            (guard.below, 1.0, guard.low, guard.recall[0]),
-            (guard.above, -1.0, guard.high, guard.recall[1]),
-        ):
-            if leads is None:
-                continue
-            row = np.zeros(layout.size)
-            row[: layout.moving] = sign * guard.row[:-2]
-            row[first : first + layout.remembered] -= sign * recall
-            constant, direct = sign * (guard.row[-1] - limit), sign * guard.row[-2]
-            found.append(Event("uplift", row, self.full(leads.key, branch), constant, direct, scale))
+        for bound, leads in enumerate((guard.below, guard.above)):
+            if leads is not None:
+                row, more = (self.limit(each, bound) for each in (guard, heavier))
+                target, parts = self.full(leads.key, branch), (row[-1], row[-2], scale)
+                heavy = {"row_v": (more - row)[:-2], "direct_v": float((more - row)[-1])}
+                found.append(Event("uplift", row[:-2], target, *parts, **heavy))
         return tuple(found)
+
+    def limit(self, guard: Guard, bound: int) -> Array:
+        """By how much a moment is within its lower (0) or upper (1) limit: a row with columns for the state, a and 1."""
+        layout, sign = self.model.layout, 1.0 - 2.0 * bound
+        row = np.zeros(layout.size + 2)
+        row[[*range(layout.moving), -2, -1]] = sign * guard.row
+        row[layout.memory : layout.memory + layout.remembered] -= sign * guard.recall[bound]
+        row[-1] -= sign * (guard.high if bound else guard.low)
+        return row
 
     def rotation(self, factor: float) -> Array:
         """A row that is a factor times θ."""
@@ -229,14 +243,14 @@ class Rocks:
         row[self.model.layout.modes] = branch
         return Event("reversal", row, (*key, -branch), jump=Reversal(self.model.layout.modes, self.barely))
 
-    def told(self, known: Phase, branch: int) -> Callable[[Array, float], tuple[Array, Key]]:
+    def told(self, known: Phase, branch: int) -> Callable[[Array, float, float], tuple[Array, Key]]:
         """The jump of a law of the user's own."""
         model, N = self.model, self.model.layout.modes
         p, layout, own = model.properties, model.layout, OwnLaw(model.law, model.properties)
         fields = {side: self.field(known.beside[k], branch) for k, side in ((1, RIGHT), (2, LEFT))}
         turnings = self.turnings(known)
 
-        def land(state: Array, acceleration: float) -> tuple[Array, Key]:
+        def land(state: Array, acceleration: float, vertical: float) -> tuple[Array, Key]:
             before = energy(state, fields[known.side].inertia_at(state))
             for place, _, offset in turnings:
                 state[place] = -offset
@@ -249,7 +263,7 @@ class Rocks:
             if spin != 0.0:
                 side, key = (RIGHT, known.beside[1]) if spin > 0.0 else (LEFT, known.beside[2])
                 after = energy(state, fields[side].inertia_at(state))
-                back = -side * float(fields[side].rates_at(state, acceleration, 0.0)[layout.spin])
+                back = -side * float(fields[side].rates_at(state, acceleration, vertical)[layout.spin])
                 if 2.0 * abs(spin) < back * WITHOUT.shortest_excursion:
                     state[N : 2 * N] += p.effective_height * spin
                     state[layout.spin], key = 0.0, known.beside[0]

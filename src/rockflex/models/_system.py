@@ -36,7 +36,7 @@ def may_stack(model: LinearModel) -> bool:
 
 
 def system_of(models: Sequence[LinearModel], quantities: Sequence[Quantities]) -> System:
-    """Return models without elements, on rigid ground that does not move vertically, as a stack of hybrid systems.
+    """Return models without elements, on rigid ground, as a stack of hybrid systems.
 
     The models have equal numbers of modes and quantities, and all of them can lift, or none. The outputs are the
     rotation, the quantities, and the loss of support, of which the largest value counts. The equations are those of
@@ -96,10 +96,23 @@ class RigidGround:
         rates[:, modes, N + modes] = 1.0
         rates[:, N : 2 * N], rates[:, -1] = accelerations, turn
         rates[:, -2, 2 * N + 1] = side != CLOSED
-        rows = np.concatenate((self.rotation(), self.rows(side, accelerations, turn), self.lost_support(side, turn)), 1)
+        rows = np.concatenate((self.rotation(), self.rows(side, accelerations, turn), self.support(side, turn)), 1)
         events = (self.landing(side), self.overturning(side)) if side != CLOSED else self.uplifts()
         A, C = rates[..., :-2], rows[..., :-2]
-        return LinearPhase(A, rates[..., -2], rates[..., -1], C, rows[..., -2], rows[..., -1], events)
+        return LinearPhase(
+            A, rates[..., -2], rates[..., -1], C, rows[..., -2], rows[..., -1], events, **self.shaken(side)
+        )
+
+    def shaken(self, side: int) -> dict[str, Array]:
+        """What the vertical acceleration multiplies: it acts like that much more gravity."""
+        (S, N), turn = self.omega.shape, self.turn_by_weight(side)
+        accelerations = -self.height[..., None] * turn[:, None]
+        rates = np.zeros((S, 2 * N + 2, 2 * N + 4))
+        rates[:, N : 2 * N], rates[:, -1] = accelerations, turn
+        quantities = self.shares[..., 2 * N : 3 * N] @ accelerations + self.shares[..., TURN, None] * turn[:, None]
+        lost = self.lost_support(side, turn, self.m_tot)
+        rows = np.concatenate((np.zeros_like(lost), quantities, lost), axis=1)
+        return {"A_v": rates[..., :-2], "f_v": rates[..., -1], "C_v": rows[..., :-2], "d_v": rows[..., -1]}
 
     def rotation(self) -> Array:
         """θ: a row, shape (S, 1, C)."""
@@ -125,6 +138,14 @@ class RigidGround:
         found[:, -1] -= side * self.m_tot * self.gravity * arm
         return found / self.free_inertia(side)[:, None]
 
+    def turn_by_weight(self, side: int) -> Array:
+        """What the weight under a gravity of 1 m/s² adds to θ'': a row, shape (S, C)."""
+        found = np.zeros_like(self.moment())
+        if side != CLOSED:
+            found[:, -4], found[:, -1] = self.l0r, -side * self.m_tot * self.pivots[side][1]
+            found /= self.free_inertia(side)[:, None]
+        return found
+
     def free_inertia(self, side: int) -> Array:
         """I_θ - Σ m* h*² about a pivot in kg m²: the inertia of the rotation with free modes, shape (S,)."""
         return self.pivots[side][0] - (self.mass * self.height**2).sum(axis=1)
@@ -140,12 +161,16 @@ class RigidGround:
             found[..., -3] += self.swings[..., 0] + self.swings[..., 1] * (side == RIGHT)
         return found
 
-    def lost_support(self, side: int, turn: Array) -> Array:
+    def support(self, side: int, turn: Array) -> Array:
         """The decrease of ΣF_z below m_tot g in N, Eq. 22 for small rotations, the sign corrected, shape (S, 1, C)."""
+        return self.lost_support(side, turn, self.m_tot * (self.gravity - GRAVITY))
+
+    def lost_support(self, side: int, turn: Array, heavier: Array) -> Array:
+        """What θ'' takes from ΣF_z, beyond what is heavier, shape (S, 1, C)."""
         found = np.zeros((len(turn), 1, turn.shape[1]))
         if side != CLOSED:
             found[:, 0] = -side * (self.m_tot * self.pivots[side][1])[:, None] * turn
-        found[:, 0, -1] -= self.m_tot * (self.gravity - GRAVITY)
+        found[:, 0, -1] -= heavier
         return found
 
     def uplifts(self) -> tuple[Event, ...]:
@@ -157,7 +182,8 @@ class RigidGround:
             weight = self.m_tot * self.gravity * self.pivots[side][1]
             row = side * moment
             scale = np.where(weight > 0.0, weight, 1.0)
-            found.append(Event("uplift", row[:, :-2], (side,), weight, row[:, -2], scale))
+            more = self.m_tot * self.pivots[side][1]
+            found.append(Event("uplift", row[:, :-2], (side,), weight, row[:, -2], scale, direct_v=more))
         return tuple(found)
 
     def overturning(self, side: int) -> Event:
@@ -176,7 +202,8 @@ class RigidGround:
         turn = self.turn(-side)
         back = law.shortest_excursion * side * turn  # what the rotation would lose within the shortest excursion
         back[:, -3] += 2.0 * side
-        rest = Rest(-back[:, :-2], CONTACT, -back[:, -1], -back[:, -2], self.struck(0.0))
+        more = law.shortest_excursion * side * self.turn_by_weight(-side)
+        rest = Rest(-back[:, :-2], CONTACT, -back[:, -1], -back[:, -2], self.struck(0.0), -more[:, :-2], -more[:, -1])
         return Event("impact", row, OTHER[side], jump=self.struck(law.e), rest=rest)
 
     def struck(self, e: float) -> Array:
@@ -191,16 +218,16 @@ class RigidGround:
         """Whether the restitution may gain energy: on an eccentric base, whose pivots have different inertias."""
         return bool((law.e**2 * self.free_inertia(-side) > self.free_inertia(side)).any())
 
-    def told(self, model: LinearModel) -> Callable[[Array, float], tuple[Array, Key]]:
+    def told(self, model: LinearModel) -> Callable[[Array, float, float], tuple[Array, Key]]:
         """The jump of a law that is not linear or not known, for a single model."""
         N, height, own = (
             model.properties.n_modes,
             model.properties.effective_height,
             OwnLaw(model.law, model.properties),
         )
-        turns = {side: self.turn(side)[0] for side in (RIGHT, LEFT)}
+        turns = {side: (self.turn(side)[0], self.turn_by_weight(side)[0]) for side in (RIGHT, LEFT)}
 
-        def land(state: Array, acceleration: float) -> tuple[Array, Key]:
+        def land(state: Array, acceleration: float, vertical: float) -> tuple[Array, Key]:
             before = energy(state, model.free_inertia(RIGHT if state[-1] < 0.0 else LEFT))
             try:
                 velocity, spin = own.after(state[N : 2 * N], float(state[-1]))
@@ -212,7 +239,8 @@ class RigidGround:
                 if isinstance(law, SidedRestitution):
                     law = law.right if state[-1] < 0.0 else law.left
                 shortest = law.shortest_excursion if isinstance(law, Restitution) else WITHOUT.shortest_excursion
-                row = turns[key[0]]
+                turn, more = turns[key[0]]
+                row = turn + vertical * more
                 back = -key[0] * float(row[:-2] @ after + row[-2] * acceleration + row[-1])
                 gained = energy(after, model.free_inertia(key[0])) - before
                 if 2.0 * abs(spin) < back * shortest:

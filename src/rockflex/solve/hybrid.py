@@ -1,4 +1,4 @@
-"""Runs on `rockflex.engine`: the simplified models without elements, on rigid ground that does not move vertically."""
+"""Runs on `rockflex.engine`: the simplified models without elements, on rigid ground."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
@@ -14,6 +14,7 @@ from rockflex.engine import MAX_STATES, Batch, Run, StepTooLongError
 from rockflex.models import (
     GROUND,
     HEADER,
+    RISE,
     SIDE,
     TIME,
     GainsEnergyError,
@@ -36,7 +37,6 @@ from rockflex.solve._solution import Solution
 from rockflex.solve._solutions import Ends, Solutions
 from rockflex.solve._task import Gate, Task
 from rockflex.solve.batch import Excitation
-from rockflex.solve.engine import Engine
 from rockflex.solve.interruption import check_interruption
 from rockflex.solve.records import END
 from rockflex.solve.status import Status
@@ -86,7 +86,7 @@ class Stack:
 
 
 class HybridEngine:
-    """A model on the engine for hybrid systems, with the interface of `Engine`; that one runs vertical motion.
+    """A model on the engine for hybrid systems, with the interface of `Engine`.
 
     Parameters
     ----------
@@ -107,11 +107,6 @@ class HybridEngine:
     def stack(self) -> Stack:
         """The stack of the model, by itself unless it has been gathered."""
         return Stack([self.model], [self.quantities])
-
-    @cached_property
-    def shaken(self) -> Engine:
-        """The engine for vertical motion of the ground."""
-        return Engine(self.model, self.quantities)
 
     @property
     def size(self) -> int:
@@ -168,10 +163,6 @@ class HybridEngine:
         work_limit: float | None = None,
     ) -> Solutions:
         """As in `Engine`."""
-        if runs[0].vertical is not None:
-            return self.shaken.run_all(
-                runs, dt, free_vibration=free_vibration, state=state, history=history, work_limit=work_limit
-            )
         tasks = [self.task(run, dt, free_vibration, history=history) for run in runs]
         failures = self._gate.refused(tasks, work_limit)
         key, start = (
@@ -188,6 +179,7 @@ class HybridEngine:
             free=0 if free_vibration == 0.0 else course_of(self.model, dt, free_vibration).free,
             settles=settles,
             names=COUNTED,
+            verticals=[runs[place].vertical for place in allowed],
         )
         check_interruption()
         solver = stack.taken(dt)
@@ -233,9 +225,9 @@ class HybridEngine:
         return int(min(work_limit / (SHARE * (sample + SEARCH * look)), 2.0**62))
 
     def _states(self, solver: Run) -> Array:
-        times, places, ground, states = solver.history
+        times, places, ground, states, rise = solver.history
         rows = np.zeros((times.size, HEADER + self.model.layout.size))
-        rows[:, TIME], rows[:, GROUND], rows[:, HEADER:] = times, ground, states
+        rows[:, TIME], rows[:, GROUND], rows[:, RISE], rows[:, HEADER:] = times, ground, rise, states
         side, rotation = rows[:, SIDE], rows[:, HEADER + self.model.layout.rotation]
         side[:] = np.array([key[0] for key in cast("list[Key]", solver.keys)])[places]
         rotation[side * rotation < 0.0] = 0.0  # by rounding
