@@ -22,7 +22,7 @@ def uncompiled() -> SimpleNamespace:
     """The modules of a run as Python, with the loops in NumPy."""
     beside = Path(str(compiled.__file__)).parent
     place = beside if (beside / "run.py").exists() else Path(__file__).parents[2] / "src" / "rockflex" / "engine"
-    names = [f"rockflex.engine.{name}" for name in ("batch", "rest", "series", "run")]
+    names = [f"rockflex.engine.{name}" for name in ("batch", "rest", "field", "flow", "series", "run")]
     known = {name: sys.modules.pop(name) for name in names}
     try:
         for name in names:

@@ -7,9 +7,9 @@ from scipy.integrate._ivp import dop853_coefficients as published
 
 from builders import frame_values
 from rockflex import BoucWen, Frame
+from rockflex.engine import tableau
 from rockflex.models import EXTRA, Model, Quantities
 from rockflex.solve import Engine
-from rockflex.solve.adaptive import tableau
 from rockflex.solve.adaptive.layout import TERMS, TRIAL, stages_of
 from rockflex.solve.adaptive.step import FAILED, expand_nested, extend, row_poly, settle_on, step_over, take_step
 from rockflex.solve.adaptive.sums import place_stage

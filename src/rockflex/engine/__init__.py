@@ -1,7 +1,30 @@
-"""Hybrid systems: phases that are linear in the state, events, jumps and outputs. It knows no structure."""
+"""Hybrid systems: phases, events, jumps and outputs. It knows no structure."""
 
 from rockflex.engine.batch import Batch
+from rockflex.engine.field import Field, Jump
 from rockflex.engine.run import Run
-from rockflex.engine.system import MAX_STATES, Event, LinearPhase, Rest, StateLayout, StepTooLongError, System
+from rockflex.engine.system import (
+    MAX_STATES,
+    Event,
+    LinearPhase,
+    NonlinearPhase,
+    Rest,
+    StateLayout,
+    StepTooLongError,
+    System,
+)
 
-__all__ = ["MAX_STATES", "Batch", "Event", "LinearPhase", "Rest", "Run", "StateLayout", "StepTooLongError", "System"]
+__all__ = [
+    "MAX_STATES",
+    "Batch",
+    "Event",
+    "Field",
+    "Jump",
+    "LinearPhase",
+    "NonlinearPhase",
+    "Rest",
+    "Run",
+    "StateLayout",
+    "StepTooLongError",
+    "System",
+]

@@ -45,6 +45,10 @@ cdef extern from "march.h" nogil:
         const double **jump
         const double **rest
         int *following
+        void **leaps
+        void *field
+        int moving, counted
+        const double *floor
     int UNKNOWN, ENDS, ASKED
     ctypedef struct Loops:
         const char *level
@@ -59,6 +63,9 @@ cdef extern from "march.h" nogil:
         void (*complete)(const Tables *p, Climb v, int terms, int width, double *series) noexcept nogil
         void (*magnitudes)(const Tables *p, Climb v, int order, const double *before, const double *x, double *out) noexcept nogil
         int (*march)(const Tables *p, int phase, const double *a, const double *v, int i, int last, double *y, Log *log) noexcept nogil
+        void (*combine)(int count, int terms, const int *which, const double *weights, double h, const double *start, const double *rates, int width, double *out) noexcept nogil
+        void (*errors)(int count, const double *coarse, const double *fine, const double *size, const double *y, const double *end, const double *floor, double *out) noexcept nogil
+        void (*powers)(int count, double h, const double *y, const double *end, const double *first, const double *last, const double *bends, int stride, int width, double *series) noexcept nogil
     const Loops *rockflex_loops(const char *level)
 
 
@@ -74,6 +81,8 @@ cdef class Peaks:
     cdef void keep(self, int count) noexcept nogil
     cdef long long work(self) noexcept nogil
     cdef void add_work(self, long long more) noexcept nogil
+    cdef void look(self, bint looks) noexcept nogil
+    cdef double before(self) noexcept nogil
 
 
 cdef class Phases:
@@ -81,7 +90,8 @@ cdef class Phases:
     cdef readonly int count
     cdef int n, states
     cdef double[::1] one_sided
-    cdef list contents, offsets, shaken
+    cdef list contents, offsets, shaken, fields
+    cdef double[::1] room
 
     cdef int events(self, int place) noexcept nogil
     cdef int halvings(self, int place) noexcept nogil
@@ -97,3 +107,16 @@ cdef class Phases:
     cdef void evaluate(self, double[:, ::1] series, int terms, double t, double[::1] out) noexcept nogil
     cdef void amounts(self, double[:, ::1] series, int terms, double t, double[::1] out) noexcept nogil
     cdef void magnitudes(self, int place, (double, double) v, int order, double[::1] before, double[::1] x, double[::1] out) noexcept nogil
+    cdef bint nonlinear(self, int place) noexcept nogil
+    cdef int leap(self, int place, int event, double[::1] y, double a, double a_v) noexcept nogil
+    cdef void begin(self, int place, double[::1] y, double[::1] more) noexcept nogil
+    cdef void rates(self, int place, double a, double a_v, double[::1] y, double[::1] out, bint counted) noexcept nogil
+    cdef void terms_of_rates(self, int place, double a, double a_v, double[::1] y, double[::1] out) noexcept nogil
+    cdef void sum_stages(self, int place, int stage, double h, const double *y, double[:, ::1] work, double *out) noexcept nogil
+    cdef void combined(self, int which, int count, double h, double[:, ::1] work, int row) noexcept nogil
+    cdef void within(self, int place, int stage, double h, double[::1] y, double[:, ::1] work, double[::1] out) noexcept nogil
+    cdef double attempt(self, int place, double h, double[::1] shaking, double[::1] y, double[::1] sizes, double[:, ::1] work, bint counted) noexcept nogil
+    cdef void bend(self, int place, double h, double[::1] shaking, double[::1] y, double[:, ::1] work, double[:, ::1] series, bint counted) noexcept nogil
+    cdef void rows_of(self, int place, bint outputs, double[::1] x, double[::1] before, (double, double, double) v, double[::1] out) noexcept nogil
+    cdef void observe(self, int place, double a, double a_v, double[::1] y, double[::1] rates, double[::1] out) noexcept nogil
+    cdef int moving(self, int place) noexcept nogil

@@ -5,9 +5,11 @@ from itertools import pairwise
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import INFINITY
+from cython.cimports.libc.math import INFINITY, sqrt
 from cython.cimports.libc.stdlib import calloc, free, malloc, realloc
+from cython.cimports.rockflex.engine.field import Field, Jump
 
+from rockflex.engine import tableau
 from rockflex.engine.system import up8
 from rockflex.engine.tables import padded
 
@@ -27,6 +29,24 @@ def chosen_level():
 
 LOOPS = cython.declare(cython.pointer(cython.const[Loops]), rockflex_loops(chosen_level()))
 LEVEL = LOOPS.level.decode()
+
+# The sums of stages: that before each stage, then two error estimates and the four that bend the polynomial.
+LAST = cython.declare(cython.int, tableau.LAST)
+STAGES = cython.declare(cython.int, tableau.STAGES)
+COARSE = cython.declare(cython.int, tableau.STAGES)
+BENDS = cython.declare(cython.int, tableau.STAGES + 2)
+TERMS = cython.declare(cython.int, 8)  # of the polynomial over a step
+NODES = cython.declare(cython.double[::1], tableau.C)
+SUMS = tableau.sums()
+WHICH = cython.declare(cython.int[:, ::1], SUMS[0])
+WEIGHTS = cython.declare(cython.double[:, ::1], SUMS[1])
+COUNTS = cython.declare(cython.int[::1], SUMS[2])
+
+# Rows of the room for a step, after the rates of the stages; as in `flow`.
+TRIAL = cython.declare(cython.int, tableau.STAGES)
+ERRORS = cython.declare(cython.int, tableau.STAGES + 1)
+BENT = cython.declare(cython.int, tableau.STAGES + 3)
+PLACE = cython.declare(cython.int, tableau.STAGES + 7)
 
 
 def packed(tables):
@@ -101,6 +121,14 @@ class Peaks:
         """Count more."""
         self.log.work += more
 
+    def look(self, looks):
+        """Say whether the march has stopped before a sample in which something may happen."""
+        self.log.looks = looks
+
+    def before(self):
+        """Samples before the first of the present acceleration."""
+        return self.log.passed
+
 
 @cython.cclass
 class Phases:
@@ -108,7 +136,8 @@ class Phases:
 
     def __init__(self, one_sided, states):
         self.one_sided, self.n, self.states = one_sided, states, up8(states + 2)
-        self.contents, self.offsets, self.shaken, self.count = [], [], [], 0
+        self.contents, self.offsets, self.shaken, self.count, self.fields = [], [], [], 0, []
+        self.room = np.zeros(2 * states + 8)
 
     def __dealloc__(self):
         k: cython.int
@@ -116,6 +145,7 @@ class Phases:
             free(self.phases[k].jump)
             free(self.phases[k].rest)
             free(self.phases[k].following)
+            free(self.phases[k].leaps)
         free(self.phases)
 
     def add(self, tables, events, h):
@@ -124,7 +154,9 @@ class Phases:
         count: cython.int = len(events)
         systems = tables.halvings.size
         outcomes = [outcome for event in events for outcome in (event, event.rest)]
-        jumps = [None if outcome is None or callable(outcome.jump) else outcome.jump for outcome in outcomes]
+        jumps = [
+            outcome.jump if isinstance(getattr(outcome, "jump", None), np.ndarray) else None for outcome in outcomes
+        ]
         rests = [event.rest for event in events]
         parts = [
             *(packed(each) for each in tables[4:]),
@@ -158,7 +190,12 @@ class Phases:
                 if outcome is not None and outcome.target is None
                 else UNKNOWN
             )
-        self.contents.append((content, tables.halvings, jumps, rests))
+        phase.field = cython.NULL
+        phase.leaps = cython.cast(cython.pointer(cython.p_void), calloc(count + 1, cython.sizeof(cython.p_void)))
+        for k in range(count):
+            if isinstance(events[k].jump, Jump):
+                phase.leaps[k] = cython.cast(cython.p_void, events[k].jump)
+        self.contents.append((content, tables.halvings, jumps, rests, events))
         self.offsets.append(offsets)
         self.shaken.append(None)
         self.count += 1
@@ -182,7 +219,7 @@ class Phases:
 
     def point(self, place: cython.int, which: cython.int):
         """Take the tables of one system for one phase."""
-        content, halvings, jumps, rests = self.contents[place]
+        content, halvings, jumps, rests, _ = self.contents[place]
         offsets: cython.Py_ssize_t[::1] = self.offsets[place]
         row: cython.double[::1] = content[which]
         first: cython.p_double = cython.address(row[0])
@@ -322,6 +359,195 @@ class Phases:
         tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
         LOOPS.magnitudes(
             tables, climb(v), order, cython.address(before[0]), cython.address(x[0]), cython.address(out[0])
+        )
+
+    # Phases that are not linear
+
+    def drive(self, place: cython.int, field: Field, floor, counted: cython.int):
+        """Say that a phase is not linear: its field, the least sizes of its moving states, and states with rates."""
+        least = np.full(up8(self.n + 2), np.inf)
+        least[: len(floor)] = floor
+        known: cython.double[::1] = least
+        phase: cython.pointer(Phase) = cython.address(self.phases[place])
+        phase.field, phase.floor = cython.cast(cython.p_void, field), cython.address(known[0])
+        phase.moving, phase.counted = len(floor), counted
+        self.fields.append((field, least))
+
+    def nonlinear(self, place):
+        """Whether a phase is not linear."""
+        return self.phases[place].field != cython.NULL
+
+    def moving(self, place):
+        """Number of states on which the rates of a phase depend."""
+        return self.phases[place].moving
+
+    def leap(self, place, event, y, a, a_v):
+        """Do what the `Jump` of an event says; -2 if it has none."""
+        jump: cython.p_void = self.phases[place].leaps[event]
+        if jump == cython.NULL:
+            return -2
+        return cython.cast(Jump, jump).apply(cython.address(y[0]), a, a_v)
+
+    def begin(self, place, y, more):
+        """Let the constant states add to the constants of the conditions."""
+        cython.cast(Field, self.phases[place].field).enter(cython.address(y[0]), cython.address(more[0]))
+
+    def rates(self, place, a, a_v, y, out, counted):
+        """The rates of the states."""
+        field: cython.p_void = self.phases[place].field
+        cython.cast(Field, field).rates(cython.address(y[0]), a, a_v, cython.address(out[0]), counted)
+
+    def terms_of_rates(self, place, a, a_v, y, out):
+        """The magnitudes of the terms of the rates."""
+        cython.cast(Field, self.phases[place].field).sizes(cython.address(y[0]), a, a_v, cython.address(out[0]))
+
+    def within(self, place, stage, h, y, work, out):
+        """The state at which a stage of a step has been evaluated."""
+        k: cython.int
+        for k in range(self.phases[place].moving, self.n):
+            out[k] = y[k]
+        self.sum_stages(place, stage, h, cython.address(y[0]), work, cython.address(out[0]))
+
+    def sum_stages(self, place, stage, h, y, work, out):
+        """The moving states at a stage."""
+        phase: cython.pointer(Phase) = cython.address(self.phases[place])
+        rates: cython.p_double = cython.address(work[0, 0])
+        LOOPS.combine(
+            phase.moving,
+            COUNTS[stage],
+            cython.address(WHICH[stage, 0]),
+            cython.address(WEIGHTS[stage, 0]),
+            h,
+            y,
+            rates,
+            work.shape[1],
+            out,
+        )
+
+    def attempt(self, place, h, shaking, y, sizes, work, counted):
+        """Take the stages of a step from the first one on; its end, and its error over the sizes of the states."""
+        phase: cython.pointer(Phase) = cython.address(self.phases[place])
+        field: cython.p_void = phase.field
+        start: cython.p_double = cython.address(y[0])
+        end: cython.p_double = cython.address(work[TRIAL, 0])
+        rates: cython.p_double = cython.address(work[0, 0])
+        width: cython.Py_ssize_t = work.shape[1]
+        found: cython.double[2]
+        stage: cython.int
+        k: cython.int
+        for k in range(phase.moving, self.n):
+            end[k] = start[k]
+        for stage in range(1, LAST + 1):
+            self.sum_stages(place, stage, h, start, work, end)
+            cython.cast(Field, field).rates(
+                end,
+                shaking[0] + shaking[1] * NODES[stage],
+                shaking[2] + shaking[3] * NODES[stage],
+                rates + stage * width,
+                counted,
+            )
+        for k in range(2):
+            self.combined(COARSE + k, phase.moving, h, work, ERRORS + k)
+        if counted:
+            self.combined(LAST, phase.counted, h, work, PLACE)
+            for k in range(phase.moving, phase.counted):
+                end[k] = start[k] + work[PLACE, k]
+        end[self.n], end[self.n + 1] = shaking[0] + shaking[1], 1.0
+        LOOPS.errors(
+            up8_(phase.moving),
+            cython.address(work[ERRORS, 0]),
+            cython.address(work[ERRORS + 1, 0]),
+            cython.address(sizes[0]),
+            start,
+            end,
+            phase.floor,
+            found,
+        )
+        if found[1] == 0.0:
+            return 0.0
+        return found[1] / sqrt((found[1] + 0.01 * found[0]) * phase.moving)
+
+    def combined(self, which, count, h, work, row):
+        """A sum of stages in a row of the room for a step."""
+        LOOPS.combine(
+            count,
+            COUNTS[which],
+            cython.address(WHICH[which, 0]),
+            cython.address(WEIGHTS[which, 0]),
+            h,
+            cython.NULL,
+            cython.address(work[0, 0]),
+            work.shape[1],
+            cython.address(work[row, 0]),
+        )
+
+    def bend(self, place, h, shaking, y, work, series, counted):
+        """Fill the series with the polynomials of the states over the step that was attempted."""
+        phase: cython.pointer(Phase) = cython.address(self.phases[place])
+        field: cython.p_void = phase.field
+        end: cython.p_double = cython.address(work[PLACE, 0])
+        rates: cython.p_double = cython.address(work[0, 0])
+        count: cython.int = phase.counted if counted else phase.moving
+        stage: cython.int
+        k: cython.int
+        i: cython.int
+        for i in range(phase.moving, self.n):
+            end[i] = y[i]
+        for stage in range(LAST + 1, STAGES):
+            self.sum_stages(place, stage, h, cython.address(y[0]), work, end)
+            cython.cast(Field, field).rates(
+                end,
+                shaking[0] + shaking[1] * NODES[stage],
+                shaking[2] + shaking[3] * NODES[stage],
+                rates + stage * work.shape[1],
+                counted,
+            )
+        for k in range(4):
+            self.combined(BENDS + k, count, h, work, BENT + k)
+        for k in range(TERMS):
+            for i in range(count, self.states):
+                series[k, i] = y[i] if k == 0 and i < self.n else 0.0
+        series[0, self.n], series[1, self.n], series[0, self.n + 1] = shaking[0], shaking[1], 1.0
+        LOOPS.powers(
+            count,
+            h,
+            cython.address(y[0]),
+            cython.address(work[TRIAL, 0]),
+            rates,
+            cython.address(work[LAST, 0]),
+            cython.address(work[BENT, 0]),
+            work.shape[1],
+            series.shape[1],
+            cython.address(series[0, 0]),
+        )
+
+    def rows_of(self, place, outputs, x, before, v, out):
+        """The outputs or conditions of y, a and 1, those that are not linear as their rows say.
+
+        Under vertical acceleration v[0] multiplies this term of the states and v[1] that before; v[2] is a term itself.
+        """
+        tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
+        shaken: cython.pointer(Shaken) = cython.address(tables.shaken)
+        rows: cython.int = up8_(tables.outputs if outputs else self.phases[place].events)
+        columns: cython.int = self.n + 2
+        given: cython.p_const_double = cython.address(x[0])
+        table: cython.p_const_double = tables.outs if outputs else tables.now
+        j: cython.int
+        if shaken.now != cython.NULL and (v[0] != 0.0 or v[1] != 0.0 or v[2] != 0.0):
+            for j in range(columns):
+                self.room[j] = x[j]
+            self.room[columns] = v[2]
+            for j in range(shaken.fed):
+                self.room[columns + 1 + j] = v[0] * x[shaken.places[j]] + v[1] * before[shaken.places[j]]
+            columns += 1 + shaken.fed
+            given, table = cython.address(self.room[0]), shaken.outs if outputs else shaken.now
+        LOOPS.product(columns, rows, table, given, cython.address(out[0]))
+
+    def observe(self, place, a, a_v, y, rates, out):
+        """Replace the outputs that are not linear."""
+        field: cython.p_void = self.phases[place].field
+        cython.cast(Field, field).observe(
+            cython.address(y[0]), cython.address(rates[0]), a, a_v, cython.address(out[0])
         )
 
 

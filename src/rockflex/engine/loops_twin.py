@@ -6,7 +6,9 @@ from typing import Any
 import numpy as np
 
 from rockflex._arrays import Array
+from rockflex.engine.field import Field
 from rockflex.engine.shaken import ShakenTables
+from rockflex.engine.steps_twin import Steps
 from rockflex.engine.system import Event, up8
 from rockflex.engine.tables import AHEAD, BLOCK, Tables
 
@@ -63,6 +65,14 @@ class Peaks:
         """Count more."""
         self.done += more
 
+    def look(self, looks: bool) -> None:
+        """Say whether the march has stopped before a sample in which something may happen."""
+        self.stopped = looks
+
+    def before(self) -> float:
+        """Samples before the first of the present acceleration."""
+        return self.passed
+
 
 class PhaseLoops:
     """The tables and the outcomes of one phase."""
@@ -70,6 +80,7 @@ class PhaseLoops:
     def __init__(self, tables: Tables, events: Sequence[Event], h: float) -> None:
         self.tables, self.h, self.events = tables, h, events
         self.shaken: ShakenTables | None = None
+        self.field: Field | None = None
         self.outcomes: list[Any] = [outcome for event in events for outcome in (event, event.rest)]
         self.following = [
             UNKNOWN if each is None else ASKED if callable(each.jump) else ENDS if each.target is None else UNKNOWN
@@ -77,11 +88,11 @@ class PhaseLoops:
         ]
 
 
-class Phases:
+class Phases(Steps):
     """The phases that a run has met, each with the loops over its tables."""
 
     def __init__(self, one_sided: Array, states: int) -> None:
-        self.one_sided, self.n, self.states, self.which = one_sided > 0.0, states, up8(states), 0
+        self.one_sided, self.n, self.states, self.which = one_sided > 0.0, states, up8(states + 2), 0
         self.phases: list[PhaseLoops] = []
 
     def add(self, tables: Tables, events: Sequence[Event], h: float) -> None:
@@ -142,7 +153,7 @@ class Phases:
         """Multiply a state by the matrix of an outcome, or magnitudes by its magnitudes; whether there is one."""
         del workspace
         found = self.phases[place].outcomes[outcome].jump
-        if found is None:
+        if not isinstance(found, np.ndarray):
             return False
         matrix = found[self.which]
         y[: self.n] = (np.abs(matrix) if magnitudes else matrix) @ np.array(y[: self.n])

@@ -69,6 +69,10 @@ typedef struct {
     const double **jump;   /* of every event, and of the rest after it: a matrix J and |J|; null if the state is continuous */
     const double **rest;   /* of every event: columns y, a, 1; null if nothing can follow instead */
     int *following;        /* of every event, and of the rest after it: place of the phase, or one of the numbers below */
+    void **leaps;          /* of every event: its `Jump`; null if it has none */
+    void *field;           /* of a phase that is not linear, its `Field`, and what follows; otherwise null */
+    int moving, counted;   /* states on which the rates depend, and states that have rates; the others are constant */
+    const double *floor;   /* sizes of the moving states below which errors do not matter; infinite for others */
 } Phase;
 enum { UNKNOWN = -1, ENDS = -2, ASKED = -3 };
 
@@ -86,6 +90,9 @@ typedef struct { /* the loops for one level of vector instructions */
     void (*complete)(const Tables *p, Climb v, int terms, int width, double *series);
     void (*magnitudes)(const Tables *p, Climb v, int order, const double *before, const double *x, double *out);
     int (*march)(const Tables *p, int phase, const double *a, const double *v, int i, int last, double *y, Log *log);
+    void (*combine)(int count, int terms, const int *which, const double *weights, double h, const double *start, const double *rates, int width, double *out);
+    void (*errors)(int count, const double *coarse, const double *fine, const double *size, const double *y, const double *end, const double *floor, double *out);
+    void (*powers)(int count, double h, const double *y, const double *end, const double *first, const double *last, const double *bends, int stride, int width, double *series);
 } Loops;
 
 /* Those of the best level that this processor has, or of the named one; null if it has not. */

@@ -5,7 +5,7 @@ polynomials give the first event to rounding; then the state jumps, and the next
 sample. Peaks never decide how the state advances, so that what is asked of a run does not change it.
 """
 
-from math import isfinite
+from math import fabs, isfinite
 
 import cython
 import numpy as np
@@ -13,19 +13,21 @@ import numpy as np
 from rockflex._errors import InputError, SolverError
 from rockflex.engine.rest import Decay
 from rockflex.engine.shaken import shaken_of
-from rockflex.engine.system import StepTooLongError, acceleration, array, as_long, up8
-from rockflex.engine.tables import tables_of
+from rockflex.engine.system import NonlinearPhase, StepTooLongError, acceleration, array, as_long, up8
+from rockflex.engine.tables import tables_of, tables_of_rows
 
 if cython.compiled:
     from cython.cimports.cpython.exc import PyErr_CheckSignals
-    from cython.cimports.libc.math import isfinite
+    from cython.cimports.libc.math import fabs, isfinite
     from cython.cimports.rockflex.engine.batch import Batch
+    from cython.cimports.rockflex.engine.flow import Flow
     from cython.cimports.rockflex.engine.journal import Journal
     from cython.cimports.rockflex.engine.loops import ASKED, ENDS, UNKNOWN, Peaks, Phases
     from cython.cimports.rockflex.engine.rest import Decay
     from cython.cimports.rockflex.engine.series import Series
 else:
     from rockflex.engine.batch import Batch
+    from rockflex.engine.flow import Flow
     from rockflex.engine.journal import Journal
     from rockflex.engine.loops_twin import ASKED, ENDS, UNKNOWN, Peaks, Phases, PyErr_CheckSignals
     from rockflex.engine.series import Series
@@ -90,6 +92,7 @@ class Run:
     peaks_: Peaks
     high: cython.double[::1]
     when: cython.double[::1]
+    flow: Flow
     series: Series
     unbounded: cython.double[::1]  # of outputs whose highest values are not known
     sizes: cython.double[::1]  # of the states: magnitudes of the terms that they were summed from
@@ -122,7 +125,9 @@ class Run:
         self.peaks_ = Peaks(one_sided, self.n, CANDIDATES)
         self.high, self.when = self.peaks_.high, self.peaks_.when
         self.y, self.sizes, self.before = np.zeros(self.states), np.zeros(self.states), np.zeros(self.states)
-        self.series = Series(self.phases, self.peaks_, one_sided, self.y, self.sizes, (self.n, self.outputs), h)
+        counts = self.n, self.outputs
+        self.flow = Flow(self.phases, self.peaks_, one_sided, self.y, counts, h)
+        self.series = Series(self.phases, self.peaks_, self.flow, one_sided, self.y, self.sizes, counts, h)
         self.start, self.workspace, self.quiet = np.zeros(self.n), np.zeros(self.n), np.zeros(QUIET + 1)
         self.journal = Journal(self.n)
         self.scratch = self.unkept = np.zeros((1, self.n))
@@ -159,6 +164,7 @@ class Run:
         self.passed = self.reached = self.n_looks = self.n_searched = 0
         self.end, self.now = 0.0, self.first
         self.journal.begin()
+        self.flow.begin()
 
     @property
     def key(self):
@@ -232,12 +238,16 @@ class Run:
         if key in self.places:
             return self.places[key]
         phase = self.system.checked(key)
-        tables = tables_of(phase, self.h, self.mirrors)
-        if not np.isfinite(tables.step).all():
+        linear = not isinstance(phase, NonlinearPhase)
+        tables = tables_of(phase, self.h, self.mirrors) if linear else tables_of_rows(phase)
+        if linear and not np.isfinite(tables.step).all():
             words = f"phase {key!r}: the motion grows without bound within one time step of {self.h:.9g}."
             raise StepTooLongError(words, float(np.linalg.eigvals(phase.A).real.max()))
         place: cython.int = len(self.met)
         self.phases.add(tables, phase.events, self.h)
+        if not linear:
+            self.phases.drive(place, phase.field, phase.scale, phase.counted)
+            self.flow.know(phase, place)
         self.phases.point(place, self.which)
         self.met.append((key, phase))
         self.places[key] = place
@@ -382,11 +392,15 @@ class Run:
         start: cython.int
         stop: cython.int
         last: cython.int = a.shape[0] - 1
+        self.flow.resume(history)
         if history and self.journal.wants(a[0], self.rise_at(v, 0)):
             self.journal.keep(self.passed, a[0], self.rise_at(v, 0), self.y, self.now)
         while i < last and not self.ended:
             start, stop = i, min(last, (i // self.stretch + 1) * self.stretch)
-            i = self.phases.march(self.now, a, v, i, stop, self.y, self.peaks_, states)
+            if self.phases.nonlinear(self.now):
+                i = self.flow.march(self.now, a, v, i, stop, states)
+            else:
+                i = self.phases.march(self.now, a, v, i, stop, self.y, self.peaks_, states)
             if i > start:
                 self.sizes[:] = 0.0
             if history:
@@ -444,10 +458,13 @@ class Run:
         while not self.ended:
             if self.journal.n_events > n_events or self.passed * self.h >= asks:
                 n_events = self.journal.n_events
-                if self.faded != self.now:
-                    with cython.gil:
-                        self.fade()
-                wait = self.decay.time_to_rest(self.y, self.high, self.one_sided)
+                if self.phases.nonlinear(self.now):
+                    wait = self.flow.time_to_rest(self.now)
+                else:
+                    if self.faded != self.now:
+                        with cython.gil:
+                            self.fade()
+                    wait = self.decay.time_to_rest(self.y, self.high, self.one_sided)
                 if wait == 0.0:
                     return 1
                 asks = self.passed * self.h + wait
@@ -488,6 +505,9 @@ class Run:
         while u < 1.0:
             self.look_up()
             part = self.series.expand(self.now, start, end, v, u)
+            if part < 0.0:
+                with cython.gil:
+                    self.stall(self.passed + i + u)
             t, event = self.series.first_event()
             if t > 0.0:
                 self.series.raise_peaks(t, self.passed + i + u, self.unbounded)
@@ -520,16 +540,25 @@ class Run:
     def leave(self, event: cython.int, sample: cython.double, a: cython.double, v: cython.double) -> cython.int:
         """Jump to the phase that follows an event."""
         outcome: cython.int = 2 * event
+        chosen: cython.int = self.phases.leap(self.now, event, self.y, a, v)
+        self.flow.forget()
         self.end = sample * self.h
         self.journal.happen(self.end, self.now, event)
         if self.phases.following(self.now, outcome) == ASKED:
             with cython.gil:
                 self.ask(event, a, v)
             return 0
-        self.take(outcome)
-        if self.phases.rests(self.now, event, self.y, a, v):
-            outcome += 1
+        if chosen >= 0:
+            outcome += chosen
+            self.enlarge()
+        elif chosen == -1:
+            with cython.gil:
+                raise self.met[self.now][1].events[event].jump.error()
+        else:
             self.take(outcome)
+            if self.phases.rests(self.now, event, self.y, a, v):
+                outcome += 1
+                self.take(outcome)
         following: cython.int = self.phases.following(self.now, outcome)
         if following == UNKNOWN:
             with cython.gil:
@@ -547,7 +576,8 @@ class Run:
     def meet(self, event: cython.int, outcome: cython.int) -> cython.int:
         """Return the place of the phase that follows an outcome for the first time."""
         left = self.met[self.now][1].events[event]
-        following: cython.int = self.enter(left.target if outcome == 2 * event else left.rest.target)
+        other = left.other if left.rest is None else left.rest.target
+        following: cython.int = self.enter(left.target if outcome == 2 * event else other)
         self.phases.lead(self.now, outcome, following)
         return following
 
@@ -568,6 +598,26 @@ class Run:
         """Multiply the state by the matrix of an outcome."""
         if self.phases.jump(self.now, outcome, False, self.y, self.workspace):
             self.phases.jump(self.now, outcome, True, self.sizes, self.workspace)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def enlarge(self) -> cython.void:
+        """After a jump the magnitudes are not below those of the state."""
+        k: cython.int
+        for k in range(self.n):
+            self.sizes[k] = max(self.sizes[k], fabs(self.y[k]))
+
+    @cython.cfunc
+    def stall(self, sample: cython.double):
+        """Raise the error of a motion for which no step is short enough."""
+        key, phase = self.met[self.now]
+        failure = getattr(phase.field, "failure", None)
+        if failure is not None:
+            phase.field.failure = None
+            raise failure
+        self.failure = "stall"
+        raise SolverError(f"No step in the phase {key!r} is short enough at t = {sample * self.h:.9g}.")
 
     @cython.cfunc
     def ask(self, event: cython.int, a: cython.double, v: cython.double):

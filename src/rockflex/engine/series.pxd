@@ -1,4 +1,5 @@
 cimport cython
+from rockflex.engine.flow cimport Flow
 from rockflex.engine.loops cimport Peaks, Phases
 
 
@@ -6,6 +7,7 @@ from rockflex.engine.loops cimport Peaks, Phases
 cdef class Series:
     cdef Phases phases
     cdef Peaks peaks
+    cdef Flow flow
     cdef int n, states, outputs  # `states`: rows of the states in tables and series, a multiple of 8
     cdef double h
     cdef double[::1] y, sizes  # the state, and the magnitudes of the terms that it was summed from
@@ -29,4 +31,5 @@ cdef class Series:
     cdef int candidate(self, int r) noexcept nogil
     cdef void search(self, int r, double start, double end, (double, double) v, double sample) noexcept nogil
     cdef void raise_peaks(self, double stop, double sample, double[::1] highest) noexcept nogil
+    cdef void reach_of_step(self) noexcept nogil
     cdef void raise_peak(self, int j, double stop, double sample, double highest) noexcept nogil

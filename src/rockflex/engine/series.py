@@ -29,8 +29,9 @@ EXPANSION = cython.declare(cython.int, 16)  # samples that a power series counts
 class Series:
     """The motion from the present state on, expanded anew at each call of `expand`."""
 
-    def __init__(self, phases, peaks, one_sided, y, sizes, counts, h):
-        self.phases, self.peaks, self.one_sided, self.y, self.sizes = phases, peaks, one_sided, y, sizes
+    def __init__(self, phases, peaks, flow, one_sided, y, sizes, counts, h):
+        self.phases, self.peaks, self.flow = phases, peaks, flow
+        self.one_sided, self.y, self.sizes = one_sided, y, sizes
         self.n, self.outputs = counts
         self.states, self.h, self.high, self.when = len(y), h, peaks.high, peaks.when
         self.workspace, self.q, self.slope = np.zeros(self.states + 8), np.zeros(TERMS), np.zeros(TERMS)
@@ -47,10 +48,16 @@ class Series:
     def expand(self, place, start, end, v, u):
         """Expand the motion from the place u of a sample, as far as a series serves; return the part of the sample.
 
-        `start` and `end` are the accelerations at the ends of the sample, those in v the vertical ones.
+        `start` and `end` are the accelerations at the ends of the sample, those in v the vertical ones. In a phase that
+        is not linear the motion is expanded as far as a step goes; -1 if none is short enough.
         """
-        self.place, self.part = place, min(1.0 - u, 0.5 ** self.phases.halvings(place))
-        self.a = start + (end - start) * u
+        self.place, self.a = place, start + (end - start) * u
+        if self.phases.nonlinear(place):
+            self.part = self.flow.take(place, start, end, v, u)
+            if self.part > 0.0:
+                self.terms = self.flow.fill(self.series, self.away)
+            return self.part
+        self.part = min(1.0 - u, 0.5 ** self.phases.halvings(place))
         while True:
             self.rise = (end - start) * self.part
             self.v = v[0] + (v[1] - v[0]) * u, (v[1] - v[0]) * self.part
@@ -111,6 +118,9 @@ class Series:
         """Sum the magnitudes of the terms of coefficients of an order: what their rounding is relative to."""
         i: cython.int
         shift: cython.int = self.phases.shift(self.place, self.v)
+        if self.phases.nonlinear(self.place):
+            self.flow.sum_up(order, self.series, self.sizes, self.away, self.sums)
+            return
         self.term[:] = self.workspace
         if order == 0:
             for i in range(self.n):
@@ -130,6 +140,11 @@ class Series:
 
     def move(self, t):
         """Move the state to t, and note the magnitudes of the terms that it is summed from."""
+        if self.phases.nonlinear(self.place):
+            if t == 1.0:
+                self.flow.accept()
+                return
+            self.flow.leave()
         self.phases.amounts(self.series, self.terms, t, self.sizes)
         self.phases.evaluate(self.series, self.terms, t, self.y)
 
@@ -170,8 +185,13 @@ class Series:
         """Raise the peaks to those of the expanded motion up to `stop`, none of which is higher than its `highest`."""
         j: cython.int
         first: cython.double
-        completed: cython.bint = False
-        self.phases.reach(self.place, self.v, self.terms, self.series, self.start, self.reach)
+        completed: cython.bint = self.phases.nonlinear(self.place)
+        if completed:
+            if self.flow.clear(stop, sample):
+                return
+            self.reach_of_step()
+        else:
+            self.phases.reach(self.place, self.v, self.terms, self.series, self.start, self.reach)
         for j in range(self.outputs):
             first = self.start[j] if self.one_sided[j] > 0.0 else fabs(self.start[j])
             if min(first + self.reach[j], highest[j]) > self.high[j]:
@@ -179,6 +199,17 @@ class Series:
                     self.phases.complete(self.place, self.v, self.terms, self.series)
                     completed = True
                 self.raise_peak(j, stop, sample, highest[j])
+
+    def reach_of_step(self):
+        """Expand the outputs over a step, and find where they start and how far they may get from there."""
+        j: cython.int
+        k: cython.int
+        row: cython.int = self.states + (self.phases.events(self.place) + 7) // 8 * 8
+        self.flow.complete(self.series, row)
+        for j in range(self.outputs):
+            self.start[j], self.reach[j] = self.series[0, row + j], 0.0
+            for k in range(1, self.terms):
+                self.reach[j] += fabs(self.series[k, row + j])
 
     def raise_peak(self, j, stop, sample, highest):
         """Raise the peak of an output to that of its polynomial, which is known to be at most `highest`."""

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex.engine.system import LinearPhase
+from rockflex.engine.system import LinearPhase, NonlinearPhase
 from rockflex.engine.tables import padded, shift_of
 
 
@@ -28,17 +28,18 @@ class Terms(NamedTuple):
     rows: Array  # (S, R, n + 3 + P)
 
 
-def terms_of(phase: LinearPhase) -> Terms | None:
-    """The terms of a phase; None if the vertical acceleration does not act in it."""
-    (S, n), m, k = phase.f.shape, phase.d.shape[1], len(phase.events)
+def terms_of(phase: LinearPhase | NonlinearPhase) -> Terms | None:
+    """The terms of a phase; None if the vertical acceleration does not act in its rows, or in linear rates."""
+    (S, m, n), k, linear = phase.C.shape, len(phase.events), isinstance(phase, LinearPhase)
     rates, rows = np.zeros((S, n, n + 3)), np.zeros((S, m + k, n + 3))
-    rates[..., :n], rates[..., n], rates[..., n + 1] = phase.A, phase.f, phase.c
+    if linear:
+        rates[..., :n], rates[..., n], rates[..., n + 1] = phase.A, phase.f, phase.c
     rows[:, :m, :n], rows[:, :m, n], rows[:, :m, n + 1] = phase.C, phase.d, phase.e
     fed = np.zeros((S, n + m + k, n))
-    for given, place in ((phase.A_v, slice(n)), (phase.C_v, slice(n, n + m))):
+    for given, place in ((phase.A_v if linear else None, slice(n)), (phase.C_v, slice(n, n + m))):
         if given is not None:
             fed[:, place] = given
-    for given, found in ((phase.f_v, rates), (phase.d_v, rows[:, :m])):
+    for given, found in ((phase.f_v if linear else None, rates), (phase.d_v, rows[:, :m])):
         if given is not None:
             found[..., n + 2] = given
     for j, event in enumerate(phase.events):
@@ -52,12 +53,12 @@ def terms_of(phase: LinearPhase) -> Terms | None:
     return Terms(places, np.concatenate((rates, more[:, :n]), axis=2), np.concatenate((rows, more[:, n:]), axis=2))
 
 
-def shaken_of(phase: LinearPhase, h: float) -> ShakenTables | None:  # noqa: ARG001
+def shaken_of(phase: LinearPhase | NonlinearPhase, h: float) -> ShakenTables | None:  # noqa: ARG001
     """Compute what a stack of phases has for steps of h; None if the vertical acceleration does not act in them."""
     terms = terms_of(phase)
     if terms is None:
         return None
     m = phase.d.shape[1]
-    shift = shift_of(terms.rates)
+    shift = shift_of(terms.rates) if isinstance(phase, LinearPhase) else phase.C.shape[2]
     now, outs = padded(np.concatenate((terms.rates[:, shift:], terms.rows[:, m:]), axis=1)), padded(terms.rows[:, :m])
     return ShakenTables(places=terms.places, shift=shift, now=now, outs=outs, magnitude=np.abs(now), most=np.abs(outs))

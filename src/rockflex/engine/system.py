@@ -1,7 +1,8 @@
 """Hybrid systems: states, phases, events, jumps and outputs. Physics says what they are; `Run` advances them."""
 
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from dataclasses import field as initially
 from inspect import Parameter, signature
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
+from rockflex.engine.field import Field, Function, Jump
 
 Key = Hashable
 MAX_STATES, MAX_ROWS = 320, 4096  # as in march.h
@@ -108,12 +110,14 @@ class Event:
     scale : float
         Size of a violation, positive: of several conditions that fail at once that with the largest violation over its
         scale is the event.
-    jump : ndarray, shape (n, n), or callable, optional
-        Matrix by which the state is multiplied; or a function of the state, the acceleration and, if it takes a third
-        argument, the vertical one, that returns the state and the key of the next phase, instead of `target`. Without
-        it the state is continuous.
+    jump : ndarray, shape (n, n), or Jump, or callable, optional
+        Matrix by which the state is multiplied; or a compiled `Jump`, which may choose `other` instead of `target`; or
+        a function of the state, the acceleration and, if it takes a third argument, the vertical one, that returns the
+        state and the key of the next phase, instead of `target`. Without it the state is continuous.
     rest : Rest, optional
         What follows if the motion is too slow after the jump, which must be a matrix.
+    other : hashable, optional
+        Key of the phase that a compiled jump may choose.
     row_v : ndarray, shape (n,), optional
     direct_v : float
         See `row`.
@@ -125,11 +129,12 @@ class Event:
     constant: float | Array = 0.0
     direct: float | Array = 0.0
     scale: float | Array = 1.0
-    jump: Array | Callable[..., tuple[Array, Key | None]] | None = None
+    jump: Array | Jump | Callable[..., tuple[Array, Key | None]] | None = None
     rest: Rest | None = None
+    other: Key | None = None
     row_v: Array | None = None
     direct_v: float | Array = 0.0
-    third: bool = field(init=False, default=False, repr=False)  # whether the jump asks for the vertical acceleration
+    third: bool = initially(init=False, default=False, repr=False)  # whether the jump asks for the vertical one, too
 
     def __post_init__(self) -> None:
         if callable(self.jump):
@@ -188,6 +193,50 @@ VERTICAL = "A_v", "f_v", "C_v", "d_v"
 
 
 @dataclass(frozen=True, eq=False)
+class NonlinearPhase:
+    """A phase: y' = F(y, a, a_v) with outputs C y + d a + e or of other forms, while the conditions of its events hold.
+
+    Under a vertical acceleration a_v the outputs have the terms d_v a_v + a_v C_v y, too.
+
+    Attributes
+    ----------
+    field : Field, or callable
+        F, and the outputs that are not linear; or a function of y, a and a_v that returns y', which is slow.
+    C : ndarray, shape (m, n)
+    d, e : ndarray, shape (m,)
+    events : tuple of Event
+    scale : ndarray, shape (k,)
+        Sizes of the first k states below which their errors do not matter, positive. The rates depend on these states,
+        and on those that are constant.
+    counted : int, optional
+        Number of states with rates, n by default; the others are constant. Those after the first k are integrals of
+        which nothing else depends.
+    velocities : dict
+        Places of the states whose rates are states, and places of these.
+    curved : dict
+        Numbers of the outputs that `field` computes from their rows, each with a size, zero or positive: a peak within
+        a step is looked for where the ends of the step are closer to the highest value than a quarter of that or of it.
+    """
+
+    field: Field | Callable[[Array, float, float], Array]
+    C: Array
+    d: Array
+    e: Array
+    events: tuple[Event, ...]
+    scale: Array
+    counted: int | None = None
+    velocities: dict[int, int] = initially(default_factory=dict)
+    curved: dict[int, float] = initially(default_factory=dict)
+    C_v: Array | None = None
+    d_v: Array | None = None
+
+    def of(self, place: int) -> "NonlinearPhase":
+        """The phase itself: there is no stack of them."""
+        del place
+        return self
+
+
+@dataclass(frozen=True, eq=False)
 class System:
     """A hybrid system, or a stack of systems that differ only in numbers.
 
@@ -198,7 +247,7 @@ class System:
     outputs : sequence of str
         Names of the m outputs, in the order of the rows of every phase.
     phase : callable
-        Returns the `LinearPhase` of a key; called once for each that a run meets.
+        Returns the `LinearPhase` or `NonlinearPhase` of a key; called once for each that a run meets.
     start : hashable
         Key of the first phase.
     one_sided : sequence of str
@@ -209,9 +258,9 @@ class System:
 
     layout: StateLayout
     outputs: Sequence[str]
-    phase: Callable[[Any], LinearPhase]
+    phase: Callable[[Any], LinearPhase | NonlinearPhase]
     start: Key
-    one_sided: Sequence[str] = field(default=())
+    one_sided: Sequence[str] = initially(default=())
     count: int = 1
 
     def __post_init__(self) -> None:
@@ -223,7 +272,7 @@ class System:
             if name not in self.outputs:
                 raise InputError(f"The one-sided output {name!r} is none of the outputs {list(self.outputs)}.")
 
-    def checked(self, key: Key) -> LinearPhase:
+    def checked(self, key: Key) -> LinearPhase | NonlinearPhase:
         """The phase of a key, its arrays as copies of double precision.
 
         Raises
@@ -238,16 +287,20 @@ class System:
         except LookupError as error:
             raise InputError(f"The system has no phase {key!r}: {error!r}.") from error
         place, n, m = f"phase {key!r}: ", self.layout.size, len(self.outputs)
-        if not isinstance(found, LinearPhase):
-            raise InputError(f"{place}a LinearPhase is needed, but {type(found).__name__} was given.")
-        shapes = {"A": (n, n), "f": (n,), "c": (n,), "C": (m, n), "d": (m,), "e": (m,)}
+        if not isinstance(found, LinearPhase | NonlinearPhase):
+            raise InputError(f"{place}a LinearPhase or NonlinearPhase is needed, but {type(found).__name__} was given.")
+        shapes: dict[str, tuple[int, ...]] = {"C": (m, n), "d": (m,), "e": (m,)}
+        if isinstance(found, LinearPhase):
+            shapes = {"A": (n, n), "f": (n,), "c": (n,), **shapes}
+        else:
+            found = _checked_field(place, found, n, m, self.count)
         arrays = {
             name: stacked(place + name, getattr(found, name), shape, self.count, finite=name in "Afc")
             for name, shape in shapes.items()
         }
         for name, shape in zip(VERTICAL, ((n, n), (n,), (m, n), (m,)), strict=True):
-            if getattr(found, name) is not None:
-                given = getattr(found, name)
+            given = getattr(found, name, None)
+            if given is not None:
                 arrays[name] = stacked(place + name, given, shape, self.count, finite=name in ("A_v", "f_v"))
         wrong = np.zeros(m, dtype=bool)
         for name in arrays.keys() & {"C", "d", "e", "C_v", "d_v"}:
@@ -263,6 +316,27 @@ class System:
         if up8(max(1, m + len(events))) > MAX_ROWS:
             raise InputError(f"{place}{m} outputs and {len(events)} events are more than {MAX_ROWS} rows.")
         return replace(found, events=events, **arrays)
+
+
+def _checked_field(place: str, phase: NonlinearPhase, n: int, m: int, count: int) -> NonlinearPhase:
+    """What a phase has instead of matrices."""
+    if count > 1:
+        raise InputError(f"{place}a stack of systems can have linear phases only.")
+    found: Any = phase.field
+    if not isinstance(found, Field):
+        if not callable(found):
+            raise InputError(f"{place}field must be a Field or a function, but {found!r} was given.")
+        function: Any = found
+        found = Function(function, n)
+    scale, counted = np.asarray(phase.scale, dtype=float), n if phase.counted is None else phase.counted
+    if scale.ndim != 1 or not 0 < scale.size <= n or not (scale > 0.0).all():
+        raise InputError(f"{place}scale must be 1 to {n} positive numbers, but {phase.scale!r} was given.")
+    if not scale.size <= counted <= n:
+        raise InputError(f"{place}counted must be from {scale.size} to {n}, but {counted} was given.")
+    numbers = [*phase.velocities, *phase.velocities.values()]
+    if not all(0 <= each < n for each in numbers) or not all(0 <= each < m for each in phase.curved):
+        raise InputError(f"{place}velocities and curved must name states and outputs that there are.")
+    return replace(phase, field=found, scale=scale, counted=counted)
 
 
 EVENT_NUMBERS = {"row": 1, "constant": 0, "direct": 0, "scale": 0, "jump": 2, "row_v": 1, "direct_v": 0}
@@ -283,7 +357,7 @@ def _takes_three(jump: Callable[..., object]) -> bool:
 def _of(part: Any, place: int, names: dict[str, int]) -> Any:
     """An event, or what follows instead, of one system of a stack."""
     given = {name: getattr(part, name) for name in names}
-    found = {name: each if each is None or callable(each) else each[place] for name, each in given.items()}
+    found = {name: each[place] if isinstance(each, np.ndarray) else each for name, each in given.items()}
     if getattr(part, "rest", None) is not None:
         found["rest"] = _of(part.rest, place, REST_NUMBERS)
     return replace(part, **found)
@@ -301,8 +375,10 @@ def _checked(place: str, event: Any, n: int, count: int) -> Event:
         raise InputError(f"{place}rest must be of the class Rest, but {rest!r} was given.")
     if rest is not None and callable(event.jump):
         raise InputError(f"{place}a jump that is a function says itself what follows, so that there can be no rest.")
-    if callable(event.jump) and count > 1:
+    if (callable(event.jump) or isinstance(event.jump, Jump)) and count > 1:
         raise InputError(f"{place}a stack of systems can have no jump that is a function.")
+    if rest is not None and isinstance(event.jump, Jump):
+        raise InputError(f"{place}a compiled jump says itself what follows, so that there can be no rest.")
     if rest is not None:
         rest = replace(rest, **_stacked(place + "rest: ", rest, REST_NUMBERS, n, count))
     return replace(event, rest=rest, **found)
@@ -312,7 +388,7 @@ def _stacked(place: str, part: Any, names: dict[str, int], n: int, count: int) -
     found = {name: getattr(part, name) for name in names}
     return {
         name: each
-        if (each is None and name in OPTIONAL) or callable(each)
+        if (each is None and name in OPTIONAL) or callable(each) or isinstance(each, Jump)
         else stacked(place + name, each, (n,) * names[name], count)
         for name, each in found.items()
     }

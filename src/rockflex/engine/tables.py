@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex.engine.system import LinearPhase, up8
+from rockflex.engine.system import LinearPhase, NonlinearPhase, up8
 
 AHEAD, BLOCK = 4, 16  # as in march.h
 LONGEST = 2.5  # rad that a mode may turn within one power series: some thirty terms, and a digit lost
@@ -139,6 +139,19 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
         magnitude=np.abs(now),
         most=np.abs(outs),
     )
+
+
+def tables_of_rows(phase: NonlinearPhase) -> Tables:
+    """Return the tables of a phase that is not linear: those of its outputs and conditions."""
+    (_, m, n), k = phase.C.shape, len(phase.events)
+    outs, now = np.zeros((1, m, n + 2)), np.zeros((1, k, n + 2))
+    outs[..., :n], outs[..., n], outs[..., n + 1] = phase.C, phase.d, phase.e
+    for row, event in zip(now.swapaxes(0, 1), phase.events, strict=True):
+        row[:, :n], row[:, n], row[:, n + 1] = event.row, event.direct, event.constant
+    tables = {"now": now, "outs": outs, "magnitude": np.abs(now), "most": np.abs(outs)}
+    empty = dict.fromkeys(set(Tables._fields[4:]) - set(tables), np.zeros((1, 0, 2)))
+    known = {name: padded(table) for name, table in tables.items()}
+    return Tables(outputs=m, rows=m + k, shift=n, halvings=np.zeros(1, dtype=np.intc), **known, **empty)
 
 
 def shift_of(rates: Array) -> int:

@@ -46,6 +46,7 @@ from rockflex.models._named import (
     swing_by_side,
 )
 from rockflex.models._nonlinear import NonlinearModel
+from rockflex.models._nonlinear_system import key_of, may_integrate, nonlinear_system
 from rockflex.models._observe import (
     HORIZONTAL,
     LEFT_OUT,
@@ -166,14 +167,17 @@ __all__ = [
     "housner",
     "impact_of",
     "inertia_left",
+    "key_of",
     "kinetic_energy",
     "layout_of",
     "lifted_springs",
     "linear_system_of",
     "lost_support_row",
+    "may_integrate",
     "may_pass",
     "may_stack",
     "modal_displacement",
+    "nonlinear_system",
     "observe",
     "observe_all",
     "parse_model",

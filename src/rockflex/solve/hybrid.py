@@ -21,11 +21,15 @@ from rockflex.models import (
     GainsEnergyError,
     Key,
     LinearModel,
+    NonlinearModel,
     Quantities,
     RockingModel,
     element_base,
+    key_of,
     linear_system_of,
+    may_integrate,
     may_stack,
+    nonlinear_system,
     system_of,
 )
 from rockflex.solve._beginning import course_of
@@ -41,29 +45,39 @@ from rockflex.solve.records import END
 from rockflex.solve.status import Status
 
 SHARE = 0.5  # of the estimated time of a sample that one takes here
+STEP = 12.0  # samples that a step of a nonlinear model counts like
 STACK = 64  # systems in one stack, at most
 MEMORY = 64_000_000  # bytes of the tables of one stack
 COUNTED = ("uplift", "impact")
 OUTCOMES = np.array(  # for fixed times, and until settled
     [[Status.ENDED, Status.OVERTURNED, Status.SETTLED], [Status.UNSETTLED, Status.OVERTURNED, Status.SETTLED]]
 )
-FAILURES = {"accumulation": Status.CHATTER, "growth": Status.INFINITE}
+FAILURES = {"accumulation": Status.CHATTER, "growth": Status.INFINITE, "stall": Status.STALLED}
 
 
-def takes(model: RockingModel) -> TypeGuard[LinearModel]:
+def takes(model: RockingModel) -> TypeGuard[LinearModel | NonlinearModel]:
     """Return whether a model is one of those that the engine runs."""
-    return isinstance(model, LinearModel) and model.layout.core + len(model.elements) <= MAX_STATES
+    if isinstance(model, NonlinearModel):
+        return may_integrate(model) and model.layout.size <= MAX_STATES
+    return model.layout.core + len(model.elements) <= MAX_STATES
 
 
 class Stack:
     """Models that differ only in numbers, or one with elements, and the solvers that have their phases."""
 
     def __init__(
-        self, models: Sequence[LinearModel], quantities: Sequence[Quantities], base: ElementBase | None = None
+        self,
+        models: Sequence[LinearModel | NonlinearModel],
+        quantities: Sequence[Quantities],
+        base: ElementBase | None = None,
     ) -> None:
         self._first = models[0]  # of which a message speaks
+        linear = [each for each in models if isinstance(each, LinearModel)]
         with preparing(self._first):
-            self.system = system_of(models, quantities) if base is None else linear_system_of(base)
+            if isinstance(self._first, NonlinearModel):
+                self.system = nonlinear_system(self._first, quantities[0])
+            else:
+                self.system = system_of(linear, quantities) if base is None else linear_system_of(base)
         self._solvers = defaultdict[float, list[Run]](list)
 
     def taken(self, dt: float) -> Run:
@@ -94,7 +108,9 @@ class HybridEngine:
 
     dense = False
 
-    def __init__(self, model: LinearModel, quantities: Quantities, extremes: Quantities | None = None) -> None:
+    def __init__(
+        self, model: LinearModel | NonlinearModel, quantities: Quantities, extremes: Quantities | None = None
+    ) -> None:
         self.model, self.quantities, self.extremes = model, quantities, extremes
         self._place, self._gate = 0, Gate()
         self._n_peaks = 1 + len(quantities)
@@ -105,7 +121,7 @@ class HybridEngine:
         return self._base(shaken=False)
 
     def _base(self, *, shaken: bool) -> ElementBase | None:
-        if type(self.model) is LinearModel and not self.model.elements:
+        if isinstance(self.model, NonlinearModel) or (type(self.model) is LinearModel and not self.model.elements):
             return None
         most = Quantities.none(self.model.layout.modes) if self.extremes is None else self.extremes
         return element_base(self.model, self.quantities, most, shaken=shaken)
@@ -130,6 +146,8 @@ class HybridEngine:
     def pace(self) -> Pace:
         """The properties that determine the work of runs."""
         p, found = self.model.properties, pace_of(self.model, self._n_peaks + 1)
+        if isinstance(self.model, NonlinearModel):
+            return found
         levers, drag = p.effective_mass * p.effective_height**2, 2.0 * p.zeta * p.omega
         free = min((self.model.free_inertia(side) for side in self.model.sides[1:]), default=np.inf)
         # The sum of the rates at which the motion fades while the base rocks; on a very narrow base one root has it all
@@ -217,6 +235,8 @@ class HybridEngine:
         if state is None:
             return self._at_rest
         key, start = state if isinstance(state, tuple) else self.model.initial(state)
+        if isinstance(self.model, NonlinearModel):
+            return key_of(self.model, key, start), start
         return key, start if self.base is None else self.base.state_of(key, start)
 
     @cached_property
@@ -243,7 +263,9 @@ class HybridEngine:
         """The number of samples that a work limit in s allows."""
         if work_limit is None:
             return 2**62
-        sample, look, *_ = self.pace.prices(history=False)
+        sample, look, _, step = self.pace.prices(history=False)
+        if isinstance(self.model, NonlinearModel):
+            return int(min(work_limit / step * STEP, 2.0**62))
         return int(min(work_limit / (SHARE * (sample + SEARCH * look)), 2.0**62))
 
     def _states(self, solver: Run) -> Array:
@@ -261,6 +283,9 @@ class HybridEngine:
             # A contact that does not last has the elements of what follows.
             rows[node, memory:] = rows[node + 1, memory:]
         rotation[side * rotation < 0.0] = 0.0  # by rounding
+        if self.model.bouc_wen is not None:
+            rows = without_reversals(rows, solver.keys, places)
+            times, side, rotation = rows[:, TIME], rows[:, SIDE], rows[:, HEADER + self.model.layout.rotation]
         rotation[:-1][(times[1:] == times[:-1]) & (side[:-1] != 0.0) & (rotation[1:] == 0.0)] = 0.0  # before an impact
         return rows
 
@@ -270,6 +295,17 @@ def _kept(times: Array, side: Integers) -> Bools:
     kept = np.ones(times.size, dtype=bool)
     kept[1:-1] = (times[1:-1] != times[:-2]) | (times[1:-1] != times[2:]) | (side[1:-1] != side[2:])
     return kept
+
+
+def without_reversals(rows: Array, keys: Sequence[Any], places: Any) -> Array:
+    """Leave out the states on both sides of a reversal of a hysteretic spring, which changes nothing else."""
+    own, times, kept = np.array([list(key[:-1]) for key in keys])[places], rows[:, TIME], np.ones(len(rows), dtype=bool)
+    pairs = (times[1:] == times[:-1]) & (own[1:] == own[:-1]).all(axis=1) & (places[1:] != places[:-1])
+    for k in np.flatnonzero(pairs).tolist():
+        follows = k > 0 and times[k - 1] == times[k] and places[k - 1] != places[k]  # another event
+        precedes = k + 2 < times.size and times[k + 2] == times[k]
+        kept[k], kept[k + 1] = kept[k] and follows, precedes
+    return rows[kept]
 
 
 def _ends_of(batch: Batch, states: Array, dt: float, allowed: Sequence[int], count: int, *, settles: bool) -> Ends:
@@ -294,7 +330,8 @@ def gather(engines: Iterable[HybridEngine]) -> None:
     """Let engines of many models that differ only in numbers share their preparation."""
     alike = defaultdict[tuple[int, ...], list[HybridEngine]](list)
     for each in engines:
-        if each.base is None and may_stack(each.model) and "stack" not in vars(each):
+        alone = each.base is not None or isinstance(each.model, NonlinearModel)
+        if not alone and may_stack(each.model) and "stack" not in vars(each):
             alike[each.model.properties.n_modes, len(each.quantities), each.model.lifts].append(each)
     for some in alike.values():
         most = max(1, min(STACK, MEMORY // some[0].size))

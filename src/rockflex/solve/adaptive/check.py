@@ -7,9 +7,9 @@ hundredths of the curvature of the cubic (for a harmonic of ω: (ωh)²/48); a f
 
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
+from rockflex.engine.tableau import LAST
 from rockflex.solve.adaptive.curves import WHOLE, curves_hide, is_curved, stretch
 from rockflex.solve.adaptive.layout import AT_ENDS, TRIAL, Flow, Stages
-from rockflex.solve.adaptive.tableau import LAST
 from rockflex.solve.layout import GUARD, HIGH, LOW, Log, Span, System, heavier_limits, is_shaken
 from rockflex.solve.peaks import NEAR, is_far, raise_peaks, size_of
 

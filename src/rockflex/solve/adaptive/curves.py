@@ -8,6 +8,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel, kernel
+from rockflex.engine.tableau import C
 from rockflex.models import LINEAR, SWAY, VERTICAL, field_rates, observe, posture_of
 from rockflex.solve.adaptive.layout import (
     AT_EARLY,
@@ -24,7 +25,6 @@ from rockflex.solve.adaptive.layout import (
 )
 from rockflex.solve.adaptive.step import choose_branch, place_at
 from rockflex.solve.adaptive.sums import place_stage
-from rockflex.solve.adaptive.tableau import C
 from rockflex.solve.exact.probe import cubic_range
 from rockflex.solve.layout import Log, Span, System, part_of
 from rockflex.solve.peaks import NEAR, raise_row, row_at, size_of

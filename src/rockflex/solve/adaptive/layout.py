@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array
 from rockflex._weighted import aligned, whole_vectors
+from rockflex.engine.tableau import STAGES
 from rockflex.models import Field
-from rockflex.solve.adaptive.tableau import STAGES
 from rockflex.solve.layout import Progress
 
 TERMS = 8  # of the polynomial over a step

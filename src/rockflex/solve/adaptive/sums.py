@@ -5,7 +5,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._kernel import inlined_kernel
 from rockflex._weighted import place_by
-from rockflex.solve.adaptive.tableau import STAGES, A
+from rockflex.engine.tableau import STAGES, A
 
 # The first stage after 0 with a weight in each stage.
 FROM = np.array([0, *(1 + int(np.flatnonzero(A[stage, 1:])[0]) if stage > 1 else 1 for stage in range(1, STAGES))])

@@ -257,3 +257,22 @@ ERROR_5 = np.array(
         0.0,
     ]
 )
+
+
+def sums() -> tuple[
+    "np.ndarray[tuple[int, int], np.dtype[np.intc]]",
+    "np.ndarray[tuple[int, int], np.dtype[np.float64]]",
+    "np.ndarray[tuple[int], np.dtype[np.intc]]",
+]:
+    """Return every sum of stages: which stages, their weights, and how many there are.
+
+    That before each stage comes first, then those of ERROR_3, ERROR_5 and the four rows of DENSE.
+    """
+    rows = [*A, ERROR_3, ERROR_5, *DENSE]
+    which, weights = np.zeros((len(rows), STAGES), dtype=np.intc), np.zeros((len(rows), STAGES))
+    counts = np.zeros(len(rows), dtype=np.intc)
+    for k, row in enumerate(rows):
+        places = np.flatnonzero(row)
+        counts[k] = places.size
+        which[k, : places.size], weights[k, : places.size] = places, row[places]
+    return which, weights, counts

@@ -1,0 +1,54 @@
+cimport cython
+from rockflex.engine.field cimport Field, Jump
+
+
+@cython.final
+cdef class RockingField(Field):
+    cdef int n, side, branch, whole, memory, remembered, kinds_count, stops_count
+    cdef bint complete, hysteretic, viscous, pulled
+    cdef double[::1] omega2, drag, height, mass
+    cdef double offset, inertia, weight_arm, total_mass, gravity, resting
+    cdef double yields, ratio, gamma, beta, exponent
+    cdef double[:, ::1] pulls
+    cdef int[::1] kinds
+    cdef double[:, ::1] levers
+    cdef double[:, ::1] stops
+    cdef int[:, ::1] stop_kinds
+
+    cdef double pull(self, const double *y, int which) noexcept nogil
+    cdef double inertia_left(self, const double *y) noexcept nogil
+    cdef void in_contact(self, const double *y, double a, double *out, bint counted) noexcept nogil
+    cdef void by_small_rotations(self, const double *y, double a, double a_v, double *out, bint counted) noexcept nogil
+    cdef void by_large_rotations(self, const double *y, double a, double a_v, double *out, bint counted) noexcept nogil
+    cdef double restoring(self, const double *y, double *out, bint counted) noexcept nogil
+    cdef double power(self, double z) noexcept nogil
+    cdef void turn(self, const double *y, double moment, double *out) noexcept nogil
+    cdef void enter_energies(self, double damped, double work, double swing, double *out) noexcept nogil
+
+
+@cython.final
+cdef class Landing(Jump):
+    cdef object gains
+    cdef bint scaled
+    cdef double passes, shortest, unseen
+    cdef RockingField own, beyond
+    cdef double[::1] rates
+    cdef int[::1] places
+    cdef double[::1] offsets
+
+    cdef double energy(self, const double *y, double inertia) noexcept nogil
+
+
+@cython.final
+cdef class Change(Jump):
+    cdef bint chords, stops
+    cdef int rotation
+    cdef int[::1] places, marked
+    cdef double[:, ::1] turnings
+    cdef double[::1] marks
+
+
+@cython.final
+cdef class Reversal(Jump):
+    cdef int velocity
+    cdef double barely

@@ -1,0 +1,526 @@
+"""The vector field of the nonlinear models, what they are observed by, and their jumps. Declarations: `_fields.pxd`.
+
+Equations are those of Silva & Stojadinović 2024: 13 to 15, 23, 37 and 38 for the rates, 3, 21 and 22 for what is
+observed, and 19, 25 and 29 for impacts. The state is that of `rockflex.models.StateLayout`. Cython compiles this
+module; it runs as Python, too.
+"""
+
+import math
+from math import asin, cos, fabs, sin, sqrt
+from math import pow as power_of
+
+import cython
+import numpy as np
+
+from rockflex.models._pulls import DAMPING, DRAG, FORCE, MOMENT, PULL, STIFFNESS
+
+if cython.compiled:
+    from cython.cimports.libc.math import asin, cos, fabs, sin, sqrt
+    from cython.cimports.libc.math import pow as power_of
+    from cython.cimports.rockflex.engine.field import Field, Jump
+else:
+    from rockflex.engine.field import Field, Jump
+
+P_MOMENT = cython.declare(cython.int, MOMENT)
+P_STIFFNESS = cython.declare(cython.int, STIFFNESS)
+P_DAMPING = cython.declare(cython.int, DAMPING)
+P_FORCE = cython.declare(cython.int, FORCE)
+P_PULL = cython.declare(cython.int, PULL)
+P_DRAG = cython.declare(cython.int, DRAG)
+GAIN = cython.declare(cython.double, 1e-9)  # relative gain of energy in an impact that is attributed to rounding
+CLOSE = cython.declare(cython.double, 1e-13)  # of the terms of a limit
+NEVER = cython.declare(cython.double, 10.0)  # rad: no rotation is as large
+
+# Kinds of outputs, see `rockflex.models._observe`.
+LINEAR = cython.declare(cython.int, 0)
+SWAY = cython.declare(cython.int, 1)
+LEFT_OUT = cython.declare(cython.int, 2)
+SWING = cython.declare(cython.int, 3)
+HORIZONTAL = cython.declare(cython.int, 4)
+VERTICAL = cython.declare(cython.int, 5)
+
+SMALL = cython.declare(cython.double, math.pi / 4)  # rad: the largest rotation for the series
+SMALLER = cython.declare(cython.double, 0.125)  # and for fewer terms
+# 1/n! with alternating signs, for sin θ = θ + θ³ (S_1 + S_2 θ² + ..) and cos θ = 1 + θ² (C_1 + C_2 θ² + ..); the first
+# term left out is below a quarter of rounding.
+S1 = cython.declare(cython.double, -1.0 / math.factorial(3))
+S2 = cython.declare(cython.double, 1.0 / math.factorial(5))
+S3 = cython.declare(cython.double, -1.0 / math.factorial(7))
+S4 = cython.declare(cython.double, 1.0 / math.factorial(9))
+S5 = cython.declare(cython.double, -1.0 / math.factorial(11))
+S6 = cython.declare(cython.double, 1.0 / math.factorial(13))
+S7 = cython.declare(cython.double, -1.0 / math.factorial(15))
+S8 = cython.declare(cython.double, 1.0 / math.factorial(17))
+C1 = cython.declare(cython.double, -1.0 / math.factorial(2))
+C2 = cython.declare(cython.double, 1.0 / math.factorial(4))
+C3 = cython.declare(cython.double, -1.0 / math.factorial(6))
+C4 = cython.declare(cython.double, 1.0 / math.factorial(8))
+C5 = cython.declare(cython.double, -1.0 / math.factorial(10))
+C6 = cython.declare(cython.double, 1.0 / math.factorial(12))
+C7 = cython.declare(cython.double, -1.0 / math.factorial(14))
+C8 = cython.declare(cython.double, 1.0 / math.factorial(16))
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def sine_and_cosine(theta: cython.double) -> tuple[cython.double, cython.double]:
+    """Sin θ and cos θ, without a call of the C library in every stage of a step; terms in pairs make short chains."""
+    x: cython.double = theta * theta
+    z: cython.double = x * x
+    sine: cython.double
+    cosine: cython.double
+    if fabs(theta) <= SMALLER:
+        sine = (S1 + S2 * x) + z * (S3 + S4 * x)
+        cosine = (C1 + C2 * x) + z * ((C3 + C4 * x) + z * C5)
+        return theta + theta * x * sine, 1.0 + x * cosine
+    if fabs(theta) > SMALL:
+        return sin(theta), cos(theta)
+    sine = (S1 + S2 * x) + z * ((S3 + S4 * x) + z * ((S5 + S6 * x) + z * (S7 + S8 * x)))
+    cosine = (C1 + C2 * x) + z * ((C3 + C4 * x) + z * ((C5 + C6 * x) + z * (C7 + C8 * x)))
+    return theta + theta * x * sine, 1.0 + x * cosine
+
+
+@cython.cclass
+class RockingField(Field):
+    """N modes and a base in one phase.
+
+    Parameters
+    ----------
+    side, branch
+        Pivot about which the base rotates, 1 right, -1 left, 0 in contact; sign of D'_1 in the law of Bouc and Wen.
+    numbers
+        Of the model: see `rockflex.models._nonlinear_system.Numbers`.
+    pulls : ndarray, shape (7, 1 + M)
+        Sums over the elements, see `pulls_of`.
+    stops : list
+        For each of the first conditions, what the constant states add to it: whether it is a limit from below (1) or
+        above (-1) of |θ|, the index of a memory or -1, and of the elongation per unit distance from the pivot a part
+        and the factor of the memory.
+    """
+
+    def __init__(self, numbers, side, branch, pulls, stops):
+        p, b = numbers.properties, numbers.bouc_wen
+        self.n, self.side, self.branch = p.n_modes, side, branch
+        self.complete, self.hysteretic, self.viscous = numbers.complete, b is not None, numbers.viscous
+        self.omega2, self.drag = p.omega**2, 2.0 * p.zeta * p.omega
+        self.height, self.mass = np.array(p.effective_height, dtype=float), np.array(p.effective_mass, dtype=float)
+        pivot = p.pivot(side or 1)
+        self.offset, self.inertia = side * pivot.arm, pivot.i_theta
+        self.weight_arm, self.total_mass, self.gravity, self.resting = p.l0r, p.m_tot, numbers.gravity, numbers.resting
+        self.yields, self.ratio, self.gamma, self.beta, self.exponent = 1.0, 1.0, 0.0, 0.0, 1.0
+        if b is not None:
+            self.yields, self.ratio, self.gamma, self.beta = b.yield_displacement, b.post_yield_ratio, b.gamma, b.beta
+            self.exponent = b.exponent
+        self.whole = int(self.exponent) if float(self.exponent).is_integer() else 0
+        self.pulls, self.memory, self.remembered = np.array(pulls), numbers.memory, pulls.shape[1] - 1
+        self.pulled = bool(pulls[[MOMENT, FORCE]].any())
+        self.kinds, self.levers = np.array(numbers.kinds, dtype=np.intc), np.array(numbers.levers, dtype=float)
+        self.kinds_count, self.stops_count = len(numbers.kinds), len(stops)
+        self.stop_kinds = np.array([each[:2] for each in stops], dtype=np.intc).reshape(-1, 2)
+        self.stops = np.array([each[2] for each in stops], dtype=float).reshape(-1, 2)
+
+    @property
+    def size(self):
+        """Number of states."""
+        return self.memory + self.remembered
+
+    def rates(self, y, a, a_v, out, counted):
+        """Compute the rates of the states."""
+        if self.side == 0:
+            self.in_contact(y, a, out, counted)
+        elif self.complete:
+            self.by_large_rotations(y, a, a_v, out, counted)
+        else:
+            self.by_small_rotations(y, a, a_v, out, counted)
+
+    def pull(self, y, which):
+        """A sum over the elements, with their memories."""
+        m: cython.int
+        total: cython.double = self.pulls[which, 0]
+        for m in range(self.remembered):
+            total += self.pulls[which, 1 + m] * y[self.memory + m]
+        return total
+
+    def inertia_left(self, y):
+        """The factor of θ'' after eliminating D'': I_θ - Σ m* h*², in complete models plus the terms of D."""
+        i: cython.int
+        total: cython.double = self.inertia
+        for i in range(self.n):
+            total -= self.mass[i] * self.height[i] * self.height[i]
+            if self.complete:
+                total += self.mass[i] * y[i] * (y[i] - 2.0 * self.offset)
+        return total
+
+    def in_contact(self, y, a, out, counted):
+        """Rates while the base stands still: Eq. 13 or 23 without rotation."""
+        n: cython.int = self.n
+        i: cython.int
+        damped: cython.double = 0.0
+        carried: cython.double = 0.0
+        spring: cython.double = 0.0
+        if self.hysteretic:
+            spring = self.restoring(y, out, counted)
+        for i in range(n):
+            out[i] = y[n + i]
+            out[n + i] = -a - self.ratio * self.omega2[i] * y[i] - spring - self.drag[i] * y[n + i]
+        out[2 * n], out[2 * n + 1] = y[2 * n + 1], 0.0
+        if counted:
+            for i in range(n):
+                damped += self.mass[i] * self.drag[i] * y[n + i] * y[n + i]
+                carried += self.mass[i] * y[n + i]
+            self.enter_energies(damped, -a * carried, 0.0, out)
+
+    def by_small_rotations(self, y, a, a_v, out, counted):
+        """Rates of the simplified models while rocking: Eq. 23."""
+        n: cython.int = self.n
+        i: cython.int
+        theta: cython.double = y[2 * n]
+        spin: cython.double = y[2 * n + 1]
+        across: cython.double = self.total_mass * self.offset - self.weight_arm * theta
+        moment: cython.double = (self.gravity + a_v) * across + a * self.weight_arm
+        damped: cython.double = 0.0
+        carried: cython.double = 0.0
+        spring: cython.double = 0.0
+        moment += self.pulls[P_STIFFNESS, 0] * theta
+        if self.pulled:
+            moment += self.side * self.pull(y, P_MOMENT)
+        if self.viscous:
+            moment += self.pulls[P_DAMPING, 0] * spin
+        if self.hysteretic:
+            spring = self.restoring(y, out, counted)
+        for i in range(n):
+            out[i] = y[n + i]
+            out[n + i] = -a - self.ratio * self.omega2[i] * y[i] - spring - self.drag[i] * y[n + i]
+            moment += self.mass[i] * self.height[i] * out[n + i]
+        self.turn(y, moment, out)
+        if counted:
+            for i in range(n):
+                damped += self.mass[i] * self.drag[i] * y[n + i] * y[n + i]
+                carried += self.mass[i] * y[n + i]
+            carried = -a * (self.weight_arm * spin + carried) - a_v * across * spin
+            self.enter_energies(damped, carried, spin, out)
+
+    def by_large_rotations(self, y, a, a_v, out, counted):
+        """Rates of the complete models while rocking: Eqs. 13 and 14."""
+        n: cython.int = self.n
+        i: cython.int
+        spin: cython.double = y[2 * n + 1]
+        sine: cython.double
+        cosine: cython.double
+        square: cython.double = spin * spin
+        lever: cython.double = 1.0
+        displaced: cython.double = 0.0
+        weighted: cython.double = 0.0
+        moment: cython.double = 0.0
+        coriolis: cython.double = 0.0
+        damped: cython.double = 0.0
+        carried: cython.double = 0.0
+        spring: cython.double = 0.0
+        inertia: cython.double = self.inertia
+        share: cython.double
+        drive: cython.double
+        behind: cython.double
+        beside: cython.double
+        arm: cython.double
+        across: cython.double
+        sine, cosine = sine_and_cosine(y[2 * n])
+        if self.hysteretic:
+            spring = self.restoring(y, out, counted)
+        drive = (self.gravity + a_v) * sine - a * cosine - spring
+        for i in range(n):
+            behind = y[i] - self.offset
+            displaced += self.mass[i] * y[i]
+            inertia += self.mass[i] * (y[i] * (behind - self.offset) - self.height[i] * self.height[i])
+            coriolis += self.mass[i] * behind * y[n + i]
+            out[i] = y[n + i]
+            out[n + i] = drive + square * behind - self.ratio * self.omega2[i] * y[i] - self.drag[i] * y[n + i]
+            moment += self.mass[i] * self.height[i] * out[n + i]
+        share = -1.0 / inertia  # before the moment is known
+        beside = self.total_mass * self.offset - displaced
+        arm = beside * sine + self.weight_arm * cosine
+        across = beside * cosine - self.weight_arm * sine
+        moment += (self.gravity + a_v) * across + a * arm + self.pulls[P_STIFFNESS, 0] * sine + 2.0 * spin * coriolis
+        # An element is stretched by 2 r sin(|θ|/2) and pulls with the lever arm r cos(θ/2).
+        if self.viscous or self.pulled:
+            lever = sqrt(0.5 + 0.5 * cosine)
+            moment += self.side * self.pull(y, P_MOMENT) * lever + self.pulls[P_DAMPING, 0] * lever * lever * spin
+        weighted = moment * share
+        for i in range(n):
+            out[n + i] -= self.height[i] * weighted
+        out[2 * n], out[2 * n + 1] = spin, weighted
+        if counted:
+            for i in range(n):
+                damped += self.mass[i] * self.drag[i] * y[n + i] * y[n + i]
+                carried += self.mass[i] * y[n + i]
+            weighted = -a * (arm * spin + cosine * carried) - a_v * (across * spin - carried * sine)
+            self.enter_energies(damped, weighted, lever * spin, out)
+
+    def restoring(self, y, out, counted):
+        """What z adds to the restoring acceleration of the one mode, Eq. 37; its rate is that of Eq. 38.
+
+        With the branch times D' in place of |D'| the law is smooth up to the reversal.
+        """
+        n: cython.int = self.n
+        z: cython.double = y[2 * n + 2]
+        slip: cython.double = self.omega2[0] * self.yields * (1.0 - self.ratio) * z
+        # z |z|^(n-1) |D'| is |z|^n |D'| with the sign of z.
+        lean: cython.double = self.beta + (self.branch * self.gamma if z >= 0.0 else -self.branch * self.gamma)
+        out[2 * n + 2] = y[n] / self.yields * (1.0 - lean * self.power(fabs(z)))
+        if counted:
+            out[2 * n + 5] = self.mass[0] * slip * y[n]
+        return slip
+
+    def power(self, z):
+        """z^n for z >= 0."""
+        left: cython.int = self.whole
+        power: cython.double = z
+        factor: cython.double
+        if left == 0:
+            return power_of(z, self.exponent)
+        while left & 1 == 0:
+            power *= power
+            left >>= 1
+        factor = power
+        left >>= 1
+        while left > 0:
+            factor *= factor
+            if left & 1:
+                power *= factor
+            left >>= 1
+        return power
+
+    def turn(self, y, moment, out):
+        """Compute θ'' from the moment with θ'' = 0, and what it adds to D''."""
+        n: cython.int = self.n
+        i: cython.int
+        angular: cython.double = -moment / self.inertia_left(y)
+        for i in range(n):
+            out[n + i] -= self.height[i] * angular
+        out[2 * n], out[2 * n + 1] = y[2 * n + 1], angular
+
+    def enter_energies(self, damped, work, swing, out):
+        """Rates of the damped energy, of the work of the ground, and of what viscous dampers sweep."""
+        n: cython.int = self.n
+        out[2 * n + 3], out[2 * n + 4] = damped, work
+        if not self.hysteretic:
+            out[2 * n + 2] = out[2 * n + 5] = 0.0
+        if self.viscous:
+            out[2 * n + 6] = swing * swing
+
+    def sizes(self, y, a, a_v, out):
+        """Compute the magnitudes of the terms of the rates of D, D', θ, θ' and z."""
+        n: cython.int = self.n
+        i: cython.int
+        spin: cython.double = fabs(y[2 * n + 1])
+        theta: cython.double = fabs(y[2 * n]) if self.side != 0 else 0.0
+        large: cython.double = 1.0 if self.complete and self.side != 0 else 0.0
+        gravity: cython.double = self.gravity + fabs(a_v)
+        arm: cython.double = fabs(self.offset)
+        moment: cython.double = gravity * (self.total_mass * arm + self.weight_arm * theta)
+        part: cython.double
+        moment += fabs(a) * self.weight_arm + self.pulls[P_STIFFNESS, 0] * theta + self.pulls[P_DAMPING, 0] * spin
+        moment += fabs(self.pulls[P_MOMENT, 0])
+        for i in range(self.remembered):
+            moment += fabs(self.pulls[P_MOMENT, 1 + i] * y[self.memory + i])
+        for i in range(n):
+            out[i] = fabs(y[n + i])
+            part = fabs(a) + self.omega2[i] * fabs(y[i]) + self.drag[i] * out[i]
+            if self.hysteretic:
+                part += self.omega2[i] * self.yields * fabs(y[2 * n + 2])
+            part += large * (gravity * theta + spin * spin * (fabs(y[i]) + arm))
+            moment += large * self.mass[i] * (gravity * fabs(y[i]) + 2.0 * (fabs(y[i]) + arm) * spin * out[i])
+            moment += self.mass[i] * self.height[i] * part
+            out[n + i] = part
+        moment = 0.0 if self.side == 0 else moment / fabs(self.inertia_left(y))
+        for i in range(n):
+            out[n + i] += self.height[i] * moment
+        out[2 * n], out[2 * n + 1] = spin, moment
+        if self.hysteretic:
+            out[2 * n + 2] = (
+                fabs(y[n]) / self.yields * (1.0 + (self.gamma + fabs(self.beta)) * self.power(fabs(y[2 * n + 2])))
+            )
+
+    def observe(self, y, rates, a, a_v, out):
+        """Replace the outputs that are not linear in large rotations: see `rockflex.models._observe`."""
+        n: cython.int = self.n
+        i: cython.int
+        j: cython.int
+        kind: cython.int
+        spin: cython.double = y[2 * n + 1]
+        turn: cython.double = rates[2 * n + 1]
+        sine: cython.double
+        cosine: cython.double
+        upright: cython.double  # cos θ/2
+        square: cython.double = spin * spin
+        gravity: cython.double = self.gravity + a_v
+        across: cython.double = self.total_mass * self.offset  # Σ m_i (s B - u_i)
+        speed: cython.double = 0.0
+        push: cython.double = 0.0
+        aside: cython.double = 0.0  # forces of the elements
+        upwards: cython.double = 0.0
+        along: cython.double
+        beside: cython.double
+        half: cython.double
+        coriolis: cython.double
+        drive: cython.double
+        sine, cosine = sine_and_cosine(y[2 * n])
+        upright = sqrt(0.5 + 0.5 * cosine)
+        drive = a * cosine - gravity * sine + square * self.offset
+        for i in range(n):
+            across -= self.mass[i] * y[i]
+            speed += self.mass[i] * y[n + i]
+            push += self.mass[i] * rates[n + i]
+        along = across * cosine - self.weight_arm * sine
+        beside = across * sine + self.weight_arm * cosine
+        # An element points from its present anchor on the base to its position in contact: at θ/2 from the vertical.
+        if self.pulled or self.viscous or self.pulls[P_PULL, 0] != 0.0:
+            half = 0.5 * sine / upright
+            coriolis = self.pull(y, P_FORCE) + 2.0 * self.pulls[P_PULL, 0] * self.side * half
+            coriolis += self.pulls[P_DRAG, 0] * upright * self.side * spin
+            aside, upwards = coriolis * half, coriolis * upright
+        coriolis = 2.0 * spin * speed
+        for j in range(self.kinds_count):
+            kind = self.kinds[j]
+            if kind == SWAY:
+                out[j] = self.offset * sine * sine / (1.0 + cosine) + self.levers[j, 0] * sine + out[j] * cosine
+            elif kind == LEFT_OUT:
+                out[j] -= self.levers[j, 0] * drive + self.levers[j, 1] * turn
+            elif kind == SWING:
+                out[j] *= upright
+            elif kind == HORIZONTAL:
+                out[j] = self.total_mass * a + (
+                    turn * beside + push * cosine - coriolis * sine + square * along + aside
+                )
+            elif kind == VERTICAL:
+                out[j] = self.resting - (
+                    self.total_mass * gravity
+                    + (turn * along - push * sine - coriolis * cosine - square * beside + upwards)
+                )
+
+    def enter(self, y, more):
+        """Add to the conditions what the memories of the elements say."""
+        k: cython.int
+        m: cython.int
+        kind: cython.int
+        memory: cython.double
+        limit: cython.double
+        for k in range(self.stops_count):
+            kind = self.stop_kinds[k, 0]
+            m = self.stop_kinds[k, 1]
+            memory = 0.0 if m < 0 else y[self.memory + m]
+            limit = self.stops[k, 0] + self.stops[k, 1] * memory
+            if kind > 0 and limit <= CLOSE * (fabs(self.stops[k, 0]) + fabs(self.stops[k, 1] * memory)):
+                more[k] += NEVER  # the base lands first, or at the same instant
+                continue
+            if self.complete:
+                limit = 2.0 * asin(max(0.5 * limit, -1.0)) if limit < 2.0 else NEVER
+            more[k] += -limit if kind > 0 else limit
+
+    def inertia_at(self, y):
+        """Return the factor of θ'' at a state."""
+        state: cython.double[::1] = y
+        if cython.compiled:
+            return self.inertia_left(cython.address(state[0]))
+        return self.inertia_left(state)
+
+
+@cython.cclass
+class Landing(Jump):
+    """An impact after which the base stays in contact, or (`other`) rocks on about the other edge."""
+
+    def __init__(self, gains, own, beyond, e, shortest, unseen, turnings):
+        self.gains, self.own, self.beyond = gains, own, beyond
+        self.scaled, self.passes, self.shortest, self.unseen = unseen is not None, e, shortest, unseen or 0.0
+        self.rates = np.zeros(own.size)
+        self.places = np.array([place for place, _, _ in turnings], dtype=np.intc)
+        self.offsets = np.array([offset for _, _, offset in turnings], dtype=float)
+
+    def energy(self, y, inertia):
+        """The kinetic energy at θ = 0, without the inertia terms of D: ½ I_f θ'² + ½ Σ m* (D' + h* θ')²."""
+        n: cython.int = self.own.n
+        i: cython.int
+        velocity: cython.double
+        spin: cython.double = y[2 * n + 1]
+        total: cython.double = 0.5 * inertia * spin * spin
+        for i in range(n):
+            velocity = y[n + i] + self.own.height[i] * spin
+            total += 0.5 * self.own.mass[i] * velocity * velocity
+        return total
+
+    def apply(self, y, a, a_v):
+        """Apply the law; 1 if rocking goes on, unless the next excursion would be too short to count."""
+        n: cython.int = self.own.n
+        i: cython.int
+        moving: cython.double = 0.0
+        before: cython.double = self.energy(y, self.own.inertia_left(y))
+        spin: cython.double = y[2 * n + 1]
+        passed: cython.double = self.passes * spin
+        y[2 * n] = 0.0
+        for i in range(self.places.shape[0]):
+            y[self.places[i]] = -self.offsets[i]
+        for i in range(n):
+            y[n + i] += self.own.height[i] * (spin - passed)
+            moving += self.own.mass[i] * y[n + i] * y[n + i]
+        if self.scaled and moving > 0.0:
+            moving = sqrt(1.0 + self.unseen * spin * spin / moving)
+            for i in range(n):
+                y[n + i] *= moving
+        y[2 * n + 1] = passed
+        if passed != 0.0:
+            if self.energy(y, self.beyond.inertia_left(y)) > before * (1.0 + GAIN):
+                return -1
+            if cython.compiled:
+                self.beyond.rates(y, a, a_v, cython.address(self.rates[0]), False)
+            else:
+                self.beyond.rates(y, a, a_v, self.rates, False)
+            if 2.0 * fabs(passed) >= -self.beyond.side * self.rates[2 * n + 1] * self.shortest:
+                return 1
+            for i in range(n):
+                y[n + i] += self.own.height[i] * passed
+            y[2 * n + 1] = 0.0
+        return -1 if self.energy(y, 0.0) > before * (1.0 + GAIN) else 0
+
+    def error(self):
+        """Return the exception after a gain of energy."""
+        return self.gains()
+
+
+@cython.cclass
+class Change(Jump):
+    """A change of the branches of elements: those that yield keep their plastic stretch; a turn stops the rotation."""
+
+    def __init__(self, rotation, chords, stops, turnings, marks):
+        self.rotation, self.chords, self.stops = rotation, chords, stops
+        self.places = np.array([place for place, _, _ in turnings], dtype=np.intc)
+        self.turnings = np.array([each[1:] for each in turnings], dtype=float).reshape(-1, 2)
+        self.marked = np.array([place for place, _ in marks], dtype=np.intc)
+        self.marks = np.array([value for _, value in marks], dtype=float)
+
+    def apply(self, y, a, a_v):
+        """Set the memories."""
+        k: cython.int
+        stretch: cython.double = fabs(y[self.rotation])
+        if self.chords:
+            stretch = 2.0 * sin(0.5 * stretch)
+        for k in range(self.places.shape[0]):
+            y[self.places[k]] = self.turnings[k, 0] * stretch - self.turnings[k, 1]
+        for k in range(self.marked.shape[0]):
+            y[self.marked[k]] = self.marks[k]
+        if self.stops:
+            y[self.rotation + 1] = 0.0
+        return 0
+
+
+@cython.cclass
+class Reversal(Jump):
+    """The velocity of a hysteretic spring changes its sign."""
+
+    def __init__(self, velocity, barely):
+        self.velocity, self.barely = velocity, barely
+
+    def apply(self, y, a, a_v):
+        """Make it zero exactly, unless an impact has reversed it."""
+        if fabs(y[self.velocity]) <= self.barely:
+            y[self.velocity] = 0.0
+        return 0

@@ -1,0 +1,43 @@
+from collections.abc import Callable, Sequence
+
+from rockflex._arrays import Array
+from rockflex.engine import Field, Jump
+from rockflex.models._nonlinear_system import Numbers
+
+class RockingField(Field):
+    def __init__(
+        self,
+        numbers: Numbers,
+        side: int,
+        branch: int,
+        pulls: Array,
+        stops: Sequence[tuple[int, int, tuple[float, float]]],
+    ) -> None: ...
+    @property
+    def size(self) -> int: ...
+    def inertia_at(self, y: Array) -> float: ...
+
+class Landing(Jump):
+    def __init__(
+        self,
+        gains: Callable[[], BaseException],
+        own: RockingField,
+        beyond: RockingField,
+        e: float,
+        shortest: float,
+        unseen: float | None,
+        turnings: Sequence[tuple[int, float, float]],
+    ) -> None: ...
+
+class Change(Jump):
+    def __init__(
+        self,
+        rotation: int,
+        chords: bool,
+        stops: bool,
+        turnings: Sequence[tuple[int, float, float]],
+        marks: Sequence[tuple[int, float]],
+    ) -> None: ...
+
+class Reversal(Jump):
+    def __init__(self, velocity: int, barely: float) -> None: ...
