@@ -18,6 +18,7 @@ from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._elements import CLOSED, LEFT, RIGHT
 from rockflex.models._fields import Change, Landing, Reversal, RockingField
 from rockflex.models._impact import Restitution, SidedRestitution, VVELComplete, VVELSimplified
+from rockflex.models._landing import GAIN, GainsEnergyError
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._observe import LINEAR, VERTICAL
 from rockflex.models._phase import Guard, Key, Phase
@@ -25,7 +26,6 @@ from rockflex.models._quantities import Quantities, lost_support_row, rows_of
 from rockflex.models._rocking_phase import QUARTER_TURN
 from rockflex.models._slider import Slider
 from rockflex.models._strike import WITHOUT, OwnLaw
-from rockflex.models._system import GAIN, GainsEnergyError
 
 TREMOR = 0.01  # m/s²: the error of a step is relative to the response to it, or to a larger motion so far
 LIGHT = 0.05  # of the vertical reaction at rest: the least size of the loss of support
@@ -77,7 +77,7 @@ class Rocks:
 
     def __init__(self, model: NonlinearModel, quantities: Quantities) -> None:
         self.model, self.quantities = model, quantities
-        # All forces are linear in gravity, and so in the vertical acceleration of the ground, which acts like more of it.
+        # All forces are linear in gravity; a vertical acceleration of the ground acts like more of it.
         self.heavier = replace(model, gravity=model.gravity + 1.0)
         p, layout, curved = model.properties, model.layout, model.complete
         count = len(quantities)
@@ -166,7 +166,7 @@ class Rocks:
         return tuple(found)
 
     def limit(self, guard: Guard, bound: int) -> Array:
-        """By how much a moment is within its lower (0) or upper (1) limit: a row with columns for the state, a and 1."""
+        """By how much a moment is within its lower (0) or upper (1) limit: a row over the state, a and 1."""
         layout, sign = self.model.layout, 1.0 - 2.0 * bound
         row = np.zeros(layout.size + 2)
         row[[*range(layout.moving), -2, -1]] = sign * guard.row
