@@ -10,7 +10,7 @@
 enum {
     AHEAD = 4,        /* samples in one product */
     BLOCK = 16,       /* samples that share bounds */
-    MAX_STATES = 320,
+    MAX_STATES = 1000,
     MAX_ROWS = 4096   /* outputs and conditions */
 };
 

@@ -55,6 +55,8 @@ class Run:
 
     Attributes
     ----------
+    size
+        Memory of the tables of all phases met so far, bytes.
     ended
         Whether an event without a next phase has happened; otherwise the run stands at the end of a sample.
     failure : str
@@ -68,6 +70,7 @@ class Run:
     system = cython.declare(object, visibility="readonly")
     h = cython.declare(cython.double, visibility="readonly")
     which = cython.declare(cython.int, visibility="readonly")
+    size = cython.declare(cython.longlong, visibility="readonly")
     ended = cython.declare(cython.bint, visibility="readonly")
     watch = cython.declare(object, visibility="public")
     limit = cython.declare(cython.longlong, visibility="public")
@@ -133,6 +136,7 @@ class Run:
         self.scratch = self.unkept = np.zeros((1, self.n))
         self.unbounded = np.full(up8(max(1, self.outputs)), np.inf)
         self.watch, self.limit, self.which, self.failure = None, 2**62, 0, ""
+        self.size = 0
         self.failed, self.faded, self.first, self.pause = False, -1, 0, 0
         self.still, self.shakes, self.shaken = np.zeros(0), False, set()
         self.restart(state, key, which)
@@ -251,6 +255,7 @@ class Run:
         self.phases.point(place, self.which)
         self.met.append((key, phase))
         self.places[key] = place
+        self.size += sum(each.nbytes for each in tables[4:])
         self.series.widen(len(phase.events))
         self.journal.meet(place, phase.events)
         if self.shakes:
