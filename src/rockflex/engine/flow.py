@@ -84,9 +84,9 @@ def range_of(
 class Flow:
     """Steps from the present state on."""
 
-    def __init__(self, phases, peaks, one_sided, y, counts, h):
+    def __init__(self, phases, peaks, one_sided, y, outputs, h):
         self.phases, self.peaks, self.one_sided, self.y, self.h = phases, peaks, one_sided, y, h
-        self.n, self.outputs = counts
+        self.n, self.outputs = phases.n, outputs
         self.states, self.high, self.when = len(y), peaks.high, peaks.when
         self.largest, self.shaking, self.work = np.zeros(self.states), np.zeros(4), np.zeros((ROOM, self.states))
         self.first, self.last, self.end = self.work[0], self.work[LAST], self.work[TRIAL]
@@ -202,6 +202,12 @@ class Flow:
         """Note that the state has moved to a place within the step."""
         self.known = self.tried = False
 
+    def enlarge(self, sizes):
+        """After a jump the magnitudes of what the state is summed from are not below those of the state."""
+        k: cython.int
+        for k in range(self.n):
+            sizes[k] = max(sizes[k], fabs(self.y[k]))
+
     def march(self, place, a, v, i, last, states):
         """Advance whole samples from i up to `last` as far as nothing happens; the number of the sample reached."""
         k: cython.int
@@ -297,15 +303,11 @@ class Flow:
         for k in range(self.n):
             self.vector[k] = self.first[k] * self.part * self.h
         self.vector[self.n], self.vector[self.n + 1] = self.shaking[1], 0.0
-        self.phases.rows_of(
-            place, outputs, self.vector, self.y, (v, self.shaking[3], self.shaking[3]), self.slopes
-        )
+        self.phases.rows_of(place, outputs, self.vector, self.y, (v, self.shaking[3], self.shaking[3]), self.slopes)
         v += self.shaking[3]
         for k in range(self.n):
             self.vector[k] = self.last[k] * self.part * self.h
-        self.phases.rows_of(
-            place, outputs, self.vector, self.end, (v, self.shaking[3], self.shaking[3]), self.bends
-        )
+        self.phases.rows_of(place, outputs, self.vector, self.end, (v, self.shaking[3], self.shaking[3]), self.bends)
 
     def conditions_hide(self, place):
         """Whether a condition may fail within the step or at its end."""
@@ -493,9 +495,7 @@ class Flow:
                 self.term[i] = self.first[i] * length
             self.vector[self.n] = self.vector[self.n + 1] = 0.0
             rise = self.shaking[3]
-            self.phases.rows_of(
-                self.place, False, self.vector, self.term, (self.shaking[2], rise, 0.0), self.beyond
-            )
+            self.phases.rows_of(self.place, False, self.vector, self.term, (self.shaking[2], rise, 0.0), self.beyond)
             for e in range(events):
                 if self.exact[self.place, e] == 0 or fabs(series[0, self.states + e]) > VANISHES * sums[0, e]:
                     continue
