@@ -210,7 +210,7 @@ class Run:
 
     @property
     def history(self):
-        """Times, places of phases, accelerations, states, vertical accelerations: at samples, on both sides of events."""
+        """Times, places of phases, accelerations, states, vertical accelerations, at samples and beside events."""
         samples, *others = self.journal.nodes
         return samples * self.h, *others
 
