@@ -88,9 +88,9 @@ cdef class Peaks:
 cdef class Phases:
     cdef Phase *phases
     cdef readonly int count
-    cdef int n, states
+    cdef readonly int n, states
     cdef double[::1] one_sided
-    cdef list contents, offsets, shaken, fields
+    cdef list contents, offsets, shaken, fields, shook
     cdef double[::1] room
 
     cdef int events(self, int place) noexcept nogil

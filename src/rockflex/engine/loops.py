@@ -10,6 +10,7 @@ from cython.cimports.libc.stdlib import calloc, free, malloc, realloc
 from cython.cimports.rockflex.engine.field import Field, Jump
 
 from rockflex.engine import tableau
+from rockflex.engine.shaken import shaken_of
 from rockflex.engine.system import up8
 from rockflex.engine.tables import padded
 
@@ -136,7 +137,8 @@ class Phases:
 
     def __init__(self, one_sided, states):
         self.one_sided, self.n, self.states = one_sided, states, up8(states + 2)
-        self.contents, self.offsets, self.shaken, self.count, self.fields = [], [], [], 0, []
+        self.contents, self.offsets, self.shaken, self.count = [], [], [], 0
+        self.fields, self.shook = [], []
         self.room = np.zeros(2 * states + 8)
 
     def __dealloc__(self):
@@ -199,6 +201,13 @@ class Phases:
         self.offsets.append(offsets)
         self.shaken.append(None)
         self.count += 1
+
+    def shake_all(self, met, which, h):
+        """Prepare the phases of a run for vertical acceleration."""
+        while len(self.shook) < len(met):
+            place = len(self.shook)
+            self.shook.append(place)
+            self.shake(place, which, shaken_of(met[place][1], h))
 
     def shake(self, place, which, shaken):
         """Take what a phase has under vertical acceleration, and point to what one system has; None if it has none."""

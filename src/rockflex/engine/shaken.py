@@ -30,16 +30,17 @@ class Terms(NamedTuple):
 
 def terms_of(phase: LinearPhase | NonlinearPhase) -> Terms | None:
     """The terms of a phase; None if the vertical acceleration does not act in its rows, or in linear rates."""
-    (S, m, n), k, linear = phase.C.shape, len(phase.events), isinstance(phase, LinearPhase)
+    (S, m, n), k = phase.C.shape, len(phase.events)
+    A_v, f_v = (phase.A_v, phase.f_v) if isinstance(phase, LinearPhase) else (None, None)
     rates, rows = np.zeros((S, n, n + 3)), np.zeros((S, m + k, n + 3))
-    if linear:
+    if isinstance(phase, LinearPhase):
         rates[..., :n], rates[..., n], rates[..., n + 1] = phase.A, phase.f, phase.c
     rows[:, :m, :n], rows[:, :m, n], rows[:, :m, n + 1] = phase.C, phase.d, phase.e
     fed = np.zeros((S, n + m + k, n))
-    for given, place in ((phase.A_v if linear else None, slice(n)), (phase.C_v, slice(n, n + m))):
+    for given, place in ((A_v, slice(n)), (phase.C_v, slice(n, n + m))):
         if given is not None:
             fed[:, place] = given
-    for given, found in ((phase.f_v if linear else None, rates), (phase.d_v, rows[:, :m])):
+    for given, found in ((f_v, rates), (phase.d_v, rows[:, :m])):
         if given is not None:
             found[..., n + 2] = given
     for j, event in enumerate(phase.events):

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex.engine.system import LinearPhase, NonlinearPhase, up8
+from rockflex.engine.system import Key, LinearPhase, NonlinearPhase, StepTooLongError, System, up8
 
 AHEAD, BLOCK = 4, 16  # as in march.h
 LONGEST = 2.5  # rad that a mode may turn within one power series: some thirty terms, and a digit lost
@@ -139,6 +139,24 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
         magnitude=np.abs(now),
         most=np.abs(outs),
     )
+
+
+def prepared(system: System, key: Key, h: float, mirrors: list[Mirror]) -> tuple[LinearPhase | NonlinearPhase, Tables]:
+    """Return the phase of a key, and its tables for steps of h.
+
+    Raises
+    ------
+    StepTooLongError
+        If a linear motion overflows within a step.
+    """
+    phase = system.checked(key)
+    if isinstance(phase, NonlinearPhase):
+        return phase, tables_of_rows(phase)
+    tables = tables_of(phase, h, mirrors)
+    if not np.isfinite(tables.step).all():
+        words = f"phase {key!r}: the motion grows without bound within one time step of {h:.9g}."
+        raise StepTooLongError(words, float(np.linalg.eigvals(phase.A).real.max()))
+    return phase, tables
 
 
 def tables_of_rows(phase: NonlinearPhase) -> Tables:

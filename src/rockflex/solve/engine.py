@@ -235,9 +235,7 @@ class Engine:
             stack.system,
             [runs[place].acceleration for place in allowed],
             [runs[place].scale for place in allowed],
-            free=0
-            if free_vibration == 0.0
-            else samples_in(self._patience if free_vibration is None else free_vibration, dt),
+            free=samples_in(self._patience if free_vibration is None else free_vibration, dt),
             settles=settles,
             names=COUNTED,
             verticals=[runs[place].vertical for place in allowed],
