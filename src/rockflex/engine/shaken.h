@@ -125,7 +125,7 @@ static int go_shaken(const Tables *p, const double *a, const double *v, int samp
     const int n = p->n, rows = p->rows;
     double x[MAX_STATES + 2], more[MORE];
     int k = 0;
-    for (; k < samples; k++, before = after, after += rows) {
+    for (; k < samples && marches_shaken(p); k++, before = after, after += rows) {
         if (!(fabs(v[k]) <= *s->limit && fabs(v[k + 1]) <= *s->limit)) break;
         if (!advance_shaken(p, a + k, v + k, y[k], y[k + 1])) break;
         memcpy(x, y[k + 1], sizeof *x * n);

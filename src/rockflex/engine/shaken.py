@@ -34,7 +34,7 @@ FINE = 24  # nodes for the integrals themselves
 TERMS = 40  # of power series over a part of a step in which no mode turns by more than `LONGEST`
 LONGEST = 2.5
 USUAL = 30.0  # a vertical acceleration for which the first number of nodes must do, in the user's unit: as in m/s²
-ROUNDING, EXACT = 1e-15, 1e-14  # of what p adds in a sample, and of the change of the state
+EXACT = 1e-14  # of what p adds in a sample, or of the change of the state: an error that is rounding
 CONTRACTS = 0.05  # by how much each turn of the fixed point must contract at least
 
 
@@ -190,7 +190,7 @@ def marched_of(terms: Terms, h: float, step: Array, pieces: Array) -> dict[str, 
             some, flow = some[~done], flow.of(~done)
             if not some.size:
                 break
-    width, wide = max((q for _, q, _ in rows), default=NODES[0]), up8(n)
+    width, wide, fed = max((q for _, q, _ in rows), default=NODES[0]), up8(n), fed if rows else 0
     found = {
         "limit": np.zeros((S, 1, 1)),
         "times": np.zeros((S, width, 1)),
@@ -282,7 +282,7 @@ def limit_of(flow: Flow, q: int, given: Array, feedback: Array, step: Array) -> 
             for j, t in enumerate(gauss(q)[0]):
                 factor = 2.0 * t - 1.0 if slope else 1.0
                 rough += given[:, i, j, :, None] * flow.seen[q][:, j, None, i, : n + 3] * factor
-            wrong = np.maximum(np.abs(exact - rough) - ROUNDING * most, 0.0)
+            wrong = np.maximum(np.abs(exact - rough) - EXACT * most, 0.0)
             ratio = EXACT * size / np.maximum(wrong, 1e-300)
             found = np.minimum(found, np.where(wrong > 0.0, ratio, np.inf).min(axis=(1, 2)))
     return np.minimum(np.nan_to_num(found, nan=0.0), VAGUE)
