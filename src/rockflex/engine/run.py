@@ -293,8 +293,8 @@ class Run:
             rested = False
             if batch.settles:
                 rested = self.settle_over(batch.free, history)
-                if rested:
-                    self.decay.bring_to_rest(self.y)
+                if rested and not self.phases.nonlinear(self.now):
+                    self.fading.decay.bring_to_rest(self.y)
             else:
                 self.coast_over(batch.free, history)
             batch.close(
