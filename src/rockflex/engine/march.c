@@ -509,7 +509,7 @@ static int march(const Tables *p, int phase, const double *a, const double *v, i
     const int n = p->n, states = up8(n), rows = p->rows, flat = up8(AHEAD * rows);
     Workspace *room = log->workspace;
     double *arena = room->arena;
-    double x[MAX_STATES + AHEAD + 2], padded[AHEAD + 1];
+    double x[MAX_STATES + AHEAD + 2], padded[AHEAD + 1], lifted[AHEAD + 1];
     double *after = taken(&arena, up8(rows) + flat + states) + up8(rows), *before = after - rows, *change = after + flat;
     Watch seen = {0}, *watch = &seen;
     Block block = {0};
@@ -543,14 +543,15 @@ static int march(const Tables *p, int phase, const double *a, const double *v, i
         }
         int samples = last - i < AHEAD ? last - i : AHEAD, known = 0; /* samples after which the state is known */
         const double *ground = a + i, *rise = v && p->shaken.now && any_rise(v + i, samples) ? v + i : 0;
+        if (samples < AHEAD) {
+            for (int k = 0; k <= AHEAD; k++) padded[k] = a[k < samples ? i + k : last];
+            for (int k = 0; rise && k <= AHEAD; k++) lifted[k] = v[k < samples ? i + k : last];
+            ground = padded, rise = rise ? lifted : 0;
+        }
         if (rise) {
             memcpy(at_samples[0], x, sizeof *x * n);
             known = go_shaken(p, ground, rise, samples, at_samples, before, after);
         } else {
-            if (samples < AHEAD) {
-                for (int k = 0; k <= AHEAD; k++) padded[k] = a[k < samples ? i + k : last];
-                ground = padded;
-            }
             for (int k = 0; k <= AHEAD; k++) x[n + k] = ground[k];
             x[n + AHEAD + 1] = 1.0;
             product(n + AHEAD + 2, flat + states, p->block, x, after);

@@ -183,10 +183,10 @@ def carried(G: Array, X: Array, times: Array, pieces: int) -> Array:
             terms.append(G @ terms[-1] / (order * pieces))
         series = np.stack(terms, axis=1).reshape(S, TERMS, n * k)
         here = times[(times * pieces >= piece) & (times * pieces < piece + 1)] * pieces - piece
-        for t in (*here, 1.0):
-            found.append((t ** np.arange(TERMS) @ series).reshape(S, n, k))
-        start = found.pop()
-    return np.stack(found, axis=1)
+        there = np.append(here, 1.0)[:, None] ** np.arange(TERMS) @ series
+        found.append(there[:, :-1])
+        start = there[:, -1].reshape(S, n, k)
+    return np.concatenate(found, axis=1).reshape(S, times.size, n, k)
 
 
 def marched_of(terms: Terms, h: float, step: Array, pieces: Array) -> dict[str, Array]:
@@ -287,14 +287,13 @@ def limit_of(flow: Flow, q: int, given: Array, feedback: Array, step: Array) -> 
     found = CONTRACTS / np.maximum(radius(np.abs(feedback.reshape(S, fed * q, fed * q))), 1e-300)
     for i in range(fed):
         for slope in (0.0, 1.0):
-            exact, rough, most = np.zeros((3, S, n, n + 3))
-            for k in range(FINE):
-                part = flow.ends[:, k, :, i, None] * flow.seen[FINE][:, k, None, i, : n + 3]
-                part = part * (weights[k] * (2.0 * fine[k] - 1.0 if slope else 1.0))
-                exact, most = exact + part, most + np.abs(part)
-            for j, t in enumerate(gauss(q)[0]):
-                factor = 2.0 * t - 1.0 if slope else 1.0
-                rough += given[:, i, j, :, None] * flow.seen[q][:, j, None, i, : n + 3] * factor
+            factor, factors = (2.0 * t - 1.0 if slope else np.ones_like(t) for t in (fine, gauss(q)[0]))
+            ends, start = flow.ends[..., i].swapaxes(1, 2), flow.seen[FINE][:, :, i, : n + 3]
+            exact, most = (
+                ends @ ((weights * factor)[:, None] * start),
+                np.abs(ends) @ (weights[:, None] * np.abs(start)),
+            )
+            rough = given[:, i].swapaxes(1, 2) @ (factors[:, None] * flow.seen[q][:, :, i, : n + 3])
             wrong = np.maximum(np.abs(exact - rough) - EXACT * most, 0.0)
             ratio = EXACT * size / np.maximum(wrong, 1e-300)
             found = np.minimum(found, np.where(wrong > 0.0, ratio, np.inf).min(axis=(1, 2)))
