@@ -3,5 +3,19 @@
 from rockflex.engine.batch import Batch
 from rockflex.engine.run import Run
 from rockflex.engine.system import MAX_STATES, Event, LinearPhase, Rest, StateLayout, StepTooLongError, System
+from rockflex.engine.tables import changes_of, halvings_of, radius
 
-__all__ = ["MAX_STATES", "Batch", "Event", "LinearPhase", "Rest", "Run", "StateLayout", "StepTooLongError", "System"]
+__all__ = [
+    "MAX_STATES",
+    "Batch",
+    "Event",
+    "LinearPhase",
+    "Rest",
+    "Run",
+    "StateLayout",
+    "StepTooLongError",
+    "System",
+    "changes_of",
+    "halvings_of",
+    "radius",
+]

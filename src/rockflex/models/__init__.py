@@ -1,6 +1,7 @@
 """Models of a structure on a base that may uplift."""
 
 from rockflex.models._bar import Bar
+from rockflex.models._between import LinearMotion, MotionBetween, Part
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._element import BROKEN, Dashpot, Element, Spring
 from rockflex.models._element_states import (
@@ -133,8 +134,11 @@ __all__ = [
     "ImpactLaw",
     "Key",
     "LinearModel",
+    "LinearMotion",
     "Model",
+    "MotionBetween",
     "NonlinearModel",
+    "Part",
     "Phase",
     "Posture",
     "Quantities",
