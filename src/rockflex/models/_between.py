@@ -1,7 +1,7 @@
 """The motion between the states of a history, in linear phases: matrix exponentials, and power series.
 
-Between two states the accelerations of the ground are linear in time. A vector z = [y, m, a, a', 1] has the states y that
-move, the memories m that act in a phase, the horizontal acceleration of the ground and its slope. Without vertical
+Between two states the accelerations of the ground are linear in time. A vector z = [y, m, a, a', 1] has the states y
+that move, the memories m that act in a phase, the horizontal acceleration of the ground and its slope. Without vertical
 acceleration z' = G z, and the exponentials of G for a step and its halves carry an interval of any length, but for a
 short rest. With it z' = (G + a_v V) z is developed in a power series. Eigenvectors are not used, so that repeated roots
 need no special case.
@@ -26,6 +26,7 @@ from rockflex.models._phase import Key
 TURN = 2.0  # rad that a mode may turn within one power series
 REST = 0.5  # rad that it turns at most in what is left of an interval after the exponentials
 SMALL = 1e-18  # of a sum: terms that no longer change it
+BLUR = 1e-15  # of the last time: lengths that differ only by rounding of the times share one exponential
 ASIDE = 1e-6  # of a step times the change of θ' in it, from the middle rotation
 
 
@@ -51,8 +52,9 @@ class LinearMotion:
         layout, accelerations, free = model.layout, model.accelerations(key), np.flatnonzero(model.arrow(key).freed)
         heavier = under_more_gravity(model).accelerations(key) - accelerations
         n, memories = layout.modes, accelerations[:, layout.core : layout.moving]
-        self.columns = [*range(layout.core), *(layout.core + np.flatnonzero(memories.any(axis=0))), -2]
-        size = len(self.columns) + 2
+        acting = np.flatnonzero(memories.any(axis=0))
+        self.columns = np.concatenate((np.arange(layout.core), layout.core + acting, [layout.moving]))  # of y, m and a
+        size = self.columns.size + 2
         modes, base = np.arange(n), layout.rotation + 2 * free
         self.rates, self.more = np.zeros((2, size, size))
         self.rates[[*modes, *base], [*(n + modes), *(base + 1)]] = 1.0
@@ -64,7 +66,7 @@ class LinearMotion:
 
     def taken(self, rows: Array) -> Array:
         """Return rows of the model, shape (.., C), as functionals of z, shape (.., Z)."""
-        found = np.zeros((*rows.shape[:-1], len(self.columns) + 2))
+        found = np.zeros((*rows.shape[:-1], self.columns.size + 2))
         found[..., :-2], found[..., -1] = rows[..., self.columns], rows[..., -1]
         return found
 
@@ -82,7 +84,7 @@ class LinearMotion:
     @property
     def lengths(self) -> Array:
         """The longest length and its halves, down to one that a power series can pass, in s."""
-        return self._longest * 0.5 ** np.arange(len(self.changes))
+        return np.ldexp(self._longest, -np.arange(len(self.changes)))
 
     def parts(self, longest: float) -> int:
         """Return the number of equal parts in which intervals are to be taken, so that power series converge."""
@@ -111,7 +113,7 @@ class LinearMotion:
     def pieces(self, z: Array, left: Array) -> Iterator[tuple[int, NDArray[np.intp]]]:
         """Move z, shape (n, Z), by the times `left` in s, in place, but for a rest that is shorter than all lengths.
 
-        Before each move the number of the length is yielded, and which intervals are moved by it.
+        Before each move the number of the length is yielded, and which intervals it moves.
         """
         for k, length in enumerate(self.lengths.tolist()):
             while (which := np.flatnonzero(left >= length)).size:
@@ -162,8 +164,7 @@ class Part:
     def after(self, which: NDArray[np.intp] | slice, elapsed: Array) -> Array:
         """Return the moving states `elapsed` seconds after the start of some of the intervals, shape (m, core)."""
         z, rise, slope = self.z[which], self.rise[which], self.slope[which]
-        found = self.motion.moved_shaken(z, elapsed, rise, slope) if self.shaken else self.motion.moved(z, elapsed)
-        return found
+        return self.motion.moved_shaken(z, elapsed, rise, slope) if self.shaken else self.motion.moved(z, elapsed)
 
     def along(self, fractions: Iterable[float]) -> Iterator[Array]:
         """Yield the moving states at one fraction of all intervals after the other, shape (n, core)."""
@@ -187,6 +188,7 @@ class Intervals:
     before: Array  # states at the start, (n - 1, S)
     core: int
     parts: list[Part]
+    blur: float  # s, below which lengths do not differ
 
     def at(self, fraction: float) -> Array:
         """Return the states at a fraction of every interval, shape (n - 1, S)."""
@@ -205,6 +207,7 @@ class Intervals:
     def after(self, which: NDArray[np.intp], elapsed: Array) -> Array:
         """Return the states `elapsed` (m,) seconds after the start of some intervals, shape (m, S)."""
         found, place = self.before[which], np.empty(len(self.before), dtype=np.intp)
+        elapsed = _merged(elapsed, self.blur)
         for part in self.parts:
             place[:] = -1
             place[part.rows] = np.arange(part.rows.size)
@@ -238,9 +241,8 @@ class MotionBetween:
     def intervals(self, states: Array) -> Intervals:
         """Return the motion over the intervals between adjacent states, shape (n, columns)."""
         model, layout = self._model, self._model.layout
-        steps = np.diff(states[:, TIME])
-        # The steps differ by rounding of the times; once rounded to equal values, they share one exponential.
-        steps = np.round(steps, 12 - math.ceil(math.log10(max(float(states[-1, TIME]), 1.0))))
+        blur = BLUR * max(float(states[-1, TIME]), 1e-300)
+        steps = _merged(np.diff(states[:, TIME]), blur)
         lasting = steps > 0.0
         slopes = np.diff(states[:, [GROUND, RISE]], axis=0) / np.where(lasting, steps, 1.0)[:, None]
         slopes[~lasting] = 0.0
@@ -262,10 +264,18 @@ class MotionBetween:
                 rows = np.flatnonzero(chosen)
                 if rows.size:
                     start = states[rows]
-                    moving = start[:, [HEADER + column for column in motion.columns[:-1]]]
+                    moving = start[:, HEADER + motion.columns[:-1]]
                     z = np.column_stack((moving, start[:, GROUND], slopes[rows, 0], np.ones(rows.size)))
                     parts.append(Part(key, motion, apart, rows, z, steps[rows], rise[rows], slopes[rows, 1]))
-        return Intervals(states[:-1, HEADER:], layout.core, parts)
+        return Intervals(states[:-1, HEADER:], layout.core, parts, blur)
+
+
+def _merged(lengths: Array, blur: float) -> Array:
+    """Return lengths in s, those equal that differ by no more than a blur from the next shorter one."""
+    values, which = np.unique(lengths, return_inverse=True)
+    begins = np.append(True, np.diff(values) > blur)
+    begins |= values == 0.0
+    return values[np.maximum.accumulate(np.where(begins, np.arange(values.size), 0))][which]
 
 
 def _longest(steps: Array) -> float:
