@@ -2,7 +2,7 @@
 
 from rockflex.models._bar import Bar
 from rockflex.models._based import horizontal_reaction
-from rockflex.models._between import LinearMotion, MotionBetween, Part
+from rockflex.models._between import LinearMotion, MotionBetween, Part, Shaking, inside
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._element import BROKEN, Dashpot, Element, Spring
 from rockflex.models._element_states import (
@@ -148,6 +148,7 @@ __all__ = [
     "Reactions",
     "Restitution",
     "RockingModel",
+    "Shaking",
     "SidedRestitution",
     "Slider",
     "SlidingModel",
@@ -174,6 +175,7 @@ __all__ = [
     "housner",
     "impact_of",
     "inertia_left",
+    "inside",
     "kinetic_energy",
     "layout_of",
     "lifted_springs",

@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +28,23 @@ TURN = 2.0  # rad that a mode may turn within one power series
 REST = 0.5  # rad that it turns at most in what is left of an interval after the exponentials
 SMALL = 1e-18  # of a sum: terms that no longer change it
 BLUR = 1e-15  # of the last time: lengths that differ only by rounding of the times share one exponential
+AT_ONCE = 2**15  # intervals times fractions: some megabytes
 ASIDE = 1e-6  # of a step times the change of θ' in it, from the middle rotation
+
+
+class Shaking(NamedTuple):
+    """Vertical acceleration of the ground in m/s² and its slope, shape (n,)."""
+
+    rise: Array
+    slope: Array
+
+    def later(self, time: Array) -> "Shaking":
+        """Return the same after times in s."""
+        return Shaking(self.rise + time * self.slope, self.slope)
+
+    def of(self, which: NDArray[np.intp]) -> "Shaking":
+        """Return that of some intervals."""
+        return Shaking(self.rise[which], self.slope[which])
 
 
 class LinearMotion:
@@ -90,23 +107,20 @@ class LinearMotion:
         """Return the number of equal parts in which intervals are to be taken, so that power series converge."""
         return max(math.ceil(self.speed * longest / TURN), 1)
 
-    def series(self, z: Array, h: Array, rise: Array | None = None, slope: Array | None = None) -> Array:
-        """Return the terms of z in powers of the fraction of steps h in s, shape (terms, n, Z).
-
-        `rise` and `slope` are the vertical acceleration at the start and its slope, shape (n,).
-        """
+    def series(self, z: Array, h: Array, shaking: Shaking | None = None) -> Array:
+        """Return the terms of z in powers of the fraction of steps h in s, shape (terms, n, Z)."""
         turn, size, count = self.speed * float(h.max(initial=0.0)), 1.0, 8
         while count < 8 or size > SMALL:
             count += 1
             size = turn**count / math.factorial(count)
         found = np.empty((count, *z.shape))
-        found[0] = z
+        found[0], felt = z, self.more[:, self._felt].T
         for k in range(1, count):
             rate = found[k - 1] @ self.rates.T
-            if rise is not None and slope is not None:
-                rate += rise[:, None] * (found[k - 1][:, self._felt] @ self.more[:, self._felt].T)
+            if shaking is not None:
+                rate += shaking.rise[:, None] * (found[k - 1][:, self._felt] @ felt)
                 if k > 1:
-                    rate += (slope * h)[:, None] * (found[k - 2][:, self._felt] @ self.more[:, self._felt].T)
+                    rate += (shaking.slope * h)[:, None] * (found[k - 2][:, self._felt] @ felt)
             np.multiply(rate, (h / k)[:, None], out=found[k])
         return found
 
@@ -139,13 +153,14 @@ class LinearMotion:
             found[alike] = z[alike] @ matrix
         return found
 
-    def moved_shaken(self, z: Array, elapsed: Array, rise: Array, slope: Array) -> Array:
-        """Return z after times in s, shape (n,), under a vertical acceleration and its slope."""
-        parts = self.parts(float(elapsed.max(initial=0.0)))
-        h = elapsed / parts
+    def developed(self, z: Array, steps: Array, shaking: Shaking | None = None) -> Iterator[Array]:
+        """Yield the power series in equal parts of steps in s, shape (n,), one after the other: see `series`."""
+        parts = self.parts(float(steps.max(initial=0.0)))
+        h = steps / parts
         for k in range(parts):
-            z = self.series(z, h, rise + k * h * slope, slope).sum(axis=0)
-        return z
+            terms = self.series(z, h, None if shaking is None else shaking.later(k * h))
+            yield terms
+            z = terms.sum(axis=0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,31 +169,33 @@ class Part:
 
     key: Key
     motion: LinearMotion
-    shaken: bool
     rows: NDArray[np.intp]  # which intervals, (n,)
     z: Array  # at their starts, (n, Z)
     steps: Array  # their lengths in s, (n,)
-    rise: Array  # the vertical acceleration at their starts, (n,)
-    slope: Array
+    shaking: Shaking | None
 
-    def after(self, which: NDArray[np.intp] | slice, elapsed: Array) -> Array:
-        """Return the moving states `elapsed` seconds after the start of some of the intervals, shape (m, core)."""
-        z, rise, slope = self.z[which], self.rise[which], self.slope[which]
-        return self.motion.moved_shaken(z, elapsed, rise, slope) if self.shaken else self.motion.moved(z, elapsed)
+    def after(self, which: NDArray[np.intp], elapsed: Array) -> Array:
+        """Return z `elapsed` seconds after the start of some of the intervals, shape (m, Z)."""
+        if self.shaking is None:
+            return self.motion.moved(self.z[which], elapsed)
+        terms = np.zeros((1, 0, 0))
+        for each in self.motion.developed(self.z[which], elapsed, self.shaking.of(which)):
+            terms = each
+        return terms.sum(axis=0)
 
-    def along(self, fractions: Iterable[float]) -> Iterator[Array]:
-        """Yield the moving states at one fraction of all intervals after the other, shape (n, core)."""
-        z, place = self.z, 0.0
-        for fraction in fractions:
-            if not self.shaken:
-                yield self.after(slice(None), fraction * self.steps)
-                continue
-            if fraction < place:
-                z, place = self.z, 0.0
-            rise = self.rise + place * self.steps * self.slope
-            z = self.motion.moved_shaken(z, (fraction - place) * self.steps, rise, self.slope)
-            place = fraction
-            yield z
+    def along(self, fractions: Array) -> Iterator[Array]:
+        """Yield z at one fraction of all intervals after the other, shape (n, Z); they rise."""
+        n = self.rows.size
+        if self.shaking is None:
+            for some in np.split(fractions, range(0, fractions.size, max(AT_ONCE // n, 1))[1:]):
+                found = self.after(np.tile(np.arange(n), some.size), np.outer(some, self.steps).ravel())
+                yield from found.reshape(some.size, n, -1)
+            return
+        parts, done = self.motion.parts(float(self.steps.max())), 0
+        for k, terms in enumerate(self.motion.developed(self.z, self.steps, self.shaking)):
+            while done < fractions.size and (fractions[done] * parts <= k + 1 or k == parts - 1):
+                yield inside(terms, fractions[[done]] * parts - k)[0]
+                done += 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,9 +213,9 @@ class Intervals:
 
     def along(self, fractions: Iterable[float]) -> Iterator[Array]:
         """Yield the states as `at` does, at rising fractions, with less work than one after the other."""
-        wanted = list(fractions)
+        wanted = np.array(list(fractions), dtype=float)
         courses = [(part.rows, part.along(wanted)) for part in self.parts]
-        for _ in wanted:
+        for _ in range(wanted.size):
             found = self.before.copy()
             for rows, course in courses:
                 found[rows, : self.core] = next(course)[:, : self.core]
@@ -246,8 +263,8 @@ class MotionBetween:
         lasting = steps > 0.0
         slopes = np.diff(states[:, [GROUND, RISE]], axis=0) / np.where(lasting, steps, 1.0)[:, None]
         slopes[~lasting] = 0.0
-        rise = states[:-1, RISE]
-        shaken: Bools = (rise != 0.0) | (slopes[:, 1] != 0.0)
+        shaking = Shaking(states[:-1, RISE], slopes[:, 1])
+        shaken: Bools = (shaking.rise != 0.0) | (shaking.slope != 0.0)
         # The branch of an element over an interval is that in its middle, with the memory at its start. An excursion
         # may begin and end on the border of a branch: a little of its height tells on which side it is.
         rotation, spin = layout.of(states, layout.rotation), layout.of(states, layout.spin)
@@ -266,16 +283,20 @@ class MotionBetween:
                     start = states[rows]
                     moving = start[:, HEADER + motion.columns[:-1]]
                     z = np.column_stack((moving, start[:, GROUND], slopes[rows, 0], np.ones(rows.size)))
-                    parts.append(Part(key, motion, apart, rows, z, steps[rows], rise[rows], slopes[rows, 1]))
+                    parts.append(Part(key, motion, rows, z, steps[rows], shaking.of(rows) if apart else None))
         return Intervals(states[:-1, HEADER:], layout.core, parts, blur)
 
 
+def inside(terms: Array, places: Array) -> Array:
+    """Return z at fractions of a step from its power series, shape (places, n, Z)."""
+    return np.tensordot(np.vander(places, len(terms), increasing=True), terms, axes=1)
+
+
 def _merged(lengths: Array, blur: float) -> Array:
-    """Return lengths in s, those equal that differ by no more than a blur from the next shorter one."""
-    values, which = np.unique(lengths, return_inverse=True)
-    begins = np.append(True, np.diff(values) > blur)
-    begins |= values == 0.0
-    return values[np.maximum.accumulate(np.where(begins, np.arange(values.size), 0))][which]
+    """Return lengths in s, where those that differ by no more than a blur from the next shorter one have their mean."""
+    values, which, count = np.unique(lengths, return_inverse=True, return_counts=True)
+    group = np.cumsum(np.append(0, (np.diff(values) > blur) | (values[:-1] == 0.0)))
+    return (np.bincount(group, values * count) / np.bincount(group, count))[group[which]]
 
 
 def _longest(steps: Array) -> float:

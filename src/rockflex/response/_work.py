@@ -16,9 +16,11 @@ from rockflex.models import (
     MotionBetween,
     Part,
     RockingModel,
+    Shaking,
     SpringModel,
     arms,
     horizontal_reaction,
+    inside,
     soil_strain,
     under_more_gravity,
 )
@@ -127,14 +129,14 @@ class PhaseWork:
         found = np.zeros((part.rows.size, 4 + self._places.size))
         rows = np.flatnonzero(part.steps)
         z, left = part.z[rows], part.steps[rows]
-        if part.shaken:
-            found[rows] = self._by_series(z, left, part.rise[rows], part.slope[rows])
+        if part.shaking is not None:
+            found[rows] = self._by_series(z, left, part.shaking.of(rows))
             return found
         if rows.size * self._motion.parts(float(left.max(initial=0.0))) > FEW:
             for level, which in self._motion.pieces(z, left):
                 found[rows[which]] += self._by_table(z[which], self._tables[level])
         rest = np.flatnonzero(left)
-        found[rows[rest]] += self._by_series(z[rest], left[rest], np.zeros(rest.size), np.zeros(rest.size))
+        found[rows[rest]] += self._by_series(z[rest], left[rest])
         return found
 
     def _by_table(self, z: Array, table: Table) -> Array:
@@ -143,10 +145,9 @@ class PhaseWork:
         found[:, 1] = -(z[:, -3:-1] * (z @ table.push.T)).sum(axis=1)
         if self._slide.any():
             found[:, 2] = -((z @ table.friction) * z).sum(axis=1)
-        rates = [z @ each.T for each in table.base.swapaxes(0, 1)]
-        found[:, 3] = _squares(rates[0])
-        for k, place in enumerate(self._places.tolist()):
-            found[:, 4 + k] = _squares(rates[1] - place * rates[0])
+        spin, *heaving = (z @ each.T for each in table.base.swapaxes(0, 1))
+        for column, rate in enumerate((spin, *(heaving[0] - place * spin for place in self._places.tolist())), 3):
+            found[:, column] = _squares(rate)
         return found
 
     @cached_property
@@ -154,16 +155,16 @@ class PhaseWork:
         """The tables for the lengths of `LinearMotion.pieces`: by quadrature for the last one, and doubled."""
         motion, unit = self._motion, np.eye(len(self._motion.rates))
         length = motion.lengths[-1]
-        inside = _inside(motion.series(unit, np.full(len(unit), length)))  # of each unit vector, (Z, P, Z)
+        z = inside(motion.series(unit, np.full(len(unit), length)), PLACES).swapaxes(0, 1)  # of unit vectors, (Z, P, Z)
         weights = length * WEIGHTS
-        rows = np.sqrt(weights)[:, None] * (inside @ np.concatenate((self._drag, self._base)).T).swapaxes(0, 2)
-        n, push, slide = len(self._drag), weights[:, None] * (inside @ self._push).T, (inside @ self._slide).T
+        rows = np.sqrt(weights)[:, None] * (z @ np.concatenate((self._drag, self._base)).T).swapaxes(0, 2)
+        n, push, slide = len(self._drag), weights[:, None] * (z @ self._push).T, (z @ self._slide).T
         found = [
             Table(
                 drag=_triangle(rows[:n].reshape(-1, 1, len(unit)))[:, 0],
                 base=_triangle(rows[n:].swapaxes(0, 1)),
                 push=np.stack((push.sum(axis=0), (length * PLACES) @ push)),
-                friction=(inside @ self._held * weights) @ slide,
+                friction=(z @ self._held * weights) @ slide,
             )
         ]
         for length, change in zip(motion.lengths[:0:-1].tolist(), motion.changes[:0:-1], strict=True):
@@ -176,8 +177,7 @@ class PhaseWork:
             found.append(Table(drag, base, push, friction))
         return found[::-1]
 
-    def _by_series(self, z: Array, steps: Array, rise: Array, slope: Array) -> Array:
-        """The work over steps in s, (n,), under a vertical acceleration that begins with `rise` and has a slope."""
+    def _by_series(self, z: Array, steps: Array, shaking: Shaking | None = None) -> Array:
         longest = float(steps.max(initial=0.0))
         found, parts = np.zeros((len(z), 4 + self._places.size)), self._motion.parts(longest)
         if parts > MOST_PARTS:
@@ -188,29 +188,22 @@ class PhaseWork:
                 "the record."
             )
         h = (steps / parts)[:, None]
-        shaken = bool(rise.any() or slope.any())
-        for k in range(parts):
-            up = rise[:, None] + (k + PLACES) * h * slope[:, None]  # (n, P)
-            now = (rise + k * h[:, 0] * slope, slope) if shaken else ()
-            terms = self._motion.series(z, h[:, 0], *now)
-            inside = _inside(terms)
-            spin, *heaving = (inside @ each for each in self._base)
-            risen = inside @ self._lift - (inside @ self._tilt) * spin
-            held = inside @ self._held + up * (inside @ self._heavier)
-            weights = h * WEIGHTS
-            found[:, 0] += (_squares(inside @ self._drag.T) * weights).sum(axis=1)
-            found[:, 1] -= ((inside[..., -3] * (inside @ self._push) + up * risen) * weights).sum(axis=1)
-            found[:, 2] -= (held * (inside @ self._slide) * weights).sum(axis=1)
-            found[:, 3] += (spin**2 * weights).sum(axis=1)
-            for column, place in enumerate(self._places.tolist()):
-                found[:, 4 + column] += ((heaving[0] - place * spin) ** 2 * weights).sum(axis=1)
-            z = terms.sum(axis=0)
+        weights = h * WEIGHTS
+        for k, terms in enumerate(self._motion.developed(z, steps, shaking)):
+            z = inside(terms, PLACES).swapaxes(0, 1)  # (n, P, Z)
+            spin, *heaving = (z @ each for each in self._base)
+            push, held = z[..., -3] * (z @ self._push), z @ self._held
+            if shaking is not None:
+                up = shaking.rise[:, None] + (k + PLACES) * h * shaking.slope[:, None]
+                push += up * (z @ self._lift - (z @ self._tilt) * spin)
+                held += up * (z @ self._heavier)
+            rates = (spin, *(heaving[0] - place * spin for place in self._places.tolist()))
+            found[:, 0] += (_squares(z @ self._drag.T) * weights).sum(axis=1)
+            found[:, 1] -= (push * weights).sum(axis=1)
+            found[:, 2] -= (held * (z @ self._slide) * weights).sum(axis=1)
+            for column, rate in enumerate(rates, 3):
+                found[:, column] += (rate**2 * weights).sum(axis=1)
         return found
-
-
-def _inside(terms: Array) -> Array:
-    """Return z at the places of the quadrature from its power series, shape (n, P, Z)."""
-    return np.tensordot(PLACES[:, None] ** np.arange(len(terms)), terms, axes=1).swapaxes(0, 1)
 
 
 def _squares(values: Array) -> Array:
