@@ -1,6 +1,8 @@
 """Models of a structure on a base that may uplift."""
 
 from rockflex.models._bar import Bar
+from rockflex.models._based import horizontal_reaction
+from rockflex.models._between import LinearMotion, MotionBetween, Part, Shaking, inside
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._element import BROKEN, Dashpot, Element, Spring
 from rockflex.models._element_states import (
@@ -83,8 +85,9 @@ from rockflex.models._quantities import Quantities, lost_support_row, rows_of, t
 from rockflex.models._reactions import Reactions, lifted_springs, printed_reactions, reactions, spring_forces
 from rockflex.models._slider import Slider
 from rockflex.models._sliding import SlidingModel
+from rockflex.models._spring_forces import LOADED
 from rockflex.models._springs import SpringModel
-from rockflex.models._stored import floor_accelerations, raised_weight_rate, stored_energies
+from rockflex.models._stored import floor_accelerations, raised_weight_rate, soil_strain, stored_energies
 from rockflex.models._strike import Impact, impact_of, kinetic_energy, may_pass, stick, strike
 from rockflex.models._system import may_stack, system_of
 
@@ -102,6 +105,7 @@ __all__ = [
     "LEFT_OUT",
     "LIFTS",
     "LINEAR",
+    "LOADED",
     "OPENS",
     "OVERTURNS",
     "PULLS",
@@ -134,14 +138,18 @@ __all__ = [
     "ImpactLaw",
     "Key",
     "LinearModel",
+    "LinearMotion",
     "Model",
+    "MotionBetween",
     "NonlinearModel",
+    "Part",
     "Phase",
     "Posture",
     "Quantities",
     "Reactions",
     "Restitution",
     "RockingModel",
+    "Shaking",
     "SidedRestitution",
     "Slider",
     "SlidingModel",
@@ -164,9 +172,11 @@ __all__ = [
     "field_rates",
     "floor_accelerations",
     "floor_quantities",
+    "horizontal_reaction",
     "housner",
     "impact_of",
     "inertia_left",
+    "inside",
     "key_of",
     "kinetic_energy",
     "layout_of",
@@ -194,6 +204,7 @@ __all__ = [
     "reactions",
     "rotation_by_side",
     "rows_of",
+    "soil_strain",
     "spring_forces",
     "stage_rates",
     "stick",
