@@ -48,7 +48,7 @@ from rockflex.models._named import (
     swing_by_side,
 )
 from rockflex.models._nonlinear import NonlinearModel
-from rockflex.models._nonlinear_system import key_of, may_integrate, nonlinear_system
+from rockflex.models._nonlinear_system import key_of, nonlinear_system, with_marks
 from rockflex.models._observe import (
     HORIZONTAL,
     LEFT_OUT,
@@ -183,7 +183,6 @@ __all__ = [
     "lifted_springs",
     "linear_system_of",
     "lost_support_row",
-    "may_integrate",
     "may_pass",
     "may_stack",
     "modal_displacement",
@@ -217,4 +216,5 @@ __all__ = [
     "turning_row",
     "under_more_gravity",
     "values_of",
+    "with_marks",
 ]

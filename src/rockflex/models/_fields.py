@@ -12,7 +12,7 @@ from math import pow as power_of
 import cython
 import numpy as np
 
-from rockflex.models._pulls import DAMPING, DRAG, FORCE, MOMENT, PULL, STIFFNESS
+from rockflex.models._pulls import DAMPING, DRAG, FORCE, HOLD, MOMENT, PULL, STIFFNESS
 
 if cython.compiled:
     from cython.cimports.libc.math import asin, cos, fabs, sin, sqrt
@@ -114,7 +114,7 @@ class RockingField(Field):
             self.exponent = b.exponent
         self.whole = int(self.exponent) if float(self.exponent).is_integer() else 0
         self.pulls, self.memory, self.remembered = np.array(pulls), numbers.memory, pulls.shape[1] - 1
-        self.pulled = bool(pulls[[MOMENT, FORCE]].any())
+        self.pulled, self.held = bool(pulls[[MOMENT, FORCE]].any()), bool(pulls[HOLD, 0])
         self.kinds, self.levers = np.array(numbers.kinds, dtype=np.intc), np.array(numbers.levers, dtype=float)
         self.kinds_count, self.stops_count = len(numbers.kinds), len(stops)
         self.stop_kinds = np.array([each[:2] for each in stops], dtype=np.intc).reshape(-1, 2)
@@ -294,7 +294,7 @@ class RockingField(Field):
         """Compute θ'' from the moment with θ'' = 0, and what it adds to D''."""
         n: cython.int = self.n
         i: cython.int
-        angular: cython.double = -moment / self.inertia_left(y)
+        angular: cython.double = 0.0 if self.held else -moment / self.inertia_left(y)
         for i in range(n):
             out[n + i] -= self.height[i] * angular
         out[2 * n], out[2 * n + 1] = y[2 * n + 1], angular
