@@ -7,12 +7,10 @@ from rockflex.solve._solutions import Solutions
 from rockflex.solve._task import Task, WorkLimitError
 from rockflex.solve.batch import Excitation
 from rockflex.solve.engine import Engine
-from rockflex.solve.exact.closed_form import ClosedForm
 from rockflex.solve.hybrid import HybridEngine, gather, takes
 from rockflex.solve.interruption import RunStoppedError, asked_to_stop, check_interruption, stopping_when
 
 __all__ = [
-    "ClosedForm",
     "Engine",
     "Excitation",
     "HybridEngine",
