@@ -5,7 +5,7 @@ from rockflex.engine.field cimport Field, Jump
 @cython.final
 cdef class RockingField(Field):
     cdef int n, side, branch, whole, memory, remembered, kinds_count, stops_count
-    cdef bint complete, hysteretic, viscous, pulled
+    cdef bint complete, hysteretic, viscous, pulled, held
     cdef double[::1] omega2, drag, height, mass
     cdef double offset, inertia, weight_arm, total_mass, gravity, resting
     cdef double yields, ratio, gamma, beta, exponent
