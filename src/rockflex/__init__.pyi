@@ -149,7 +149,6 @@ from .study import CombinedPeaks as CombinedPeaks
 from .study import InitialState as InitialState
 from .study import OverturningScales as OverturningScales
 from .study import SecondMode as SecondMode
-from .study import Warmth as Warmth
 from .study import frequency_ratios as frequency_ratios
 from .study import modal_combination as modal_combination
 from .study import moment_rotation as moment_rotation
@@ -158,7 +157,6 @@ from .study import overturning_spectrum as overturning_spectrum
 from .study import rocking_spectrum as rocking_spectrum
 from .study import simulate as simulate
 from .study import simulate_many as simulate_many
-from .study import warm as warm
 from .study.cloud import CloudStudy as CloudStudy
 from .study.cloud import run_cloud as run_cloud
 from .study.design import DesignStudy as DesignStudy

@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 from scipy.linalg import expm
 
 from rockflex.engine import Event, LinearPhase
+from rockflex.engine.shaken import shaken_of
 from rockflex.engine.tables import BLOCK, tables_of
 
 H, FINE = 0.02, 40  # time step, and places looked at in a sample
@@ -68,3 +70,62 @@ def test_bounds_of_a_block_hold(seed, turns, start):
     assert (swayed <= sway * (1.0 + 1e-9) + 1e-13).all()
     if not cap.any():  # and they are of use: within some orders of magnitude
         assert (bend < 1e4 * bent).all()
+
+
+@pytest.mark.parametrize("turns", [(0.05, 0.3), (0.3, 1.2, 2.5)])
+@pytest.mark.parametrize("seed", range(3))
+def test_bounds_of_a_shaken_block_hold(seed, turns):
+    """With what is true of p = a_v y, its bounds and those of the rows hold for two such states."""
+    rng = np.random.default_rng(seed)
+    phase, fed = phase_of(rng, turns), [0, 3]
+    A, f, c, C = phase.A, phase.f, phase.c, phase.C
+    n = len(f)
+    f_v, A_v, C_v = rng.normal(size=n), np.zeros((n, n)), np.zeros((4, n))
+    A_v[:, fed], C_v[:, fed] = rng.normal(size=(n, 2)), rng.normal(size=(4, 2))
+    a, lift, y = rng.normal(size=BLOCK + 1), rng.normal(size=BLOCK + 1), rng.normal(size=n)
+    zero, one = np.zeros(1), np.ones(1)
+    events = tuple(
+        Event("", row[None], None, zero, zero, one, row_v=more[None], direct_v=zero)
+        for row, more in zip(C, C_v, strict=True)
+    )
+    stacked = LinearPhase(A[None], f[None], c[None], C[None], phase.d[None], phase.e[None], events)
+    shaken = {"A_v": A_v[None], "f_v": f_v[None], "C_v": C_v[None], "d_v": np.zeros((1, 4))}
+    tables = shaken_of(LinearPhase(**{**vars(stacked), **shaken}), H)
+    assert tables.places == fed
+    first = A @ y + f * a[0] + c + f_v * lift[0] + A_v @ (lift[0] * y)
+    seen = [np.zeros((0, n)) for _ in range(4)]
+    of_rows, of_p, varied = [np.zeros((0, 4)) for _ in range(3)], [np.zeros((0, 2)) for _ in range(4)], np.zeros(2)
+    for k in range(BLOCK):
+        ramp, rise = (a[k + 1] - a[k]) / H, (lift[k + 1] - lift[k]) / H
+
+        def rate(t, y, k=k, ramp=ramp, rise=rise):
+            return A @ y + f * (a[k] + ramp * t) + c + (lift[k] + rise * t) * (A_v @ y + f_v)
+
+        times = np.linspace(0.0, H, FINE + 1)
+        path = solve_ivp(rate, (0.0, H), y, "DOP853", rtol=1e-11, atol=1e-14, t_eval=times).y.T
+        now = lift[k] + rise * times[:, None]
+        v = np.array([rate(*each) for each in zip(times, path, strict=True)])
+        p1 = rise * path + now * v
+        v1 = v @ A.T + f * ramp + f_v * rise + p1 @ A_v.T
+        p2 = 2.0 * rise * v + now * v1
+        v2 = v1 @ A.T + p2 @ A_v.T
+        p3 = 3.0 * rise * v1 + now * v2
+        v3 = v2 @ A.T + p3 @ A_v.T
+        p4 = 4.0 * rise * v2 + now * v3
+        seen = [np.concatenate(each) for each in zip(seen, (v, v1, v2, v3), strict=True)]
+        of_p = [np.concatenate((old, new[:, fed])) for old, new in zip(of_p, (p1, p2, p3, p4), strict=True)]
+        rows = v1 @ C.T + p2 @ C_v.T, v2 @ C.T + p3 @ C_v.T, v3 @ C.T + p4 @ C_v.T
+        of_rows = [np.concatenate(each) for each in zip(of_rows, rows, strict=True)]
+        varied += np.abs(p1[:, fed]).mean(axis=0) * H
+        y = path[-1]
+    inputs = [np.array((np.abs(np.diff(each)).sum(), np.abs(np.diff(each)).max() / H)) for each in (a, lift)]
+    moves = np.concatenate((np.abs(first), *inputs, 1.01 * varied, *(np.abs(each).max(axis=0) for each in of_p)))
+    for name, values, factor in zip(
+        ("bend", "sway", "jolt"), of_rows, (H**2 / 8.0, H**3 / 96.0, H**4 / 384.0), strict=True
+    ):
+        bound, most = (getattr(tables, name)[0] @ moves)[:4], factor * np.abs(values).max(axis=0)
+        assert (most <= bound * (1.0 + 1e-6)).all()
+        assert (bound < 1e3 * most).all()
+    for order, values in enumerate(seen, 1):
+        most = np.abs(values[:, fed]).max(axis=0)
+        assert (most <= (getattr(tables, f"swell{order}")[0] @ moves)[:2] * (1.0 + 1e-6)).all()

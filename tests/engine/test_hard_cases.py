@@ -161,7 +161,7 @@ def test_every_array_of_numbers_will_do():
             ["function"],
         ),
         ({"layout": StateLayout()}, ["states"]),
-        ({"layout": StateLayout(x=321)}, ["320", "321"]),
+        ({"layout": StateLayout(x=1001)}, ["1000", "1001"]),
         ({"returned": None}, ["'flies'", "LinearPhase"]),
     ],
 )

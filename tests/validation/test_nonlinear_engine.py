@@ -61,6 +61,10 @@ def case(seed):
     rng = np.random.default_rng(seed)
     suite = rf.load_suite("fema-p695-far-field")
     motion = suite[int(rng.integers(len(suite)))].scaled(float(rng.uniform(0.5, 2.5)))
+    vertical = None
+    if seed % 3 == 2:  # it begins after some seconds
+        vertical = 0.6 * np.roll(motion.acceleration, 30) * (np.arange(len(motion.acceleration)) > 400)
+    motion = rf.GroundMotion(motion.acceleration, motion.dt, name=motion.name, vertical=vertical)
     models = "2DOF-C", "MDOF-C", "3DOF-C-SI", "3DOF-C-E", "rigid-C", "2DOF-S-BW", "2DOF-C-BW", "1DOF-fixed-BW"
     model = models[seed % len(models)]
     parameters = {
@@ -124,7 +128,9 @@ def test_random_runs_agree_with_the_older_engine(seed, hybrid, monkeypatch):
     with monkeypatch.context() as patched:
         patched.setattr("rockflex.study._case.takes", lambda _model: False)
         others, expected, other = result(structure, motion, model, options)
-        near = rf.GroundMotion(motion.acceleration * (1.0 + 1e-12), motion.dt, name=motion.name)
+        near = rf.GroundMotion(
+            motion.acceleration * (1.0 + 1e-12), motion.dt, name=motion.name, vertical=motion.vertical
+        )
         moved = result(structure, near, model, options)
     if moved[0] != others:
         pytest.skip("the outcome itself depends on the twelfth digit of the record")
@@ -138,7 +144,8 @@ def test_random_runs_agree_with_the_older_engine(seed, hybrid, monkeypatch):
     if found is not None and options["output"] == "history":
         assert found.energy.closing_error < 1e-9 + 3.0 * other.energy.closing_error
         np.testing.assert_array_equal(found.side[[0, -1]], other.side[[0, -1]])
-        assert abs(len(found.time) - len(other.time)) <= 2
+        if options["free_vibration"] != "settle":  # whether that is so is asked every 64 samples
+            assert abs(len(found.time) - len(other.time)) <= 2
 
 
 def rocking(model, side):

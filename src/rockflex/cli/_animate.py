@@ -108,7 +108,7 @@ def animate(
     from rockflex.cli._flags import naming
     from rockflex.cli._preparation import Asked, prepare
     from rockflex.cli._run_tables import print_failures, print_warnings
-    from rockflex.cli._simulations import perform, warm_up
+    from rockflex.cli._simulations import perform
     from rockflex.plot._style import literal
     from rockflex.plot.animation import animate as draw
     from rockflex.plot.animation import file_of
@@ -130,7 +130,6 @@ def animate(
             f"An animation shows one ground motion, but {len(batch.motions)} were given. Name one of them, such as "
             f"{first.motion.name} of {first.origin}."
         )
-    warm_up(batch)
     runs = perform(batch)
     responses = [run.response for run in runs if run.response is not None]
     title = None if scale == 1.0 else f"{literal(batch.motions[0].name)} × {scale:g}"

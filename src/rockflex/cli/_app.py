@@ -8,7 +8,7 @@ from typer.core import TyperGroup
 
 from rockflex import __version__
 from rockflex._errors import InputError, SolverError
-from rockflex.cli import _animate, _figures, _modes, _motion, _reproduce, _run, _select, _serve, _study, _survey, _warm
+from rockflex.cli import _animate, _figures, _modes, _motion, _reproduce, _run, _select, _serve, _study, _survey
 from rockflex.cli._console import complain, note, remarks
 from rockflex.cli._flags import FrameCommand, RunCommand
 from rockflex.kinds import KINDS
@@ -70,7 +70,6 @@ app.command("select", epilog=_select.EPILOG, no_args_is_help=True)(_select.selec
 for kind in KINDS.values():
     app.command(kind.command, epilog=_study.epilog(kind.command), no_args_is_help=True)(_study.command_of(kind))
 app.command("figures", epilog=_figures.EPILOG, no_args_is_help=True)(_figures.figures)
-app.command("warm", epilog=_warm.EPILOG)(_warm.warm)
 app.command("serve", epilog=_serve.EPILOG)(_serve.serve)
 app.command("reproduce", epilog=_reproduce.EPILOG)(_reproduce.reproduce)
 

@@ -24,7 +24,7 @@ def to_json(document: dict[str, Any], *, ascii_only: bool = True) -> str:
 
 def versions() -> dict[str, str]:
     """Return the versions of the packages that the results depend on."""
-    return {"rockflex": __version__, **versions_of(("numpy", "scipy", "numba"))}
+    return {"rockflex": __version__, **versions_of(("numpy", "scipy"))}
 
 
 def check_folder(folder: Path | None, *, force: bool) -> None:

@@ -73,7 +73,7 @@ def run(
     from rockflex.cli._run_output import UNITS, write_runs
     from rockflex.cli._run_report import check_page, check_runs, write_page
     from rockflex.cli._run_tables import print_failures, print_runs, print_warnings
-    from rockflex.cli._simulations import perform, warm_up
+    from rockflex.cli._simulations import perform
     from rockflex.cli._structures import describe_properties
 
     check_folder(out, force=force and (out is not None or report is None))
@@ -88,10 +88,9 @@ def run(
     loaded, found, batch = prepared.loaded, prepared.found, prepared.batch
     if page is not None:
         check_runs(batch)
-    with naming(FLAGS):
-        warm_up(batch)
     start = perf_counter()
-    runs = perform(batch)
+    with naming(FLAGS):
+        runs = perform(batch)
     elapsed = perf_counter() - start
     document: dict[str, Any] = {
         "versions": versions(),

@@ -1,15 +1,15 @@
 """The runs of one structure: a few are timed one by one, many are shared among threads."""
 
 from collections.abc import Sequence
-from contextlib import nullcontext, suppress
-from dataclasses import dataclass, field, replace
+from contextlib import nullcontext
+from dataclasses import dataclass, field
 from itertools import product
 from time import perf_counter
 from typing import Any, Literal
 
 from rockflex._errors import SolverError
 from rockflex.cli._choices import Assumptions
-from rockflex.cli._console import progress, waiting
+from rockflex.cli._console import progress
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
@@ -136,14 +136,6 @@ def perform(batch: Batch) -> list[Run]:
             f"None of the {len(runs)} runs could be solved; {first.model} under {first.motion}: {first.error}"
         )
     return runs
-
-
-def warm_up(batch: Batch) -> None:
-    """Load the kernels, or compile them the first time, so that the run times do not include it."""
-    with waiting("Loading the kernels (compiling them, the first time)"):
-        for model in batch.models:
-            with suppress(SolverError, WorkLimitError):
-                _friction(batch, replace(batch.case(model), free_vibration=0.0).run(batch.motions[0]))
 
 
 def _run(batch: Batch, case: Case, motion: GroundMotion, scale: float, *, timed: bool) -> Run:

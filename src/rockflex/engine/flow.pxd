@@ -6,7 +6,7 @@ from rockflex.engine.loops cimport Peaks, Phases
 cdef class Flow:
     cdef Phases phases
     cdef Peaks peaks
-    cdef int n, states, outputs, terms
+    cdef readonly int n, states, outputs, terms
     cdef double h
     cdef double[::1] y, high, when, one_sided
     cdef double[::1] largest  # magnitudes of the moving states so far
@@ -41,6 +41,7 @@ cdef class Flow:
     cdef double take(self, int place, double start, double end, (double, double) v, double u) noexcept nogil
     cdef void accept(self) noexcept nogil
     cdef void leave(self) noexcept nogil
+    cdef void enlarge(self, double[::1] sizes) noexcept nogil
     cdef int march(self, int place, const double[::1] a, const double[::1] v, int i, int last, double[:, ::1] states) noexcept nogil
     cdef void keep(self) noexcept nogil
     cdef void restore(self) noexcept nogil

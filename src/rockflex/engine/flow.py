@@ -84,9 +84,9 @@ def range_of(
 class Flow:
     """Steps from the present state on."""
 
-    def __init__(self, phases, peaks, one_sided, y, counts, h):
+    def __init__(self, phases, peaks, one_sided, y, outputs, h):
         self.phases, self.peaks, self.one_sided, self.y, self.h = phases, peaks, one_sided, y, h
-        self.n, self.outputs = counts
+        self.n, self.outputs = phases.n, outputs
         self.states, self.high, self.when = len(y), peaks.high, peaks.when
         self.largest, self.shaking, self.work = np.zeros(self.states), np.zeros(4), np.zeros((ROOM, self.states))
         self.first, self.last, self.end = self.work[0], self.work[LAST], self.work[TRIAL]
@@ -201,6 +201,12 @@ class Flow:
     def leave(self):
         """Note that the state has moved to a place within the step."""
         self.known = self.tried = False
+
+    def enlarge(self, sizes):
+        """After a jump the magnitudes of what the state is summed from are not below those of the state."""
+        k: cython.int
+        for k in range(self.n):
+            sizes[k] = max(sizes[k], fabs(self.y[k]))
 
     def march(self, place, a, v, i, last, states):
         """Advance whole samples from i up to `last` as far as nothing happens; the number of the sample reached."""

@@ -7,6 +7,22 @@ cdef extern from "march.h" nogil:
         const double *outs
         const double *magnitude
         const double *most
+        int nodes
+        const double *limit
+        const double *times
+        const double *known
+        const double *given
+        const double *feedback
+        const double *rows
+        const double *speeds
+        const double *slope
+        const double *direct
+        const double *moves
+        const double *bend
+        const double *sway
+        const double *jolt
+        const double *loop
+        const double *swell[4]
     ctypedef struct Climb:
         double start, rise
     ctypedef struct Tables:
@@ -88,9 +104,9 @@ cdef class Peaks:
 cdef class Phases:
     cdef Phase *phases
     cdef readonly int count
-    cdef int n, states
+    cdef readonly int n, states
     cdef double[::1] one_sided
-    cdef list contents, offsets, shaken, fields
+    cdef list contents, offsets, shaken, fields, shook
     cdef double[::1] room
 
     cdef int events(self, int place) noexcept nogil

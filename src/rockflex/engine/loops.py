@@ -10,6 +10,7 @@ from cython.cimports.libc.stdlib import calloc, free, malloc, realloc
 from cython.cimports.rockflex.engine.field import Field, Jump
 
 from rockflex.engine import tableau
+from rockflex.engine.shaken import shaken_of
 from rockflex.engine.system import up8
 from rockflex.engine.tables import padded
 
@@ -136,7 +137,8 @@ class Phases:
 
     def __init__(self, one_sided, states):
         self.one_sided, self.n, self.states = one_sided, states, up8(states + 2)
-        self.contents, self.offsets, self.shaken, self.count, self.fields = [], [], [], 0, []
+        self.contents, self.offsets, self.shaken, self.count = [], [], [], 0
+        self.fields, self.shook = [], []
         self.room = np.zeros(2 * states + 8)
 
     def __dealloc__(self):
@@ -200,15 +202,22 @@ class Phases:
         self.shaken.append(None)
         self.count += 1
 
+    def shake_all(self, met, which, h):
+        """Prepare the phases of a run for vertical acceleration."""
+        while len(self.shook) < len(met):
+            place = len(self.shook)
+            self.shook.append(place)
+            self.shake(place, which, shaken_of(met[place][1], h))
+
     def shake(self, place, which, shaken):
         """Take what a phase has under vertical acceleration, and point to what one system has; None if it has none."""
         if shaken is not None:
-            parts = [packed(each) for each in shaken[2:]]
+            parts = [packed(each) for each in shaken[3:]]
             offsets = np.cumsum([0, *(up8(part.shape[1]) for part in parts)], dtype=np.intp)
             content = aligned(parts[0].shape[0], int(offsets[-1]))
             for part, first in zip(parts, offsets[:-1], strict=True):
                 content[:, first : first + part.shape[1]] = part
-            self.shaken[place] = content, offsets, np.array([*shaken.places, shaken.shift], dtype=np.intc)
+            self.shaken[place] = content, offsets, np.array([*shaken.places, shaken.shift, shaken.nodes], dtype=np.intc)
             self.point(place, which)
 
     def select(self, which: cython.int):
@@ -256,9 +265,31 @@ class Phases:
         places: cython.int[::1] = numbers
         first: cython.p_double = cython.address(row[0])
         s: cython.pointer(Shaken) = cython.address(self.phases[place].tables.shaken)
-        s.fed, s.places = places.shape[0] - 1, cython.address(places[0])
-        s.shift = places[s.fed]
+        s.fed, s.places = places.shape[0] - 2, cython.address(places[0])
+        s.shift, s.nodes = places[s.fed], places[s.fed + 1]
         s.now, s.outs, s.magnitude, s.most = first, first + offsets[1], first + offsets[2], first + offsets[3]
+        s.limit, s.times, s.known, s.given = (
+            first + offsets[4],
+            first + offsets[5],
+            first + offsets[6],
+            first + offsets[7],
+        )
+        s.feedback, s.rows, s.speeds, s.slope = (
+            first + offsets[8],
+            first + offsets[9],
+            first + offsets[10],
+            first + offsets[11],
+        )
+        s.direct, s.moves, s.bend, s.sway = (
+            first + offsets[12],
+            first + offsets[13],
+            first + offsets[14],
+            first + offsets[15],
+        )
+        s.jolt, s.loop = first + offsets[16], first + offsets[17]
+        order: cython.int
+        for order in range(4):
+            s.swell[order] = first + offsets[18 + order]
 
     def lead(self, place, outcome, following):
         """Say which phase follows an outcome."""

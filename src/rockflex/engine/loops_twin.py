@@ -7,7 +7,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex.engine.field import Field
-from rockflex.engine.shaken import ShakenTables
+from rockflex.engine.shaken import ShakenTables, shaken_of
 from rockflex.engine.steps_twin import Steps
 from rockflex.engine.system import Event, up8
 from rockflex.engine.tables import AHEAD, BLOCK, Tables
@@ -98,6 +98,11 @@ class Phases(Steps):
     def add(self, tables: Tables, events: Sequence[Event], h: float) -> None:
         """Take a phase; of each of its events it is not known yet what follows, or known to be the end, or asked."""
         self.phases.append(PhaseLoops(tables, events, h))
+
+    def shake_all(self, met: list[Any], which: int, h: float) -> None:
+        """Prepare the phases of a run for vertical acceleration."""
+        for place, (_, phase) in enumerate(met):
+            self.shake(place, which, shaken_of(phase, h))
 
     def shake(self, place: int, which: int, shaken: ShakenTables | None) -> None:
         """Take what a phase has under vertical acceleration; None if it has none."""

@@ -232,6 +232,7 @@ typedef struct { /* what is known of every row, once for each sample of a produc
 
 typedef struct { /* bounds that hold for the samples of a block */
     int fine;    /* whether `sway` and `jolt` are known */
+    int shakes;  /* whether a_v acts: the bounds of `shaken` hold */
     double *moves, *bend, *sway, *jolt;
 } Block;
 
@@ -271,21 +272,52 @@ static inline double counted(const Watch *w, int f, double value) {
     return x.value;
 }
 
-static void begin_block(const Tables *p, const double *a, int samples, const double *y, Block *b, Watch *w) {
-    const int n = p->n, rows = p->rows, parts = p->parts;
-    double x[MAX_STATES + 2], found[2 * MAX_STATES], varies = 0.0, steepest = 0.0;
+/* How much an input varies in some samples, and its largest slope. */
+static void vary(const double *a, int samples, double h, double *found) {
+    double varies = 0.0, steepest = 0.0;
     for (int k = 0; k < samples; k++) {
         double change = fabs(a[k + 1] - a[k]);
         varies += change;
         steepest = change > steepest ? change : steepest;
     }
+    found[0] = varies, found[1] = steepest / h;
+}
+
+typedef struct { /* of rows, one sample after another */
+    double *lowest, *highest, *slopes, *centres, *sway;
+    double *ends; /* slopes at the ends of the samples; where a_v acts they are not those at the start of the next one */
+} Bounds;
+
+typedef double States[AHEAD + 1][MAX_STATES]; /* at the samples of a product */
+
+#include "shaken.h"
+
+/* Returns the number of samples that the bounds hold for: BLOCK, or AHEAD. */
+static int begin_block(const Tables *p, const double *a, const double *v, int samples, const double *y, Block *b, Watch *w) {
+    const int n = p->n, rows = p->rows, parts = p->parts;
+    double x[MORE], found[2 * MAX_STATES], more[MORE];
+    const Climb climb = {v ? v[0] : 0.0, 0.0};
+    b->shakes = v && marches_shaken(p) && any_rise(v, samples);
     memcpy(x, y, sizeof *x * n);
     x[n] = a[0], x[n + 1] = 1.0;
-    product(n + 2, up8(parts), p->moves, x, found);
+    if (b->shakes)
+        product(n + 3 + p->shaken.fed, up8(parts), p->shaken.moves, shaken_term(p, climb, 0, 0, x, more), found);
+    else
+        product(n + 2, up8(parts), p->moves, x, found);
     for (int k = 0; k < n; k++) b->moves[k] = fabs(found[k]);
     for (int k = n; k < parts; k++) b->moves[k + 2] = fabs(found[k]);
-    b->moves[n] = varies, b->moves[n + 1] = steepest / p->h;
-    product(parts + 2, up8(rows), p->bend, b->moves, b->bend);
+    vary(a, samples, p->h, b->moves + n);
+    int length = BLOCK;
+    if (b->shakes) {
+        if (!vary_shaken(p, v, samples, y, b->moves)) {
+            length = AHEAD, samples = samples < AHEAD ? samples : AHEAD;
+            vary(a, samples, p->h, b->moves + n);
+            vary_shaken(p, v, samples, y, b->moves);
+        }
+        product(shaken_columns(p), up8(rows), p->shaken.bend, b->moves, b->bend);
+    } else {
+        product(parts + 2, up8(rows), p->bend, b->moves, b->bend);
+    }
     memset(w->cap, 0, sizeof *w->cap * rows);
     if (parts > n) product(parts + 2, up8(rows), p->cap, b->moves, w->cap);
     b->fine = 0;
@@ -298,6 +330,7 @@ static void begin_block(const Tables *p, const double *a, int samples, const dou
         memcpy(w->over + k * rows, w->over, sizeof *w->over * rows);
         memcpy(w->cap + k * rows, w->cap, sizeof *w->cap * rows);
     }
+    return length;
 }
 
 /* How far a row may get beyond both ends of a sample, between which it changes: h²/8 |r''| is at most `bend`. A parabola
@@ -340,10 +373,6 @@ typedef struct { /* samples of a product, a bit for each */
     unsigned at_end, within, fails; /* in which a peak is at the end, may be within, and in which a condition may fail */
 } Asking;
 
-typedef struct { /* of rows, one sample after another */
-    double *lowest, *highest, *slopes, *centres, *sway;
-} Bounds;
-
 /* A lower bound of a row r0 + change t + t (1 - t) ((1 - t) first - t last) for t from 0 to 1, which `away` may take off. */
 static double lowest_of(double r0, double change, double first, double last, double away) {
     double b = change + first, c = -2.0 * first - last, d = first + last, least = change < 0.0 ? r0 + change : r0;
@@ -360,35 +389,41 @@ static double lowest_of(double r0, double change, double first, double last, dou
 }
 
 /* Whether the condition of a row may fail: it stays near the cubic through both ends of a sample, and their slopes. */
-static int may_fail(const Tables *p, const double *ground, int sample, double r0, double r1, double s0, double s1,
+static int may_fail(const Tables *p, const double *ground, const double *rise, int sample, double r0, double r1, double s0, double s1,
                     int row, const Block *b) {
     double change = r1 - r0, chord = change - p->direct[row] * (ground[sample + 1] - ground[sample]);
+    if (rise) chord -= p->shaken.direct[row] * (rise[sample + 1] - rise[sample]);
     return !(lowest_of(r0, change, p->h * s0 - chord, p->h * s1 - chord, b->jolt[row - p->outputs]) > 0.0);
 }
 
 /* Closer bounds of the rows in every sample of a product, and the samples that still ask. A row stays
-   near its chord by the change of its slope and its third derivative, or near what fast modes swing about. */
-static Asking asking(const Tables *p, const double *ground, const double *x, const double *before, const double *after, Block *b,
-                     const Watch *w, Bounds *bounds) {
-    const int rows = p->rows, columns = p->n + AHEAD + 2, whole = up8((AHEAD + 1) * rows);
+   near its chord by the change of its slope and its third derivative, or near what fast modes swing about. The slopes are
+   known where a_v acts, as `rise`. */
+static Asking asking(const Tables *p, const double *ground, const double *rise, const double *x, const double *before,
+                     const double *after, Block *b, const Watch *w, Bounds *bounds) {
+    const int rows = p->rows, columns = p->n + AHEAD + 2, whole = up8((AHEAD + 1) * rows), parted = !rise && p->parts > p->n;
     double *slopes = bounds->slopes, *centres = bounds->centres, *sway = bounds->sway;
+    const double *ends = rise ? bounds->ends : slopes + rows;
     Asking found = {0};
-    if (!b->fine) {
+    if (!b->fine && b->shakes) {
+        product(shaken_columns(p), up8(rows), p->shaken.sway, b->moves, b->sway);
+        product(shaken_columns(p), up8(rows - p->outputs), p->shaken.jolt, b->moves, b->jolt);
+    } else if (!b->fine) {
         product(p->parts + 2, up8(rows), p->sway, b->moves, b->sway);
         product(p->parts + 2, up8(rows - p->outputs), p->jolt, b->moves, b->jolt);
     }
     b->fine = 1;
     for (int k = 0; k < AHEAD; k++) memcpy(sway + k * rows, b->sway, sizeof *sway * rows);
     for (int f = AHEAD * rows; f < w->flat; f++) sway[f] = 0.0;
-    product(columns, whole, p->slope, x, slopes);
-    if (p->parts > p->n) product(columns, whole, p->centre, x, centres);
+    if (!rise) product(columns, whole, p->slope, x, slopes);
+    if (parted) product(columns, whole, p->centre, x, centres);
     for (int f = 0; f < w->flat; f += LANES) {
-        vec r0 = at(before + f), r1 = at(after + f), s0 = at(slopes + f), s1 = at(slopes + rows + f);
+        vec r0 = at(before + f), r1 = at(after + f), s0 = at(slopes + f), s1 = at(ends + f);
         vec beyond = excess(r1 - r0, at(w->bend4 + f), at(w->over + f)) + at(w->cap + f);
         vec closer = absolute(s1 - s0) * (p->h / 8.0) + at(sway + f);
         beyond = chosen(closer < beyond, closer, beyond);
         vec low = -larger(-r0, -r1) - beyond, high = larger(r0, r1) + beyond;
-        if (p->parts > p->n) {
+        if (parted) {
             vec c0 = at(centres + f), c1 = at(centres + rows + f), away = 0.5 * at(w->cap + f) + 0.25 * at(w->bend4 + f);
             low = larger(low, -larger(-c0, -c1) - away), high = -larger(-high, -larger(c0, c1) - away);
         }
@@ -397,7 +432,7 @@ static Asking asking(const Tables *p, const double *ground, const double *x, con
         mask above = top > limit, within = top > larger(limit, end), condition = w->flip[f / LANES] < 0;
         if (any(above))
             for (int k = 0; k < LANES; k++) {
-                if (above[k] && !(condition[k] && !may_fail(p, ground, w->sample[f + k], r0[k], r1[k], s0[k], s1[k],
+                if (above[k] && !(condition[k] && !may_fail(p, ground, rise, w->sample[f + k], r0[k], r1[k], s0[k], s1[k],
                                                             (f + k) % rows, b)))
                     *(condition[k] ? &found.fails : within[k] ? &found.within : &found.at_end) |= 1u << w->sample[f + k];
             }
@@ -415,19 +450,6 @@ static void advance(const Tables *p, const double *a, const double *y, double *n
     for (int k = 0; k < n; k++) next[k] = z[k] + y[k];
 }
 
-/* Outputs and conditions from y, a, 1 and a_v; there is room for rates and conditions. */
-static void rows_at(const Tables *p, const double *x, double v, double *room, double *rows) {
-    const Climb climb = {v, 0.0};
-    const int shakes = acts(p, climb), n = p->n, m = p->outputs, conditions = p->rows - m;
-    const int rates = n - (shakes ? p->shaken.shift : p->shift), columns = shakes ? n + 3 + p->shaken.fed : n + 2;
-    double more[MORE];
-    if (shakes) x = shaken_term(p, climb, 0, 0, x, more);
-    product(columns, up8(rates + conditions), shakes ? p->shaken.now : p->now, x, room);
-    memcpy(rows + m, room + rates, sizeof *x * conditions);
-    product(columns, up8(m), shakes ? p->shaken.outs : p->outs, x, room);
-    memcpy(rows, room, sizeof *x * m);
-}
-
 /* Raise the peaks to the outputs at a sample. */
 static inline void raise_peaks(const Tables *p, const double *rows, double sample, const Watch *w, Log *log) {
     for (int j = 0; j < p->outputs; j += LANES) {
@@ -437,13 +459,11 @@ static inline void raise_peaks(const Tables *p, const double *rows, double sampl
     }
 }
 
-typedef double States[AHEAD + 1][MAX_STATES]; /* at the samples of a product */
-
-enum { MOVES = 2 * MAX_STATES + 2 };
+enum { MOVES = 2 * MAX_STATES + 4 + 5 * MAX_FED };
 
 typedef struct { /* room for one march; on the stack of a thread it might be too large */
     States states;
-    double arena[14 * FLAT + 7 * MAX_ROWS + MAX_STATES + MOVES + 32 * LINE]; /* what `march` takes, at most */
+    double arena[15 * FLAT + 8 * MAX_ROWS + MAX_STATES + MOVES + 32 * LINE]; /* what `march` takes, at most */
 } Workspace;
 
 /* Look at the samples of a product that ask for it, whose rows have these bounds. Returns how many there are before the
@@ -489,7 +509,7 @@ static int march(const Tables *p, int phase, const double *a, const double *v, i
     const int n = p->n, states = up8(n), rows = p->rows, flat = up8(AHEAD * rows);
     Workspace *room = log->workspace;
     double *arena = room->arena;
-    double x[MAX_STATES + AHEAD + 2], padded[AHEAD + 1];
+    double x[MAX_STATES + AHEAD + 2], padded[AHEAD + 1], lifted[AHEAD + 1];
     double *after = taken(&arena, up8(rows) + flat + states) + up8(rows), *before = after - rows, *change = after + flat;
     Watch seen = {0}, *watch = &seen;
     Block block = {0};
@@ -499,6 +519,7 @@ static int march(const Tables *p, int phase, const double *a, const double *v, i
     block.jolt = taken(&arena, rows);
     bounds.lowest = taken(&arena, flat), bounds.highest = taken(&arena, flat), bounds.sway = taken(&arena, flat);
     bounds.slopes = taken(&arena, flat + up8(rows)), bounds.centres = taken(&arena, flat + up8(rows));
+    bounds.ends = taken(&arena, flat + up8(rows));
     begin_watch(p, log, watch, &arena);
     memcpy(x, y, sizeof *x * n);
     if (log->resumes) {
@@ -509,38 +530,44 @@ static int march(const Tables *p, int phase, const double *a, const double *v, i
         raise_peaks(p, before, i, watch, log);
     }
     log->looks = log->resumes = 0;
-    const int end = last;
-    if (v && p->shaken.now)
-        for (last = i; last < end && v[last] == 0.0 && v[last + 1] == 0.0;) last++;
-    for (int left = 0, calm = 0; i < last && !log->looks; left -= AHEAD) {
+    for (int left = 0, calm = 0, fresh = 0; i < last && !log->looks; left -= AHEAD) {
         if (left == 0) {
             if (log->count + BLOCK > log->room) {
                 memcpy(log->seen, before, sizeof *x * rows);
                 log->resumes = 1;
                 break;
             }
-            begin_block(p, a + i, last - i < BLOCK ? last - i : BLOCK, x, &block, watch);
+            left = begin_block(p, a + i, v ? v + i : 0, last - i < BLOCK ? last - i : BLOCK, x, &block, watch);
             begin_quiet(watch);
-            left = BLOCK;
+            fresh = 1;
         }
-        int samples = last - i < AHEAD ? last - i : AHEAD;
-        const double *ground = a + i;
+        int samples = last - i < AHEAD ? last - i : AHEAD, known = 0; /* samples after which the state is known */
+        const double *ground = a + i, *rise = v && p->shaken.now && any_rise(v + i, samples) ? v + i : 0;
         if (samples < AHEAD) {
             for (int k = 0; k <= AHEAD; k++) padded[k] = a[k < samples ? i + k : last];
-            ground = padded;
+            for (int k = 0; rise && k <= AHEAD; k++) lifted[k] = v[k < samples ? i + k : last];
+            ground = padded, rise = rise ? lifted : 0;
         }
-        for (int k = 0; k <= AHEAD; k++) x[n + k] = ground[k];
-        x[n + AHEAD + 1] = 1.0;
-        product(n + AHEAD + 2, flat + states, p->block, x, after);
+        if (rise) {
+            memcpy(at_samples[0], x, sizeof *x * n);
+            known = go_shaken(p, ground, rise, samples, at_samples, before, after);
+        } else {
+            for (int k = 0; k <= AHEAD; k++) x[n + k] = ground[k];
+            x[n + AHEAD + 1] = 1.0;
+            product(n + AHEAD + 2, flat + states, p->block, x, after);
+        }
+        const int left_over = rise && known < samples; /* to a power series */
         int passed = samples;
-        int was_calm = left == BLOCK ? quiet(watch, before) : calm;
+        int was_calm = fresh ? quiet(watch, before) : calm;
+        fresh = 0;
         calm = quiet(watch, after);
-        int look = !(was_calm && calm) && asks(watch, before, after);
+        int look = left_over || (!(was_calm && calm) && asks(watch, before, after));
         if (log->states || samples < AHEAD || look) {
-            int known = 0; /* samples after which the state is known */
             memcpy(at_samples[0], x, sizeof *x * n);
             if (look) {
-                Asking which = asking(p, ground, x, before, after, &block, watch, &bounds);
+                if (rise) slopes_shaken(p, ground, rise, known, at_samples, &bounds);
+                Asking which = asking(p, ground, rise, x, before, after, &block, watch, &bounds);
+                if (left_over) which.fails |= 1u << known;
                 passed = inspect(p, phase, ground, i, samples, which, before, &bounds, at_samples, &known, watch, log);
                 begin_quiet(watch);
             }
@@ -549,7 +576,7 @@ static int march(const Tables *p, int phase, const double *a, const double *v, i
             if (log->states) /* the last one may yet be replaced */
                 for (int k = 1; k <= passed; k++) memcpy(log->states + (size_t)(i + k) * n, at_samples[k], sizeof *x * n);
         }
-        if (passed == AHEAD) {
+        if (passed == AHEAD && !rise) {
             for (int k = 0; k < n; k++) x[k] += change[k];
             if (log->states) memcpy(log->states + (size_t)(i + passed) * n, x, sizeof *x * n);
         } else {
@@ -559,7 +586,6 @@ static int march(const Tables *p, int phase, const double *a, const double *v, i
         i += passed;
         log->work += passed;
     }
-    if (i == last && last < end) log->looks = 1;
     memcpy(y, x, sizeof *x * n);
     return i;
 }

@@ -10,8 +10,10 @@
 enum {
     AHEAD = 4,        /* samples in one product */
     BLOCK = 16,       /* samples that share bounds */
-    MAX_STATES = 320,
-    MAX_ROWS = 4096   /* outputs and conditions */
+    MAX_STATES = 1000,
+    MAX_ROWS = 4096,  /* outputs and conditions */
+    MAX_FED = 4,      /* states that a_v multiplies in samples that are not left to power series */
+    MAX_NODES = 16
 };
 
 typedef struct { /* what a phase has under vertical acceleration; columns y, a, 1, a_v, and a_v times some states */
@@ -20,6 +22,21 @@ typedef struct { /* what a phase has under vertical acceleration; columns y, a, 
     const double *now;     /* rates of the other states, conditions; null if a_v does not act in this phase */
     const double *outs;    /* outputs */
     const double *magnitude, *most; /* |now| and |outs| */
+    int nodes;             /* in a sample, for the polynomial through each p = a_v y */
+    const double *limit;   /* the largest |a_v| of samples for which that is exact; 0 for none */
+    const double *times;   /* of the nodes, parts of a sample */
+    const double *known;   /* columns y, a0, a1, 1, a_v0, a_v1: change of the states, then y without p at the nodes */
+    const double *given;   /* columns p at the nodes: their part of the change */
+    const double *feedback; /* the same columns: their part of y at the nodes */
+    const double *rows;    /* outputs and conditions */
+    const double *speeds;  /* rates of those states */
+    const double *slope;   /* columns as all, and then p': rates of the rows, without the parts of a' and a_v' */
+    const double *direct;  /* of every row, the factor of a_v */
+    const double *moves;   /* as of Tables */
+    const double *bend, *sway, *jolt; /* as of Tables; more columns: variation of a_v, |a_v'|, and of all p their
+                                         variations, |p'|, |p''|, |p'''| and |p''''| */
+    const double *loop;    /* columns: variations of p, which add so much to |y'| of those states */
+    const double *swell[4]; /* the same columns as `bend`: |y'|, |y''|, |y'''| and |y''''| of those states */
 } Shaken;
 
 typedef struct { /* the vertical acceleration at the start of a power series, and its change */

@@ -21,3 +21,12 @@ cdef class Decay:
     cdef (double, double, double, double, double) look(self, int j, double[::1] y) noexcept nogil
     cdef void bring_to_rest(self, double[::1] y) noexcept nogil
     cpdef double time_to_rest(self, double[::1] y, double[::1] high, double[::1] one_sided) noexcept nogil
+
+
+@cython.final
+cdef class Fading:
+    cdef dict known
+    cdef readonly Decay decay  # in the last phase that was taken, with its place and system
+    cdef readonly int place, which
+
+    cpdef int take(self, phase, int place, int which) except -1

@@ -141,3 +141,19 @@ class Decay:
                 if total > high[j] + rounding:
                     return SOON
         return 0.0
+
+
+@cython.final
+@cython.cclass
+class Fading:
+    """How motion fades in the phases in which a free vibration has been asked for its end, for systems of a stack."""
+
+    def __init__(self):
+        self.known, self.place, self.which = {}, -1, -1
+
+    def take(self, phase, place, which):
+        """Take a phase, and its place; look it up, or find how motion fades in it."""
+        if (place, which) not in self.known:
+            self.known[place, which] = Decay(phase.of(which))
+        self.decay, self.place, self.which = self.known[place, which], place, which
+        return 0

@@ -1,29 +1,29 @@
-"""Advance a hybrid system of linear phases: whole samples at once, power series where something may happen.
+"""Advance a hybrid system: whole samples at once, power series, or polynomials of steps, where something may happen.
 
 The march stops before a sample in which a condition may fail. There the motion is expanded in a power series, whose
 polynomials give the first event to rounding; then the state jumps, and the next phase takes over the rest of the
 sample. Peaks never decide how the state advances, so that what is asked of a run does not change it.
 """
 
-from math import fabs, isfinite
+from math import isfinite
 
 import cython
 import numpy as np
 
-from rockflex._errors import InputError, SolverError
-from rockflex.engine.rest import Decay
-from rockflex.engine.shaken import shaken_of
-from rockflex.engine.system import NonlinearPhase, StepTooLongError, acceleration, array, as_long, up8
-from rockflex.engine.tables import tables_of, tables_of_rows
+from rockflex._errors import InputError
+from rockflex.engine import failures
+from rockflex.engine.rest import Fading
+from rockflex.engine.system import NonlinearPhase, acceleration, array, as_long, up8
+from rockflex.engine.tables import prepared
 
 if cython.compiled:
     from cython.cimports.cpython.exc import PyErr_CheckSignals
-    from cython.cimports.libc.math import fabs, isfinite
+    from cython.cimports.libc.math import isfinite
     from cython.cimports.rockflex.engine.batch import Batch
     from cython.cimports.rockflex.engine.flow import Flow
     from cython.cimports.rockflex.engine.journal import Journal
     from cython.cimports.rockflex.engine.loops import ASKED, ENDS, UNKNOWN, Peaks, Phases
-    from cython.cimports.rockflex.engine.rest import Decay
+    from cython.cimports.rockflex.engine.rest import Fading
     from cython.cimports.rockflex.engine.series import Series
 else:
     from rockflex.engine.batch import Batch
@@ -55,6 +55,8 @@ class Run:
 
     Attributes
     ----------
+    size
+        Memory of the tables of all phases met so far, bytes.
     ended
         Whether an event without a next phase has happened; otherwise the run stands at the end of a sample.
     failure : str
@@ -68,6 +70,7 @@ class Run:
     system = cython.declare(object, visibility="readonly")
     h = cython.declare(cython.double, visibility="readonly")
     which = cython.declare(cython.int, visibility="readonly")
+    size = cython.declare(cython.longlong, visibility="readonly")
     ended = cython.declare(cython.bint, visibility="readonly")
     watch = cython.declare(object, visibility="public")
     limit = cython.declare(cython.longlong, visibility="public")
@@ -78,9 +81,7 @@ class Run:
     reached: cython.Py_ssize_t  # samples of this call of `advance` that have passed
     met: list  # phases met so far: keys and phases
     places: dict  # of the phases, by their keys
-    decays: dict  # of the phases in which a free vibration has been asked for its end, by place and system
-    decay: Decay  # the last one, and its place
-    faded: cython.int
+    fading: Fading
     mirrors: list  # of the last phases, see `tables_of`
     phases: Phases
     now: cython.int  # place of the present phase
@@ -101,7 +102,6 @@ class Run:
     unkept: cython.double[:, ::1]  # of one row: none are kept
     still: cython.double[::1]  # the vertical acceleration where there is none: empty
     shakes: cython.bint  # whether there is one
-    shaken: set  # places of the phases that are prepared for it
     quiet: cython.double[::1]
     start: cython.double[::1]  # the state at time 0, and the place of its phase
     first: cython.int
@@ -115,7 +115,7 @@ class Run:
     def __init__(self, system, h, state=None, key=None, which: cython.int = 0):
         if not (h > 0.0 and isfinite(h)):
             raise InputError(f"The time step must be a positive number, but {h!r} was given.")
-        self.system, self.h, self.met, self.places, self.decays, self.mirrors = system, h, [], {}, {}, []
+        self.system, self.h, self.met, self.places, self.mirrors = system, h, [], {}, []
         self.n, self.outputs = system.layout.size, len(system.outputs)
         self.states = up8(self.n + 2)
         self.stretch = STRETCH // (PER_SAMPLE + self.n * self.n // 8)
@@ -125,16 +125,15 @@ class Run:
         self.peaks_ = Peaks(one_sided, self.n, CANDIDATES)
         self.high, self.when = self.peaks_.high, self.peaks_.when
         self.y, self.sizes, self.before = np.zeros(self.states), np.zeros(self.states), np.zeros(self.states)
-        counts = self.n, self.outputs
-        self.flow = Flow(self.phases, self.peaks_, one_sided, self.y, counts, h)
-        self.series = Series(self.phases, self.peaks_, self.flow, one_sided, self.y, self.sizes, counts, h)
+        self.flow = Flow(self.phases, self.peaks_, one_sided, self.y, self.outputs, h)
+        self.series = Series(self.phases, self.peaks_, self.flow, one_sided, self.y, self.sizes, h)
         self.start, self.workspace, self.quiet = np.zeros(self.n), np.zeros(self.n), np.zeros(QUIET + 1)
-        self.journal = Journal(self.n)
+        self.journal, self.still = Journal(self.n), np.zeros(0)
         self.scratch = self.unkept = np.zeros((1, self.n))
         self.unbounded = np.full(up8(max(1, self.outputs)), np.inf)
         self.watch, self.limit, self.which, self.failure = None, 2**62, 0, ""
-        self.failed, self.faded, self.first, self.pause = False, -1, 0, 0
-        self.still, self.shakes, self.shaken = np.zeros(0), False, set()
+        self.size = 0
+        self.failed, self.first, self.pause, self.fading, self.shakes = False, 0, 0, Fading(), False
         self.restart(state, key, which)
 
     def restart(self, state=None, key=None, which: cython.int = 0):
@@ -142,7 +141,7 @@ class Run:
         if not 0 <= which < self.system.count:
             raise InputError(f"There are {self.system.count} systems in the stack, but number {which} was asked for.")
         if which != self.which:
-            self.which, self.faded = which, -1
+            self.which = which
             self.phases.select(which)
         self.start = np.zeros(self.n) if state is None else array("the state", state, (self.n,))
         self.begin()
@@ -215,10 +214,7 @@ class Run:
 
     @property
     def history(self):
-        """Times, places of phases, accelerations, states, and vertical accelerations, if kept.
-
-        There is one of each for every sample, and for both sides of every event.
-        """
+        """Times, places of phases, accelerations, states, vertical accelerations, at samples and beside events."""
         samples, *others = self.journal.nodes
         return samples * self.h, *others
 
@@ -237,36 +233,21 @@ class Run:
             raise InputError(f"The key {key!r} of a phase must be hashable, as a tuple is.") from error
         if key in self.places:
             return self.places[key]
-        phase = self.system.checked(key)
-        linear = not isinstance(phase, NonlinearPhase)
-        tables = tables_of(phase, self.h, self.mirrors) if linear else tables_of_rows(phase)
-        if linear and not np.isfinite(tables.step).all():
-            words = f"phase {key!r}: the motion grows without bound within one time step of {self.h:.9g}."
-            raise StepTooLongError(words, float(np.linalg.eigvals(phase.A).real.max()))
+        phase, tables = prepared(self.system, key, self.h, self.mirrors)
         place: cython.int = len(self.met)
         self.phases.add(tables, phase.events, self.h)
-        if not linear:
+        if isinstance(phase, NonlinearPhase):
             self.phases.drive(place, phase.field, phase.scale, phase.counted)
             self.flow.know(phase, place)
         self.phases.point(place, self.which)
         self.met.append((key, phase))
         self.places[key] = place
+        self.size += sum(each.nbytes for each in tables[4:])
         self.series.widen(len(phase.events))
         self.journal.meet(place, phase.events)
         if self.shakes:
-            self.shake()
+            self.phases.shake_all(self.met, self.which, self.h)
         return place
-
-    @cython.cfunc
-    @cython.with_gil
-    @cython.exceptval(-1)
-    def shake(self) -> cython.int:
-        """Prepare the phases met so far for vertical acceleration."""
-        for place in range(len(self.met)):
-            if place not in self.shaken:
-                self.phases.shake(place, self.which, shaken_of(self.met[place][1], self.h))
-                self.shaken.add(place)
-        return 0
 
     def advance(self, a, vertical=None, history: cython.bint = False):
         """Advance over the samples of an acceleration, of which the first is that of the present time.
@@ -312,8 +293,8 @@ class Run:
             rested = False
             if batch.settles:
                 rested = self.settle_over(batch.free, history)
-                if rested:
-                    self.decay.bring_to_rest(self.y)
+                if rested and not self.phases.nonlinear(self.now):
+                    self.fading.decay.bring_to_rest(self.y)
             else:
                 self.coast_over(batch.free, history)
             batch.close(
@@ -340,11 +321,12 @@ class Run:
         last: cython.int = ground.shape[0] - 1
         if self.failed:
             with cython.gil:
-                raise SolverError("This run has been broken off by an error; begin it anew by `restart`.")
+                raise failures.broken_off()
         self.failed = True
         self.shakes = rise.shape[0] > 0
         if self.shakes:
-            self.shake()
+            with cython.gil:
+                self.phases.shake_all(self.met, self.which, self.h)
         self.peaks_.pass_by(self.passed)
         if history and not self.ended:
             if self.scratch.shape[0] <= max(last, 1):
@@ -359,9 +341,7 @@ class Run:
             if not isfinite(self.y[k]):
                 with cython.gil:
                     self.failure = "growth"
-                    raise SolverError(
-                        f"The motion in the phase {self.key!r} grows without bound before t = {self.time:.9g}."
-                    )
+                    raise failures.growth(self.key, self.time)
         self.failed = False
         return 0
 
@@ -435,7 +415,7 @@ class Run:
                     self.watch()
                 if self.peaks_.work() > self.limit:
                     self.failure = "work"
-                    raise SolverError(f"The run has reached the limit of its work, {self.limit} samples.")
+                    raise failures.limit(self.limit)
                 self.pause = min(self.limit + 1, self.peaks_.work() + self.stretch)
         return 0
 
@@ -461,10 +441,10 @@ class Run:
                 if self.phases.nonlinear(self.now):
                     wait = self.flow.time_to_rest(self.now)
                 else:
-                    if self.faded != self.now:
+                    if self.fading.place != self.now or self.fading.which != self.which:
                         with cython.gil:
-                            self.fade()
-                    wait = self.decay.time_to_rest(self.y, self.high, self.one_sided)
+                            self.fading.take(self.met[self.now][1], self.now, self.which)
+                    wait = self.fading.decay.time_to_rest(self.y, self.high, self.one_sided)
                 if wait == 0.0:
                     return 1
                 asks = self.passed * self.h + wait
@@ -472,14 +452,6 @@ class Run:
                 break
             self.proceed(self.quiet, self.still, history)
         return 0
-
-    @cython.cfunc
-    def fade(self):
-        """Find how motion fades in the present phase."""
-        key = self.now, self.which
-        if key not in self.decays:
-            self.decays[key] = Decay(self.met[self.now][1].of(self.which))
-        self.decay, self.faded = self.decays[key], self.now
 
     @cython.cfunc
     @cython.nogil
@@ -550,7 +522,7 @@ class Run:
             return 0
         if chosen >= 0:
             outcome += chosen
-            self.enlarge()
+            self.flow.enlarge(self.sizes)
         elif chosen == -1:
             with cython.gil:
                 raise self.met[self.now][1].events[event].jump.error()
@@ -584,12 +556,8 @@ class Run:
     @cython.cfunc
     def refuse(self, event: cython.int, sample: cython.double):
         """Raise the error of events that accumulate."""
-        key, phase = self.met[self.now]
         self.failure = "accumulation"
-        raise SolverError(
-            f"Events of the phase {key!r}, such as {phase.events[event].name!r}, accumulate without end at "
-            f"t = {sample * self.h:.9g}."
-        )
+        raise failures.accumulation(*self.met[self.now], event, sample * self.h)
 
     @cython.cfunc
     @cython.nogil
@@ -600,24 +568,10 @@ class Run:
             self.phases.jump(self.now, outcome, True, self.sizes, self.workspace)
 
     @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def enlarge(self) -> cython.void:
-        """After a jump the magnitudes are not below those of the state."""
-        k: cython.int
-        for k in range(self.n):
-            self.sizes[k] = max(self.sizes[k], fabs(self.y[k]))
-
-    @cython.cfunc
     def stall(self, sample: cython.double):
         """Raise the error of a motion for which no step is short enough."""
-        key, phase = self.met[self.now]
-        failure = getattr(phase.field, "failure", None)
-        if failure is not None:
-            phase.field.failure = None
-            raise failure
         self.failure = "stall"
-        raise SolverError(f"No step in the phase {key!r} is short enough at t = {sample * self.h:.9g}.")
+        raise failures.stall(*self.met[self.now], sample * self.h)
 
     @cython.cfunc
     def ask(self, event: cython.int, a: cython.double, v: cython.double):

@@ -29,10 +29,10 @@ EXPANSION = cython.declare(cython.int, 16)  # samples that a power series counts
 class Series:
     """The motion from the present state on, expanded anew at each call of `expand`."""
 
-    def __init__(self, phases, peaks, flow, one_sided, y, sizes, counts, h):
+    def __init__(self, phases, peaks, flow, one_sided, y, sizes, h):
         self.phases, self.peaks, self.flow = phases, peaks, flow
         self.one_sided, self.y, self.sizes = one_sided, y, sizes
-        self.n, self.outputs = counts
+        self.n, self.outputs = flow.n, flow.outputs
         self.states, self.h, self.high, self.when = len(y), h, peaks.high, peaks.when
         self.workspace, self.q, self.slope = np.zeros(self.states + 8), np.zeros(TERMS), np.zeros(TERMS)
         self.term, self.v = np.zeros(self.states + 8), (0.0, 0.0)

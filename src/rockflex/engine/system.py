@@ -13,7 +13,7 @@ from rockflex._errors import InputError
 from rockflex.engine.field import Field, Function, Jump
 
 Key = Hashable
-MAX_STATES, MAX_ROWS = 320, 4096  # as in march.h
+MAX_STATES, MAX_ROWS = 1000, 4096  # as in march.h
 
 
 class StepTooLongError(InputError):

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex.engine.system import LinearPhase, NonlinearPhase, up8
+from rockflex.engine.system import Key, LinearPhase, NonlinearPhase, StepTooLongError, System, up8
 
 AHEAD, BLOCK = 4, 16  # as in march.h
 LONGEST = 2.5  # rad that a mode may turn within one power series: some thirty terms, and a digit lost
@@ -141,6 +141,24 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
     )
 
 
+def prepared(system: System, key: Key, h: float, mirrors: list[Mirror]) -> tuple[LinearPhase | NonlinearPhase, Tables]:
+    """Return the phase of a key, and its tables for steps of h.
+
+    Raises
+    ------
+    StepTooLongError
+        If a linear motion overflows within a step.
+    """
+    phase = system.checked(key)
+    if isinstance(phase, NonlinearPhase):
+        return phase, tables_of_rows(phase)
+    tables = tables_of(phase, h, mirrors)
+    if not np.isfinite(tables.step).all():
+        words = f"phase {key!r}: the motion grows without bound within one time step of {h:.9g}."
+        raise StepTooLongError(words, float(np.linalg.eigvals(phase.A).real.max()))
+    return phase, tables
+
+
 def tables_of_rows(phase: NonlinearPhase) -> Tables:
     """Return the tables of a phase that is not linear: those of its outputs and conditions."""
     (_, m, n), k = phase.C.shape, len(phase.events)
@@ -244,25 +262,31 @@ def bounds(A: Array, f: Array, C: Array, m: int, changes: list[Array], h: float)
     They are those of h²/8 |r''| and h³/96 |r'''| of all rows and, from row m on, of h⁴/384 |r''''|. With v = y' and
     v' = A v + f a' these are r'' = C A v + C f a', r''' = C A² v + C A f a' and so on, at most |C A e^{At}| |v(0)| and
     so on; between the places of a grid of h/2 the matrices grow at most by `growth`, entry by entry. `changes` are
-    those of A in h/2, h/4, ..
+    those of A in h/2, h/4, .. For several inputs, whose f has a last axis more, all variations come before the slopes.
     """
     S, rows, n = C.shape
     ends = np.cumsum((rows, rows, rows - m))
+    f = f.reshape(S, n, -1)
     if rows == 0:
-        return np.zeros((S, 0, n + 2)), np.zeros((S, 0, n + 2)), np.zeros((S, 0, n + 2))
+        empty = np.zeros((S, 0, n + 2 * f.shape[2]))
+        return empty, empty, empty
     once = C @ A
     before = np.concatenate((C, once, once[:, m:] @ A), axis=1)
-    here, step, direct = before @ A, changes[0], np.abs(before @ f[..., None])
-    most = np.abs(here)
-    for _ in range(2 * BLOCK - 1):  # one place after another: a whole grid would not fit into the cache
-        here = here + here @ step
-        np.maximum(most, np.abs(here), out=most)
-    most = most @ growth(0.5 * h * A, changes)
-    found = np.concatenate((most, most @ np.abs(f)[..., None], direct), axis=2)
+    most, direct = most_of(before @ A, A, changes, h), np.abs(before @ f)
+    found = np.concatenate((most, most @ np.abs(f), direct), axis=2)
     parts = np.split(found, ends[:2], axis=1)
     scaled = (part * factor for part, factor in zip(parts, (h**2 / 8.0, h**3 / 96.0, h**4 / 384.0), strict=True))
     bend, sway, jolt = (np.minimum(np.nan_to_num(part, nan=VAGUE), VAGUE) for part in scaled)
     return bend, sway, jolt
+
+
+def most_of(rows: Array, A: Array, changes: list[Array], h: float) -> Array:
+    """Bounds of the entries of rows · e^{At} within a block."""
+    here, most = rows, np.abs(rows)
+    for _ in range(2 * BLOCK - 1):  # one place after another: a whole grid would not fit into the cache
+        here = here + here @ changes[0]
+        np.maximum(most, np.abs(here), out=most)
+    return np.asarray(most @ growth(0.5 * h * A, changes))
 
 
 def growth(G: Array, changes: list[Array]) -> Array:

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 
-LIBRARIES = ("rockflex", "numpy", "scipy", "numba")  # those that affect the numbers
+LIBRARIES = ("rockflex", "numpy", "scipy")  # those that affect the numbers
 SAMPLE = 48  # largest number of units that an estimate runs
-PATIENCE = 2.0  # s after which an estimate stops, without compilation
+PATIENCE = 2.0  # s after which an estimate stops
 
 
 def run_study(
@@ -268,7 +268,7 @@ def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:
     Returns
     -------
     float
-        Time in s, without the compilation of a first call.
+        Time in s.
 
     Examples
     --------
@@ -281,7 +281,7 @@ def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:
     plan.check_work()
     threads = core_count() if workers is None else whole_number("workers", workers, 1)
     sample = sorted({round(place * (plan.n_ready - 1) / max(SAMPLE - 1, 1)) for place in range(SAMPLE)})
-    for unit in sample[:: max(len(sample) // 6, 1)]:  # compile, and fill the caches that the study fills once
+    for unit in sample[:: max(len(sample) // 6, 1)]:  # fill the caches that the study fills once
         plan.rows([unit])
     start, tried = perf_counter(), 0
     for unit in sample:

@@ -61,7 +61,7 @@ class Rocks:
 
     def __init__(self, model: NonlinearModel, quantities: Quantities) -> None:
         self.model, self.quantities = model, quantities
-        # All forces are linear in gravity; a vertical acceleration of the ground acts like more of it.
+        # All forces are linear in gravity, and the vertical acceleration of the ground acts like more of it.
         self.heavier = replace(model, gravity=model.gravity + 1.0)
         p, curved = model.properties, model.complete
         count = len(quantities)
@@ -102,8 +102,8 @@ class Rocks:
             rates[modes, layout.modes + modes] = 1.0
             of_modes = model.modal_accelerations(own)
             rates[layout.modes : 2 * layout.modes, [*range(layout.moving), n, n + 1]] = of_modes
-            heavy = {"C_v": more[:, :n], "d_v": more[:, n + 1]}
-            return LinearPhase(rates[:, :n], rates[:, n], rates[:, n + 1], *outputs, events, **heavy)
+            linear = LinearPhase(rates[:, :n], rates[:, n], rates[:, n + 1], *outputs, events)
+            return replace(linear, C_v=more[:, :n], d_v=more[:, n + 1])
         if model.bouc_wen is not None:
             events += (self.reversal(own, branch),)
         modes = range(layout.modes)
@@ -138,9 +138,9 @@ class Rocks:
         for bound, leads in enumerate((guard.below, guard.above)):
             if leads is not None:
                 row, more = (self.limit(each, bound) for each in (guard, heavier))
-                target, parts = self.full(leads.key, branch), (row[-1], row[-2], scale)
-                heavy = {"row_v": (more - row)[:-2], "direct_v": float((more - row)[-1])}
-                found.append(Event("uplift", row[:-2], target, *parts, **heavy))
+                target, heavy = self.full(leads.key, branch), more - row
+                event = Event("uplift", row[:-2], target, float(row[-1]), float(row[-2]), scale)
+                found.append(replace(event, row_v=heavy[:-2], direct_v=float(heavy[-1])))
         return tuple(found)
 
     def limit(self, guard: Guard, bound: int) -> Array:

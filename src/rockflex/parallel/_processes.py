@@ -40,7 +40,7 @@ def map_processes(
 ) -> Generator[Result]:
     """Yield `function(task)` of every task, in order of completion, computed by copies of this process.
 
-    The copies have everything that this process has, compiled kernels included; only tasks and results are sent.
+    The copies have everything that this process has; only tasks and results are sent.
     When the map ends early, by an error, an interrupt or `close`, no further task starts, and `left` is true in those
     that run, which should then end.
 

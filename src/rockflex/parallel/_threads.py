@@ -1,4 +1,4 @@
-"""A map over tasks on threads: the kernels release the interpreter lock."""
+"""A map over tasks on threads: the engine releases the interpreter lock."""
 
 import os
 from collections.abc import Callable, Generator, Iterable

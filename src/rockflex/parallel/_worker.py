@@ -11,7 +11,7 @@ from distributed import WorkerPlugin, get_worker
 from rockflex._errors import InputError
 from rockflex._versions import versions_of
 
-PACKAGES = ("rockflex", "numpy", "scipy", "numba", "pyarrow", "distributed")  # the numbers or the transport need them
+PACKAGES = ("rockflex", "numpy", "scipy", "pyarrow", "distributed")  # the numbers or the transport need them
 
 
 class PlanCarrier(WorkerPlugin):

@@ -1,21 +1,18 @@
-"""Solvers: one engine for all models, exact for linear phases, and integrated to about ten digits for the others."""
+"""One solver for all models, exact for linear phases, and integrated to about ten digits for the others."""
 
 from rockflex.solve._pace import Pace, Work, pace_of
 from rockflex.solve._preparing import preparing
-from rockflex.solve._solution import Solution
+from rockflex.solve._solution import Excitation, Solution
 from rockflex.solve._solutions import Solutions
 from rockflex.solve._task import Task, WorkLimitError
-from rockflex.solve.batch import Excitation
-from rockflex.solve.engine import Engine
+from rockflex.solve.engine import Engine, gather
 from rockflex.solve.exact.closed_form import ClosedForm
-from rockflex.solve.hybrid import HybridEngine, gather, takes
 from rockflex.solve.interruption import RunStoppedError, asked_to_stop, check_interruption, stopping_when
 
 __all__ = [
     "ClosedForm",
     "Engine",
     "Excitation",
-    "HybridEngine",
     "Pace",
     "RunStoppedError",
     "Solution",
@@ -29,5 +26,4 @@ __all__ = [
     "pace_of",
     "preparing",
     "stopping_when",
-    "takes",
 ]

@@ -1,10 +1,9 @@
-"""The phases of a model, prepared in the way that suits it."""
+"""What is said where the numbers of a model overflow."""
 
 from contextlib import AbstractContextManager
 
 from rockflex._computable import computable
-from rockflex.models import Quantities, RockingModel
-from rockflex.solve.phases import CompiledPhases
+from rockflex.models import RockingModel
 
 
 def preparing(model: RockingModel) -> AbstractContextManager[None]:
@@ -19,13 +18,3 @@ def _described(model: RockingModel) -> str:
         f"The motion of {model.label} with {modes}i_theta = {p.i_theta:.3g} kg m², l0r = {p.l0r:.3g} kg m, "
         f"m_tot = {p.m_tot:.3g} kg and half_width = {p.half_width:.3g} m"
     )
-
-
-def phases_of(model: RockingModel, quantities: Quantities, extremes: Quantities | None) -> CompiledPhases:
-    """Return the phases of a model, with that in which runs start."""
-    phases = CompiledPhases(model, quantities, extremes or Quantities.none(model.layout.modes))
-    with preparing(model):
-        # An integrated model has few and cheap phases; otherwise each is compiled when it is needed.
-        for side in model.sides if model.integrated else (0,):
-            phases.place(model.start(side))
-    return phases

@@ -1,8 +1,17 @@
-"""The result of a solver."""
+"""What shakes a run, and its result."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from rockflex._arrays import Array
+
+
+class Excitation(NamedTuple):
+    """What shakes the ground in a run."""
+
+    acceleration: Array  # (n,): horizontal, m/s²
+    vertical: Array | None = None  # (n,): vertical, m/s²
+    scale: float = 1.0  # factor on both
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -2,26 +2,28 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from rockflex._arrays import Array, Bools, Integers
 from rockflex._errors import InputError, SolverError
 from rockflex.solve._solution import Solution
-from rockflex.solve.batch import Batch
 from rockflex.solve.status import Status
 
 OVERTURNED, SETTLED = int(Status.OVERTURNED), int(Status.SETTLED)
 
 
 class Ends(NamedTuple):
-    """How R runs ended, as in `Batch`."""
+    """How R runs ended."""
 
-    ends: Any  # (R,): records of `END`
+    status: Integers  # (R,): of `Status`
+    samples: Integers  # (R,): completed
+    uplifts: Integers  # (R,)
+    impacts: Integers  # (R,)
     peaks: Array  # (R, F)
     times: Array  # (R, F)
-    states: Array  # (R, S'): the last ones
+    states: Array  # (R, S): the last ones
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,8 +32,8 @@ class Solutions:
 
     Parameters
     ----------
-    batch
-        The runs, which have ended.
+    ends
+        How the runs ended.
     dt
         Time step, s.
     n_peaks
@@ -44,7 +46,7 @@ class Solutions:
         Of a single run with a history.
     """
 
-    batch: Batch | Ends
+    ends: Ends
     dt: float
     n_peaks: int
     signed: int
@@ -52,64 +54,64 @@ class Solutions:
     states: Array | None
 
     def __len__(self) -> int:
-        return len(self.batch.ends)
+        return len(self.ends.status)
 
     @property
     def overturned(self) -> Bools:
         """Whether each run ended at a rotation of π/2, shape (R,)."""
-        return np.asarray(self.batch.ends["status"] == OVERTURNED)
+        return np.asarray(self.ends.status == OVERTURNED)
 
     @property
     def settled(self) -> Bools:
         """Whether each run ended at rest, shape (R,)."""
-        return np.asarray(self.batch.ends["status"] == SETTLED)
+        return np.asarray(self.ends.status == SETTLED)
 
     @property
     def end_time(self) -> Array:
         """Time of the last state in s, shape (R,)."""
-        return np.where(self.overturned, self.batch.times[:, 0], self.batch.ends["samples"] * self.dt)
+        return np.where(self.overturned, self.ends.times[:, 0], self.ends.samples * self.dt)
 
     @property
     def peaks(self) -> Array:
         """Largest magnitude of each row, shape (R, F)."""
-        return self.batch.peaks[:, : self.n_peaks]
+        return self.ends.peaks[:, : self.n_peaks]
 
     @property
     def peak_times(self) -> Array:
         """Its time in s, shape (R, F)."""
-        return self.batch.times[:, : self.n_peaks]
+        return self.ends.times[:, : self.n_peaks]
 
     @property
     def lost_support(self) -> Array:
         """Largest decrease of the vertical reaction below its value at rest in N, shape (R,)."""
-        return self.batch.peaks[:, -1]
+        return self.ends.peaks[:, -1]
 
     @property
     def time_of_lost_support(self) -> Array:
         """Its time in s, shape (R,)."""
-        return self.batch.times[:, -1]
+        return self.ends.times[:, -1]
 
     @property
     def n_uplifts(self) -> Integers:
         """Number of uplifts, shape (R,)."""
-        return np.asarray(self.batch.ends["uplifts"])
+        return self.ends.uplifts
 
     @property
     def n_impacts(self) -> Integers:
         """Number of impacts, shape (R,)."""
-        return np.asarray(self.batch.ends["impacts"])
+        return self.ends.impacts
 
     @property
     def final_state(self) -> Array:
         """The last states, shape (R, S')."""
-        return self.batch.states
+        return self.ends.states
 
     def one(self, index: int) -> Solution:
         """Return the result of one run; raises its error if it could not be solved."""
         if index in self.failures:
             raise self.failures[index]
-        status, samples, _, uplifts, impacts = self.batch.ends[index].tolist()
-        peaks, times = self.batch.peaks[index], self.batch.times[index]
+        status, samples, uplifts, impacts = (int(each[index]) for each in self.ends[:4])
+        peaks, times = self.ends.peaks[index], self.ends.times[index]
         overturned = status == OVERTURNED
         return Solution(
             overturned=overturned,
@@ -123,6 +125,6 @@ class Solutions:
             time_of_lost_support=float(times[-1]),
             n_uplifts=uplifts,
             n_impacts=impacts,
-            final_state=self.batch.states[index],
+            final_state=self.ends.states[index],
             states=self.states,
         )

@@ -1,56 +1,96 @@
-"""A model prepared for runs, and the loop that executes them slice by slice."""
+"""A model prepared for runs on `rockflex.engine`, and what becomes of them."""
 
-from collections.abc import Sequence
+import math
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
+from typing import Any, cast
 
 import numpy as np
 
-from rockflex._arrays import Array
+from rockflex._arrays import Array, Bools, Integers
+from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
-from rockflex._kernel import Entry
-from rockflex.models import HEADER, Key, NonlinearModel, Quantities, RockingModel, impact_of
-from rockflex.solve._beginning import course_of, first_peaks, prices_of, samples_in
-from rockflex.solve._desk import desks_of
-from rockflex.solve._failures import failure_of, failure_of_law, failure_of_limit
-from rockflex.solve._flow import flow_in, flow_of
-from rockflex.solve._pace import Pace, pace_of
-from rockflex.solve._preparing import phases_of, preparing
-from rockflex.solve._solution import Solution
-from rockflex.solve._solutions import Solutions
-from rockflex.solve._task import Gate, Task
-from rockflex.solve.adaptive.layout import Integrator, stages_of
-from rockflex.solve.batch import (
-    BEGUN,
-    BROKEN,
-    ENDED,
-    FAILED,
-    PRESENT,
-    RUN,
-    SLICE,
-    Batch,
-    Excitation,
-    batch_of,
-    run_all,
+from rockflex.engine import MAX_STATES, Batch, Run, StepTooLongError
+from rockflex.models import (
+    GROUND,
+    HEADER,
+    RISE,
+    SIDE,
+    TIME,
+    ElementBase,
+    GainsEnergyError,
+    Key,
+    LinearModel,
+    NonlinearModel,
+    Quantities,
+    element_base,
+    key_of,
+    linear_system_of,
+    may_stack,
+    nonlinear_system,
+    system_of,
 )
-from rockflex.solve.history import MARGIN
+from rockflex.solve._failures import failure_of, failure_of_limit, failure_of_step
+from rockflex.solve._pace import SEARCH, Pace, pace_of
+from rockflex.solve._preparing import preparing
+from rockflex.solve._solution import Excitation, Solution
+from rockflex.solve._solutions import Ends, Solutions
+from rockflex.solve._task import Gate, Task
 from rockflex.solve.interruption import check_interruption
-from rockflex.solve.layout import KEPT, Course, Log, Motion, Progress, System
-from rockflex.solve.phases import CompiledPhases
-from rockflex.solve.progress import progress_at_start
 from rockflex.solve.status import Status
 
-EVENTS = 512  # initial room in a history for states between samples
-SLICE_OF_WORK = 0.1  # s
-TOLERANCE = 1e-10  # relative, of a step
+SHARE = 0.5  # of the estimated time of a sample that one takes here
+STEP = 12.0  # samples that a step of a nonlinear model counts like
+STACK = 64  # systems in one stack, at most
+MEMORY = 64_000_000  # bytes of the tables of one stack
+COUNTED = ("uplift", "impact")
+OUTCOMES = np.array(  # for fixed times, and until settled
+    [[Status.ENDED, Status.OVERTURNED, Status.SETTLED], [Status.UNSETTLED, Status.OVERTURNED, Status.SETTLED]]
+)
+MOST_SAMPLES = 2.0**62  # of free vibration: more than can ever be computed
+FAILURES = {"accumulation": Status.CHATTER, "growth": Status.INFINITE, "stall": Status.STALLED}
 
-# Separate entries, because their argument types differ: the first has no vector field and is compiled without
-# integrator.
-_closed_form, _integrated = Entry(run_all), Entry(run_all)
+
+class Stack:
+    """Models that differ only in numbers, or one with elements, and the solvers that have their phases."""
+
+    def __init__(
+        self,
+        models: Sequence[LinearModel | NonlinearModel],
+        quantities: Sequence[Quantities],
+        base: ElementBase | None = None,
+    ) -> None:
+        self._first = models[0]  # of which a message speaks
+        linear = [each for each in models if isinstance(each, LinearModel)]
+        with preparing(self._first):
+            if isinstance(self._first, NonlinearModel):
+                self.system = nonlinear_system(self._first, quantities[0])
+            else:
+                self.system = system_of(linear, quantities) if base is None else linear_system_of(base)
+        self._solvers = defaultdict[float, list[Run]](list)
+
+    @property
+    def size(self) -> int:
+        """Memory of the tables of all solvers that are not in use, bytes."""
+        return sum(solver.size for solvers in self._solvers.values() for solver in solvers)
+
+    def taken(self, dt: float) -> Run:
+        """Return a solver that no other thread uses."""
+        try:
+            return self._solvers[dt].pop()
+        except IndexError:
+            with preparing(self._first):
+                return Run(self.system, dt)
+
+    def returned(self, solver: Run) -> None:
+        """Keep a solver for the next run."""
+        self._solvers[solver.h].append(solver)
 
 
 class Engine:
-    """A model with its phases, compiled as needed, for every time step used so far.
+    """A model with its phases, prepared as runs meet them, for every time step used so far.
 
     Parameters
     ----------
@@ -60,51 +100,84 @@ class Engine:
         Quantities whose peaks are computed.
     extremes
         Quantities of which only the largest value matters, not the magnitude.
-    tolerance
-        Relative error tolerance per step of integrated phases.
+
+    Raises
+    ------
+    InputError
+        If the model has too many modes.
     """
 
     def __init__(
-        self,
-        model: RockingModel,
-        quantities: Quantities,
-        extremes: Quantities | None = None,
-        tolerance: float = TOLERANCE,
+        self, model: LinearModel | NonlinearModel, quantities: Quantities, extremes: Quantities | None = None
     ) -> None:
-        self.model = model
-        most = 0 if extremes is None else len(extremes)
-        # The guard, which is the rotation, the quantities, those of which only the largest value matters, and the loss
-        # of support.
-        self._n_rows = 2 + len(quantities) + model.turning + most
+        self.model, self.quantities, self.extremes = model, quantities, extremes
+        if model.layout.size > MAX_STATES:
+            raise InputError(
+                f"{model.label} has {model.properties.n_modes} modes, but at most {(MAX_STATES - 16) // 2} can be "
+                "simulated. Keep fewer: the highest ones move nothing.",
+                field="model",
+            )
+        self._place, self._gate = 0, Gate()
         self._n_peaks = 1 + len(quantities)
-        self._signed = self._n_peaks + model.turning
-        self._impact, self._failures = impact_of(model.law, model.properties)
-        self._desks = desks_of(model.layout, self._n_rows + model.most_fences)
-        self._gate = Gate()
-        self._phases = phases_of(model, quantities, extremes)
-        self._flow = None
-        if isinstance(model, NonlinearModel):
-            with preparing(model):
-                self._flow = flow_of(model, quantities, tolerance)
 
-    @property
-    def dense(self) -> bool:
-        """Whether some phase so far cannot be uncoupled."""
-        return self._phases.dense
+    @cached_property
+    def base(self) -> ElementBase | None:
+        """The base of a model with elements, on springs, or that slides; None for all others."""
+        return self._base(shaken=False)
+
+    def _base(self, *, shaken: bool) -> ElementBase | None:
+        if isinstance(self.model, NonlinearModel) or (type(self.model) is LinearModel and not self.model.elements):
+            return None
+        most = Quantities.none(self.model.layout.modes) if self.extremes is None else self.extremes
+        return element_base(self.model, self.quantities, most, shaken=shaken)
+
+    @cached_property
+    def stack(self) -> Stack:
+        """The stack of the model, by itself unless it has been gathered."""
+        return Stack([self.model], [self.quantities], self.base)
+
+    @cached_property
+    def shaken(self) -> Stack:
+        """The same for ground that moves vertically, which other phases need only if there are elements."""
+        return self.stack if self.base is None else Stack([self.model], [self.quantities], self._base(shaken=True))
+
+    @cached_property
+    def _patience(self) -> float:
+        """The longest free vibration until settled, s."""
+        p = self.model.properties
+        slowest = float(p.omega.min(initial=math.inf))
+        return 2000.0 * 2.0 * math.pi / slowest + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
 
     @property
     def size(self) -> int:
         """Memory of all tables so far in bytes."""
-        return self._phases.size
+        return sum(vars(self)[name].size for name in ("stack", "shaken") if name in vars(self))
+
+    @property
+    def size_of_plain(self) -> int:
+        """Memory of the tables of a model without elements in bytes, roughly, before they are made."""
+        n, rows = self.model.layout.core, self._n_peaks + 3
+        return 8 * len(self.model.sides) * (n + 6) * (5 * n + 14 * rows)
 
     @cached_property
     def pace(self) -> Pace:
         """The properties that determine the work of runs."""
-        return pace_of(self.model, self._n_rows)
+        p, found = self.model.properties, pace_of(self.model, self._n_peaks + 1)
+        if isinstance(self.model, NonlinearModel):
+            return found
+        levers, drag = p.effective_mass * p.effective_height**2, 2.0 * p.zeta * p.omega
+        free = min((self.model.free_inertia(side) for side in self.model.sides[1:]), default=np.inf)
+        # The sum of the rates at which the motion fades while the base rocks; on a very narrow base one root has it all
+        fades = float((drag * (1.0 + levers / free)).sum())
+        return replace(found, fastest=fades, dense=True) if fades > 20.0 * found.fastest else found
 
     def task(self, run: Excitation, dt: float, free_vibration: float | None = 0.0, *, history: bool = False) -> Task:
         """Return the task of a run, which estimates its work."""
         return Task(self.model, self.pace, run.acceleration, dt, free_vibration, history, run.scale)
+
+    def gather(self, stack: Stack, place: int) -> None:
+        """Share a stack with other models."""
+        vars(self)["stack"], self._place = stack, place
 
     def run(
         self,
@@ -115,18 +188,12 @@ class Engine:
         state: Array | tuple[Key, Array] | None = None,
         history: bool = False,
         work_limit: float | None = None,
-        slice_of_work: float = SLICE_OF_WORK,
         vertical: Array | None = None,
     ) -> Solution:
         """Run one record as `run_all` does, and return its solution or raise its error."""
+        runs = [Excitation(acceleration, vertical)]
         found = self.run_all(
-            [Excitation(acceleration, vertical)],
-            dt,
-            free_vibration=free_vibration,
-            state=state,
-            history=history,
-            work_limit=work_limit,
-            slice_of_work=slice_of_work,
+            runs, dt, free_vibration=free_vibration, state=state, history=history, work_limit=work_limit
         )
         return found.one(0)
 
@@ -139,15 +206,14 @@ class Engine:
         state: Array | tuple[Key, Array] | None = None,
         history: bool = False,
         work_limit: float | None = None,
-        slice_of_work: float = SLICE_OF_WORK,
     ) -> Solutions:
         """Run records, each followed by `free_vibration` s (None: until settled), from a state [D.., D'.., θ, θ'].
 
         The state may also be that of a run that goes on: its branches, and all that the layout holds.
 
         The ground moves vertically in all runs, or in none. `work_limit` is the limit of the estimated and of the
-        actual work of each run in s, see `Pace`; None means no limit. After every `slice_of_work`, in s, the runs can
-        be interrupted by Ctrl-C or `stopping_when`. Only a single run can have a `history`, which keeps every state.
+        actual work of each run in s, see `Pace`; None means no limit. Some ten times a second the runs can be
+        interrupted by Ctrl-C or `stopping_when`. Only a single run can have a `history`, which keeps every state.
 
         The failures of the result are the errors of single runs: a run that exceeds its work limit (`WorkLimitError`
         before it begins), a user-defined impact law that fails or a time step that is too long (`InputError`), events
@@ -162,121 +228,154 @@ class Engine:
         """
         tasks = [self.task(run, dt, free_vibration, history=history) for run in runs]
         failures = self._gate.refused(tasks, work_limit)
-        if len(failures) == len(tasks):
-            start, log = np.zeros(self.model.layout.size), self._log(tasks[0], history=False)
-            return self._solutions(batch_of([None] * len(tasks), progress_at_start(0), start, log), dt, failures)
-        begun = self._at_rest if state is None else state
-        key, start = begun if isinstance(begun, tuple) else self.model.initial(begun)
-        shaken = runs[0].vertical is not None
-        phases = self._phases.at(dt, self.pace.fastest, shaken=shaken)
-        progress = progress_at_start(self._place(phases, key))
-        accepted = [None if place in failures else run for place, run in enumerate(runs)]
-        log = self._log(tasks[0], history=history)
-        batch = batch_of(accepted, progress, start, log, work_limit)
-        course = course_of(self.model, dt, free_vibration)
-        steps, desk = None, self._desks.taken()
-        while batch.place[RUN] < len(tasks):
+        key, start = self._start(state)
+        allowed = [place for place in range(len(runs)) if place not in failures]
+        stack, settles = self.stack if runs[0].vertical is None else self.shaken, free_vibration is None
+        batch = Batch(
+            stack.system,
+            [runs[place].acceleration for place in allowed],
+            [runs[place].scale for place in allowed],
+            free=samples_in(self._patience if free_vibration is None else free_vibration, dt),
+            settles=settles,
+            names=COUNTED,
+            verticals=[runs[place].vertical for place in allowed],
+        )
+        check_interruption()
+        solver = stack.taken(dt)
+        solver.watch, solver.limit = check_interruption, self._samples_in(work_limit)
+        while batch.place < len(allowed):
             try:
-                system = phases.known_system(dt, shaken=shaken)
-                if system is None:
-                    self._check_tables(phases, tasks[batch.place[RUN]], work_limit)
-                    with preparing(self.model):
-                        system = phases.system(dt, self.pace.fastest, shaken=shaken)
-                motion = desk.motion(phases.terms)
-                steps = steps or self._integrator(motion, log, progress[PRESENT])
-                batch.work[SLICE] = slice_of_work
-                status = self._carry(system, steps, course, progress[PRESENT], log, motion, batch)
-                if status != ENDED:
-                    log = self._resumed(status, phases, tasks[batch.place[RUN]], work_limit, log, batch, motion)
+                solver.follow(batch, start, key, self._place, history)
             except (InputError, SolverError) as error:
-                failures[int(batch.place[RUN])] = error
-                batch.place[RUN] += 1
-                batch.place[BEGUN] = False
-            check_interruption()
-        self._desks.returned(desk)
-        return self._solutions(batch, dt, failures, log.history[: log.tally[KEPT]] if history else None)
+                place = allowed[batch.place]
+                failures[place] = self._failure(error, solver, tasks[place], work_limit)
+                batch.place += 1
+        found = _ends_of(
+            batch,
+            self._of_model(cast("list[Key]", solver.keys), batch.places, batch.states),
+            dt,
+            allowed,
+            len(runs),
+            settles=settles,
+        )
+        for place in np.flatnonzero(found.status < 0).tolist():
+            status, samples = Status(found.status[place]), int(found.samples[place])
+            failures.setdefault(place, failure_of(self.model, status, samples, dt, found.states[place]))
+        states = self._states(solver) if history and not failures else None
+        stack.returned(solver)
+        return Solutions(found, dt, self._n_peaks, self._n_peaks, failures, states)
 
-    def _resumed(
-        self,
-        status: int,
-        phases: CompiledPhases,
-        task: Task,
-        work_limit: float | None,
-        log: Log,
-        batch: Batch,
-        motion: Motion,
-    ) -> Log:
-        """Provide what an interrupted run needs to continue, and return its log; raise if it must not continue."""
-        at = batch.progress[PRESENT]
-        if status == BROKEN:
-            raise failure_of_law(self.model, self._failures.pop())
-        if status == Status.LACKS_PHASE:
-            with preparing(self.model):
-                phases.meet(int(at.phase), int(at.lacking))
-        elif batch.place[BEGUN] and batch.ends[batch.place[RUN]].left < 0.0:
-            raise failure_of_limit(task, int(at.offset) + int(at.index), work_limit, motion.state)
-        elif task.history and log.tally[KEPT] > log.history.shape[0] - MARGIN:
-            task.check_room(2 * log.history.shape[0])
-            return log._replace(history=np.concatenate((log.history, np.zeros_like(log.history))))
-        return log
-
-    def _check_tables(self, phases: CompiledPhases, task: Task, work_limit: float | None) -> None:
-        """Check the work of a run before the tables of a dense phase are computed, which may take longest of all."""
-        if phases.dense:
-            fastest = max(self.pace.fastest, phases.fastest)
-            replace(task, pace=replace(self.pace, fastest=fastest, dense=True)).check(work_limit)
+    def _start(self, state: Array | tuple[Key, Array] | None) -> tuple[Key, Array]:
+        """The phase and the states at the start."""
+        if state is None:
+            return self._at_rest
+        key, start = state if isinstance(state, tuple) else self.model.initial(state)
+        if isinstance(self.model, NonlinearModel):
+            return key_of(self.model, key, start), start
+        return key, start if self.base is None else self.base.state_of(key, start)
 
     @cached_property
     def _at_rest(self) -> tuple[Key, Array]:
-        return self.model.initial(None)
+        return self._start(self.model.initial(None))
 
-    def _log(self, task: Task, *, history: bool) -> Log:
-        rows, free = self._n_rows, task.free_vibration
-        room_for = 0
-        if history:
-            room_for = task.record.size + EVENTS + MARGIN + (0 if free is None else samples_in(free, task.dt))
-        return Log(
-            peaks=first_peaks(rows, self._signed, self._n_peaks if self.model.turning else rows).copy(),
-            times=np.zeros(rows),
-            tally=np.zeros(4, dtype=np.int64),
-            work=prices_of(self.model.layout.modes, rows, history).copy(),
-            history=np.zeros((room_for, HEADER + self.model.layout.size)),
-            signed=self._signed,
-        )
+    def _of_model(self, keys: Sequence[Key], places: Integers, states: Array, *, history: bool = False) -> Array:
+        """The states of the model, from those of the engine."""
+        return states if self.base is None else self.base.states_of_model(keys, places, states, history=history)
 
-    def _place(self, phases: CompiledPhases, key: Key) -> int:
-        """Return the index of the phase in which a run starts."""
-        if phases.knows(key):
-            return phases.place(key)
-        with preparing(self.model):
-            return phases.place(key)
+    def _failure(
+        self, error: InputError | SolverError, solver: Run, task: Task, work_limit: float | None
+    ) -> InputError | SolverError:
+        """The error of a run that could not be solved, with its time and state."""
+        if isinstance(error, StepTooLongError):
+            return failure_of_step(error.rate, task.dt)
+        samples = int(solver.time / task.dt)
+        if solver.failure == "work":
+            return failure_of_limit(task, samples, work_limit, solver.state)
+        status = Status.GAINED if isinstance(error, GainsEnergyError) else FAILURES.get(solver.failure)
+        return error if status is None else failure_of(self.model, status, samples, task.dt, solver.state)
 
-    def _integrator(self, motion: Motion, log: Log, at: Progress) -> Integrator | None:
-        if self._flow is None:
-            return None
-        motion.pivots[:] = self._flow.field.pivots
-        flow = flow_in(self._flow, motion.pivots, ledger=log.history.shape[0] > 0)
-        return Integrator(flow, stages_of(motion.state, self.model.layout.core + 1, self._n_rows, log.work, at))
+    def _samples_in(self, work_limit: float | None) -> int:
+        """The number of samples that a work limit in s allows."""
+        if work_limit is None:
+            return 2**62
+        sample, look, _, step = self.pace.prices(history=False)
+        if isinstance(self.model, NonlinearModel):
+            return int(min(work_limit / step * STEP, 2.0**62))
+        return int(min(work_limit / (SHARE * (sample + SEARCH * look)), 2.0**62))
 
-    def _carry(
-        self,
-        system: System,
-        steps: Integrator | None,
-        course: Course,
-        at: Progress,
-        log: Log,
-        motion: Motion,
-        batch: Batch,
-    ) -> int:
-        carry = _closed_form if steps is None else _integrated
-        return carry(system, steps, self._impact, course, at, log, motion, batch)
+    def _states(self, solver: Run) -> Array:
+        times, places, ground, states, rise = solver.history
+        keys = cast("list[Key]", solver.keys)
+        kept = _kept(times, np.array([key[0] for key in keys])[places])
+        times, places, ground, states = times[kept], places[kept], ground[kept], states[kept]
+        rows = np.zeros((times.size, HEADER + self.model.layout.size))
+        rows[:, TIME], rows[:, GROUND], rows[:, RISE] = times, ground, rise[kept]
+        rows[:, HEADER:] = self._of_model(keys, places, states, history=True)
+        side, rotation = rows[:, SIDE], rows[:, HEADER + self.model.layout.rotation]
+        side[:] = np.array([key[0] for key in keys])[places]
+        memory = HEADER + self.model.layout.memory
+        for node in np.flatnonzero((times[1:-1] == times[:-2]) & (times[1:-1] == times[2:]))[::-1] + 1:
+            # A contact that does not last has the elements of what follows.
+            rows[node, memory:] = rows[node + 1, memory:]
+        rotation[side * rotation < 0.0] = 0.0  # by rounding
+        if self.model.bouc_wen is not None:
+            rows = without_reversals(rows, solver.keys, places)
+            times, side, rotation = rows[:, TIME], rows[:, SIDE], rows[:, HEADER + self.model.layout.rotation]
+        rotation[:-1][(times[1:] == times[:-1]) & (side[:-1] != 0.0) & (rotation[1:] == 0.0)] = 0.0  # before an impact
+        return rows
 
-    def _solutions(
-        self, batch: Batch, dt: float, failures: dict[int, InputError | SolverError], states: Array | None = None
-    ) -> Solutions:
-        if batch.place[FAILED]:
-            for place, end in enumerate(batch.ends):
-                if end.status < 0 and place not in failures:
-                    status, samples = Status(int(end.status)), int(end.samples)
-                    failures[place] = failure_of(self.model, status, samples, dt, batch.states[place])
-        return Solutions(batch, dt, self._n_peaks, self._signed, failures, states)
+
+def samples_in(time: float, dt: float) -> int:
+    """Return the number of samples in some seconds of free vibration."""
+    return math.ceil(min(time / dt, MOST_SAMPLES) - 1e-9)
+
+
+def _kept(times: Array, side: Integers) -> Bools:
+    """Which states of a history are kept: none within one instant that the next one follows on the same side."""
+    kept = np.ones(times.size, dtype=bool)
+    kept[1:-1] = (times[1:-1] != times[:-2]) | (times[1:-1] != times[2:]) | (side[1:-1] != side[2:])
+    return kept
+
+
+def without_reversals(rows: Array, keys: Sequence[Any], places: Any) -> Array:
+    """Leave out the states on both sides of a reversal of a hysteretic spring, which changes nothing else."""
+    own, times, kept = np.array([list(key[:-1]) for key in keys])[places], rows[:, TIME], np.ones(len(rows), dtype=bool)
+    pairs = (times[1:] == times[:-1]) & (own[1:] == own[:-1]).all(axis=1) & (places[1:] != places[:-1])
+    for k in np.flatnonzero(pairs).tolist():
+        follows = k > 0 and times[k - 1] == times[k] and places[k - 1] != places[k]  # another event
+        precedes = k + 2 < times.size and times[k + 2] == times[k]
+        kept[k], kept[k + 1] = kept[k] and follows, precedes
+    return rows[kept]
+
+
+def _ends_of(batch: Batch, states: Array, dt: float, allowed: Sequence[int], count: int, *, settles: bool) -> Ends:
+    """How the runs have ended; those that were not allowed are left out."""
+    status, samples = OUTCOMES[int(settles)][batch.outcomes], np.rint(batch.times / dt).astype(np.int64)
+    uplifts, impacts = batch.counts.T
+    found = Ends(status, samples, uplifts, impacts, batch.high, batch.when, states)
+    if len(allowed) == count:
+        return found
+    return Ends(*(_spread(each, allowed, count) for each in found))
+
+
+def _spread(values: Any, places: Sequence[int], count: int) -> Any:
+    """Put values at places along a first axis of zeros."""
+    found = np.zeros((count, *values.shape[1:]), values.dtype)
+    found[list(places)] = values
+    return found
+
+
+def gather(engines: Iterable[Engine]) -> None:
+    """Let engines of many models that differ only in numbers share their preparation."""
+    alike = defaultdict[tuple[int, ...], list[Engine]](list)
+    for each in engines:
+        alone = each.base is not None or isinstance(each.model, NonlinearModel)
+        if not alone and may_stack(each.model) and "stack" not in vars(each):
+            alike[each.model.properties.n_modes, len(each.quantities), each.model.lifts].append(each)
+    for some in alike.values():
+        most = max(1, min(STACK, MEMORY // some[0].size_of_plain))
+        for first in range(0, len(some), most):
+            part = some[first : first + most]
+            stack = Stack([each.model for each in part], [each.quantities for each in part])
+            for place, each in enumerate(part):
+                each.gather(stack, place)

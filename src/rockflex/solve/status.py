@@ -4,7 +4,7 @@ from enum import IntEnum
 
 
 class Status(IntEnum):
-    """The status returned by kernels; negative values are failures, with a message and a remedy.
+    """The status of a run; negative values are failures, with a message and a remedy.
 
     The placeholders in the texts are the `label` of the model, the impact `law`, and the `time` in s.
     """
@@ -13,7 +13,7 @@ class Status(IntEnum):
     mend: str
 
     def __new__(cls, value: int, what: str = "", mend: str = "") -> "Status":
-        """Create a member that is a number in kernels."""
+        """Create a member that is a number."""
         member = int.__new__(cls, value)
         member._value_ = value
         member.what, member.mend = what, mend

@@ -10,7 +10,6 @@ from rockflex.study._overturning import OverturningScales, overturning_scales, o
 from rockflex.study._rocking_spectrum import rocking_spectrum
 from rockflex.study._simulate import simulate
 from rockflex.study._simulate_many import simulate_many
-from rockflex.study._warm import Warmth, warm
 
 __all__ = [
     "WORK_LIMIT",
@@ -20,7 +19,6 @@ __all__ = [
     "OverturningScales",
     "RockingStructure",
     "SecondMode",
-    "Warmth",
     "frequency_ratios",
     "modal_combination",
     "moment_rotation",
@@ -30,5 +28,4 @@ __all__ = [
     "rocking_spectrum",
     "simulate",
     "simulate_many",
-    "warm",
 ]

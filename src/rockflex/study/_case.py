@@ -7,7 +7,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex.models import Quantities, RockingModel
 from rockflex.motion import GroundMotion
 from rockflex.response import Response, asked_of, extremes_of, respond
-from rockflex.solve import Engine, Excitation, HybridEngine, Solution, Solutions, Task, gather, preparing, takes
+from rockflex.solve import Engine, Excitation, Solution, Solutions, Task, gather, preparing
 from rockflex.study._arguments import WORK_LIMIT
 from rockflex.study._initial import InitialState
 
@@ -48,7 +48,7 @@ class Case:
     history: bool = False
     floors: bool = False
     extra: Quantities | None = None
-    engine: Engine | HybridEngine = field(init=False, repr=False)
+    engine: Engine = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         if self.free_vibration is None and self.model.bouc_wen is not None:
@@ -61,8 +61,7 @@ class Case:
             asked = asked_of(self.model, floors=self.floors)
         asked = asked if self.extra is None else asked + self.extra
         most = extremes_of(self.model)
-        engine = HybridEngine(self.model, asked, most) if takes(self.model) else Engine(self.model, asked, most)
-        object.__setattr__(self, "engine", engine)
+        object.__setattr__(self, "engine", Engine(self.model, asked, most))
 
     def task(self, motion: GroundMotion, scale: float = 1.0) -> Task:
         """Return the task of a run, from which its work is estimated."""
@@ -115,7 +114,7 @@ class Case:
 
 def prepare_together(cases: Iterable[object]) -> None:
     """Let those of many cases that differ only in numbers share their preparation."""
-    gather(case.engine for case in cases if isinstance(case, Case) and isinstance(case.engine, HybridEngine))
+    gather(case.engine for case in cases if isinstance(case, Case))
 
 
 def is_shaken(motion: GroundMotion) -> bool:

@@ -20,7 +20,7 @@ from rockflex.response import Response
 from rockflex.study._case import Case
 
 MOST = 32  # cases kept
-LARGEST = 8_000_000  # bytes of the tables of a case
+LARGEST, TOGETHER = 64_000_000, 256_000_000  # bytes of the tables of a case, and of all
 FIXED = (VVELSimplified, VVELComplete, Restitution, SidedRestitution)  # impact laws that cannot change
 
 _kept: OrderedDict[Hashable, tuple[Case, RockingProperties, Ground | None]] = OrderedDict()
@@ -57,11 +57,11 @@ def run_prepared(
         return case.run(motion)
     case = Case(model.of(properties, impact, bouc_wen, ground), **options)
     response = case.run(motion)
-    if keeps and not case.engine.dense and case.engine.size <= LARGEST:
+    if keeps and case.engine.size <= LARGEST:
         with _lock:
             # What a key identifies is kept with it, so that no later object can have its place in memory.
             _kept[key] = case, properties, ground
-            if len(_kept) > MOST:
+            while len(_kept) > MOST or sum(each.engine.size for each, *_ in _kept.values()) > TOGETHER:
                 _kept.popitem(last=False)
     return response
 

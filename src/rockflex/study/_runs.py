@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Generator, Iterable
 from contextlib import closing
-from itertools import islice
 from threading import Event
 from typing import SupportsIndex, TypeVar
 
@@ -30,17 +29,14 @@ def map_runs_apart(
     function: Callable[[Task], Result],
     tasks: Iterable[Task],
     workers: SupportsIndex | None = None,
-    rehearse: Callable[[], object] = lambda: None,
 ) -> Generator[Result]:
     """Map in the same way, by processes where this one can be copied.
 
-    `rehearse` is called before; it compiles the kernels, which each copy would otherwise do for itself. What the
-    function changes in memory is lost, and tasks and results must be picklable.
+    What the function changes in memory is lost, and tasks and results must be picklable.
     """
     count = worker_count(workers)
     if count == 1 or not may_fork():
         return map_runs(function, tasks, count)
-    rehearse()
 
     def guarded(task: Task) -> Result:
         with stopping_when(left):
@@ -69,9 +65,7 @@ def in_order_apart(
     numbered, queue = _numbered(function), enumerate(tasks)
     if worker_count(workers) == 1 or not may_fork():
         return _sorted(map_runs(numbered, queue, workers), tell)
-    # The first one here, so that the kernels are compiled before this process is copied.
-    first = _sorted(map_runs(numbered, islice(queue, 1), 1), tell)
-    return first + _sorted(map_runs_apart(numbered, queue, workers), tell)
+    return _sorted(map_runs_apart(numbered, queue, workers), tell)
 
 
 def _numbered(function: Callable[[Task], Result]) -> Callable[[tuple[int, Task]], tuple[int, Result]]:

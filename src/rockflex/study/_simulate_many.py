@@ -59,7 +59,7 @@ def simulate_many(
 ) -> "pd.DataFrame":
     """Simulate every structure under every motion with every model at every scale.
 
-    The runs are shared among threads; the kernels release the interpreter lock. Peaks of hundreds of structures with a
+    The runs are shared among threads; the engine releases the interpreter lock. Peaks of hundreds of structures with a
     few runs each are shared among processes, where this one can be copied: on Linux, without other threads. With
     ``output="peaks"`` only the table grows with the number of runs.
 
@@ -145,7 +145,7 @@ def simulate_many(
             for first in range(0, each, CHUNK):
                 task.append((index, first, min(first + CHUNK, each), cases))
                 runs += task[-1][2] - first
-                if runs >= CHUNK or index == 0:  # the first one comes before all others, see `in_order_apart`
+                if runs >= CHUNK:
                     yield task
                     task, runs = [], 0
         if task:

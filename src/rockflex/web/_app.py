@@ -44,7 +44,7 @@ from rockflex.web._uploads import Uploads, read_matrices, read_record, read_vert
 
 LOOK = 0.2  # s between checks whether a visitor still waits
 STATIC = Path(__file__).parent / "static"
-THREADS = 4  # answers computed at once: the kernels release the lock, and short answers must not wait for long ones
+THREADS = 4  # answers computed at once: the engine releases the lock, and short answers must not wait for long ones
 WRITTEN = 2  # files written at once: they take long and mostly hold the lock
 LONGEST = 1000  # characters of a message: some repeat an input
 Answer = Callable[[], Any]
@@ -60,7 +60,7 @@ class Server:
         self._limiters: dict[int, anyio.CapacityLimiter] = {}
 
     def warm_up(self) -> None:
-        """Load the kernels, or compile them the first time, before the first visitor needs them."""
+        """Import what answers need, before the first visitor needs it."""
         pulse = {"source": "pulse", "pulse": {"shape": "one_sine", "amplitude": 5.0, "period": 0.5}}
         content = {"structure": PRESETS[0]["structure"], "record": pulse, "free_vibration": 0.0}
         state = State.model_validate(content | {"models": ["MDOF-S", "2DOF-S", "2DOF-C", "fixed"]})
@@ -95,7 +95,7 @@ class Server:
             watching.cancel()
 
     async def about(self, _: Request) -> Response:
-        """Forms, presets, suites, pulses and limits, and whether the kernels are ready."""
+        """Forms, presets, suites, pulses and limits, and whether the first answer is ready."""
         return JSONResponse(await anyio.to_thread.run_sync(_about) | {"ready": self._ready.is_set()})
 
     async def suite(self, request: Request) -> Response:

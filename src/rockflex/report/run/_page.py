@@ -193,7 +193,7 @@ def _few(texts: Sequence[str]) -> list[str]:
 
 
 def _versions() -> dict[str, str]:
-    found = versions_of(("rockflex", "numpy", "numba"))
+    found = versions_of(("rockflex", "numpy"))
     python = found.pop("python")
     return found | {"Python": python}
 

@@ -186,10 +186,6 @@ class MonteCarloPlan(ChunkedPlan):
         """Whether copies of this process may compute the chunks."""
         return not self.bench.foreign
 
-    def rehearse(self) -> None:
-        """Run the models briefly."""
-        self.bench.rehearse()
-
     @property
     def columns(self) -> Columns:
         """Columns of every chunk's table."""

@@ -11,7 +11,7 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
-from rockflex.motion import GroundMotion, Suite, intensities
+from rockflex.motion import Suite, intensities
 from rockflex.response import Response
 from rockflex.solve import Task, WorkLimitError
 from rockflex.study._arguments import (
@@ -171,18 +171,6 @@ class Bench:
 
     def _derived(self, response: Response) -> Row:
         return derived(response, self.assumptions.demands, friction=self.assumptions.friction)
-
-    def rehearse(self) -> None:
-        """Run the beginning of a record with each model of the first structure, which compiles the kernels."""
-        self.measures(0, 0)
-        motion = self.motions[0]
-        brief = GroundMotion(motion.acceleration[:BRIEF], motion.dt)
-        for model in range(len(self.labels)):
-            case = self._case(0, model)
-            if isinstance(case, Case):
-                found = case.attempt(brief)
-                if isinstance(found, Response):
-                    derived(found, {}, friction=self.assumptions.friction)
 
     def task(self, structure: int, record: int, model: int, scale: float) -> Task | None:
         """Return the task of a run, from which its work is estimated; None if the structure cannot have the model."""

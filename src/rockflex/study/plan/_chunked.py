@@ -67,10 +67,6 @@ class ChunkedPlan(ABC):
         """Whether copies of this process may compute the chunks: they need nothing that others change in memory."""
         return False
 
-    def rehearse(self) -> None:
-        """Run what compiles the kernels that the chunks need, before processes share them."""
-        return
-
     @property
     def rounds(self) -> list[range]:
         """Numbers of the chunks that can be computed one round after the other, all of them at once by default."""
@@ -159,5 +155,5 @@ def map_chunks(
         return number, chunk(number)
 
     if plan.copyable and len(numbers) > 1 and plan.n_runs * len(numbers) >= FEW * plan.n_chunks:
-        return map_runs_apart(numbered, numbers, workers, plan.rehearse)
+        return map_runs_apart(numbered, numbers, workers)
     return map_runs(numbered, numbers, workers)

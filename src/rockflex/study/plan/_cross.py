@@ -49,10 +49,6 @@ class CrossPlan(ChunkedPlan):
         """Whether copies of this process may compute the chunks."""
         return not self.bench.foreign
 
-    def rehearse(self) -> None:
-        """Run each model briefly."""
-        self.bench.rehearse()
-
     def run_of(self, unit: int) -> tuple[int, int, int, float]:
         """Return the places of the structure, record and model of a unit, and the scale of its (first) run."""
         rest, level = divmod(unit, self._n_levels)

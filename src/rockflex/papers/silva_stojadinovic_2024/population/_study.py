@@ -110,10 +110,6 @@ class PopulationPlan(ChunkedPlan):
         """Whether copies of this process may compute the chunks: always."""
         return True
 
-    def rehearse(self) -> None:
-        """Run one pair."""
-        self.rows([0])
-
     @property
     def columns(self) -> Columns:
         """Columns of every chunk's table."""

@@ -123,10 +123,6 @@ class SearchPlan(ChunkedPlan):
         """Whether copies of this process may compute the chunks."""
         return not self._bench.foreign
 
-    def rehearse(self) -> None:
-        """Run the model briefly."""
-        self._bench.rehearse()
-
     @property
     def columns(self) -> Columns:
         """Columns of every chunk's table."""
