@@ -12,7 +12,6 @@ from rockflex.models._element_states import (
     stored_energy,
 )
 from rockflex.models._elements import CLOSED, LEFT, RIGHT, arm_of, elements_of, stiffness_of_fuses
-from rockflex.models._field import EXTRA, PULLS, Field, field_rates, inertia_left, pivot_at, stage_rates
 from rockflex.models._impact import (
     ForgottenLaw,
     ImpactLaw,
@@ -53,10 +52,6 @@ from rockflex.models._observe import (
     SWAY,
     SWING,
     VERTICAL,
-    Posture,
-    observe,
-    observe_all,
-    posture_of,
 )
 from rockflex.models._phase import (
     CHANGES,
@@ -84,7 +79,6 @@ from rockflex.models._slider import Slider
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._springs import SpringModel
 from rockflex.models._stored import floor_accelerations, raised_weight_rate, stored_energies
-from rockflex.models._strike import Impact, impact_of, kinetic_energy, may_pass, stick, strike
 from rockflex.models._system import may_stack, system_of
 
 __all__ = [
@@ -92,7 +86,6 @@ __all__ = [
     "CHANGES",
     "CLOSED",
     "CLOSES",
-    "EXTRA",
     "GROUND",
     "HEADER",
     "HORIZONTAL",
@@ -103,7 +96,6 @@ __all__ = [
     "LINEAR",
     "OPENS",
     "OVERTURNS",
-    "PULLS",
     "RELEASES",
     "RIGHT",
     "RISE",
@@ -125,18 +117,15 @@ __all__ = [
     "ElementBase",
     "Exit",
     "Fence",
-    "Field",
     "ForgottenLaw",
     "GainsEnergyError",
     "Guard",
-    "Impact",
     "ImpactLaw",
     "Key",
     "LinearModel",
     "Model",
     "NonlinearModel",
     "Phase",
-    "Posture",
     "Quantities",
     "Reactions",
     "Restitution",
@@ -160,30 +149,21 @@ __all__ = [
     "element_speeds",
     "elements_of",
     "elongations",
-    "field_rates",
     "floor_accelerations",
     "floor_quantities",
     "housner",
-    "impact_of",
-    "inertia_left",
     "key_of",
-    "kinetic_energy",
     "layout_of",
     "lifted_springs",
     "linear_system_of",
     "lost_support_row",
     "may_integrate",
-    "may_pass",
     "may_stack",
     "modal_displacement",
     "nonlinear_system",
-    "observe",
-    "observe_all",
     "parse_model",
     "phases_at",
-    "pivot_at",
     "plastic_stretches",
-    "posture_of",
     "printed_reactions",
     "pulls_of",
     "quantities",
@@ -193,12 +173,9 @@ __all__ = [
     "rotation_by_side",
     "rows_of",
     "spring_forces",
-    "stage_rates",
-    "stick",
     "stiffness_of_fuses",
     "stored_energies",
     "stored_energy",
-    "strike",
     "swing_by_side",
     "system_of",
     "turning_row",

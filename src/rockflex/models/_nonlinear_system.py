@@ -10,13 +10,12 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.engine import Event, LinearPhase, NonlinearPhase, StateLayout, System
 from rockflex.models._elements import CLOSED, LEFT, RIGHT
 from rockflex.models._fields import Change, Landing, Reversal, RockingField
 from rockflex.models._impact import Restitution, SidedRestitution, VVELComplete, VVELSimplified
-from rockflex.models._landing import GAIN, GainsEnergyError
+from rockflex.models._landing import GAIN, WITHOUT, GainsEnergyError, velocities_after
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._numbers import numbers_of
 from rockflex.models._observe import LINEAR, VERTICAL
@@ -24,7 +23,6 @@ from rockflex.models._phase import Guard, Key, Phase
 from rockflex.models._quantities import Quantities, lost_support_row, rows_of
 from rockflex.models._rocking_phase import QUARTER_TURN
 from rockflex.models._slider import Slider
-from rockflex.models._strike import WITHOUT, OwnLaw
 
 TREMOR = 0.01  # m/s²: the error of a step is relative to the response to it, or to a larger motion so far
 LIGHT = 0.05  # of the vertical reaction at rest: the least size of the loss of support
@@ -224,7 +222,7 @@ class Rocks:
     def told(self, known: Phase, branch: int) -> Callable[[Array, float, float], tuple[Array, Key]]:
         """The jump of a law of the user's own."""
         model, N = self.model, self.model.layout.modes
-        p, layout, own = model.properties, model.layout, OwnLaw(model.law, model.properties)
+        p, layout = model.properties, model.layout
         fields = {side: self.field(known.beside[k], branch) for k, side in ((1, RIGHT), (2, LEFT))}
         turnings = self.turnings(known)
 
@@ -233,10 +231,7 @@ class Rocks:
             for place, _, offset in turnings:
                 state[place] = -offset
             state[layout.rotation] = 0.0
-            try:
-                velocity, spin = own.after(state[N : 2 * N], float(state[layout.spin]))
-            except Exception as error:
-                raise InputError(f"The impact law {shown(model.law)} failed: {error}") from error
+            velocity, spin = velocities_after(model.law, p, state[N : 2 * N], float(state[layout.spin]))
             state[N : 2 * N], state[layout.spin], key = velocity, spin, known.beside[0]
             if spin != 0.0:
                 side, key = (RIGHT, known.beside[1]) if spin > 0.0 else (LEFT, known.beside[2])
