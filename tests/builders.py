@@ -6,6 +6,9 @@ from typing import Any
 import numpy as np
 
 import rockflex as rf
+from rockflex.models import pulls_of
+from rockflex.models._fields import RockingField
+from rockflex.models._numbers import numbers_of
 
 # Structure #1 of Table 1 of Silva & Stojadinović (2024): five stories that shear, T_1 = 1 s, h*_1/B = 10.
 STRUCTURE_1: dict[str, Any] = {
@@ -41,6 +44,12 @@ def frame_values(**changes: Any) -> dict[str, Any]:
 def make_frame(**changes: Any) -> rf.Frame:
     """Structure #1, changed."""
     return rf.Frame(**frame_values(**changes))
+
+
+def vector_field(model, side, branch=1, kinds=(), levers=None):
+    """The compiled vector field of a nonlinear model on one side, with all elements on their first branches."""
+    pulls = pulls_of(model.properties, model.elements, model.start(side))
+    return RockingField(numbers_of(model, kinds, levers), side, branch, pulls, [])
 
 
 def random_shaking(seed, strength, seconds, dt):

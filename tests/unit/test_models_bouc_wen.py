@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from builders import make_frame
+from builders import make_frame, vector_field
 from rockflex import BoucWen, GroundMotion, InitialState, InputError, quiet_motion, simulate
-from rockflex.models import EXTRA, Model, field_rates
+from rockflex.models import Model
 from twins.complete_model import BoucWen as Twin
 
 FRAME = make_frame(n_stories=1, story_height=6.0, period=0.6, aspect_ratio=5.0)
@@ -54,11 +54,10 @@ def test_springs_are_values():
 
 def rate(spring, velocity, z):
     """Rate of z in the vector field, on the ground."""
-    field = Model(1, lifts=False).of(FRAME.rocking(), bouc_wen=spring).field()
-    motion, rates = np.zeros(4 + EXTRA), np.full(4 + EXTRA, np.nan)
+    model = Model(1, lifts=False).of(FRAME.rocking(), bouc_wen=spring)
+    motion = np.zeros(model.layout.size)
     motion[1], motion[4] = velocity, z
-    field_rates(field, 0.0, 1.0 if velocity >= 0.0 else -1.0, 0.0, 0.0, motion, rates)
-    return rates[4]
+    return vector_field(model, 0, 1 if velocity >= 0.0 else -1).rates_at(motion, 0.0, 0.0)[4]
 
 
 @st.composite

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from builders import frame_values
+from builders import frame_values, vector_field
 from rockflex import BoucWen
 from rockflex.modal import RockingProperties
-from rockflex.models import EXTRA, Model, field_rates, inertia_left
+from rockflex.models import HORIZONTAL, LEFT_OUT, LINEAR, SWAY, SWING, VERTICAL, Model
 from twins import complete_model as twin
 from twins.complete import complete_frame
 
@@ -15,6 +15,7 @@ FRAME = frame_values(
 )
 NO_MODES = dict.fromkeys(("omega", "effective_mass", "effective_height", "top_ordinate", "zeta"), ())
 SPRING = (0.03, 0.05, 0.7, 0.3, 2.5)
+LEVERS = np.array([[9.0, 0.0], [1.2, 3.4], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]])
 
 
 def pair(n, *, complete, spring=None):
@@ -38,11 +39,9 @@ def states(n, count=20):
 
 def rates_of(model, side, acceleration, motion):
     n = model.properties.n_modes
-    full = np.concatenate((motion, np.zeros(EXTRA - 1)))
-    rates = np.full(full.size, np.nan)
-    branch = 1.0 if n == 0 or motion[n] >= 0.0 else -1.0
-    field_rates(model.field(), side, branch, acceleration, 0.0, full, rates)
-    return rates
+    branch = 1 if n == 0 or motion[n] >= 0.0 else -1
+    full = np.concatenate((motion, np.zeros(model.layout.size - motion.size)))
+    return vector_field(model, side, branch).rates_at(full, acceleration, 0.0)
 
 
 CASES = [(n, True, None) for n in (0, 1, 2, 4)] + [(1, True, SPRING), (1, False, SPRING)]
@@ -55,7 +54,7 @@ def test_rates(n, complete, spring, side):
     for motion, a in states(n):
         if side == 0:
             motion[2 * n : 2 * n + 2] = 0.0
-        rates = rates_of(model, float(side), a, motion)
+        rates = rates_of(model, side, a, motion)
         state = np.concatenate((motion[2 * n : 2 * n + 2], motion[: 2 * n], motion[-1:] if spring else []))
         expected = other.field(state, a, side)
         size = np.abs(expected).max()
@@ -68,7 +67,7 @@ def test_rates(n, complete, spring, side):
         p = model.properties
         if side:
             left = other.inertia(motion[:n], side) - float(p.effective_mass @ p.effective_height**2)
-            assert inertia_left(model.field(), float(side), motion) == pytest.approx(left, rel=1e-12)
+            assert vector_field(model, side).inertia_at(motion) == pytest.approx(left, rel=1e-12)
 
 
 @pytest.mark.parametrize(("n", "complete", "spring"), CASES)
@@ -88,7 +87,7 @@ def test_energies_are_counted(n, complete, spring, side):
     for motion, a in states(n, 10):
         if side == 0:
             motion[2 * n : 2 * n + 2] = 0.0
-        rates = rates_of(model, float(side), a, motion)
+        rates = rates_of(model, side, a, motion)
         v = motion[n : 2 * n]
         damped = float((2.0 * p.zeta * p.omega * p.effective_mass) @ v**2)
         yielded = 0.0
@@ -132,8 +131,8 @@ def test_at_uplift_the_complete_rotation_starts_from_the_excess():
         for side in (1, -1):
             moment = other.overturning(np.concatenate(([0.0, 0.0], motion[:4])), a)
             excess = -moment - side * resistance
-            rates = rates_of(model, float(side), a, motion)
-            left = inertia_left(model.field(), float(side), motion)
+            rates = rates_of(model, side, a, motion)
+            left = vector_field(model, side).inertia_at(motion)
             assert rates[5] * left == pytest.approx(excess, rel=1e-10, abs=1e-10 * abs(moment))
 
 
@@ -148,7 +147,7 @@ def test_the_simplified_field_is_the_linear_model():
         if side == 0:
             motion[2:4] = 0.0
         motion[4] = motion[0] / 1e9  # z while elastic
-        rates, key = rates_of(model, float(side), a, motion), linear.start(side)
+        rates, key = rates_of(model, side, a, motion), linear.start(side)
         vector = np.concatenate((motion[:4], [a, 1.0]))
         assert rates[1] == pytest.approx(float((linear.modal_accelerations(key) @ vector)[0]), rel=1e-9)
         if side:
@@ -160,5 +159,22 @@ def test_a_model_made_of_its_own_is_complete():
 
     model = NonlinearModel("mine", pair(1, complete=True)[0].properties)
     assert (model.lifts, model.complete, model.bouc_wen, model.law.keeps[:3]) == (True, True, None, "the")
-    assert model.field().whole == 8
-    assert pair(1, complete=True, spring=SPRING)[0].field().whole == 0
+
+
+@pytest.mark.parametrize(("n", "complete", "spring"), CASES)
+@pytest.mark.parametrize("side", [1, -1, 0])
+def test_many_states_in_one_call(n, complete, spring, side):
+    model, _ = pair(n, complete=complete, spring=spring)
+    rng = np.random.default_rng(7)
+    field = vector_field(model, side, kinds=[SWAY, LEFT_OUT, SWING, LINEAR, HORIZONTAL, VERTICAL], levers=LEVERS)
+    motion, rows = rng.normal(0.0, 0.3, (9, model.layout.size)), rng.normal(0.0, 1.0, (9, len(LEVERS)))
+    a, a_v = rng.normal(0.0, 4.0, (2, 9))
+    rates, values = field.rates_along(motion, a, a_v), rows.copy()
+    field.observe_along(motion, rates, a, a_v, values)
+    for k in range(9):
+        assert np.array_equal(rates[k], field.rates_at(motion[k], a[k], a_v[k]))
+        one = rows[k].copy()
+        field.observe_at(motion[k], rates[k], a[k], a_v[k], one)
+        assert np.array_equal(values[k], one)
+    assert np.array_equal(values[:, 3], rows[:, 3])
+    assert field.rates_along(motion[:0], a[:0], a_v[:0]).shape == (0, model.layout.size)

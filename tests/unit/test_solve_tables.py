@@ -4,6 +4,12 @@ from functools import cache
 
 import numpy as np
 import pytest
+from rockflex.solve.exact import basis
+from rockflex.solve.exact.tables import levels_of, propagate, terms_of
+from rockflex.solve.layout import INTO, OUT, RIPPLE, SAG, SLOPES, SWING, VALUES, Log, motion_of
+from rockflex.solve.memory import recollect
+from rockflex.solve.progress import progress_at_start
+from rockflex.solve.run import settled
 from scipy.linalg import expm
 
 import rockflex as rf
@@ -12,12 +18,6 @@ from rockflex import Frame, GroundMotion, InputError, simulate
 from rockflex.models import Model
 from rockflex.response import asked_of
 from rockflex.solve import Engine
-from rockflex.solve.exact import basis
-from rockflex.solve.exact.tables import levels_of, propagate, terms_of
-from rockflex.solve.layout import INTO, OUT, RIPPLE, SAG, SLOPES, SWING, VALUES, Log, motion_of
-from rockflex.solve.memory import recollect
-from rockflex.solve.progress import progress_at_start
-from rockflex.solve.run import settled
 from twins.exact import Exact
 from twins.frame import frame_properties
 

@@ -11,8 +11,8 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import rockflex as rf
-from builders import make_frame
-from rockflex.models import Field, LinearModel, NonlinearModel, Quantities, field_rates, parse_model
+from builders import make_frame, vector_field
+from rockflex.models import LinearModel, NonlinearModel, Quantities, parse_model
 from rockflex.solve import Engine
 
 FRAME = make_frame()  # fmt: skip
@@ -160,10 +160,7 @@ def test_the_field_holds_the_gradient_of_the_tendons_energy():
 
 
 def rates_of(properties: rf.RockingProperties, side: int, motion: np.ndarray) -> np.ndarray:
-    coefficients: Field = NonlinearModel("MDOF-C", properties).field()
-    rates = np.zeros(motion.size)
-    field_rates(coefficients, float(side), 1.0, 1.7, 0.0, motion, rates)
-    return rates
+    return vector_field(NonlinearModel("MDOF-C", properties), side).rates_at(motion, 1.7, 0.0)
 
 
 @pytest.mark.parametrize("stiffness", [1.011, 0.989, 1.1, 2.0])

@@ -61,6 +61,42 @@ class Field:
         else:
             self.observe(state, moves, a, a_v, found)
 
+    def rates_along(self, states, a, a_v, counted=True):
+        """Return the rates of many states, shape (k, n), each under its own accelerations."""
+        given: cython.double[:, ::1] = states
+        across: cython.double[::1] = a
+        upwards: cython.double[::1] = a_v
+        rates = np.zeros(states.shape)
+        found: cython.double[:, ::1] = rates
+        which: cython.bint = counted
+        k: cython.Py_ssize_t
+        for k in range(given.shape[0] if states.size else 0):
+            if cython.compiled:
+                self.rates(cython.address(given[k, 0]), across[k], upwards[k], cython.address(found[k, 0]), which)
+            else:
+                self.rates(given[k], across[k], upwards[k], found[k], which)
+        return rates
+
+    def observe_along(self, states, rates, a, a_v, out):
+        """Do what `observe` does at many states, with arrays of a row for each."""
+        given: cython.double[:, ::1] = states
+        moves: cython.double[:, ::1] = rates
+        across: cython.double[::1] = a
+        upwards: cython.double[::1] = a_v
+        found: cython.double[:, ::1] = out
+        k: cython.Py_ssize_t
+        for k in range(given.shape[0] if out.size else 0):
+            if cython.compiled:
+                self.observe(
+                    cython.address(given[k, 0]),
+                    cython.address(moves[k, 0]),
+                    across[k],
+                    upwards[k],
+                    cython.address(found[k, 0]),
+                )
+            else:
+                self.observe(given[k], moves[k], across[k], upwards[k], found[k])
+
     def enter_at(self, y, more):
         """Do what `enter` does, with arrays."""
         state: cython.double[::1] = y

@@ -14,7 +14,6 @@ from rockflex.models._element_states import (
     stored_energy,
 )
 from rockflex.models._elements import CLOSED, LEFT, RIGHT, arm_of, elements_of, stiffness_of_fuses
-from rockflex.models._field import EXTRA, PULLS, Field, field_rates, inertia_left, pivot_at, stage_rates
 from rockflex.models._impact import (
     ForgottenLaw,
     ImpactLaw,
@@ -28,7 +27,6 @@ from rockflex.models._kept import (
     accelerations,
     acting_side,
     phases_at,
-    pulls_at,
     rates_of,
     under_more_gravity,
     values_of,
@@ -56,10 +54,6 @@ from rockflex.models._observe import (
     SWAY,
     SWING,
     VERTICAL,
-    Posture,
-    observe,
-    observe_all,
-    posture_of,
 )
 from rockflex.models._phase import (
     CHANGES,
@@ -88,7 +82,6 @@ from rockflex.models._sliding import SlidingModel
 from rockflex.models._spring_forces import LOADED
 from rockflex.models._springs import SpringModel
 from rockflex.models._stored import floor_accelerations, soil_strain, stored_energies
-from rockflex.models._strike import Impact, impact_of, kinetic_energy, may_pass, stick, strike
 from rockflex.models._system import may_stack, system_of
 
 __all__ = [
@@ -96,7 +89,6 @@ __all__ = [
     "CHANGES",
     "CLOSED",
     "CLOSES",
-    "EXTRA",
     "GROUND",
     "HEADER",
     "HORIZONTAL",
@@ -108,7 +100,6 @@ __all__ = [
     "LOADED",
     "OPENS",
     "OVERTURNS",
-    "PULLS",
     "RELEASES",
     "RIGHT",
     "RISE",
@@ -130,11 +121,9 @@ __all__ = [
     "ElementBase",
     "Exit",
     "Fence",
-    "Field",
     "ForgottenLaw",
     "GainsEnergyError",
     "Guard",
-    "Impact",
     "ImpactLaw",
     "Key",
     "LinearModel",
@@ -144,7 +133,6 @@ __all__ = [
     "NonlinearModel",
     "Part",
     "Phase",
-    "Posture",
     "Quantities",
     "Reactions",
     "Restitution",
@@ -169,33 +157,23 @@ __all__ = [
     "element_speeds",
     "elements_of",
     "elongations",
-    "field_rates",
     "floor_accelerations",
     "floor_quantities",
     "horizontal_reaction",
     "housner",
-    "impact_of",
-    "inertia_left",
     "inside",
     "key_of",
-    "kinetic_energy",
     "layout_of",
     "lifted_springs",
     "linear_system_of",
     "lost_support_row",
-    "may_pass",
     "may_stack",
     "modal_displacement",
     "nonlinear_system",
-    "observe",
-    "observe_all",
     "parse_model",
     "phases_at",
-    "pivot_at",
     "plastic_stretches",
-    "posture_of",
     "printed_reactions",
-    "pulls_at",
     "pulls_of",
     "quantities",
     "rates_of",
@@ -204,12 +182,9 @@ __all__ = [
     "rows_of",
     "soil_strain",
     "spring_forces",
-    "stage_rates",
-    "stick",
     "stiffness_of_fuses",
     "stored_energies",
     "stored_energy",
-    "strike",
     "swing_by_side",
     "system_of",
     "turning_row",

@@ -90,7 +90,7 @@ class RockingField(Field):
     side, branch
         Pivot about which the base rotates, 1 right, -1 left, 0 in contact; sign of D'_1 in the law of Bouc and Wen.
     numbers
-        Of the model: see `rockflex.models._nonlinear_system.Numbers`.
+        Of the model: see `rockflex.models._numbers.Numbers`.
     pulls : ndarray, shape (7, 1 + M)
         Sums over the elements, see `pulls_of`.
     stops : list
@@ -236,7 +236,7 @@ class RockingField(Field):
             out[i] = y[n + i]
             out[n + i] = drive + square * behind - self.ratio * self.omega2[i] * y[i] - self.drag[i] * y[n + i]
             moment += self.mass[i] * self.height[i] * out[n + i]
-        share = -1.0 / inertia  # before the moment is known
+        share = 0.0 if self.held else -1.0 / inertia  # before the moment is known
         beside = self.total_mass * self.offset - displaced
         arm = beside * sine + self.weight_arm * cosine
         across = beside * cosine - self.weight_arm * sine
@@ -332,7 +332,7 @@ class RockingField(Field):
             moment += large * self.mass[i] * (gravity * fabs(y[i]) + 2.0 * (fabs(y[i]) + arm) * spin * out[i])
             moment += self.mass[i] * self.height[i] * part
             out[n + i] = part
-        moment = 0.0 if self.side == 0 else moment / fabs(self.inertia_left(y))
+        moment = 0.0 if self.side == 0 or self.held else moment / fabs(self.inertia_left(y))
         for i in range(n):
             out[n + i] += self.height[i] * moment
         out[2 * n], out[2 * n + 1] = spin, moment
@@ -374,7 +374,7 @@ class RockingField(Field):
         along = across * cosine - self.weight_arm * sine
         beside = across * sine + self.weight_arm * cosine
         # An element points from its present anchor on the base to its position in contact: at θ/2 from the vertical.
-        if self.pulled or self.viscous or self.pulls[P_PULL, 0] != 0.0:
+        if self.pulled or self.pulls[P_PULL, 0] != 0.0 or self.pulls[P_DRAG, 0] != 0.0:
             half = 0.5 * sine / upright
             coriolis = self.pull(y, P_FORCE) + 2.0 * self.pulls[P_PULL, 0] * self.side * half
             coriolis += self.pulls[P_DRAG, 0] * upright * self.side * spin

@@ -1,19 +1,20 @@
 """Accelerations and values of quantities at the states of a history."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex._kernel import python_kernel
-from rockflex.models._field import Field, field_rates, take_pulls
+from rockflex.models._fields import RockingField
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME
 from rockflex.models._nonlinear import NonlinearModel
-from rockflex.models._observe import LINEAR, observe_all
+from rockflex.models._numbers import Numbers, numbers_of
+from rockflex.models._observe import LINEAR
 from rockflex.models._phase import Key
-from rockflex.models._pulls import SUMS, pulls_of
+from rockflex.models._pulls import pulls_of
 from rockflex.models._quantities import Quantities, rows_of
 
 _MOST_CODES = 2**31  # beyond which they are numbered anew, before they overflow
@@ -36,14 +37,14 @@ def accelerations(model: RockingModel, states: Array) -> Array:
     """Return D''_1..D''_N in m/s² and q'' of the base, θ'' in rad/s² first, at every state, shape (n, N + b)."""
     side, layout = acting_side(states), model.layout
     n = layout.modes
-    if isinstance(model, NonlinearModel):
-        rates = np.zeros((states.shape[0], layout.size))
-        motion = np.ascontiguousarray(states[:, HEADER:])
-        shaking = states[:, GROUND].copy(), states[:, RISE].copy()
-        _rates_at(model.field(), pulls_at(model, states), side, *shaking, motion, rates)
-        return np.column_stack((rates[:, n : 2 * n], rates[:, layout.spin]))
-    heavier = under_more_gravity(model) if states[:, RISE].any() else None
     found = np.zeros((states.shape[0], n + layout.freedoms))
+    if isinstance(model, NonlinearModel):
+        for chosen, field in fields_at(model, numbers_of(model), states, side):
+            motion, shaking = _apart(states[chosen])
+            rates = field.rates_along(motion, *shaking, counted=False)
+            found[chosen] = rates[:, [*range(n, 2 * n), layout.spin]]
+        return found
+    heavier = under_more_gravity(model) if states[:, RISE].any() else None
     for chosen, key, vector in by_phase(model, states, side):
         found[chosen] = vector @ model.accelerations(key).T
         if heavier is not None:
@@ -78,18 +79,41 @@ def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Arr
         if heavier is not None:
             more = rows_of(heavier, quantities, key) - rows
             values[chosen] += states[chosen, RISE, None] * (vector @ more.T)
-    curved = np.flatnonzero(quantities.kinds != LINEAR)
     rocking = side != 0.0
-    if curved.size and rocking.any() and isinstance(model, NonlinearModel) and model.complete:
-        rates = rates_of(model, states, accelerations(model, states))[rocking]
-        moved = states[rocking, GROUND], states[rocking, RISE]
-        known = side[rocking], *moved, np.ascontiguousarray(states[rocking, HEADER:]), rates
-        pulls = pulls_at(model, states)[rocking]
-        for f in curved:
-            found, (near, far) = values[rocking, f], quantities.levers[f].tolist()
-            observe_all(model.field(), pulls, int(quantities.kinds[f]), found, near, far, *known)
-            values[rocking, f] = found
+    if model.complete and rocking.any() and (quantities.kinds != LINEAR).any():
+        rates = rates_of(model, states, accelerations(model, states))
+        numbers = numbers_of(model, quantities.kinds.tolist(), quantities.levers)
+        values[rocking] = observed(model, numbers, states[rocking], side[rocking], rates[rocking], values[rocking])
     return values
+
+
+def observed(model: RockingModel, numbers: Numbers, states: Array, side: Array, rates: Array, rows: Array) -> Array:
+    """Return outputs in large rotations, shape (n, F), from their rows and from D', D'', θ' and θ'': see `rates_of`."""
+    found = np.zeros(rows.shape)
+    for chosen, field in fields_at(model, numbers, states, side):
+        motion, shaking = _apart(states[chosen])
+        values = rows[chosen]
+        field.observe_along(motion, rates[chosen], *shaking, values)
+        found[chosen] = values
+    return found
+
+
+def fields_at(
+    model: RockingModel, numbers: Numbers, states: Array, side: Array
+) -> Iterator[tuple[Bools, RockingField]]:
+    """Yield a mask of the states of each phase, and its vector field."""
+    layout = model.layout
+    backwards = layout.velocities(states)[:, 0] < 0.0 if numbers.bouc_wen is not None else np.zeros(side.size, bool)
+    for chosen, key in phases_at(model, side, layout.of(states, layout.rotation), states):
+        pulls = pulls_of(model.properties, model.elements, model.element_key(key))
+        for branch, part in ((1, chosen & ~backwards), (-1, chosen & backwards)):
+            if part.any():
+                yield part, RockingField(numbers, key[0], branch, pulls, [])
+
+
+def _apart(states: Array) -> tuple[Array, tuple[Array, Array]]:
+    """Return the state vectors of a history, and both accelerations of the ground, each contiguous."""
+    return np.ascontiguousarray(states[:, HEADER:]), (states[:, GROUND].copy(), states[:, RISE].copy())
 
 
 def by_phase(model: RockingModel, states: Array, side: Array) -> list[tuple[Bools, Key, Array]]:
@@ -115,25 +139,3 @@ def _codes(rows: NDArray[np.int64]) -> NDArray[np.int64]:
         if codes.max(initial=0) > _MOST_CODES:
             codes = np.unique(codes, return_inverse=True)[1]
     return codes
-
-
-def pulls_at(model: RockingModel, states: Array) -> Array:
-    """Return the sums over the elements at every state, with their memories, shape (n, 7): see `pulls_of`."""
-    layout, side = model.layout, acting_side(states)
-    found = np.zeros((side.size, SUMS))
-    memory = states[:, HEADER + layout.memory : HEADER + layout.memory + layout.remembered]
-    for chosen, key in phases_at(model, side, layout.of(states, layout.rotation), states):
-        pulls = pulls_of(model.properties, model.elements, key)
-        found[chosen] = pulls[:, 0] + memory[chosen] @ pulls[:, 1:].T
-    return found
-
-
-@python_kernel
-def _rates_at(
-    field: Field, pulls: Array, side: Array, acceleration: Array, rise: Array, motion: Array, rates: Array
-) -> None:
-    n = field.modes.shape[1]
-    for k in range(side.size):
-        branch = 1.0 if n == 0 or motion[k, n] >= 0.0 else -1.0
-        take_pulls(field.pivots, side[k], pulls[k])
-        field_rates(field, side[k], branch, acceleration[k], rise[k], motion[k], rates[k])

@@ -2,18 +2,14 @@
 
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._elements import CLOSED, LEFT, RIGHT
-from rockflex.models._field import Field
+from rockflex.models._elements import CLOSED
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._linear import LinearModel
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._phase import Key, Phase
-from rockflex.models._pulls import pulls_of
 from rockflex.models._rocking_phase import phase_of
 
 
@@ -62,28 +58,3 @@ class NonlinearModel(ModalModel):
         """Return one phase; it is linear only in contact with an elastic superstructure."""
         linear = key[0] == CLOSED and self.bouc_wen is None
         return phase_of(self, key, self.arrow(key) if linear else None)
-
-    def field(self) -> Field:
-        """Return the coefficients of the vector field, with all elements on their first branches."""
-        p = self.properties
-        b = self.bouc_wen or BoucWen(1.0)
-        pivots = [p.pivot(side) for side in (RIGHT, LEFT)]
-        return Field(
-            complete=self.complete,
-            hysteretic=self.bouc_wen is not None,
-            viscous=self.layout.swept >= 0,
-            ledger=True,
-            modes=np.stack((p.omega**2, 2.0 * p.zeta * p.omega, p.effective_height, p.effective_mass)),
-            pivots=np.array(
-                [(each.arm, each.i_theta, *pulls_of(p, self.elements, self.start(each.side))[:, 0]) for each in pivots]
-            ),
-            weight_arm=p.l0r,
-            total_mass=p.m_tot,
-            gravity=self.gravity,
-            yield_displacement=b.yield_displacement,
-            post_yield_ratio=b.post_yield_ratio,
-            gamma=b.gamma,
-            beta=b.beta,
-            exponent=b.exponent,
-            whole=int(b.exponent) if b.exponent.is_integer() else 0,
-        )

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -10,40 +10,22 @@ import numpy as np
 
 from rockflex._arrays import Array, Integers
 from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.engine import Event, LinearPhase, NonlinearPhase, StateLayout, System
-from rockflex.modal import RockingProperties
-from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._elements import CLOSED, LEFT, RIGHT
 from rockflex.models._fields import Change, Landing, Reversal, RockingField
 from rockflex.models._impact import Restitution, SidedRestitution, VVELComplete, VVELSimplified
-from rockflex.models._landing import GAIN, GainsEnergyError
+from rockflex.models._landing import GAIN, WITHOUT, GainsEnergyError, velocities_after
 from rockflex.models._nonlinear import NonlinearModel
+from rockflex.models._numbers import numbers_of
 from rockflex.models._observe import LINEAR, VERTICAL
 from rockflex.models._phase import Guard, Key, Phase
 from rockflex.models._quantities import Quantities, lost_support_row, rows_of
 from rockflex.models._rocking_phase import QUARTER_TURN
-from rockflex.models._strike import WITHOUT, OwnLaw
 
 TREMOR = 0.01  # m/s²: the error of a step is relative to the response to it, or to a larger motion so far
 LIGHT = 0.05  # of the vertical reaction at rest: the least size of the loss of support
 BARELY = 1e-10  # of that response: a velocity that is zero at a reversal
-
-
-@dataclass(frozen=True, eq=False)
-class Numbers:
-    """What a vector field knows of a model."""
-
-    properties: RockingProperties
-    bouc_wen: BoucWen | None
-    complete: bool
-    viscous: bool
-    gravity: float
-    resting: float  # vertical reaction at rest
-    memory: int  # place of the first memory of an element
-    kinds: list[int]  # of the outputs
-    levers: Array
 
 
 def nonlinear_system(model: NonlinearModel, quantities: Quantities) -> System:
@@ -84,19 +66,13 @@ class Rocks:
         self.model, self.quantities = model, quantities
         # All forces are linear in gravity, and the vertical acceleration of the ground acts like more of it.
         self.heavier = replace(model, gravity=model.gravity + 1.0)
-        p, layout, curved = model.properties, model.layout, model.complete
+        p, curved = model.properties, model.complete
         count = len(quantities)
         kinds = quantities.kinds.tolist() if curved else [LINEAR] * count
-        self.numbers = Numbers(
-            properties=p,
-            bouc_wen=model.bouc_wen,
-            complete=curved,
-            viscous=layout.swept >= 0,
-            gravity=model.gravity,
-            resting=p.resting_reaction,
-            memory=layout.memory,
-            kinds=[LINEAR, *kinds, VERTICAL if curved else LINEAR],
-            levers=np.vstack((np.zeros((1, 2)), quantities.levers, np.zeros((1, 2)))),
+        self.numbers = numbers_of(
+            model,
+            [LINEAR, *kinds, VERTICAL if curved else LINEAR],
+            np.vstack((np.zeros((1, 2)), quantities.levers, np.zeros((1, 2)))),
         )
         rotation = TREMOR / GRAVITY * p.m_tot * p.half_width / p.l0r
         fall = math.sqrt(p.l0r * GRAVITY / p.i_theta)
@@ -254,7 +230,7 @@ class Rocks:
     def told(self, known: Phase, branch: int) -> Callable[[Array, float, float], tuple[Array, Key]]:
         """The jump of a law of the user's own."""
         model, N = self.model, self.model.layout.modes
-        p, layout, own = model.properties, model.layout, OwnLaw(model.law, model.properties)
+        p, layout = model.properties, model.layout
         fields = {side: self.field(known.beside[k], branch) for k, side in ((1, RIGHT), (2, LEFT))}
         turnings = self.turnings(known)
 
@@ -263,10 +239,7 @@ class Rocks:
             for place, _, offset in turnings:
                 state[place] = -offset
             state[layout.rotation] = 0.0
-            try:
-                velocity, spin = own.after(state[N : 2 * N], float(state[layout.spin]))
-            except Exception as error:
-                raise InputError(f"The impact law {shown(model.law)} failed: {error}") from error
+            velocity, spin = velocities_after(model.law, p, state[N : 2 * N], float(state[layout.spin]))
             state[N : 2 * N], state[layout.spin], key = velocity, spin, known.beside[0]
             if spin != 0.0:
                 side, key = (RIGHT, known.beside[1]) if spin > 0.0 else (LEFT, known.beside[2])

@@ -42,7 +42,7 @@ class Quantities:
         Weights of the `slip` and the `heave` of the base and of the rate of the heave (`heaving`), in models that have
         them.
     kinds : ndarray, shape (F,)
-        Kind of the quantity for large rotations; see `rockflex.models.observe`.
+        Kind of the quantity for large rotations; see `rockflex.models._observe`.
     """
 
     shares: Array
@@ -77,7 +77,7 @@ class Quantities:
 
     @property
     def levers(self) -> Array:
-        """Additional coefficients of quantities that are nonlinear in large rotations, (F, 2); see `observe`."""
+        """Additional coefficients of quantities that are nonlinear in large rotations, (F, 2); see `_observe`."""
         rotation, turn, ground = (self.shares[:, column] for column in (ROTATION, TURN, GROUND))
         near = np.where(self.kinds == SWAY, rotation, np.where(self.kinds == LEFT_OUT, -ground, 0.0))
         return np.column_stack((near, np.where(self.kinds == LEFT_OUT, -turn, 0.0)))
@@ -114,7 +114,7 @@ def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
     """Return the rows of the quantities in one phase, shape (F, C).
 
     While a complete model rocks, the row of a nonlinear quantity contains only its displacements and forces;
-    `rockflex.models.observe` adds the rest.
+    `RockingField.observe` adds the rest.
     """
     shares = quantities.shares
     large = model.complete and key[0] != CLOSED
@@ -157,7 +157,7 @@ def lost_support_row(model: ModalModel, key: Key) -> Array:
     """Return the decrease of ΣF_z below its value at rest, in N: a row, shape (C,).
 
     ΣF_z = m_tot (g + s B θ'') plus the tensions of the elements, Eq. 22 for small rotations with the sign corrected; at
-    rest it is m_tot g plus the prestress. While a complete model rocks the row is zero, and `observe` gives the value.
+    rest it is m_tot g plus the prestress. While a complete model rocks the row is zero, and `RockingField.observe` gives the value.
     """
     row = np.zeros(model.layout.columns)
     side, p = key[0], model.properties

@@ -10,11 +10,11 @@ import numpy as np
 from rockflex._arrays import Array, Bools
 from rockflex._constants import GRAVITY
 from rockflex.models._element_states import element_forces
-from rockflex.models._kept import acting_side, by_phase, pulls_at, rates_of
+from rockflex.models._kept import acting_side, by_phase, observed, rates_of
 from rockflex.models._label import RockingModel
-from rockflex.models._layout import GROUND, HEADER, RISE, SIDE
-from rockflex.models._nonlinear import NonlinearModel
-from rockflex.models._observe import HORIZONTAL, VERTICAL, observe_all
+from rockflex.models._layout import GROUND, RISE, SIDE
+from rockflex.models._numbers import numbers_of
+from rockflex.models._observe import HORIZONTAL, VERTICAL
 from rockflex.models._spring_forces import LIFTED
 from rockflex.models._springs import SpringModel
 
@@ -66,17 +66,14 @@ def spring_forces(model: SpringModel, states: Array) -> Array:
 
 def printed_reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     """Return Eqs. 21 and 22 as printed, with Σ m_i (-g + z''_i), for every model, plus tendon forces."""
-    x, z = _of_large_rotations(model, states, rates)
+    given = reactions if isinstance(model, SpringModel) else _of_large_rotations
+    x, z = given(model, states, rates)
     return Reactions(x, z - 2.0 * model.properties.m_tot * GRAVITY)
 
 
 def _of_large_rotations(model: RockingModel, states: Array, rates: Array) -> Reactions:
-    field = NonlinearModel(model.label, model.properties, model.lifts, model.law, gravity=model.gravity).field()
-    side, motion = acting_side(states), np.ascontiguousarray(states[:, HEADER:])
-    moving = np.ascontiguousarray(rates_of(model, states, rates))
-    pulls = pulls_at(model, states)
-    x, z = np.zeros(side.size), np.zeros(side.size)
-    moved = states[:, GROUND].copy(), states[:, RISE].copy()
-    for kind, values in ((HORIZONTAL, x), (VERTICAL, z)):
-        observe_all(field, pulls, kind, values, 0.0, 0.0, side, *moved, motion, moving)
-    return Reactions(x, z)
+    numbers, moving = numbers_of(model, [HORIZONTAL, VERTICAL]), rates_of(model, states, rates)
+    x, lost = observed(model, numbers, states, acting_side(states), moving, np.zeros((states.shape[0], 2))).T
+    if model.layout.slip >= 0:
+        x = x + model.properties.m_tot * rates[:, -1]
+    return Reactions(x, model.properties.resting_reaction - lost)

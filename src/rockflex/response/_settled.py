@@ -8,7 +8,7 @@ from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex.models import HEADER, SIDE, Quantities, RockingModel
 from rockflex.response._edges import tilt_at_rest
-from rockflex.solve import Engine, HybridEngine, takes
+from rockflex.solve import Engine
 
 
 def settled_rotation(model: RockingModel, states: Array, work_limit: float | None) -> float:
@@ -20,9 +20,7 @@ def settled_rotation(model: RockingModel, states: Array, work_limit: float | Non
         return math.nan
     (key,) = model.branches_at(last[:, SIDE], layout.of(last, layout.rotation), last).astype(np.int64).tolist()
     step = float(np.median(np.diff(np.unique(states[:, 0])))) if states.shape[0] > 1 else 0.01
-    none = Quantities.none(layout.modes)
-    engine = HybridEngine(model, none) if takes(model) else Engine(model, none)
-    found = engine.run(
+    found = Engine(model, Quantities.none(layout.modes)).run(
         np.zeros(2), step, free_vibration=None, state=(tuple(key), last[0, HEADER:].copy()), work_limit=work_limit
     )
     return math.nan if found.overturned else float(found.final_state[layout.rotation]) - tilt_at_rest(model)
