@@ -15,9 +15,9 @@ import numpy as np
 import opensees
 import studies
 import web_latency
-from numba import njit
 from rich.console import Console
 from rich.table import Table
+from scipy.signal import lfilter
 from timing import frame, least, milliseconds
 
 import rockflex as rf
@@ -109,18 +109,11 @@ def ode(structure: rf.Frame, motion: rf.GroundMotion, method: str) -> float:
     return time.perf_counter() - started
 
 
-@njit
-def recurrence(record: np.ndarray, a: np.ndarray, b: np.ndarray, d: np.ndarray, v: np.ndarray) -> float:
-    """Displacements and velocities of N oscillators, sample by sample, without events or peaks."""
-    total = 0.0
-    for i in range(record.size - 1):
-        before, after = record[i], record[i + 1]
-        for k in range(d.size):
-            x, y = d[k], v[k]
-            d[k] = a[0, k] * x + a[1, k] * y + b[0, k] * before + b[1, k] * after
-            v[k] = a[2, k] * x + a[3, k] * y + b[2, k] * before + b[3, k] * after
-        total += d[0]
-    return total
+def recurrence(record: np.ndarray, a: np.ndarray, b: np.ndarray) -> None:
+    """Displacements of N oscillators by SciPy's loop in C, sample by sample, without events or peaks."""
+    for (a0, a1, a2, a3), (b0, b1, b2, b3) in zip(a.T, b.T, strict=True):
+        numerator = [b1, b0 + a1 * b3 - a3 * b1, a1 * b2 - a3 * b0]
+        lfilter(numerator, [1.0, -(a0 + a3), a0 * a3 - a1 * a2], record)
 
 
 def scales_over_floor(n: int) -> float:
@@ -146,12 +139,10 @@ def floor(n: int, motion: rf.GroundMotion, clock: Callable[[], float] = time.per
     a[2], a[3] = -decay * p.omega**2 * sine, decay * (cosine - p.zeta * p.omega * sine)
     b[0] = b[1] = -0.25 * dt**2
     b[2] = b[3] = -0.5 * dt
-    d, v = np.zeros(n), np.zeros(n)
-    recurrence(motion.acceleration, a, b, d, v)
+    recurrence(motion.acceleration, a, b)
     started = clock()
     for _ in range(200):
-        d[:] = v[:] = 0.0
-        recurrence(motion.acceleration, a, b, d, v)
+        recurrence(motion.acceleration, a, b)
     return (clock() - started) / 200
 
 

@@ -1,4 +1,4 @@
-"""Repeat the numerically sensitive tests as on another processor, where BLAS and kernels round differently."""
+"""Repeat the numerically sensitive tests as on another processor, where BLAS and the engine round differently."""
 
 import os
 import platform
@@ -11,8 +11,6 @@ CORE = "Nehalem"
 SETTING = {
     "OPENBLAS_CORETYPE": CORE,
     "ROCKFLEX_SIMD": "baseline" if platform.machine().lower() in ("x86_64", "amd64") else "",
-    "NUMBA_CPU_NAME": "generic",
-    "NUMBA_CACHE_DIR": str(ROOT / "build" / "numba-generic"),  # never mixed with those of this processor
 }
 # Tests of modes, of the closed-form engine, of the forces, and of the twins that they are compared with.
 SENSITIVE = (
@@ -37,7 +35,7 @@ SENSITIVE = (
     "tests/validation/test_chimney_section_4_1_1.py",
     "tests/validation/test_closed_form_beams.py",
     "tests/validation/test_ground_*.py",
-    "tests/validation/test_hybrid_engine.py",
+    "tests/validation/test_engine_runs.py",
     "tests/validation/test_opensees.py",
     "tests/validation/test_reference_cases.py",
     "tests/validation/test_table*.py",

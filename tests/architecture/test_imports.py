@@ -63,22 +63,11 @@ FOUNDATION = {
     "_files",
     "_html",
     "_json",
-    "_kernel",
     "_matrices",
-    "_numba",
-    "_numba_calls",
-    "_numba_library",
-    "_numba_lowering",
-    "_numba_pipeline",
-    "_numba_typing",
-    "_numba_vectors",
     "_schema",
-    "_series_vectors",
     "_shown",
     "_values",
-    "_vectors",
     "_versions",
-    "_weighted",
 }  # every layer may import these; they only each other
 FACES = {"cli", "web", "__main__"}  # may import anything, and nothing below them or the front
 USERS = {"papers"}  # may import the package's own front too, as its users do
@@ -89,18 +78,6 @@ HOME = {
     "typer": {"cli"},
     "rich": {"cli", "progress"},
     "IPython": {"progress"},
-    "numba": {
-        "_numba",
-        "_numba_calls",
-        "_numba_library",
-        "_numba_lowering",
-        "_numba_pipeline",
-        "_numba_typing",
-        "_numba_vectors",
-        "_series_vectors",
-        "_vectors",
-        "_weighted",
-    },
     "distributed": {"parallel"},
     "dask": {"parallel"},
     "jinja2": {"report"},
@@ -115,7 +92,7 @@ HOME = {
 }
 NEVER_AT_IMPORT = {"pandas", "obspy", "openpyxl", "imageio_ffmpeg"}  # only inside functions, or for the type checker
 NOT_LOADED = {
-    *("numba", "scipy", "pandas", "matplotlib", "typer", "rich", "pydantic", "pyarrow", "statsmodels", "sklearn"),
+    *("scipy", "pandas", "matplotlib", "typer", "rich", "pydantic", "pyarrow", "statsmodels", "sklearn"),
     *("distributed", "jinja2", "IPython", "starlette", "uvicorn", "obspy", "openpyxl", "xarray", "PIL"),
 }  # by `import rockflex`
 LONGEST = 600  # lines

@@ -127,9 +127,9 @@ def test_workers_of_other_versions_are_refused(cluster: Cluster, monkeypatch: py
     real = _worker.installed_versions()
     with monkeypatch.context() as patch:
         # The function is sent by its name, so that the workers run their own.
-        fake = functools.update_wrapper(lambda: real | {"numba": "0.1"}, _worker.installed_versions)
+        fake = functools.update_wrapper(lambda: real | {"numpy": "0.1"}, _worker.installed_versions)
         patch.setattr(_worker, "installed_versions", fake)
-        message = rf"The worker tcp://\S+ has numba {real['numba']} and not 0\.1\. Start the workers in the same env"
+        message = rf"The worker tcp://\S+ has numpy {real['numpy']} and not 0\.1\. Start the workers in the same env"
         with patch.context() as before:
             before.delattr(distributed.Client, "register_plugin")  # nothing is sent to them
             with pytest.raises(InputError, match=message):

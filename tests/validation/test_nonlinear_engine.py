@@ -15,7 +15,6 @@ from rockflex.engine import Run
 from rockflex.models import NonlinearModel, Quantities, nonlinear_system, parse_model
 from rockflex.models import _fields as compiled
 from rockflex.models import _nonlinear_system as systems
-from rockflex.solve import HybridEngine
 
 PEAKS = (
     "max_rotation",
@@ -111,41 +110,33 @@ def result(structure, motion, model, options):
     return counts, np.array([getattr(found, name) for name in PEAKS]), found
 
 
-@pytest.fixture
-def hybrid(monkeypatch):
-    """As often as a list has entries, runs have been on the engine for hybrid systems."""
-    calls = []
-    whole = HybridEngine._samples_in
-    monkeypatch.setattr(HybridEngine, "_samples_in", lambda *a, **k: calls.append(1) or whole(*a, **k))
-    return calls
+def finer(motion):
+    """The same motion, with two samples for one."""
+    places = np.arange(2 * motion.acceleration.size - 1) / 2.0
+
+    def between(values):
+        return None if values is None else np.interp(places, np.arange(values.size), values)
+
+    vertical = between(motion.vertical)
+    return rf.GroundMotion(between(motion.acceleration), motion.dt / 2.0, name=motion.name, vertical=vertical)
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_random_runs_agree_with_the_older_engine(seed, hybrid, monkeypatch):
+def test_random_runs_do_not_depend_on_the_samples_of_a_motion(seed):
     structure, motion, model, options = case(seed)
     counts, peaks, found = result(structure, motion, model, options)
-    assert hybrid
-    with monkeypatch.context() as patched:
-        patched.setattr("rockflex.study._case.takes", lambda _model: False)
-        others, expected, other = result(structure, motion, model, options)
-        near = rf.GroundMotion(
-            motion.acceleration * (1.0 + 1e-12), motion.dt, name=motion.name, vertical=motion.vertical
-        )
-        moved = result(structure, near, model, options)
-    if moved[0] != others:
+    others, expected, _ = result(structure, finer(motion), model, options)
+    near = rf.GroundMotion(motion.acceleration * (1.0 + 1e-12), motion.dt, name=motion.name, vertical=motion.vertical)
+    moved = result(structure, near, model, options)
+    if moved[0] != counts:
         pytest.skip("the outcome itself depends on the twelfth digit of the record")
     assert counts == others
     # Both allow 1e-10 in a step, whose sum is at most 2e-9 in nine of ten runs (docs/design/0008), and more where a
     # change of the record by 1e-12 is multiplied by a thousand.
     size = np.maximum(np.abs(expected), 1e-300)
-    np.testing.assert_array_less(
-        np.abs(peaks - expected) / size, 5e-9 + 50.0 * (np.abs(moved[1] - expected) / size).max()
-    )
+    np.testing.assert_array_less(np.abs(peaks - expected) / size, 5e-9 + 50.0 * (np.abs(moved[1] - peaks) / size).max())
     if found is not None and options["output"] == "history":
-        assert found.energy.closing_error < 1e-9 + 3.0 * other.energy.closing_error
-        np.testing.assert_array_equal(found.side[[0, -1]], other.side[[0, -1]])
-        if options["free_vibration"] != "settle":  # whether that is so is asked every 64 samples
-            assert abs(len(found.time) - len(other.time)) <= 2
+        assert found.energy.closing_error < 1e-8
 
 
 def rocking(model, side):

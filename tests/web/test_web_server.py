@@ -95,7 +95,7 @@ def test_every_preset_answers_on_every_tab(client, preset) -> None:
         json.dumps(client.ask(path, state), allow_nan=False)
 
 
-def test_the_kernels_are_loaded_before_they_are_needed(client) -> None:
+def test_what_answers_need_is_imported_before(client) -> None:
     end = time.monotonic() + HANG
     while not json.loads(client.request("/api/about")[2])["ready"]:
         assert time.monotonic() < end
