@@ -13,6 +13,7 @@ from rockflex.engine.system import (
     StepTooLongError,
     System,
 )
+from rockflex.engine.tables import changes_of, halvings_of, radius
 
 __all__ = [
     "MAX_STATES",
@@ -27,4 +28,7 @@ __all__ = [
     "StateLayout",
     "StepTooLongError",
     "System",
+    "changes_of",
+    "halvings_of",
+    "radius",
 ]

@@ -1,6 +1,8 @@
 """Models of a structure on a base that may uplift."""
 
 from rockflex.models._bar import Bar
+from rockflex.models._based import horizontal_reaction
+from rockflex.models._between import LinearMotion, MotionBetween, Part, Shaking, inside
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._element import BROKEN, Dashpot, Element, Spring
 from rockflex.models._element_states import (
@@ -44,7 +46,7 @@ from rockflex.models._named import (
     swing_by_side,
 )
 from rockflex.models._nonlinear import NonlinearModel
-from rockflex.models._nonlinear_system import key_of, may_integrate, nonlinear_system
+from rockflex.models._nonlinear_system import key_of, nonlinear_system, with_marks
 from rockflex.models._observe import (
     HORIZONTAL,
     LEFT_OUT,
@@ -77,8 +79,9 @@ from rockflex.models._quantities import Quantities, lost_support_row, rows_of, t
 from rockflex.models._reactions import Reactions, lifted_springs, printed_reactions, reactions, spring_forces
 from rockflex.models._slider import Slider
 from rockflex.models._sliding import SlidingModel
+from rockflex.models._spring_forces import LOADED
 from rockflex.models._springs import SpringModel
-from rockflex.models._stored import floor_accelerations, raised_weight_rate, stored_energies
+from rockflex.models._stored import floor_accelerations, raised_weight_rate, soil_strain, stored_energies
 from rockflex.models._system import may_stack, system_of
 
 __all__ = [
@@ -94,6 +97,7 @@ __all__ = [
     "LEFT_OUT",
     "LIFTS",
     "LINEAR",
+    "LOADED",
     "OPENS",
     "OVERTURNS",
     "RELEASES",
@@ -123,13 +127,17 @@ __all__ = [
     "ImpactLaw",
     "Key",
     "LinearModel",
+    "LinearMotion",
     "Model",
+    "MotionBetween",
     "NonlinearModel",
+    "Part",
     "Phase",
     "Quantities",
     "Reactions",
     "Restitution",
     "RockingModel",
+    "Shaking",
     "SidedRestitution",
     "Slider",
     "SlidingModel",
@@ -151,13 +159,14 @@ __all__ = [
     "elongations",
     "floor_accelerations",
     "floor_quantities",
+    "horizontal_reaction",
     "housner",
+    "inside",
     "key_of",
     "layout_of",
     "lifted_springs",
     "linear_system_of",
     "lost_support_row",
-    "may_integrate",
     "may_stack",
     "modal_displacement",
     "nonlinear_system",
@@ -172,6 +181,7 @@ __all__ = [
     "reactions",
     "rotation_by_side",
     "rows_of",
+    "soil_strain",
     "spring_forces",
     "stiffness_of_fuses",
     "stored_energies",
@@ -181,4 +191,5 @@ __all__ = [
     "turning_row",
     "under_more_gravity",
     "values_of",
+    "with_marks",
 ]

@@ -19,17 +19,10 @@ def grounded(
     Raises
     ------
     InputError
-        If elements balance the weight of a base that slides, the structure topples on its springs under its own
-        weight, or some but not all springs have infinite friction.
+        If the structure topples on its springs under its own weight, or some but not all springs have infinite
+        friction.
     """
     if ground.springs is None:
-        if LinearModel(label, kept).neutral:
-            raise InputError(
-                f"The elements of {label} balance the weight on some of their branches, to within 1 % of L_0^r g. A "
-                "model that slides has no accurate solution then. Change the stiffness of the elements, or leave the "
-                "friction out.",
-                field="ground",
-            )
         friction = float(np.max(np.asarray(ground.friction)))
         return SlidingModel(label, kept, law=law or VVELSimplified(), missing_mass=missing_mass, friction=friction)
     friction = None

@@ -171,7 +171,7 @@ class Model:
             return grounded(label, kept, ground, given, self.missing_mass)
         law = impact if impact is not None else self._law(kept)
         linear = LinearModel(label, kept, self.lifts, law, self.missing_mass)
-        if self.complete or bouc_wen is not None or linear.neutral:
+        if self.complete or bouc_wen is not None:
             return NonlinearModel(label, kept, self.lifts, law, self.complete, bouc_wen, self.missing_mass)
         return linear
 

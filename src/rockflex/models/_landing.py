@@ -79,7 +79,9 @@ def sided(law: ImpactLaw, spin: float) -> ImpactLaw:
     return law
 
 
-def velocities_after(law: ImpactLaw, properties: RockingProperties, velocity: Array, spin: float) -> tuple[Array, float]:
+def velocities_after(
+    law: ImpactLaw, properties: RockingProperties, velocity: Array, spin: float
+) -> tuple[Array, float]:
     """Return the velocities after an impact that a law gives, checked; raises `InputError` if it fails."""
     try:
         found, turn = _pair(law.after(properties, velocity.copy(), spin))

@@ -4,14 +4,10 @@ from dataclasses import dataclass, field
 
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties
-from rockflex.models._balance import meets, stiffnesses_of
-from rockflex.models._elements import LEFT, RIGHT
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._phase import Key, Phase
 from rockflex.models._rocking_phase import phase_of
-
-NEUTRAL = 0.01  # of L_0^r g: closer to balance the steady rotation, ∝ 1/`rocking_stiffness`, exceeds the motion by far
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,20 +36,6 @@ class LinearModel(ModalModel):
     law: ImpactLaw = field(default_factory=VVELSimplified)
     missing_mass: bool = False
     gravity: float = GRAVITY
-
-    @property
-    def neutral(self) -> bool:
-        """Whether elements balance the weight so closely that the steady rotation of the rocking base is ill-defined.
-
-        This is checked for all combinations of their branches.
-        """
-        p = self.properties
-        weight = p.l0r * GRAVITY
-        return (
-            bool(p.elements)
-            and self.lifts
-            and any(meets(stiffnesses_of(p, self.elements, side), weight, NEUTRAL * weight) for side in (RIGHT, LEFT))
-        )
 
     @property
     def linear(self) -> "LinearModel":

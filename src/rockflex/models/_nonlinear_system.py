@@ -1,14 +1,14 @@
 """The nonlinear models as hybrid systems: phases, events and outputs for `rockflex.engine`."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from rockflex._arrays import Array
+from rockflex._arrays import Array, Integers
 from rockflex._constants import GRAVITY
 from rockflex._shown import shown
 from rockflex.engine import Event, LinearPhase, NonlinearPhase, StateLayout, System
@@ -22,16 +22,10 @@ from rockflex.models._observe import LINEAR, VERTICAL
 from rockflex.models._phase import Guard, Key, Phase
 from rockflex.models._quantities import Quantities, lost_support_row, rows_of
 from rockflex.models._rocking_phase import QUARTER_TURN
-from rockflex.models._slider import Slider
 
 TREMOR = 0.01  # m/s²: the error of a step is relative to the response to it, or to a larger motion so far
 LIGHT = 0.05  # of the vertical reaction at rest: the least size of the loss of support
 BARELY = 1e-10  # of that response: a velocity that is zero at a reversal
-
-
-def may_integrate(model: NonlinearModel) -> bool:
-    """Return whether a model can be a hybrid system: without friction dampers, which might hold its base."""
-    return not any(isinstance(each, Slider) for each in model.elements)
 
 
 def nonlinear_system(model: NonlinearModel, quantities: Quantities) -> System:
@@ -52,6 +46,17 @@ def key_of(model: NonlinearModel, key: Key, state: Array | None = None) -> Key:
     if model.bouc_wen is None:
         return key
     return (*key, -1 if state is not None and state[model.properties.n_modes] < 0.0 else 1)
+
+
+def with_marks(model: NonlinearModel, keys: Sequence[Key], places: Integers, states: Array) -> Array:
+    """Return states in which friction dampers have the memories of their phases, whose keys are keys[places]."""
+    marks = [model.phase(key[:-1] if model.bouc_wen is not None else key).marks for key in keys]
+    if any(marks):
+        states = states.copy()
+        for place, of_phase in enumerate(marks):
+            for index, value in of_phase:
+                states[places == place, model.layout.memory + index] = value
+    return states
 
 
 class Rocks:
@@ -89,7 +94,7 @@ class Rocks:
         rows = self.rows(model, own)
         more = self.rows(self.heavier, own) - rows
         outputs = rows[:, :n], rows[:, n], rows[:, n + 1]
-        if side == CLOSED:
+        if not known.free:
             stops, events = [], self.uplifts(known, branch)
         else:
             stops, events = self.changes(known, branch)
@@ -130,14 +135,16 @@ class Rocks:
         return (*key, branch) if self.model.bouc_wen is not None else key
 
     def uplifts(self, known: Phase, branch: int) -> tuple[Event, ...]:
-        """The base lifts where the overturning moment exceeds a limit (Eq. 16 or 24)."""
+        """The base lifts, or leaves friction dampers, where the moment exceeds a limit (Eq. 16 or 24)."""
         guard, found, heavier = known.guard, list[Event](), self.heavier.phase(known.key).guard
         scale = max([abs(each) for each in (guard.low, guard.high) if 0.0 < abs(each) < np.inf], default=1.0)
         for bound, leads in enumerate((guard.below, guard.above)):
             if leads is not None:
                 row, more = (self.limit(each, bound) for each in (guard, heavier))
                 target, heavy = self.full(leads.key, branch), more - row
-                event = Event("uplift", row[:-2], target, float(row[-1]), float(row[-2]), scale)
+                event = Event(
+                    "release" if known.side else "uplift", row[:-2], target, float(row[-1]), float(row[-2]), scale
+                )
                 found.append(replace(event, row_v=heavy[:-2], direct_v=float(heavy[-1])))
         return tuple(found)
 
@@ -148,6 +155,7 @@ class Rocks:
         row[[*range(layout.moving), -2, -1]] = sign * guard.row
         row[layout.memory : layout.memory + layout.remembered] -= sign * guard.recall[bound]
         row[-1] -= sign * (guard.high if bound else guard.low)
+        row[layout.rotation] -= sign * guard.turn
         return row
 
     def rotation(self, factor: float) -> Array:

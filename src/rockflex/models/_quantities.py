@@ -157,7 +157,8 @@ def lost_support_row(model: ModalModel, key: Key) -> Array:
     """Return the decrease of ΣF_z below its value at rest, in N: a row, shape (C,).
 
     ΣF_z = m_tot (g + s B θ'') plus the tensions of the elements, Eq. 22 for small rotations with the sign corrected; at
-    rest it is m_tot g plus the prestress. While a complete model rocks the row is zero, and `RockingField.observe` gives the value.
+    rest it is m_tot g plus the prestress. While a complete model rocks the row is zero, and
+    `RockingField.observe` gives the value.
     """
     row = np.zeros(model.layout.columns)
     side, p = key[0], model.properties

@@ -91,11 +91,6 @@ class SpringForces(LinearModel):
         return (CLOSED,)
 
     @property
-    def neutral(self) -> bool:
-        """Always False: a base that is not stable on its springs is refused."""
-        return False
-
-    @property
     def _key_size(self) -> int:
         return self.springs.n + 1 + len(self.elements)
 

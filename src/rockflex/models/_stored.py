@@ -64,6 +64,16 @@ def raised_weight(model: RockingModel, states: Array) -> Array:
     return side * p.m_tot * arm * rotation - 0.5 * p.l0r * rotation**2
 
 
+def soil_strain(model: RockingModel, states: Array) -> Array:
+    """Return the energy stored in each spring under the base in J, shape (n_states, n_springs)."""
+    if not isinstance(model, SpringModel):
+        return np.zeros((states.shape[0], 0))
+    layout = model.layout
+    depth = layout.of(states, layout.heave)[:, None]
+    depth = depth - model.springs.positions * layout.of(states, layout.rotation)[:, None]
+    return 0.5 * model.springs.stiffness * np.minimum(depth, 0.0) ** 2
+
+
 def floor_accelerations(model: RockingModel, floors: FloorModes, states: Array) -> Array:
     """Return the total horizontal acceleration of each floor in m/s², shape (n, N_floors).
 

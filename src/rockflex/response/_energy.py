@@ -19,8 +19,8 @@ from rockflex.models import (
     SIDE,
     TIME,
     RockingModel,
-    SpringModel,
     element_energies,
+    soil_strain,
     stored_energies,
 )
 from rockflex.response._element_losses import element_losses
@@ -135,8 +135,6 @@ def energy_ledger(model: RockingModel, states: Array) -> EnergyLedger:
         if model.layout.swept >= 0:
             swept = np.diff(model.layout.of(states, model.layout.swept))
             work = work._replace(swing=np.where(integrated, swept, work.swing))
-    stored = soil_strain(model, states)
-    soil = work.soil - np.diff(stored, axis=0)
     return EnergyLedger(
         kinetic=kinetic,
         strain=strain,
@@ -148,20 +146,10 @@ def energy_ledger(model: RockingModel, states: Array) -> EnergyLedger:
         input=_summed(given),
         lost=np.cumsum(lost),
         impact_losses=losses,
-        soil_strain=stored.sum(axis=1),
+        soil_strain=soil_strain(model, states).sum(axis=1),
         friction=_summed(work.friction),
-        soil=_summed(soil),
+        soil=_summed(work.soil),
     )
-
-
-def soil_strain(model: RockingModel, states: Array) -> Array:
-    """Return the energy stored in each spring under the base in J, shape (n_states, n_springs)."""
-    if not isinstance(model, SpringModel):
-        return np.zeros((states.shape[0], 0))
-    layout = model.layout
-    depth = layout.of(states, layout.heave)[:, None]
-    depth = depth - model.springs.positions * layout.of(states, layout.rotation)[:, None]
-    return 0.5 * model.springs.stiffness * np.minimum(depth, 0.0) ** 2
 
 
 def _summed(parts: Array) -> Array:

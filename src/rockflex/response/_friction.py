@@ -18,6 +18,7 @@ from rockflex.models import (
     RISE,
     SIDE,
     TIME,
+    MotionBetween,
     Reactions,
     RockingModel,
     accelerations,
@@ -26,10 +27,10 @@ from rockflex.models import (
 )
 from rockflex.response._energy import is_impact
 from rockflex.response._quintic import quintic
-from rockflex.solve import ClosedForm
 
 IMPACT_WINDOW = 0.05  # s after an impact, in which the demand has short spikes
 TURN = 0.2  # radians of the fastest mode between adjacent evaluation points
+ROUNDING = 1e-12  # relative: a base that slides demands its coefficient all the time
 FEWEST, MOST = 4, 2000  # evaluation points in the interval between adjacent states
 
 
@@ -63,7 +64,7 @@ class Friction:
         self._states = states
         self._printed = printed
         self._rates = accelerations(model, states)
-        self._linear = None if model.bouc_wen is not None else ClosedForm(model)
+        self._linear = None if model.bouc_wen is not None else MotionBetween(model)
         p = model.properties
         # Upper bound of the factor by which uplift increases the frequencies.
         scale = max(math.sqrt(p.pivot(side).i_theta / model.free_inertia(side)) for side in (1, -1))
@@ -101,7 +102,7 @@ class Friction:
         for k in np.argsort(-highest):  # from the highest, which leaves the fewest others that may exceed it
             if not 0.0 < best < 0.5 * math.pi:
                 break
-            if start[k] < 1.0 and highest[k] + self._rise[k] >= best:
+            if start[k] < 1.0 and highest[k] + self._rise[k] > best * (1.0 + ROUNDING):
                 best = max(best, self._peak(int(k), int(np.argmax(looks[:, k])), float(start[k]))[1])
         return float(_coefficient(np.array(max(best, 0.0))))
 

@@ -9,10 +9,9 @@ from rockflex._arrays import Array
 from rockflex._checks import finite_vector, positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.models import GROUND, HEADER, RISE, SIDE, TIME, BoucWen, RockingModel, accelerations
+from rockflex.models import GROUND, HEADER, RISE, SIDE, TIME, BoucWen, MotionBetween, RockingModel, accelerations
 from rockflex.response._missing import MissingQuantityError
 from rockflex.response._quintic import Motion, quintic_between
-from rockflex.solve import ClosedForm
 
 MOST = 10_000_000  # instants
 PIECES = 16  # of an interval in which z is integrated
@@ -101,15 +100,13 @@ def states_at(model: RockingModel, states: Array, times: Array) -> Array:
     inside[:, TIME] = times[between]
     for column in (GROUND, RISE):
         inside[:, column] += part * (after[:, column] - before[:, column])
-    decimals = 12 - int(np.ceil(np.log10(max(float(states[-1, TIME]), 1.0))))  # as the steps of `intervals`
     if not model.integrated:
-        intervals = ClosedForm(model).intervals(states)
-        inside[:, HEADER:] = intervals.after(which, np.round(elapsed, decimals))
+        inside[:, HEADER:] = MotionBetween(model).intervals(states).after(which, elapsed)
     else:
         _curve(model, states, which, part, inside)
         if model.bouc_wen is None:
             chosen, core = before[:, SIDE] == 0.0, HEADER + model.layout.core
-            moved = ClosedForm(model).intervals(states).after(which[chosen], np.round(elapsed[chosen], decimals))
+            moved = MotionBetween(model).intervals(states).after(which[chosen], elapsed[chosen])
             inside[chosen, HEADER:core] = moved[:, : model.layout.core]
     found[between] = inside
     return found

@@ -6,11 +6,9 @@ from rockflex.solve._solution import Excitation, Solution
 from rockflex.solve._solutions import Solutions
 from rockflex.solve._task import Task, WorkLimitError
 from rockflex.solve.engine import Engine, gather
-from rockflex.solve.exact.closed_form import ClosedForm
 from rockflex.solve.interruption import RunStoppedError, asked_to_stop, check_interruption, stopping_when
 
 __all__ = [
-    "ClosedForm",
     "Engine",
     "Excitation",
     "Pace",

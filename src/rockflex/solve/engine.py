@@ -31,6 +31,7 @@ from rockflex.models import (
     may_stack,
     nonlinear_system,
     system_of,
+    with_marks,
 )
 from rockflex.solve._failures import failure_of, failure_of_limit, failure_of_step
 from rockflex.solve._pace import SEARCH, Pace, pace_of
@@ -280,6 +281,8 @@ class Engine:
 
     def _of_model(self, keys: Sequence[Key], places: Integers, states: Array, *, history: bool = False) -> Array:
         """The states of the model, from those of the engine."""
+        if isinstance(self.model, NonlinearModel):
+            return with_marks(self.model, keys, places, states)
         return states if self.base is None else self.base.states_of_model(keys, places, states, history=history)
 
     def _failure(
@@ -369,8 +372,9 @@ def gather(engines: Iterable[Engine]) -> None:
     """Let engines of many models that differ only in numbers share their preparation."""
     alike = defaultdict[tuple[int, ...], list[Engine]](list)
     for each in engines:
-        alone = each.base is not None or isinstance(each.model, NonlinearModel)
-        if not alone and may_stack(each.model) and "stack" not in vars(each):
+        if isinstance(each.model, NonlinearModel) or each.base is not None:
+            continue
+        if may_stack(each.model) and "stack" not in vars(each):
             alike[each.model.properties.n_modes, len(each.quantities), each.model.lifts].append(each)
     for some in alike.values():
         most = max(1, min(STACK, MEMORY // some[0].size_of_plain))

@@ -1,1 +1,0 @@
-"""The exact engine: states are advanced over whole samples in closed form; only event times are solved for."""
