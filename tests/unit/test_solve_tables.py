@@ -4,20 +4,20 @@ from functools import cache
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
-
-import rockflex as rf
-from builders import make_frame
-from rockflex import Frame, GroundMotion, InputError, simulate
-from rockflex.models import HEADER, Model
-from rockflex.response import asked_of
-from rockflex.solve import ClosedForm, Engine
 from rockflex.solve.exact import basis
 from rockflex.solve.exact.tables import levels_of, propagate, terms_of
 from rockflex.solve.layout import INTO, OUT, RIPPLE, SAG, SLOPES, SWING, VALUES, Log, motion_of
 from rockflex.solve.memory import recollect
 from rockflex.solve.progress import progress_at_start
 from rockflex.solve.run import settled
+from scipy.linalg import expm
+
+import rockflex as rf
+from builders import make_frame
+from rockflex import Frame, GroundMotion, InputError, simulate
+from rockflex.models import Model
+from rockflex.response import asked_of
+from rockflex.solve import Engine
 from twins.exact import Exact
 from twins.frame import frame_properties
 
@@ -208,53 +208,11 @@ def test_what_contact_can_still_bring_is_bounded(name):
             assert settled(system, progress_at_start(CONTACT)[0], log, motion) == expected
 
 
-@pytest.mark.parametrize("dense", [False, True])
-@pytest.mark.parametrize("side", [0.0, 1.0, -1.0])
-@pytest.mark.parametrize("fraction", [0.0, 0.37, 1.0])
-def test_states_between_nodes(side, fraction, dense):
-    engine, _, twin = prepared("usual", dense=dense)
-    n = engine.model.properties.n_modes
-    nodes = np.zeros((2, HEADER + 2 + 2 * n))
-    nodes[:, 0], nodes[:, 1], nodes[:, 2] = (1.0, 1.0 + DT), side, (0.7, -1.9)
-    nodes[0, HEADER:] = 0.02 * draws(2 * n + 2, 1)[0]
-    if side == 0.0:
-        nodes[:, -2:] = 0.0
-    slope = (nodes[1, 2] - nodes[0, 2]) / DT
-    start = np.concatenate((nodes[0, HEADER:], [nodes[0, 2], slope, side]))
-    expected = expm(generator(twin, n, int(side != 0.0)) * DT * fraction) @ start
-    with pytest.MonkeyPatch.context() as patch:
-        if dense:
-            patch.setattr(basis, "WORST_CONDITION", 0.0)
-        found = ClosedForm(engine.model).intervals(nodes).at(fraction)
-    assert found.shape == (1, 2 * n + 2)
-    np.testing.assert_allclose(found[0], expected[: 2 * n + 2], rtol=1e-9, atol=1e-12)
-
-
-def test_between_the_two_sides_of_an_event_nothing_moves():
-    engine, _, _ = prepared("usual")
-    n = engine.model.properties.n_modes
-    nodes = np.zeros((2, HEADER + 2 + 2 * n))
-    nodes[:, 0], nodes[:, 2] = 3.0, (1.0, 0.0)  # a jump of the acceleration
-    nodes[:, HEADER:] = 0.01
-    nodes[:, -2:] = 0.0
-    np.testing.assert_allclose(
-        ClosedForm(engine.model).intervals(nodes).at(0.5)[0], nodes[0, HEADER:], rtol=1e-12, atol=1e-15
-    )
-
-
 def test_systems_are_made_once_a_step():
     engine, system, _ = prepared("usual")
     assert engine._phases.system(DT, 0.0) is system
     assert engine._phases.known_system(DT) is system
     assert engine._phases.system(0.005, 0.0) is not system
-
-
-@pytest.mark.parametrize("name", FRAMES)
-def test_the_closed_form_knows_the_fastest_of_all_phases(name):
-    engine, system, _ = prepared(name)
-    fastest = ClosedForm(engine.model).fastest
-    assert fastest == max(engine._phases._bases[phase].fastest for phase in (CONTACT, ROCKING, LEFT))
-    assert system.phases["levels"].max() == levels_of(fastest, DT)
 
 
 @pytest.mark.parametrize("name", FRAMES)

@@ -7,9 +7,8 @@ import pytest
 
 import rockflex as rf
 from rockflex._constants import GRAVITY
-from rockflex.models import GROUND, HEADER, TIME, accelerations, printed_reactions
+from rockflex.models import GROUND, HEADER, TIME, MotionBetween, accelerations, printed_reactions
 from rockflex.papers.silva_stojadinovic_2024 import _structures
-from rockflex.solve import ClosedForm
 
 RECORDS = [*rf.load_suite("fema-p695-far-field"), *rf.load_suite("fema-p695-near-field-no-pulse")][::3]
 STRUCTURES = [_structures.frame_of(name) for name in _structures.STRUCTURES]
@@ -30,7 +29,7 @@ def by_equation_22(run):
     """Least ΣF_z of Eq. 22 along a history, between its nodes too where it comes near zero."""
     history = run.history
     model, nodes = history.model, history.states
-    motion, lasting = ClosedForm(model), np.diff(nodes[:, 0]) > 0.0
+    motion, lasting = MotionBetween(model), np.diff(nodes[:, 0]) > 0.0
     weight = model.properties.m_tot * GRAVITY
     least = math.inf
     for place in PLACES:

@@ -81,7 +81,7 @@ from rockflex.models._slider import Slider
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._spring_forces import LOADED
 from rockflex.models._springs import SpringModel
-from rockflex.models._stored import floor_accelerations, raised_weight_rate, soil_strain, stored_energies
+from rockflex.models._stored import floor_accelerations, soil_strain, stored_energies
 from rockflex.models._system import may_stack, system_of
 
 __all__ = [
@@ -176,7 +176,6 @@ __all__ = [
     "printed_reactions",
     "pulls_of",
     "quantities",
-    "raised_weight_rate",
     "rates_of",
     "reactions",
     "rotation_by_side",

@@ -28,7 +28,7 @@ TURN = 2.0  # rad that a mode may turn within one power series
 REST = 0.5  # rad that it turns at most in what is left of an interval after the exponentials
 SMALL = 1e-18  # of a sum: terms that no longer change it
 BLUR = 1e-15  # of the last time: lengths that differ only by rounding of the times share one exponential
-AT_ONCE = 2**15  # intervals times fractions: some megabytes
+MOST = 2**14  # intervals whose power series fit in memory: a hundred megabytes
 ASIDE = 1e-6  # of a step times the change of θ' in it, from the middle rotation
 
 
@@ -185,13 +185,11 @@ class Part:
 
     def along(self, fractions: Array) -> Iterator[Array]:
         """Yield z at one fraction of all intervals after the other, shape (n, Z); they rise."""
-        n = self.rows.size
-        if self.shaking is None:
-            for some in np.split(fractions, range(0, fractions.size, max(AT_ONCE // n, 1))[1:]):
-                found = self.after(np.tile(np.arange(n), some.size), np.outer(some, self.steps).ravel())
-                yield from found.reshape(some.size, n, -1)
-            return
         parts, done = self.motion.parts(float(self.steps.max())), 0
+        if self.shaking is None and (parts > fractions.size or self.rows.size > MOST):
+            for fraction in fractions.tolist():
+                yield self.after(np.arange(self.rows.size), fraction * self.steps)
+            return
         for k, terms in enumerate(self.motion.developed(self.z, self.steps, self.shaking)):
             while done < fractions.size and (fractions[done] * parts <= k + 1 or k == parts - 1):
                 yield inside(terms, fractions[[done]] * parts - k)[0]

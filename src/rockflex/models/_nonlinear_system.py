@@ -49,7 +49,7 @@ def key_of(model: NonlinearModel, key: Key, state: Array | None = None) -> Key:
 
 
 def with_marks(model: NonlinearModel, keys: Sequence[Key], places: Integers, states: Array) -> Array:
-    """Return states in which friction dampers have the memories of their phases, whose keys are keys[places]."""
+    """Return states in which the memories of friction dampers are those of their phases, at keys[places]."""
     marks = [model.phase(key[:-1] if model.bouc_wen is not None else key).marks for key in keys]
     if any(marks):
         states = states.copy()

@@ -42,17 +42,6 @@ def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, A
     return kinetic, strain, model.gravity * raised_weight(model, states)
 
 
-def raised_weight_rate(model: RockingModel, states: Array) -> Array:
-    """Return the rate of `raised_weight` in kg m/s, shape (n,)."""
-    p, layout = model.properties, model.layout
-    rotation, spin = layout.of(states, layout.rotation), layout.of(states, layout.spin)
-    if isinstance(model, SpringModel):
-        return p.m_tot * layout.of(states, layout.heave + 1) - p.l0r * rotation * spin
-    side = states[:, SIDE]
-    arm = _by_side(side, *(p.pivot(each).arm for each in (1, -1)))
-    return side * p.m_tot * arm * spin - p.l0r * rotation * spin
-
-
 def raised_weight(model: RockingModel, states: Array) -> Array:
     """Return the gravity energy per unit of gravity at the states of a history in kg m, for small rotations."""
     p, layout = model.properties, model.layout
