@@ -7,8 +7,7 @@ import rockflex as rf
 from builders import frame_values
 from rockflex.models import parse_model
 from rockflex.response import NAMES, STATUSES, columns_of, respond
-from rockflex.solve import Engine, Excitation, WorkLimitError
-from rockflex.solve._desk import Desks
+from rockflex.solve import Excitation, WorkLimitError
 from rockflex.study import Case
 
 RECORD = rf.load_suite("el-centro-1940")[0].acceleration
@@ -62,27 +61,12 @@ def assert_same(one, other):
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
 
 
-@pytest.mark.parametrize("slice_of_work", [np.inf, 1e-5])
 @pytest.mark.parametrize("name", CASES)
-def test_every_run_is_as_if_it_were_alone(name, slice_of_work, monkeypatch):
+def test_every_run_is_as_if_it_were_alone(name):
     case, runs = case_of(name)
     alone = [solved(case, [run]).one(0) for run in runs]
     assert any(each.n_uplifts + each.n_impacts > 0 for each in alone) or name == "fixed"
-    taken = Desks.taken
-
-    def poisoned(self):
-        """What a run may read before it writes it would be seen in its results."""
-        desk = taken(self)
-        motion = desk.motion(1)
-        for array in motion:
-            array[...] = (
-                np.nan if array.dtype == float else 1 if array.dtype.names is None else np.ones((), array.dtype)
-            )
-        return desk
-
-    monkeypatch.setattr(Desks, "taken", poisoned)
-    pieces = {"slice_of_work": slice_of_work} if isinstance(case.engine, Engine) else {}
-    together = solved(case, runs, **pieces)
+    together = solved(case, runs)
     assert not together.failures
     for place, each in enumerate(alone):
         assert_same(together.one(place), each)

@@ -10,17 +10,12 @@ from rockflex import (
     Frame,
     GroundMotion,
     InitialState,
-    Restrained,
     RockingProperties,
     SolverError,
-    Tendon,
     load_suite,
     quiet_motion,
     simulate,
 )
-from rockflex.solve import Engine
-from rockflex.solve.batch import ENDED
-from rockflex.solve.status import Status
 from twins.fine_step import simulate_fine
 from twins.frame import frame_properties
 
@@ -127,53 +122,6 @@ def test_undamped_modes_may_add_up_for_ever():
     assert text.startswith("The free vibration of MDOF-S has not settled ")
     assert "s after the start. The state [D, D', θ, θ'] there is [" in text
     assert text.endswith("Give free_vibration in seconds, or more damping.")
-
-
-@pytest.mark.parametrize(
-    ("status", "value", "texts"),
-    [
-        (
-            Status.CHATTER,
-            0.5,
-            (
-                "The events of 2DOF-S, such as impacts, accumulate without end in the sample before 0.14 s. ",
-                "the record.",
-            ),
-        ),
-        (Status.INFINITE, np.nan, ("The motion of 2DOF-S is not finite at 0.14 s. ", "Check the parameters.")),
-        (Status.INFINITE, np.inf, ("The motion of 2DOF-S is not finite at 0.14 s. ", "Check the parameters.")),
-        (
-            Status.STALLED,
-            0.25,
-            (
-                "The motion of 2DOF-S cannot be integrated in the sample before 0.14 s: no step is short enough. ",
-                "Check the parameters.",
-            ),
-        ),
-        (
-            Status.GAINED,
-            0.5,
-            (
-                "The impact law VVELSimplified() returns energy in the sample before 0.14 s. ",
-                "A law can only lose energy: correct its `after`, or lower its restitution.",
-            ),
-        ),
-    ],
-)
-def test_a_run_that_cannot_be_solved_says_where(monkeypatch, status, value, texts):
-    def carry(self, system, steps, course, at, log, motion, batch):
-        batch.states[0] = value
-        # Failures are told with the end of the sample in which they came.
-        batch.ends[0].samples, batch.ends[0].status = 7 if status == Status.INFINITE else 6, status
-        batch.place[:] = 1, 0, 1
-        return ENDED
-
-    monkeypatch.setattr(Engine, "_carry", carry)
-    with pytest.raises(SolverError) as caught:
-        simulate(Restrained(Frame(**frame()), Tendon(0.0, 0.0)), EL_CENTRO, "2DOF-S")
-    assert str(caught.value).startswith(texts[0])
-    assert f"The state [D, D', θ, θ'] there is [{', '.join([f'{value:g}'] * 4)}]." in str(caught.value)
-    assert str(caught.value).endswith(texts[1])
 
 
 def test_motions_beyond_any_number_end():

@@ -22,7 +22,7 @@ from rockflex import (
     simulate_many,
 )
 from rockflex.response import PEAKS
-from rockflex.solve import HybridEngine
+from rockflex.solve import Engine
 
 RECORD = load_suite("el-centro-1940")[0].acceleration
 
@@ -132,13 +132,13 @@ def test_threads_change_nothing(output):
 
 
 def test_work_is_done_by_the_threads_asked_for(monkeypatch):
-    seen, real = set(), HybridEngine.run_all
+    seen, real = set(), Engine.run_all
 
     def run_all(*arguments, **options):
         seen.add(threading.current_thread())
         return real(*arguments, **options)
 
-    monkeypatch.setattr(HybridEngine, "run_all", run_all)
+    monkeypatch.setattr(Engine, "run_all", run_all)
     simulate_many(STRUCTURES, MOTIONS, workers=1)
     assert seen == {threading.current_thread()}
     simulate_many(STRUCTURES, MOTIONS, workers=3)

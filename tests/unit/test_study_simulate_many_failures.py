@@ -9,7 +9,7 @@ import pytest
 from builders import frame_values
 from rockflex import Frame, GroundMotion, InitialState, InputError, load_suite, simulate, simulate_many
 from rockflex.response import PEAKS
-from rockflex.solve import hybrid
+from rockflex.solve import engine
 from rockflex.solve.status import Status
 
 RECORD = load_suite("el-centro-1940")[0].acceleration
@@ -32,15 +32,15 @@ VALUES = [name for name in PEAKS if name not in ("model", "motion", "status")]
 @pytest.mark.parametrize("output", ["peaks", "history"])
 def test_runs_that_fail_become_rows(monkeypatch, workers, output):
     """Models with more modes than a structure has; runs that the solver gives up."""
-    real = hybrid._ends_of
+    real = engine._ends_of
 
-    def ends_of(batch, dt, *others, **options):
-        found = real(batch, dt, *others, **options)
+    def ends_of(batch, states, dt, *others, **options):
+        found = real(batch, states, dt, *others, **options)
         if dt == MOTIONS[1].dt:
-            found.ends["status"], found.ends["samples"] = Status.CHATTER, 0
+            found.status[:], found.samples[:] = Status.CHATTER, 0
         return found
 
-    monkeypatch.setattr(hybrid, "_ends_of", ends_of)
+    monkeypatch.setattr(engine, "_ends_of", ends_of)
     table = simulate_many(STRUCTURES, MOTIONS, ["2DOF-S", "4DOF-S"], output, workers=workers)
     for name in ("n_uplifts", "n_impacts"):
         assert table[name].dtype == "Int64"

@@ -5,7 +5,6 @@ import dataclasses
 import math
 import pickle
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -87,7 +86,6 @@ def best() -> rf.BestDesign:
 
 
 VALUES = {
-    rf.Warmth: lambda: rf.Warmth(4, 12.5, Path("/cache")),
     rf.Adequacy: lambda: rf.adequacy(frame().rocking()),
     rf.AdequacyTolerance: lambda: rf.AdequacyTolerance(base_moment=math.inf),
     rf.AnnualRate: law_of_two,
