@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import simpson
 
-from rockflex import BoucWen, GroundMotion, LumpedStructure, Restitution, load_suite, simulate
+from rockflex import BoucWen, Ground, GroundMotion, LumpedStructure, Restitution, load_suite, simulate
+from rockflex.models import accelerations, printed_reactions, reactions
 from rockflex.response._quintic import quintic
 
 GRAVITY = 9.81
@@ -171,6 +172,20 @@ def test_a_lone_peak_between_two_samples_is_found():
     # A coefficient that the peak alone exceeds, between two looks.
     assert run.sliding_time(run.required_friction * (1.0 - 1e-7)) is not None
     assert run.sliding_time(run.required_friction * (1.0 + 1e-7)) is None
+
+
+def test_the_printed_reactions_of_a_base_that_slides_have_its_slip():
+    """Before it rocks they are, but for the sign of the weight, those of small rotations."""
+    history = simulate(STRUCTURE, SHAKING, "MDOF-S", ground=Ground(friction=0.12)).history
+    found = [
+        each(history.model, history.states, accelerations(history.model, history.states))
+        for each in (reactions, printed_reactions)
+    ]
+    still = history.side == 0.0
+    assert np.ptp(history.slip[still]) > 1e-3
+    weight = history.model.properties.m_tot * 9.81
+    np.testing.assert_allclose(found[1].horizontal[still], found[0].horizontal[still], rtol=0.0, atol=1e-10 * weight)
+    np.testing.assert_allclose(found[1].vertical[still], found[0].vertical[still] - 2.0 * weight, rtol=1e-12)
 
 
 def test_a_polynomial_of_fifth_degree_is_its_own_interpolant():
