@@ -194,7 +194,8 @@ def test_energy_balance(model, case):
 
 
 @pytest.mark.parametrize("model", ["2DOF-C", "4DOF-C-SI", "2DOF-S-BW", "rigid-C"])
-def test_elements_without_effect_change_no_bit(model):
+def test_elements_without_effect_change_nothing(model):
+    """But for rounding, which may change a step: more states are summed in other vectors. A step allows 1e-10."""
     frame, options = rf.Frame(**FRAME), MODELS[model][2]
     nothing = [rf.ViscousDamper(0.0, 0.3), rf.Tendon(0.0, 0.0, -0.2)]
     runs = [
@@ -202,7 +203,7 @@ def test_elements_without_effect_change_no_bit(model):
         for each in (frame, rf.Restrained(frame, nothing))
     ]
     for name in (*PEAKS, "max_base_shear", "n_impacts", "min_vertical_reaction", "time_of_max_rotation"):
-        assert getattr(runs[1], name) == getattr(runs[0], name), name
+        assert getattr(runs[1], name) == pytest.approx(getattr(runs[0], name), rel=1e-9), name
 
 
 @pytest.mark.parametrize("model", ["2DOF-C", "2DOF-S-BW"])

@@ -130,15 +130,6 @@ def values_of(properties):
     }
 
 
-@pytest.mark.parametrize("slice_of_work", [1e-5, 1e-4])
-def test_an_interrupted_run_continues_to_the_bit(slice_of_work):
-    elements = [*(rf.YieldingDissipator(K, FORCE, 0.03, x) for x in SIDES), rf.FrictionDamper(0.5 * FORCE, -B)]
-    whole = engine_of(elements).run(MOTION.acceleration, MOTION.dt, history=True)
-    parts = engine_of(elements).run(MOTION.acceleration, MOTION.dt, history=True, slice_of_work=slice_of_work)
-    assert (whole.peaks == parts.peaks).all()
-    assert (whole.states == parts.states).all()
-
-
 def test_friction_of_a_yielding_structure_that_never_yields_is_that_of_an_elastic_one():
     dampers = [rf.FrictionDamper(FORCE, x) for x in SIDES]
     held = rf.Restrained(FRAME, dampers)

@@ -131,10 +131,10 @@ def test_random_runs_do_not_depend_on_the_samples_of_a_motion(seed):
     if moved[0] != counts:
         pytest.skip("the outcome itself depends on the twelfth digit of the record")
     assert counts == others
-    # Both allow 1e-10 in a step, whose sum is at most 2e-9 in nine of ten runs (docs/design/0008), and more where a
-    # change of the record by 1e-12 is multiplied by a thousand.
+    # Each allows 1e-10 in a step, whose sum is at most 2e-9 in nine of ten runs and 2e-8 in a hundred
+    # (docs/design/0008), and more where a change of the record by 1e-12 is multiplied by a thousand.
     size = np.maximum(np.abs(expected), 1e-300)
-    np.testing.assert_array_less(np.abs(peaks - expected) / size, 5e-9 + 50.0 * (np.abs(moved[1] - peaks) / size).max())
+    np.testing.assert_array_less(np.abs(peaks - expected) / size, 2e-8 + 50.0 * (np.abs(moved[1] - peaks) / size).max())
     if found is not None and options["output"] == "history":
         assert found.energy.closing_error < 1e-8
 

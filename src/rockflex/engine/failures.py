@@ -2,8 +2,24 @@
 
 from typing import Any
 
-from rockflex._errors import SolverError
+from rockflex._errors import InputError, SolverError
 from rockflex.engine.system import Key, LinearPhase, NonlinearPhase
+
+
+def lacks(level: str) -> ImportError:
+    """The processor lacks a level of vector instructions."""
+    return ImportError(
+        f"ROCKFLEX_SIMD={level!r} is not a level of vector instructions that this processor has. Give 'baseline', "
+        "'v3' (AVX2) or 'v4' (AVX-512), or leave it out for the best one."
+    )
+
+
+def check_key(key: Key) -> None:
+    """A key must be hashable."""
+    try:
+        hash(key)
+    except TypeError as error:
+        raise InputError(f"The key {key!r} of a phase must be hashable, as a tuple is.") from error
 
 
 def broken_off() -> SolverError:

@@ -1,7 +1,6 @@
 """The compiled loops of `march.c` as methods; `loops_twin` has the same in NumPy. Declarations: `loops.pxd`."""
 
 import os
-from itertools import pairwise
 
 import cython
 import numpy as np
@@ -9,10 +8,10 @@ from cython.cimports.libc.math import INFINITY, sqrt
 from cython.cimports.libc.stdlib import calloc, free, malloc, realloc
 from cython.cimports.rockflex.engine.field import Field, Jump
 
-from rockflex.engine import tableau
+from rockflex.engine import failures, tableau
 from rockflex.engine.shaken import shaken_of
 from rockflex.engine.system import up8
-from rockflex.engine.tables import padded
+from rockflex.engine.tables import grouped, jump_table
 
 LEVELS = ("", "baseline", "v3", "v4")
 
@@ -21,10 +20,7 @@ def chosen_level():
     """Return the level asked for by the environment variable ROCKFLEX_SIMD; empty for the best one."""
     asked = os.environ.get("ROCKFLEX_SIMD", "")
     if asked not in LEVELS or rockflex_loops(asked.encode()) == cython.NULL:
-        raise ImportError(
-            f"ROCKFLEX_SIMD={asked!r} is not a level of vector instructions that this processor has. Give 'baseline', "
-            "'v3' (AVX2) or 'v4' (AVX-512), or leave it out for the best one."
-        )
+        raise failures.lacks(asked)
     return asked.encode()
 
 
@@ -48,17 +44,6 @@ TRIAL = cython.declare(cython.int, tableau.STAGES)
 ERRORS = cython.declare(cython.int, tableau.STAGES + 1)
 BENT = cython.declare(cython.int, tableau.STAGES + 3)
 PLACE = cython.declare(cython.int, tableau.STAGES + 7)
-
-
-def packed(tables):
-    """Column after column, in groups of rows of nearly the same size."""
-    count, rows, _ = tables.shape
-    groups = -(-rows // LOOPS.group)
-    if groups == 0:
-        return np.zeros((count, 0))
-    bounds = [rows // 8 * g // groups * 8 for g in range(groups + 1)]
-    parts = [tables[:, a:b].transpose(0, 2, 1).reshape(count, -1) for a, b in pairwise(bounds)]
-    return np.concatenate(parts, axis=1)
 
 
 @cython.cclass
@@ -161,9 +146,9 @@ class Phases:
         ]
         rests = [event.rest for event in events]
         parts = [
-            *(packed(each) for each in tables[4:]),
+            *(grouped(each, LOOPS.group) for each in tables[4:]),
             np.array([event.scale for event in events]).reshape(count, systems).T,
-            *(np.concatenate((packed(padded(J)), packed(padded(np.abs(J)))), axis=1) for J in jumps if J is not None),
+            *(jump_table(J, LOOPS.group) for J in jumps if J is not None),
             *(conditions_of(rest) for rest in rests if rest is not None),
         ]
         offsets = np.cumsum([0, *(up8(part.shape[1]) for part in parts)], dtype=np.intp)
@@ -212,7 +197,7 @@ class Phases:
     def shake(self, place, which, shaken):
         """Take what a phase has under vertical acceleration, and point to what one system has; None if it has none."""
         if shaken is not None:
-            parts = [packed(each) for each in shaken[3:]]
+            parts = [grouped(each, LOOPS.group) for each in shaken[3:]]
             offsets = np.cumsum([0, *(up8(part.shape[1]) for part in parts)], dtype=np.intp)
             content = aligned(parts[0].shape[0], int(offsets[-1]))
             for part, first in zip(parts, offsets[:-1], strict=True):

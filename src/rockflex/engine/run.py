@@ -2,7 +2,7 @@
 
 The march stops before a sample in which a condition may fail. There the motion is expanded in a power series, whose
 polynomials give the first event to rounding; then the state jumps, and the next phase takes over the rest of the
-sample. Peaks never decide how the state advances, so that what is asked of a run does not change it.
+sample.
 """
 
 from math import isfinite
@@ -109,15 +109,13 @@ class Run:
     passed: cython.Py_ssize_t  # samples, before this call of `advance`
     end: cython.double  # time of the last event
     journal: Journal
-    n_looks: cython.int  # samples expanded for events, and for peaks
-    n_searched: cython.int
+    n_searched: cython.int  # samples expanded for peaks
 
     def __init__(self, system, h, state=None, key=None, which: cython.int = 0):
         if not (h > 0.0 and isfinite(h)):
             raise InputError(f"The time step must be a positive number, but {h!r} was given.")
         self.system, self.h, self.met, self.places, self.mirrors = system, h, [], {}, []
-        self.n, self.outputs = system.layout.size, len(system.outputs)
-        self.states = up8(self.n + 2)
+        self.n, self.outputs, self.states = system.layout.size, len(system.outputs), up8(system.layout.size + 2)
         self.stretch = STRETCH // (PER_SAMPLE + self.n * self.n // 8)
         one_sided = np.zeros(up8(max(1, self.outputs)))
         one_sided[[list(system.outputs).index(name) for name in system.one_sided]] = 1.0
@@ -132,8 +130,7 @@ class Run:
         self.scratch = self.unkept = np.zeros((1, self.n))
         self.unbounded = np.full(up8(max(1, self.outputs)), np.inf)
         self.watch, self.limit, self.which, self.failure = None, 2**62, 0, ""
-        self.size = 0
-        self.failed, self.first, self.pause, self.fading, self.shakes = False, 0, 0, Fading(), False
+        self.size, self.failed, self.first, self.pause, self.fading, self.shakes = 0, False, 0, 0, Fading(), False
         self.restart(state, key, which)
 
     def restart(self, state=None, key=None, which: cython.int = 0):
@@ -160,7 +157,7 @@ class Run:
         self.y[: self.n] = self.start
         self.sizes[: self.n] = 0.0
         self.ended = self.failed = False
-        self.passed = self.reached = self.n_looks = self.n_searched = 0
+        self.passed = self.reached = self.n_searched = 0
         self.end, self.now = 0.0, self.first
         self.journal.begin()
         self.flow.begin()
@@ -209,8 +206,8 @@ class Run:
 
     @property
     def counts(self):
-        """Numbers of phases, of samples expanded for events, and of samples expanded for peaks."""
-        return len(self.met), self.n_looks, self.n_searched
+        """Numbers of phases, and of samples expanded for peaks."""
+        return len(self.met), self.n_searched
 
     @property
     def history(self):
@@ -227,10 +224,7 @@ class Run:
     @cython.exceptval(-1)
     def enter(self, key) -> cython.int:
         """Return the place of the phase of a key."""
-        try:
-            hash(key)
-        except TypeError as error:
-            raise InputError(f"The key {key!r} of a phase must be hashable, as a tuple is.") from error
+        failures.check_key(key)
         if key in self.places:
             return self.places[key]
         phase, tables = prepared(self.system, key, self.h, self.mirrors)
@@ -473,7 +467,6 @@ class Run:
         event: cython.int
         at_once: cython.int = 0
         in_sample: cython.int = 0
-        self.n_looks += 1
         while u < 1.0:
             self.look_up()
             part = self.series.expand(self.now, start, end, v, u)

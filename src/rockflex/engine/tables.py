@@ -1,5 +1,6 @@
 """The matrices of a phase for one time step, for a stack of systems at once."""
 
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -340,6 +341,22 @@ def changes_of(G: Array, halvings: int) -> list[Array]:
     for _ in range(halvings):
         found.append(2.0 * found[-1] + found[-1] @ found[-1])
     return found[::-1]
+
+
+def grouped(tables: Array, most: int) -> Array:
+    """The tables column after column, in groups of at most so many rows, of nearly the same size."""
+    count, rows, _ = tables.shape
+    groups = -(-rows // most)
+    if groups == 0:
+        return np.zeros((count, 0))
+    bounds = [rows // 8 * g // groups * 8 for g in range(groups + 1)]
+    parts = [tables[:, a:b].transpose(0, 2, 1).reshape(count, -1) for a, b in pairwise(bounds)]
+    return np.concatenate(parts, axis=1)
+
+
+def jump_table(jump: Array, most: int) -> Array:
+    """A matrix J and |J|, one after the other, in groups of rows."""
+    return np.concatenate([grouped(padded(each), most) for each in (jump, np.abs(jump))], axis=1)
 
 
 def padded(table: Array) -> Array:

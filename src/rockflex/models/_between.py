@@ -292,6 +292,8 @@ def inside(terms: Array, places: Array) -> Array:
 
 def _merged(lengths: Array, blur: float) -> Array:
     """Return lengths in s, where those that differ by no more than a blur from the next shorter one have their mean."""
+    if not lengths.size:
+        return lengths
     values, which, count = np.unique(lengths, return_inverse=True, return_counts=True)
     group = np.cumsum(np.append(0, (np.diff(values) > blur) | (values[:-1] == 0.0)))
     return (np.bincount(group, values * count) / np.bincount(group, count))[group[which]]

@@ -309,7 +309,10 @@ class Engine:
     def _states(self, solver: Run) -> Array:
         times, places, ground, states, rise = solver.history
         keys = cast("list[Key]", solver.keys)
-        kept = _kept(times, np.array([key[0] for key in keys])[places])
+        kept = np.arange(times.size)
+        if self.model.bouc_wen is not None:
+            kept = np.flatnonzero(without_reversals(times, keys, places))
+        kept = kept[_kept(times[kept], np.array([key[0] for key in keys])[places[kept]])]
         times, places, ground, states = times[kept], places[kept], ground[kept], states[kept]
         rows = np.zeros((times.size, HEADER + self.model.layout.size))
         rows[:, TIME], rows[:, GROUND], rows[:, RISE] = times, ground, rise[kept]
@@ -321,9 +324,6 @@ class Engine:
             # A contact that does not last has the elements of what follows.
             rows[node, memory:] = rows[node + 1, memory:]
         rotation[side * rotation < 0.0] = 0.0  # by rounding
-        if self.model.bouc_wen is not None:
-            rows = without_reversals(rows, solver.keys, places)
-            times, side, rotation = rows[:, TIME], rows[:, SIDE], rows[:, HEADER + self.model.layout.rotation]
         rotation[:-1][(times[1:] == times[:-1]) & (side[:-1] != 0.0) & (rotation[1:] == 0.0)] = 0.0  # before an impact
         return rows
 
@@ -340,15 +340,16 @@ def _kept(times: Array, side: Integers) -> Bools:
     return kept
 
 
-def without_reversals(rows: Array, keys: Sequence[Any], places: Any) -> Array:
-    """Leave out the states on both sides of a reversal of a hysteretic spring, which changes nothing else."""
-    own, times, kept = np.array([list(key[:-1]) for key in keys])[places], rows[:, TIME], np.ones(len(rows), dtype=bool)
+def without_reversals(times: Array, keys: Sequence[Key], places: Integers) -> Bools:
+    """Which states are not on both sides of a reversal of a hysteretic spring, which changes nothing else."""
+    own, kept = np.array([key[:-1] for key in keys])[places], np.ones(times.size, dtype=bool)
     pairs = (times[1:] == times[:-1]) & (own[1:] == own[:-1]).all(axis=1) & (places[1:] != places[:-1])
     for k in np.flatnonzero(pairs).tolist():
         follows = k > 0 and times[k - 1] == times[k] and places[k - 1] != places[k]  # another event
         precedes = k + 2 < times.size and times[k + 2] == times[k]
         kept[k], kept[k + 1] = kept[k] and follows, precedes
-    return rows[kept]
+    kept[0] = True
+    return kept
 
 
 def _ends_of(batch: Batch, states: Array, dt: float, allowed: Sequence[int], count: int, *, settles: bool) -> Ends:
