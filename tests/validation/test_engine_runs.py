@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import finer
 
 PEAKS = (
     "max_rotation",
@@ -159,17 +160,6 @@ def shaken(motion, seed):
     rise = np.interp(times, np.arange(other.acceleration.size) * other.dt, other.acceleration, right=0.0)
     rise *= float(rng.uniform(0.2, 0.8))
     return rf.GroundMotion(motion.acceleration, motion.dt, name="both", vertical=rise)
-
-
-def finer(motion):
-    """The same motion, with two samples for one."""
-    places = np.arange(2 * motion.acceleration.size - 1) / 2.0
-
-    def between(values):
-        return None if values is None else np.interp(places, np.arange(values.size), values)
-
-    vertical = between(motion.vertical)
-    return rf.GroundMotion(between(motion.acceleration), motion.dt / 2.0, name=motion.name, vertical=vertical)
 
 
 def elements(rng, half_width, weight):

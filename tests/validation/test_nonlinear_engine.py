@@ -11,6 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import rockflex as rf
+from builders import finer
 from rockflex.engine import Run
 from rockflex.models import NonlinearModel, Quantities, nonlinear_system, parse_model
 from rockflex.models import _fields as compiled
@@ -108,17 +109,6 @@ def result(structure, motion, model, options):
         return "returns energy" in str(error), np.zeros(1), None
     counts = found.status, found.n_impacts, found.n_uplifts, found.settled
     return counts, np.array([getattr(found, name) for name in PEAKS]), found
-
-
-def finer(motion):
-    """The same motion, with two samples for one."""
-    places = np.arange(2 * motion.acceleration.size - 1) / 2.0
-
-    def between(values):
-        return None if values is None else np.interp(places, np.arange(values.size), values)
-
-    vertical = between(motion.vertical)
-    return rf.GroundMotion(between(motion.acceleration), motion.dt / 2.0, name=motion.name, vertical=vertical)
 
 
 @pytest.mark.parametrize("seed", range(40))

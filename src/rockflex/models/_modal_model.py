@@ -70,21 +70,6 @@ class ModalModel(Value):
         """The elements between the base and the ground."""
         return elements_of(self.properties)
 
-    @property
-    def turning(self) -> bool:
-        """Whether some phase may end where the rotation turns back."""
-        return self.layout.remembered > 0
-
-    @property
-    def most_fences(self) -> int:
-        """Largest number of fences of a phase."""
-        return 0
-
-    @property
-    def most_changes(self) -> int:
-        """Largest number of rotations at which elements change their branches, in any phase."""
-        return sum(max(len(each.stops(branch)) for branch in each.branches) for each in self.elements)
-
     def start(self, side: int) -> Key:
         """Return the branches on which a run starts in contact, or as the base begins to rotate about a pivot."""
         return first_key(self.properties, self.elements, side)

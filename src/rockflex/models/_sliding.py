@@ -50,16 +50,6 @@ class SlidingModel(LinearModel):
         """Layout of the state vector."""
         return layout_of(self.properties.n_modes, remembered=len(memories(self.elements)) + 1, slides=True)
 
-    @property
-    def turning(self) -> bool:
-        """Whether some phase may end where the rotation turns back."""
-        return len(memories(self.elements)) > 0
-
-    @property
-    def most_fences(self) -> int:
-        """Largest number of fences of a phase."""
-        return 2
-
     def element_key(self, key: Key) -> Key:
         """Return the branches of the base and of the elements."""
         return key[:-1]

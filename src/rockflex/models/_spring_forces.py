@@ -67,25 +67,6 @@ class SpringForces(LinearModel):
         return layout_of(self.properties.n_modes, remembered=remembered, slides=self.friction is not None, heaves=True)
 
     @property
-    def turning(self) -> bool:
-        """Always False: elements that yield have fences of their own."""
-        return False
-
-    @property
-    def most_changes(self) -> int:
-        """Always 0: the elements change their branches at fences."""
-        return 0
-
-    @property
-    def most_fences(self) -> int:
-        """Largest number of fences of a phase."""
-        of_elements = sum(
-            max(len(each.stops(branch)) + (each.direction(branch) != 0) for branch in each.branches)
-            for each in self.elements
-        )
-        return 2 * self.springs.n + (2 if self.friction is not None else 0) + of_elements
-
-    @property
     def sides(self) -> tuple[int, ...]:
         """The only side, 0: the base has no pivot."""
         return (CLOSED,)
