@@ -8,7 +8,8 @@ import pytest
 import rockflex as rf
 from builders import frame_values
 from rockflex.models import LinearModel, Model, accelerations, acting_side, parse_model, reactions
-from rockflex.response._peaks import respond, tracked_quantities
+from rockflex.response._peaks import tracked_quantities
+from rockflex.response._respond import respond
 from rockflex.solve import Engine
 from twins import impact_laws
 from twins.complete import complete_frame, simulate_complete

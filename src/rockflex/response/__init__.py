@@ -4,16 +4,7 @@ from rockflex.response._energy import EnergyLedger
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._history import History, SampledHistory
-from rockflex.response._peaks import (
-    GLOBAL,
-    NAMES,
-    STATUSES,
-    columns_among,
-    columns_of,
-    respond,
-    tracked_extremes,
-    tracked_quantities,
-)
+from rockflex.response._peaks import GLOBAL, tracked_extremes, tracked_quantities
 from rockflex.response._quasi_static import (
     MomentRotation,
     base_path,
@@ -27,6 +18,7 @@ from rockflex.response._quasi_static_on_springs import (
     resistance_on_springs,
     springs_path,
 )
+from rockflex.response._respond import NAMES, STATUSES, columns_among, columns_of, respond
 from rockflex.response._response import (
     BALANCED,
     PEAKS,
