@@ -324,7 +324,8 @@ class Engine:
             # A contact that does not last has the elements of what follows.
             rows[node, memory:] = rows[node + 1, memory:]
         rotation[side * rotation < 0.0] = 0.0  # by rounding
-        rotation[:-1][(times[1:] == times[:-1]) & (side[:-1] != 0.0) & (rotation[1:] == 0.0)] = 0.0  # before an impact
+        lands = (rotation[1:] == 0.0) | (side[1:] != side[:-1])  # another event may follow before the time has changed
+        rotation[:-1][(times[1:] == times[:-1]) & (side[:-1] != 0.0) & lands] = 0.0
         return rows
 
 
