@@ -127,3 +127,10 @@ def test_an_interrupt_in_a_law_ends_the_run():
     structure, motion, *_ = plain_run(1)
     with pytest.raises(KeyboardInterrupt):
         rf.simulate(structure(), motion.scaled(3.0), "2DOF-S", impact=Interrupts())
+
+
+def test_an_impact_that_an_event_follows_at_once_is_in_the_history():
+    """A bar begins to pull before the time has changed; the rotation in between is 1e-20."""
+    run = linear_run("elements", 1059).simulate(output="history")
+    assert run.impact_times.size == run.n_impacts > 100
+    assert run.energy.closing_error < 1e-12

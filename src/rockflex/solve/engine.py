@@ -147,6 +147,9 @@ class Engine:
         """The longest free vibration until settled, s."""
         p = self.model.properties
         slowest = float(p.omega.min(initial=math.inf))
+        if self.base is not None:  # on springs it rocks more slowly
+            roots = np.linalg.eigvals(self.base.rates(self._at_rest[0])[:, :-2])
+            slowest = float(np.abs(roots[roots.imag > 0.0]).min(initial=slowest))
         return 2000.0 * 2.0 * math.pi / slowest + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
 
     @property
