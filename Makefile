@@ -52,14 +52,15 @@ test: lint types $(READY)  ## lint, types and every test; those of the web page 
 test-portable: $(READY)  ## the numerically sensitive tests, as on another processor
 	$(BIN)/python scripts/portable_tests.py -n $(WORKERS) --dist loadgroup
 
-test-sanitized: $(READY)  ## the engine's tests with every index checked, and under the address sanitizer of gcc
+test-sanitized: $(READY)  ## the engine and runs of all models with every index checked, under the address sanitizer of gcc
 	rm -rf build/sanitized
 	CFLAGS=-fno-omit-frame-pointer $(INSTALL) --no-build-isolation --no-deps --target build/sanitized . \
 		--config-settings=setup-args=-Dchecked=true --config-settings=setup-args=-Dbuildtype=debugoptimized \
 		--config-settings=setup-args=-Db_sanitize=address,undefined --config-settings=setup-args=-Db_lundef=false
 	MESONPY_EDITABLE_SKIP=$(abspath $(wildcard build/cp*)) PYTHONPATH=build/sanitized PYTHONMALLOC=malloc \
 		LD_PRELOAD=$$($${CC:-gcc} -print-file-name=libasan.so) ASAN_OPTIONS=detect_leaks=0 \
-		UBSAN_OPTIONS=halt_on_error=1 $(BIN)/python -m pytest -p no:xdist tests/engine
+		UBSAN_OPTIONS=halt_on_error=1 $(BIN)/python -m pytest -p no:xdist tests/engine \
+		tests/unit/test_solve_batch.py tests/validation/test_same_bits.py
 
 check: lint types $(READY)  ## lint, types and the quick tests, before each commit
 	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow and not web"

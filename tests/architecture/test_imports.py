@@ -51,7 +51,7 @@ ALLOWED = {
         "progress",
         "report",
     },
-    "kinds": {"motion", "structure", "study", "fragility", "plot", "papers", "parallel", "progress", "store"},
+    "kinds": {"engine", "motion", "structure", "study", "fragility", "plot", "papers", "parallel", "progress", "store"},
 }
 FOUNDATION = {
     "_arrays",

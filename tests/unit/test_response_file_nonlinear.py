@@ -14,12 +14,18 @@ from rockflex import (
     InputError,
     Response,
     Restitution,
+    Restrained,
+    Tendon,
+    ViscousDamper,
     VVELComplete,
     VVELSimplified,
+    YieldingDissipator,
     load_suite,
     simulate,
 )
+from rockflex._constants import GRAVITY
 from rockflex.models import ForgottenLaw, NonlinearModel
+from rockflex.study import Case
 
 MOTION = GroundMotion(load_suite("el-centro-1940")[0].acceleration[60:210] * 2.5, 0.02, name="El Centro")
 FRAME = make_frame(n_stories=3, base_mass=60e3, stiffness_ratio=1.0, period=0.5, aspect_ratio=7.0, damping_ratio=0.03)
@@ -191,3 +197,20 @@ def test_any_damage_is_named(tmp_path):
             assert Response.load(path).peaks() == run.peaks()
             sound += 1
     assert sound < 100
+
+
+@pytest.mark.parametrize("more", [[], [ViscousDamper(2e5, 0.5)], [YieldingDissipator(2e7, 1e5, 0.05, 0.0)]])
+def test_a_run_of_elements_that_balanced_the_weight_is_read_as_it_was_written(tmp_path, more):
+    """Once such simplified models were integrated, and their states hold energies, too."""
+    p = FRAME.rocking()
+    held = Restrained(FRAME, [Tendon(1e5, p.l0r * GRAVITY / p.half_width**2, yield_force=1e9), *more]).rocking()
+    model = NonlinearModel("MDOF-S", held, complete=False)
+    run = Case(model, history=True, floors=True).run(MOTION)
+    back = Response.load(run.save(tmp_path / "run"))
+    same(back, run)
+    assert isinstance(back.history.model, NonlinearModel)
+    assert back.n_impacts > 3
+    assert back.energy.closing_error < 1e-9
+    assert back.settled_rotation() == pytest.approx(run.settled_rotation(), abs=1e-12)
+    # Ten digits in a step, which the impacts multiply.
+    assert back.max_rotation == pytest.approx(simulate(held, MOTION, "MDOF-S").max_rotation, rel=1e-6)

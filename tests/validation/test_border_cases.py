@@ -58,8 +58,8 @@ def test_settling_ends_a_fragility_on_springs_with_friction():
     assert (runs["error"].fillna("") == "").all()
 
 
-@pytest.mark.xfail(strict=True, raises=rf.SolverError, reason="each cycle passes the border of slack, at any amplitude")
 def test_bars_without_prestress_settle_on_soft_springs_with_little_damping():
+    """Each cycle passes the border of slack, until its amplitude is rounding: half an hour, at 0.8 % and T = 4.4 s."""
     frame = make_frame(n_stories=3, base_mass=60e3, stiffness_ratio=1.0, period=0.3, damping_ratio=0.1, aspect_ratio=8)
     p = frame.rocking()
     weight, half = p.m_tot * 9.81, p.half_width

@@ -1,8 +1,7 @@
-"""Complete and yielding models on the engine for hybrid systems: against the older engine, SciPy, and energy."""
+"""Complete and yielding models on the engine: against the same motion in other samples, SciPy, and energy."""
 
 import importlib.util
 import itertools
-import math
 import sys
 from pathlib import Path
 
@@ -12,112 +11,21 @@ from scipy.integrate import solve_ivp
 
 import rockflex as rf
 from builders import finer
+from random_runs import nonlinear_run
 from rockflex.engine import Run
 from rockflex.models import NonlinearModel, Quantities, nonlinear_system, parse_model
 from rockflex.models import _fields as compiled
 from rockflex.models import _nonlinear_system as systems
 
-PEAKS = (
-    "max_rotation",
-    "max_top_displacement",
-    "max_base_moment",
-    "max_base_shear",
-    "max_total_top_displacement",
-    "max_horizontal_reaction",
-    "min_vertical_reaction",
-)
-
-
-class PassesSome:
-    """A law of a user's own, after which rocking goes on."""
-
-    keeps = "a part of the velocities"
-    loses = "the rest"
-
-    def after(self, properties, modal_velocity, rotation_velocity):
-        return 0.9 * (modal_velocity + 0.7 * properties.effective_height * rotation_velocity), 0.3 * rotation_velocity
-
-
-def elements(rng, weight, half_width):
-    """Some tendons, fuses and dampers."""
-    found = []
-    for _ in range(int(rng.integers(1, 4))):
-        stiffness, place = weight * rng.uniform(0.3, 5.0), half_width * rng.choice([0.0, -0.9, 0.9, 0.5])
-        force, ratio, kind = weight * rng.uniform(0.02, 0.2), float(rng.choice([0.0, 0.05])), int(rng.integers(5))
-        breaks = rng.uniform(0.02, 0.2) if rng.random() < 0.4 else None
-        found.append(
-            (
-                lambda k, x, f, _r, _b: rf.Tendon(f, k, x),
-                lambda k, x, f, r, _b: rf.Tendon(0.5 * f, k, x, yield_force=f, post_yield_ratio=r),
-                lambda k, x, f, r, b: rf.YieldingDissipator(10.0 * k, f, r, x, rupture_elongation=b),
-                lambda k, x, f, r, _b: rf.YieldingDissipator(10.0 * k, f, r, x, tension_only=True),
-                lambda k, x, _f, _r, _b: rf.ViscousDamper(0.05 * k, x),
-            )[kind](stiffness, place, force, ratio, breaks)
-        )
-    return found
-
-
-def case(seed):
-    rng = np.random.default_rng(seed)
-    suite = rf.load_suite("fema-p695-far-field")
-    motion = suite[int(rng.integers(len(suite)))].scaled(float(rng.uniform(0.5, 2.5)))
-    vertical = None
-    if seed % 3 == 2:  # it begins after some seconds
-        vertical = 0.6 * np.roll(motion.acceleration, 30) * (np.arange(len(motion.acceleration)) > 400)
-    motion = rf.GroundMotion(motion.acceleration, motion.dt, name=motion.name, vertical=vertical)
-    models = "2DOF-C", "MDOF-C", "3DOF-C-SI", "3DOF-C-E", "rigid-C", "2DOF-S-BW", "2DOF-C-BW", "1DOF-fixed-BW"
-    model = models[seed % len(models)]
-    parameters = {
-        "n_stories": int(rng.integers(2, 7)),
-        "story_height": 3.0,
-        "story_mass": 40e3,
-        "base_mass": 40e3,
-        "stiffness_ratio": float(rng.choice([0.2, 1.0, math.inf])),
-        "period": float(rng.uniform(0.3, 2.0)),
-        "aspect_ratio": float(rng.uniform(3.0, 12.0)),
-        "damping_ratio": float(rng.choice([0.01, 0.05])),
-    }
-    p = rf.Frame(**parameters).rocking()
-    shift = float(rng.uniform(-0.3, 0.3)) * p.half_width * (rng.random() < 0.3)
-    held = (
-        elements(rng, p.m_tot * 9.81, p.half_width - abs(shift)) if rng.random() < 0.6 and "fixed" not in model else []
-    )
-    laws = [None, None, rf.Restitution(0.6), rf.VVELComplete(), PassesSome()]
-    yields = "BW" in model
-    options = {
-        "impact": None if "fixed" in model else laws[int(rng.integers(len(laws)))],
-        "free_vibration": [0.0, 3.0, 2.0 if yields else "settle"][int(rng.integers(3))],
-        "output": str(rng.choice(["peaks", "history"])),
-    }
-    if yields:
-        law = float(rng.uniform(0.005, 0.08)), float(rng.choice([0.0, 0.1])), 0.5, 0.5
-        options["bouc_wen"] = rf.BoucWen(*law, exponent=float(rng.choice([1.0, 3.5, 8.0])))
-
-    def structure():
-        """Made anew, so that no engine is kept from another run."""
-        frame = rf.Frame(**parameters)
-        frame = rf.Eccentric(frame, shift) if shift else frame
-        return rf.Restrained(frame, held) if held else frame
-
-    return structure, motion, model, options
-
-
-def result(structure, motion, model, options):
-    try:
-        found = rf.simulate(structure(), motion, model, **options)
-    except rf.SolverError as error:
-        return "returns energy" in str(error), np.zeros(1), None
-    counts = found.status, found.n_impacts, found.n_uplifts, found.settled
-    return counts, np.array([getattr(found, name) for name in PEAKS]), found
-
 
 @pytest.mark.parametrize("seed", range(40))
 def test_random_runs_do_not_depend_on_the_samples_of_a_motion(seed):
-    structure, motion, model, options = case(seed)
-    counts, peaks, found = result(structure, motion, model, options)
-    others, expected, _ = result(structure, finer(motion), model, options)
+    run = nonlinear_run(seed)
+    motion = run.motion
+    counts, peaks, found = run.result()
+    others, expected, _ = run.result(finer(motion))
     near = rf.GroundMotion(motion.acceleration * (1.0 + 1e-12), motion.dt, name=motion.name, vertical=motion.vertical)
-    moved = result(structure, near, model, options)
+    moved = run.result(near)
     if moved[0] != counts:
         pytest.skip("the outcome itself depends on the twelfth digit of the record")
     assert counts == others
@@ -125,7 +33,7 @@ def test_random_runs_do_not_depend_on_the_samples_of_a_motion(seed):
     # (docs/design/0008), and more where a change of the record by 1e-12 is multiplied by a thousand.
     size = np.maximum(np.abs(expected), 1e-300)
     np.testing.assert_array_less(np.abs(peaks - expected) / size, 2e-8 + 50.0 * (np.abs(moved[1] - peaks) / size).max())
-    if found is not None and options["output"] == "history":
+    if found is not None and found.history is not None:
         assert found.energy.closing_error < 1e-8
 
 
@@ -205,7 +113,7 @@ def as_python():
 
 @pytest.mark.parametrize("seed", range(8))
 def test_fields_and_jumps_are_the_same_as_python(seed, monkeypatch):
-    structure, _, name, options = case(seed)
+    structure, _, name, options = nonlinear_run(seed)
     model = parse_model(name)
     model = model.of(
         structure().rocking(), impact=rf.VVELComplete() if model.lifts else None, bouc_wen=options.get("bouc_wen")

@@ -2,6 +2,7 @@
 
 from rockflex.engine.batch import Batch
 from rockflex.engine.field import Field, Jump
+from rockflex.engine.loops import LEVEL as VECTOR_LEVEL
 from rockflex.engine.run import Run
 from rockflex.engine.system import (
     MAX_STATES,
@@ -13,10 +14,11 @@ from rockflex.engine.system import (
     StepTooLongError,
     System,
 )
-from rockflex.engine.tables import changes_of, halvings_of, radius
+from rockflex.engine.tables import by_rows, changes_of, halvings_of, radius
 
 __all__ = [
     "MAX_STATES",
+    "VECTOR_LEVEL",
     "Batch",
     "Event",
     "Field",
@@ -28,6 +30,7 @@ __all__ = [
     "StateLayout",
     "StepTooLongError",
     "System",
+    "by_rows",
     "changes_of",
     "halvings_of",
     "radius",

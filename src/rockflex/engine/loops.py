@@ -519,7 +519,9 @@ class Phases:
                 counted,
             )
         for k in range(4):
-            self.combined(BENDS + k, count, h, work, BENT + k)
+            if counted:  # apart, because the order of a sum depends on how many states there are
+                self.combined(BENDS + k, count, h, work, BENT + k)
+            self.combined(BENDS + k, phase.moving, h, work, BENT + k)
         for k in range(TERMS):
             for i in range(count, self.states):
                 series[k, i] = y[i] if k == 0 and i < self.n else 0.0

@@ -5,6 +5,8 @@ from math import fabs, hypot, log
 import cython
 import numpy as np
 
+from rockflex.engine.tables import by_rows
+
 if cython.compiled:
     from cython.cimports.libc.math import fabs, hypot, log
 
@@ -30,7 +32,7 @@ class Decay:
             inverse, self.parted = vectors, False
         rows = np.concatenate((phase.C, np.array([event.row for event in phase.events]).reshape(-1, len(roots))))
         still = np.abs(roots) <= ROUNDING * np.abs(roots).max(initial=1e-300)
-        seen = np.where(still, 0.0, (rows @ vectors) / np.where(still, 1.0, roots))
+        seen = np.where(still, 0.0, by_rows(rows, vectors) / np.where(still, 1.0, roots))
         grows = ~still & (roots.real > ROUNDING * np.abs(roots))
         self.n, self.outputs, self.rows = len(roots), len(phase.C), np.ascontiguousarray(rows)
         self.constants = np.concatenate((phase.e, [event.constant for event in phase.events]))

@@ -19,6 +19,7 @@ from rockflex.engine.tables import (
     FINEST,
     VAGUE,
     bounds,
+    by_rows,
     changes_of,
     halvings_of,
     most_of,
@@ -120,7 +121,7 @@ def shaken_of(phase: LinearPhase | NonlinearPhase, h: float) -> ShakenTables | N
     pieces = np.where((fast <= FAST) & marches, 2 ** np.clip(halvings_of(fast, LONGEST), 0, 30), 0)
     found = marched_of(terms, h, step, pieces)
     found |= bounds_of(terms, h, m, parts, pieces)
-    slope = np.concatenate((C @ rates, np.zeros((S, rows.shape[1], fed))), axis=2)
+    slope = np.concatenate((by_rows(C, rates), np.zeros((S, rows.shape[1], fed))), axis=2)
     slope[..., columns:] = rows[..., n + 3 :]
     return ShakenTables(
         places=terms.places,
@@ -325,7 +326,9 @@ def bounds_of(terms: Terms, h: float, m: int, parts: int, pieces: Array) -> dict
             np.concatenate((once, once @ np.abs(inputs), np.zeros((len(some), fed, 2 + fed))), axis=2), n, parts, fed
         )
         found["loop"][some] = once @ np.abs(more)
-        add_turns(bend, sway, jolt, (C @ more, C @ A @ more, terms.rows[some, :, n + 3 :]), m, h, fed)
+        add_turns(
+            bend, sway, jolt, (by_rows(C, more), by_rows(by_rows(C, A), more), terms.rows[some, :, n + 3 :]), m, h, fed
+        )
         for name, each in (("bend", bend[:, :R]), ("sway", sway[:, :R]), ("jolt", jolt[:, : R - m])):
             found[name][some] = each
         swells = first, bend[:, R:] * (8.0 / h**2), sway[:, R:] * (96.0 / h**3), jolt[:, R - m :] * (384.0 / h**4)

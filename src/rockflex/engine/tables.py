@@ -89,10 +89,10 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
         if each is not None:
             end = n + len(each.parts)
             slow[place], driven[place], moves[place, :n], moves[place, n:end] = each[:4]
-            cap[place, :, n : n + 2], cap[place, :, n + 2 : end + 2] = each.cap @ each.push, each.cap
-            sway[place, :, n : n + 2], sway[place, :, n + 2 : end + 2] = each.sway @ each.push, each.sway
+            cap[place, :, n : n + 2], cap[place, :, n + 2 : end + 2] = by_rows(each.cap, each.push), each.cap
+            sway[place, :, n : n + 2], sway[place, :, n + 2 : end + 2] = by_rows(each.sway, each.push), each.sway
             sway[place, :, n + 1] += each.jerk
-            centre[place] -= each.swing @ rates[place]
+            centre[place] -= by_rows(each.swing, rates[place])
     parted = np.array([each is not None for each in splits])
     fine = np.minimum(halvings_of(radius(np.abs(slow) * h), 1.0), FINEST)
     G = np.zeros((S, n + 3, n + 3))  # of y, a, its rise, and 1
@@ -130,7 +130,7 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
         moves=padded(moves @ rates),
         now=now,
         outs=outs,
-        slope=seen_ahead(C @ rates, changes, 0),
+        slope=seen_ahead(by_rows(C, rates), changes, 0),
         bend=padded(bend),
         cap=padded(cap),
         centre=seen_ahead(centre, changes if most else changes[:1], 0),
@@ -212,7 +212,8 @@ def split_of(A: Array, f: Array, C: Array, h: float) -> Split | None:
     if not fast.any() or not (np.abs(W.T) * np.abs(V)).sum(axis=0).max() < POOR:
         return None
     share = np.real((V * both) @ W)
-    size = both * np.abs(C @ V) * np.exp(np.maximum(root.real, 0.0) * BLOCK * h)
+    seen = by_rows(C, V)
+    size = both * np.abs(seen) * np.exp(np.maximum(root.real, 0.0) * BLOCK * h)
     bent = size * np.abs(root) ** 2 * (h**3 / 96.0)
     push, fades = np.abs(W @ f), np.maximum(-root.real, 0.0)
     soon = fades * BLOCK * h > 1.0
@@ -225,8 +226,8 @@ def split_of(A: Array, f: Array, C: Array, h: float) -> Split | None:
         push=np.concatenate((grown, np.zeros_like(grown))),
         cap=np.tile(2.0 * size / np.abs(root), 2),
         sway=np.tile(bent, 2),
-        jerk=(bent / np.abs(root)) @ push,
-        swing=np.real((C @ V * (both / root)) @ W),
+        jerk=by_rows(bent / np.abs(root), push[:, None])[:, 0],
+        swing=np.real(by_rows(seen * (both / root), W)),
     )
 
 
@@ -250,7 +251,7 @@ def seen_ahead(rows: Array, changes: list[Array], first: int) -> Array:
     found = np.zeros((S, up8((len(changes) - first) * R), changes[0].shape[2]))
     for k in range(first, len(changes)):
         seen = found[:, (k - first) * R : (k - first + 1) * R]
-        seen[...] = rows[..., :n] @ changes[k]
+        seen[...] = by_rows(rows[..., :n], changes[k])
         seen[..., :n] += rows[..., :n]
         seen[..., n + k] += rows[..., n]
         seen[..., -1] += rows[..., n + 1]
@@ -271,10 +272,10 @@ def bounds(A: Array, f: Array, C: Array, m: int, changes: list[Array], h: float)
     if rows == 0:
         empty = np.zeros((S, 0, n + 2 * f.shape[2]))
         return empty, empty, empty
-    once = C @ A
-    before = np.concatenate((C, once, once[:, m:] @ A), axis=1)
-    most, direct = most_of(before @ A, A, changes, h), np.abs(before @ f)
-    found = np.concatenate((most, most @ np.abs(f), direct), axis=2)
+    once = by_rows(C, A)
+    before = np.concatenate((C, once, by_rows(once[:, m:], A)), axis=1)
+    most, direct = most_of(by_rows(before, A), A, changes, h), np.abs(by_rows(before, f))
+    found = np.concatenate((most, by_rows(most, np.abs(f)), direct), axis=2)
     parts = np.split(found, ends[:2], axis=1)
     scaled = (part * factor for part, factor in zip(parts, (h**2 / 8.0, h**3 / 96.0, h**4 / 384.0), strict=True))
     bend, sway, jolt = (np.minimum(np.nan_to_num(part, nan=VAGUE), VAGUE) for part in scaled)
@@ -283,11 +284,12 @@ def bounds(A: Array, f: Array, C: Array, m: int, changes: list[Array], h: float)
 
 def most_of(rows: Array, A: Array, changes: list[Array], h: float) -> Array:
     """Bounds of the entries of rows · e^{At} within a block."""
+    count, rows = rows.shape[1], padded(rows)
     here, most = rows, np.abs(rows)
     for _ in range(2 * BLOCK - 1):  # one place after another: a whole grid would not fit into the cache
         here = here + here @ changes[0]
         np.maximum(most, np.abs(here), out=most)
-    return np.asarray(most @ growth(0.5 * h * A, changes))
+    return np.asarray(most @ growth(0.5 * h * A, changes))[:, :count]
 
 
 def growth(G: Array, changes: list[Array]) -> Array:
@@ -361,6 +363,15 @@ def jump_table(jump: Array, most: int) -> Array:
 
 def padded(table: Array) -> Array:
     """The tables with zeros below, to a multiple of 8 rows."""
-    full = np.zeros((len(table), up8(table.shape[1]), table.shape[2]))
-    full[:, : table.shape[1]] = table
+    *stack, rows, columns = table.shape
+    full = np.zeros((*stack, up8(rows), columns), table.dtype)
+    full[..., :rows, :] = table
     return full
+
+
+def by_rows(rows: Array, matrix: Array) -> Array:
+    """The product of rows and a matrix, in which no row depends on how many there are.
+
+    BLAS takes some rows at a time, and sums those that are left over in another order.
+    """
+    return np.asarray(padded(rows) @ matrix)[..., : rows.shape[-2], :]

@@ -11,9 +11,10 @@ from rockflex._checks import whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._versions import commit_of, versions_of
+from rockflex.engine import VECTOR_LEVEL
 from rockflex.parallel import core_count, map_dask
 from rockflex.progress import PartProgress, Progress, check_part_progress, telling_parts
-from rockflex.store import Part, PartMaker, StudyFolder
+from rockflex.store import LEVEL, Part, PartMaker, StudyFolder
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -175,12 +176,13 @@ class _PartPlan:
 
 
 def _versions(spec: "Spec") -> dict[str, str]:
-    """Return the versions of the libraries, and the commits of rockflex and of the study's file where there are any."""
+    """Return versions of libraries, the level of vector instructions, and commits of rockflex and the study's file."""
     commits = {
         "rockflex commit": commit_of(Path(__file__), known=True),
         "study commit": None if spec.file is None else commit_of(spec.file, known=False),
     }
-    return versions_of(LIBRARIES) | {name: commit for name, commit in commits.items() if commit is not None}
+    found = versions_of(LIBRARIES) | {LEVEL: VECTOR_LEVEL}
+    return found | {name: commit for name, commit in commits.items() if commit is not None}
 
 
 def _loaded(study: "Spec | str | Path") -> "Spec":

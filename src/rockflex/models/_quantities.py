@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
+from rockflex.engine import by_rows
 from rockflex.models._elements import CLOSED, RIGHT, arm_of, border_of, is_held, memories
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._observe import LEFT_OUT, LINEAR, SWAY
@@ -123,7 +124,7 @@ def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
         shares = shares.copy()
         for column in (ROTATION, RIGHT_ROTATION, GROUND):
             shares[bends, column] = 0.0
-    rows = shares @ _moving(model, key, large=large)
+    rows = by_rows(shares, _moving(model, key, large=large))
     if model.is_free(key) and quantities.swings.any():
         rows[:, model.layout.spin] += quantities.swings @ (1.0, float(key[0] == RIGHT))
     slip, heave = model.layout.slip, model.layout.heave

@@ -7,7 +7,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
-from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System
+from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System, by_rows
 from rockflex.models._elements import CLOSED, LEFT, RIGHT
 from rockflex.models._impact import Restitution, VVELSimplified
 from rockflex.models._landing import landing_of, sided
@@ -102,7 +102,8 @@ class RigidGround:
         accelerations = -self.height[..., None] * turn[:, None]
         rates = np.zeros((S, 2 * N + 2, 2 * N + 4))
         rates[:, N : 2 * N], rates[:, -1] = accelerations, turn
-        quantities = self.shares[..., 2 * N : 3 * N] @ accelerations + self.shares[..., TURN, None] * turn[:, None]
+        quantities = by_rows(self.shares[..., 2 * N : 3 * N], accelerations)
+        quantities += self.shares[..., TURN, None] * turn[:, None]
         lost = self.lost_support(side, turn, self.m_tot)
         rows = np.concatenate((np.zeros_like(lost), quantities, lost), axis=1)
         return {"A_v": rates[..., :-2], "f_v": rates[..., -1], "C_v": rows[..., :-2], "d_v": rows[..., -1]}
@@ -146,7 +147,7 @@ class RigidGround:
     def rows(self, side: int, accelerations: Array, turn: Array) -> Array:
         """The quantities: rows, shape (S, F, C)."""
         N, shares = self.omega.shape[1], self.shares
-        found = shares[..., 2 * N : 3 * N] @ accelerations + shares[..., TURN, None] * turn[:, None]
+        found = by_rows(shares[..., 2 * N : 3 * N], accelerations) + shares[..., TURN, None] * turn[:, None]
         found[..., :N] += shares[..., :N] + shares[..., N : 2 * N] * (self.omega**2)[:, None]
         found[..., -4] += shares[..., ROTATION] + shares[..., RIGHT_ROTATION] * (side == RIGHT)
         found[..., -2] += shares[..., GROUND]

@@ -147,6 +147,9 @@ class Engine:
         """The longest free vibration until settled, s."""
         p = self.model.properties
         slowest = float(p.omega.min(initial=math.inf))
+        if self.base is not None:  # on springs it rocks more slowly
+            roots = np.linalg.eigvals(self.base.rates(self._at_rest[0])[:, :-2])
+            slowest = float(np.abs(roots[roots.imag > 0.0]).min(initial=slowest))
         return 2000.0 * 2.0 * math.pi / slowest + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
 
     @property
@@ -324,7 +327,8 @@ class Engine:
             # A contact that does not last has the elements of what follows.
             rows[node, memory:] = rows[node + 1, memory:]
         rotation[side * rotation < 0.0] = 0.0  # by rounding
-        rotation[:-1][(times[1:] == times[:-1]) & (side[:-1] != 0.0) & (rotation[1:] == 0.0)] = 0.0  # before an impact
+        lands = (rotation[1:] == 0.0) | (side[1:] != side[:-1])  # another event may follow before the time has changed
+        rotation[:-1][(times[1:] == times[:-1]) & (side[:-1] != 0.0) & lands] = 0.0
         return rows
 
 

@@ -17,6 +17,7 @@ from rockflex.store._spec import differences, listed, plain
 FORMAT = "rockflex-study-2"  # 1: without total displacements and reactions of the ground
 MANIFEST, SPEC = "manifest.json", "spec.json"
 COMMIT = " commit"  # versions whose name ends so tell where code came from, and are not compared
+LEVEL = "vector instructions"  # the version that older manifests do not have
 MOST_PARTS = 100_000  # every part is a file, whose number has five digits
 
 
@@ -127,12 +128,16 @@ class Manifest:
                 f"{folder} holds this study with another record, matrix or impact law. Checksums that differ:"
                 f"{listed(changed)}\nUse the same files, or give another folder."
             )
-        changed = differences(_compared(self.versions), _compared(given.versions))
+        now = _compared(given.versions)
+        if LEVEL not in self.versions:
+            now.pop(LEVEL, None)
+        changed = differences(_compared(self.versions), now)
         if changed and not any_version:
             raise InputError(
                 f"{folder} was started with other versions, whose numbers may differ in the last digits:"
                 f"{listed(changed)}\n"
-                "Install those versions, give another folder, or pass any_version=True to mix them."
+                f"Install those versions (set ROCKFLEX_SIMD for other {LEVEL}), give another folder, or pass "
+                "any_version=True to mix them."
             )
 
 
