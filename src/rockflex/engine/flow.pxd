@@ -8,18 +8,15 @@ cdef class Flow:
     cdef Peaks peaks
     cdef readonly int n, states, outputs, terms
     cdef double h
-    cdef double[::1] y, high, when, one_sided
-    cdef double[::1] largest  # magnitudes of the moving states so far
-    cdef double[:, ::1] work  # rates of the stages, the end of the step, and more: see the rows in `loops`
+    cdef double[::1] high, when, one_sided
+    cdef double[:, ::1] rows, found  # of `Phases`: states and rates, outputs and conditions, see `tableau`
     cdef double[::1] shaking  # a at the start of the step and its change, and those of a_v
     cdef bint counts  # whether the states on which nothing depends are integrated
     cdef int place  # of the phase
-    cdef bint known, entered, tried  # whether its first rates, its conditions, and a whole step are
+    cdef bint known, told, entered, tried  # whether its first rates, its first rows, its conditions, and a whole step are
     cdef double step  # the next one, in samples
     cdef double part  # that which was tried
-    cdef double[::1] first, last, end, spot, spot_rates  # some of its rows
-    cdef double[::1] kept  # the state, `largest` and the first rates at the start of a sample
-    cdef double kept_step  # the next step there
+    cdef double reached  # the part of a sample that has passed where a march has stopped
     cdef double[::1] nodes  # where outputs that are not linear are computed
     cdef double[:, ::1] fits, tilts  # their coefficients from that, and slopes of a cubic from its values
     cdef list facts  # what follows, by phase
@@ -27,32 +24,27 @@ cdef class Flow:
     cdef double[:, ::1] least  # sizes of these outputs below which it does not matter how far they are from a peak
     cdef int[:, ::1] velocities  # places of the states that are the rates of the states, -1 if there are none
     cdef int[:, ::1] exact  # conditions of states that have such rates
-    cdef double[::1] more  # what the constant states add to the conditions
-    cdef double[::1] outs, ends, early, late  # outputs at four places of a step
-    cdef double[::1] below, beyond  # conditions at both ends
-    cdef double[::1] slopes, bends  # rates of rows at both ends
-    cdef double[::1] vector, term
-    cdef int[::1] doubt
+    cdef int[:, ::1] straight  # whether an output is linear, by phase
 
     cdef void begin(self) noexcept nogil
     cdef void resume(self, bint counts) noexcept nogil
     cdef void forget(self) noexcept nogil
     cdef void enter(self, int place) noexcept nogil
+    cdef void arrive(self, int place, double a, double v) noexcept nogil
     cdef double take(self, int place, double start, double end, (double, double) v, double u) noexcept nogil
     cdef void accept(self) noexcept nogil
     cdef void leave(self) noexcept nogil
     cdef void enlarge(self, double[::1] sizes) noexcept nogil
     cdef int march(self, int place, const double[::1] a, const double[::1] v, int i, int last, double[:, ::1] states) noexcept nogil
-    cdef void keep(self) noexcept nogil
-    cdef void restore(self) noexcept nogil
-    cdef void look(self, int place, double a, double v, double[::1] y, double[::1] rates, double[::1] outs) noexcept nogil
+    cdef double cross(self, int place, double start, double end, (double, double) v, double u, double sample) noexcept nogil
+    cdef void look(self, int place, double a, double v, int at, int rates, int to) noexcept nogil
     cdef void look_ahead(self, int place) noexcept nogil
     cdef double counted(self, int j, double value) noexcept nogil
-    cdef void raise_to(self, double[::1] outs, double sample) noexcept nogil
+    cdef void raise_to(self, int outs, double sample) noexcept nogil
     cdef bint conditions_hide(self, int place) noexcept nogil
     cdef bint peaks_hide(self, int place) noexcept nogil
     cdef bint curves_hide(self, int place) noexcept nogil
-    cdef void look_within(self, int place, int stage, double t, double[::1] outs) noexcept nogil
+    cdef void look_within(self, int place, int stage, double t, int outs) noexcept nogil
     cdef void slopes_of(self, bint outputs, int place) noexcept nogil
     cdef bint clear(self, double t, double sample) noexcept nogil
     cdef int fill(self, double[:, ::1] series, double[::1] away) noexcept nogil

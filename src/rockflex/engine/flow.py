@@ -10,8 +10,8 @@ from math import fabs, isfinite, sqrt
 import cython
 import numpy as np
 
-from rockflex.engine.system import up8
-from rockflex.engine.tableau import STAGES, C
+from rockflex.engine import tableau
+from rockflex.engine.tableau import C
 
 if cython.compiled:
     from cython.cimports.libc.math import INFINITY, fabs, isfinite, sqrt
@@ -25,22 +25,39 @@ LEAST = cython.declare(cython.double, 0.2)
 MOST = cython.declare(cython.double, 4.0)
 WORK = cython.declare(cython.int, 12)  # samples that a step counts like
 STRETCH = cython.declare(cython.longlong, 1 << 22)  # of work, after which a march pauses
-OFTEN = cython.declare(cython.int, 64)  # steps in a sample, after which it is traversed instead
+OFTEN = cython.declare(cython.int, 64)  # steps in a sample without a look at Ctrl-C
 NEAR = cython.declare(cython.double, 0.75)  # of its peak: an output below that at both ends of a step does not reach it
 STRAY = cython.declare(cython.double, 0.2)  # of a cubic's curvature, by which a row may deviate from it
 VANISHES = cython.declare(cython.double, 1e-12)  # as in `series`
 CALM = cython.declare(cython.double, 1e-8)  # 1/s: of its largest value, the rate of a state that is at rest
 TERMS = cython.declare(cython.int, 8)  # of the polynomial over a step
 CURVED = cython.declare(cython.int, 10)  # of that of an output that is not linear
-TRIAL = cython.declare(cython.int, STAGES)  # rows of `work`, as in `loops`
-PLACE = cython.declare(cython.int, STAGES + 7)
-PLACE_RATES = cython.declare(cython.int, STAGES + 8)
-ROOM = STAGES + 9
-LAST = cython.declare(cython.int, 12)
+SWING = cython.declare(cython.double, 4.0 / 27.0)  # the highest value of the cubic t (1 - t)²
+STEEPEST = cython.declare(cython.double, 64.0 / 27.0)  # and of 16 t (1 - t)²
 EARLY = cython.declare(cython.int, 7)  # stages near the thirds of a step
 LATE = cython.declare(cython.int, 8)
 EARLY_AT = cython.declare(cython.double, C[7])
 LATE_AT = cython.declare(cython.double, C[8])
+
+# Rows, see `tableau`.
+FIRST = cython.declare(cython.int, 0)  # the rates at the start of a step
+LAST = cython.declare(cython.int, tableau.LAST)  # and at its end
+START = cython.declare(cython.int, tableau.START)
+END = cython.declare(cython.int, tableau.END)
+PLACE = cython.declare(cython.int, tableau.PLACE)
+PLACE_RATES = cython.declare(cython.int, tableau.PLACE_RATES)
+LARGEST = cython.declare(cython.int, tableau.LARGEST)
+TERM = cython.declare(cython.int, tableau.TERM)
+BEFORE = cython.declare(cython.int, tableau.BEFORE)
+OUTS = cython.declare(cython.int, tableau.OUTS)
+ENDS = cython.declare(cython.int, tableau.ENDS)
+EARLY_OUTS = cython.declare(cython.int, tableau.EARLY_OUTS)
+LATE_OUTS = cython.declare(cython.int, tableau.LATE_OUTS)
+BELOW = cython.declare(cython.int, tableau.BELOW)
+BEYOND = cython.declare(cython.int, tableau.BEYOND)
+SLOPES = cython.declare(cython.int, tableau.SLOPES)
+BENDS = cython.declare(cython.int, tableau.BENDS)
+MORE = cython.declare(cython.int, tableau.MORE)
 
 CUBIC = np.linalg.inv(np.vander((0.0, C[7], C[8], 1.0), increasing=True))  # through values at the start, early, ..
 
@@ -79,37 +96,47 @@ def range_of(
     return low - slack, high + slack
 
 
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def falls(first: cython.double, last: cython.double, before: cython.double, after: cython.double) -> cython.bint:
+    """Whether a smooth function, which starts at zero or above, may reach zero later in [0, 1]."""
+    low: cython.double = min(first, last)
+    high: cython.double
+    slack: cython.double = STRAY * (fabs(last - first - before) + fabs(last - first - after))
+    if low > SWING * (fabs(before) + fabs(after)) + slack:
+        return False
+    if first == 0.0:  # divided by t, as is a deviation of 16 t² (1 - t)² times the slack
+        low = min(before, last)
+        high = 3.0 * last - 2.0 * before - after
+        after += before - 2.0 * last
+        if after > 0.0 and -2.0 * after < high < 0.0:
+            low = before - 0.25 * high * high / after
+        return low <= STEEPEST * slack
+    low, high = range_of(first, last, before, after)
+    return min(low, high) <= 0.0
+
+
 @cython.final
 @cython.cclass
 class Flow:
     """Steps from the present state on."""
 
-    def __init__(self, phases, peaks, one_sided, y, outputs, h):
-        self.phases, self.peaks, self.one_sided, self.y, self.h = phases, peaks, one_sided, y, h
-        self.n, self.outputs = phases.n, outputs
-        self.states, self.high, self.when = len(y), peaks.high, peaks.when
-        self.largest, self.shaking, self.work = np.zeros(self.states), np.zeros(4), np.zeros((ROOM, self.states))
-        self.first, self.last, self.end = self.work[0], self.work[LAST], self.work[TRIAL]
-        self.spot, self.spot_rates = self.work[PLACE], self.work[PLACE_RATES]
+    def __init__(self, phases, peaks, one_sided, outputs, h):
+        self.phases, self.peaks, self.one_sided, self.h = phases, peaks, one_sided, h
+        self.n, self.states, self.outputs = phases.n, phases.states, outputs
+        self.high, self.when = peaks.high, peaks.when
+        self.rows, self.found, self.shaking = phases.rows, phases.found, np.zeros(4)
         self.nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(CURVED) / (CURVED - 1))
         self.fits = np.linalg.inv(np.vander(np.asarray(self.nodes), increasing=True))
         self.tilts = np.array([[0.0, 1.0, 0.0, 0.0], [0.0, 1.0, 2.0, 3.0]]) @ CUBIC
-        self.kept, self.vector, self.term = np.zeros(3 * self.states), np.zeros(self.states), np.zeros(self.states)
         self.facts = []
         self.curved, self.velocities = np.zeros((1, 1), dtype=np.intc), np.zeros((1, self.n), dtype=np.intc)
         self.least = np.zeros((1, 1))
         self.exact, self.terms = np.zeros((1, 1), dtype=np.intc), TERMS
-        self.outs, self.ends, self.early, self.late = np.zeros((4, up8(max(1, self.outputs))))
-        self.widen(0)
-        self.doubt = np.zeros(max(1, self.outputs), dtype=np.intc)
-        self.place, self.counts, self.part = -1, False, 0.0
+        self.straight = np.zeros((1, 1), dtype=np.intc)
+        self.place, self.counts, self.part, self.reached = -1, False, 0.0, 0.0
         self.begin()
-
-    def widen(self, conditions):
-        """Make room for phases with so many conditions."""
-        wide = up8(max(1, conditions))
-        self.more, self.below, self.beyond = np.zeros((3, wide))
-        self.slopes, self.bends = np.zeros((2, max(wide, up8(max(1, self.outputs)))))
 
     def know(self, phase, place):
         """Take a phase: its outputs that are not linear, and which states are rates of others."""
@@ -118,21 +145,23 @@ class Flow:
         velocities[list(phase.velocities)] = list(phase.velocities.values())
         count = len(phase.curved)
         curved[0], curved[1 : 1 + count], least[1 : 1 + count] = count, list(phase.curved), list(phase.curved.values())
-        if len(phase.events) > self.more.shape[0]:
-            self.widen(len(phase.events))
+        self.found = self.phases.found
         exact = [int(not event.row[0][velocities < 0].any()) for event in phase.events]
-        nothing = np.zeros(m + 1, dtype=np.intc), np.zeros(m + 1), np.full(n, -1, dtype=np.intc), []
+        straight = np.ones(m + 1, dtype=np.intc)
+        straight[list(phase.curved)] = 0
+        nothing = np.zeros(m + 1, dtype=np.intc), np.zeros(m + 1), np.full(n, -1, dtype=np.intc), straight, []
         self.facts += [nothing] * (place + 1 - len(self.facts))
-        self.facts[place] = curved, least, velocities, exact
+        self.facts[place] = curved, least, velocities, straight, exact
         known = list(zip(*self.facts, strict=True))
-        self.curved, self.least, self.velocities = np.array(known[0]), np.array(known[1]), np.array(known[2])
-        most = max(1, *map(len, known[3]))
-        self.exact = np.array([each + [0] * (most - len(each)) for each in known[3]], dtype=np.intc)
+        self.curved, self.least, self.velocities, self.straight = map(np.array, known[:4])
+        most = max(1, *map(len, known[4]))
+        self.exact = np.array([each + [0] * (most - len(each)) for each in known[4]], dtype=np.intc)
 
     def begin(self):
         """Begin a run anew."""
-        self.largest[:] = 0.0
-        self.work[:, :] = 0.0
+        k: cython.int
+        for k in range(self.states):
+            self.rows[LARGEST, k] = 0.0
         self.step = INFINITY
         self.forget()
 
@@ -143,15 +172,23 @@ class Flow:
 
     def forget(self):
         """Note that the state has changed, or the phase."""
-        self.known = self.entered = self.tried = False
+        self.known = self.told = self.entered = self.tried = False
 
     def enter(self, place):
         """Note what the constant states add to the conditions of a phase."""
-        k: cython.int
-        self.place, self.entered, self.known = place, True, False
-        for k in range(self.more.shape[0]):
-            self.more[k] = 0.0
-        self.phases.begin(place, self.y, self.more)
+        e: cython.int
+        self.place, self.entered, self.known, self.told = place, True, False, False
+        for e in range(self.phases.events(place)):
+            self.found[MORE, e] = 0.0
+        self.phases.begin(place)
+
+    def arrive(self, place, a, v):
+        """Compute what is not known yet of the start of a step."""
+        if not self.entered or self.place != place:
+            self.enter(place)
+        if not self.known:
+            self.phases.rates(place, a, v, START, FIRST, self.counts)
+            self.known = True
 
     def take(self, place, start, end, v, u):
         """Take a step from the place u of a sample; return the part of the sample, -1 if none is short enough."""
@@ -162,25 +199,24 @@ class Flow:
         if self.tried:
             self.tried = False
             return self.part
-        if not self.entered or self.place != place:
-            self.enter(place)
         self.shaking[0], self.shaking[2] = start + (end - start) * u, v[0] + (v[1] - v[0]) * u
-        if not self.known:
-            self.phases.rates(place, self.shaking[0], self.shaking[2], self.y, self.first, self.counts)
-            self.known = True
+        self.arrive(place, self.shaking[0], self.shaking[2])
         while True:
             self.peaks.add_work(WORK)
             self.shaking[1], self.shaking[3] = (end - start) * part, (v[1] - v[0]) * part
             error = self.phases.attempt(
-                place, part * self.h, self.shaking, self.y, self.largest, self.work, self.counts
+                place,
+                part * self.h,
+                self.shaking[0],
+                self.shaking[1],
+                self.shaking[2],
+                self.shaking[3],
+                self.counts,
             )
             error = error / TOLERANCE if isfinite(error) else INFINITY
             if error <= 1.0:
-                # A step that a sample or an event has shortened says little about the next one.
-                if part < longest:
+                if part < longest:  # one that a sample or an event has shortened says little about the next one
                     self.step = part * grown(most, error)
-                elif self.step < part * most:
-                    self.step = max(part * grown(most, error), self.step)
                 self.part = part
                 return part
             most = 1.0
@@ -192,159 +228,161 @@ class Flow:
     def accept(self):
         """Move the state to the end of the step."""
         k: cython.int
+        self.told = self.tried = False
         for k in range(self.n):
-            self.y[k] = self.end[k]
-            self.first[k] = self.last[k]
+            self.rows[START, k], self.rows[FIRST, k] = self.rows[END, k], self.rows[LAST, k]
         for k in range(self.phases.moving(self.place)):
-            self.largest[k] = max(self.largest[k], fabs(self.y[k]))
+            self.rows[LARGEST, k] = max(self.rows[LARGEST, k], fabs(self.rows[START, k]))
 
     def leave(self):
         """Note that the state has moved to a place within the step."""
-        self.known = self.tried = False
+        self.known = self.told = self.tried = False
 
     def enlarge(self, sizes):
         """After a jump the magnitudes of what the state is summed from are not below those of the state."""
         k: cython.int
         for k in range(self.n):
-            sizes[k] = max(sizes[k], fabs(self.y[k]))
+            sizes[k] = max(sizes[k], fabs(self.rows[START, k]))
 
     def march(self, place, a, v, i, last, states):
-        """Advance whole samples from i up to `last` as far as nothing happens; the number of the sample reached."""
+        """Advance whole samples from i up to `last` as far as nothing happens; the number of the sample reached.
+
+        Where something may happen, `reached` is the part of that sample that has passed.
+        """
         k: cython.int
-        steps: cython.int
-        u: cython.double
-        part: cython.double
-        rise: cython.double = v[i] if v.shape[0] > 0 else 0.0
-        risen: cython.double = rise
+        rise: cython.double = 0.0
+        risen: cython.double = 0.0
         before: cython.double = self.peaks.before()
         until: cython.longlong = self.peaks.work() + STRETCH
         self.peaks.look(False)
-        if not self.entered or self.place != place:
-            self.enter(place)
-        if not self.known:
-            self.phases.rates(place, a[i], rise, self.y, self.first, self.counts)
-            self.known = True
-        self.y[self.n], self.y[self.n + 1] = a[i], 1.0
-        self.look(place, a[i], rise, self.y, self.first, self.outs)
-        self.raise_to(self.outs, before + i)
-        self.phases.rows_of(place, False, self.y, self.y, (rise, 0.0, rise), self.below)
         while i < last and self.peaks.work() < until:
-            u, steps, self.kept_step = 0.0, 0, self.step
             if v.shape[0] > 0:
                 rise, risen = v[i], v[i + 1]
-            while u < 1.0:
-                part = self.take(place, a[i], a[i + 1], (rise, risen), u)
-                if part > 0.0 and steps < OFTEN and not self.conditions_hide(place):
-                    self.look_ahead(place)
-                    if not self.peaks_hide(place) and not self.curves_hide(place):
-                        if steps == 0 and part < 1.0:
-                            self.keep()
-                        u = u + part if part < 1.0 - u else 1.0
-                        steps += 1
-                        self.accept()
-                        self.raise_to(self.ends, before + i + u)
-                        self.outs[:], self.below[:] = self.ends, self.beyond
-                        continue
-                if steps > 0:
-                    self.restore()
-                self.tried = steps == 0 and part > 0.0
+            self.reached = self.cross(place, a[i], a[i + 1], (rise, risen), 0.0, before + i)
+            if self.reached < 1.0:
                 self.peaks.look(True)
                 return i
             i += 1
             self.peaks.add_work(1)
             if states.shape[0] > 1:
                 for k in range(self.n):
-                    states[i, k] = self.y[k]
+                    states[i, k] = self.rows[START, k]
         return i
 
-    def keep(self):
-        """Keep the start of a sample that takes several steps."""
-        k: cython.int
-        for k in range(self.states):
-            self.kept[k], self.kept[self.states + k] = self.y[k], self.largest[k]
-            self.kept[2 * self.states + k] = self.first[k]
+    def cross(self, place, start, end, v, u, sample):
+        """Advance from the place u of a sample as far as nothing happens; the place reached, 1 at its end.
 
-    def restore(self):
-        """Go back to the start of the sample."""
+        The step in which something may happen is kept.
+        """
         k: cython.int
-        for k in range(self.states):
-            self.y[k], self.largest[k] = self.kept[k], self.kept[self.states + k]
-            self.first[k] = self.kept[2 * self.states + k]
-        self.step, self.known = self.kept_step, True
+        _steps: cython.int
+        part: cython.double
+        a: cython.double = start + (end - start) * u
+        rise: cython.double = v[0] + (v[1] - v[0]) * u
+        fresh: cython.bint = not self.told
+        if fresh:
+            self.arrive(place, a, rise)
+            self.look(place, a, rise, START, FIRST, OUTS)
+            self.phases.look(place, False, (rise, 0.0), 0, START, START, BELOW)
+            self.told = True
+        for _steps in range(OFTEN):
+            part = self.take(place, start, end, v, u)
+            if part < 0.0:
+                return u
+            self.tried = True
+            if self.conditions_hide(place):
+                return u
+            if fresh:
+                self.raise_to(OUTS, sample + u)
+                fresh = False
+            self.look_ahead(place)
+            if self.peaks_hide(place) or self.curves_hide(place):
+                return u
+            u = u + part if part < 1.0 - u else 1.0
+            self.accept()
+            self.raise_to(ENDS, sample + u)
+            for k in range(self.found.shape[1]):
+                self.found[OUTS, k], self.found[BELOW, k] = self.found[ENDS, k], self.found[BEYOND, k]
+            self.told = True
+            if u == 1.0:
+                break
+        return u
 
-    def look(self, place, a, v, y, rates, outs):
-        """Compute the outputs under both accelerations."""
-        self.phases.rows_of(place, True, y, y, (v, 0.0, v), outs)
+    def look(self, place, a, v, at, rates, to):
+        """Compute the outputs of a state under both accelerations."""
+        self.rows[at, self.n], self.rows[at, self.n + 1] = a, 1.0
+        self.phases.look(place, True, (v, 0.0), 0, at, at, to)
         if self.curved[place, 0] > 0:
-            self.phases.observe(place, a, v, y, rates, outs)
+            self.phases.observe(place, a, v, at, rates, to)
 
     def look_ahead(self, place):
         """Compute the outputs at the end of the step."""
         a: cython.double = self.shaking[0] + self.shaking[1]
-        self.look(place, a, self.shaking[2] + self.shaking[3], self.end, self.last, self.ends)
+        self.look(place, a, self.shaking[2] + self.shaking[3], END, LAST, ENDS)
 
     def counted(self, j, value):
         """What counts of an output."""
         return value if self.one_sided[j] > 0.0 else fabs(value)
 
     def raise_to(self, outs, sample):
-        """Raise the peaks to outputs."""
+        """Raise the peaks to a row of outputs."""
         j: cython.int
         value: cython.double
         for j in range(self.outputs):
-            value = self.counted(j, outs[j])
+            value = self.counted(j, self.found[outs, j])
             if value > self.high[j]:
                 self.high[j], self.when[j] = value, sample
 
     def slopes_of(self, outputs, place):
-        """Compute the rates of conditions or outputs over a step, at both of its ends."""
-        k: cython.int
-        v: cython.double = self.shaking[2]
-        for k in range(self.n):
-            self.vector[k] = self.first[k] * self.part * self.h
-        self.vector[self.n], self.vector[self.n + 1] = self.shaking[1], 0.0
-        self.phases.rows_of(place, outputs, self.vector, self.y, (v, self.shaking[3], self.shaking[3]), self.slopes)
-        v += self.shaking[3]
-        for k in range(self.n):
-            self.vector[k] = self.last[k] * self.part * self.h
-        self.phases.rows_of(place, outputs, self.vector, self.end, (v, self.shaking[3], self.shaking[3]), self.bends)
+        """Compute the rates of conditions or outputs at both ends of a step."""
+        climb: cython.double = self.shaking[3] / (self.part * self.h)
+        self.rows[FIRST, self.n] = self.rows[LAST, self.n] = self.shaking[1] / (self.part * self.h)
+        self.phases.look(place, outputs, (self.shaking[2], climb), 1, START, FIRST, SLOPES)
+        self.phases.look(place, outputs, (self.shaking[2] + self.shaking[3], climb), 1, END, LAST, BENDS)
 
     def conditions_hide(self, place):
         """Whether a condition may fail within the step or at its end."""
         e: cython.int
-        low: cython.double
-        high: cython.double
+        more: cython.double
+        length: cython.double = self.part * self.h
         v: cython.double = self.shaking[2] + self.shaking[3]
-        self.phases.rows_of(place, False, self.end, self.end, (v, 0.0, v), self.beyond)
+        self.phases.look(place, False, (v, 0.0), 0, END, END, BEYOND)
         self.slopes_of(False, place)
         for e in range(self.phases.events(place)):
-            low, high = range_of(
-                self.below[e] + self.more[e], self.beyond[e] + self.more[e], self.slopes[e], self.bends[e]
-            )
-            if min(low, high) <= 0.0:
+            more = self.found[MORE, e]
+            if falls(
+                self.found[BELOW, e] + more,
+                self.found[BEYOND, e] + more,
+                length * self.found[SLOPES, e],
+                length * self.found[BENDS, e],
+            ):
                 return True
         return False
 
     def peaks_hide(self, place):
         """Whether a linear output may have a new peak within the step, and not at its ends."""
         j: cython.int
-        k: cython.int
         low: cython.double
         high: cython.double
         most: cython.double
         sloped: cython.bint = False
+        length: cython.double = self.part * self.h
         for j in range(self.outputs):
-            self.doubt[j] = 1
-        for k in range(self.curved[place, 0]):
-            self.doubt[self.curved[place, 1 + k]] = 0
-        for j in range(self.outputs):
-            if self.doubt[j] == 0 or max(fabs(self.outs[j]), fabs(self.ends[j])) <= NEAR * self.high[j]:
+            if (
+                self.straight[place, j] == 0
+                or max(fabs(self.found[OUTS, j]), fabs(self.found[ENDS, j])) <= NEAR * self.high[j]
+            ):
                 continue
             if not sloped:
                 self.slopes_of(True, place)
                 sloped = True
-            low, high = range_of(self.outs[j], self.ends[j], self.slopes[j], self.bends[j])
-            most = max(self.counted(j, self.outs[j]), self.counted(j, self.ends[j]))
+            low, high = range_of(
+                self.found[OUTS, j],
+                self.found[ENDS, j],
+                length * self.found[SLOPES, j],
+                length * self.found[BENDS, j],
+            )
+            most = max(self.counted(j, self.found[OUTS, j]), self.counted(j, self.found[ENDS, j]))
             if max(self.counted(j, low), self.counted(j, high)) > max(self.high[j], most):
                 return True
         return False
@@ -356,24 +394,27 @@ class Flow:
         low: cython.double
         high: cython.double
         most: cython.double
+        first: cython.double
+        last: cython.double
         before: cython.double
         after: cython.double
         told: cython.bint = False
         for k in range(self.curved[place, 0]):
             j = self.curved[place, 1 + k]
-            most = max(self.counted(j, self.outs[j]), self.counted(j, self.ends[j]))
+            first, last = self.found[OUTS, j], self.found[ENDS, j]
+            most = max(self.counted(j, first), self.counted(j, last))
             low = max(fabs(self.high[j]), self.least[place, 1 + k])
             if most <= self.high[j] - (1.0 - NEAR) * low:
                 continue
             if not told:
-                self.look_within(place, EARLY, EARLY_AT, self.early)
-                self.look_within(place, LATE, LATE_AT, self.late)
+                self.look_within(place, EARLY, EARLY_AT, EARLY_OUTS)
+                self.look_within(place, LATE, LATE_AT, LATE_OUTS)
                 told = True
-            before = self.tilts[0, 0] * self.outs[j] + self.tilts[0, 1] * self.early[j]
-            before += self.tilts[0, 2] * self.late[j] + self.tilts[0, 3] * self.ends[j]
-            after = self.tilts[1, 0] * self.outs[j] + self.tilts[1, 1] * self.early[j]
-            after += self.tilts[1, 2] * self.late[j] + self.tilts[1, 3] * self.ends[j]
-            low, high = range_of(self.outs[j], self.ends[j], before, after)
+            before = self.tilts[0, 0] * first + self.tilts[0, 1] * self.found[EARLY_OUTS, j]
+            before += self.tilts[0, 2] * self.found[LATE_OUTS, j] + self.tilts[0, 3] * last
+            after = self.tilts[1, 0] * first + self.tilts[1, 1] * self.found[EARLY_OUTS, j]
+            after += self.tilts[1, 2] * self.found[LATE_OUTS, j] + self.tilts[1, 3] * last
+            low, high = range_of(first, last, before, after)
             if max(self.counted(j, low), self.counted(j, high)) > max(self.high[j], most):
                 return True
         return False
@@ -381,25 +422,23 @@ class Flow:
     def look_within(self, place, stage, t, outs):
         """Compute the outputs at a stage of the step."""
         a: cython.double = self.shaking[0] + t * self.shaking[1]
-        self.phases.within(place, stage, self.part * self.h, self.y, self.work, self.spot)
-        self.spot[self.n], self.spot[self.n + 1] = a, 1.0
-        self.look(place, a, self.shaking[2] + t * self.shaking[3], self.spot, self.work[stage], outs)
+        self.phases.within(place, stage)
+        self.look(place, a, self.shaking[2] + t * self.shaking[3], PLACE, stage, outs)
 
     def clear(self, t, sample):
         """Raise the peaks over the step up to t if none may be within; return whether that was all."""
         j: cython.int
-        self.y[self.n], self.y[self.n + 1] = self.shaking[0], 1.0
-        self.look(self.place, self.shaking[0], self.shaking[2], self.y, self.first, self.outs)
-        self.raise_to(self.outs, sample)
+        self.look(self.place, self.shaking[0], self.shaking[2], START, FIRST, OUTS)
+        self.raise_to(OUTS, sample)
         self.look_ahead(self.place)
         if t < 1.0:
             for j in range(self.outputs):
-                if self.counted(j, self.ends[j]) > self.high[j]:
+                if self.counted(j, self.found[ENDS, j]) > self.high[j]:
                     return False
         if self.peaks_hide(self.place) or self.curves_hide(self.place):
             return False
         if t == 1.0:
-            self.raise_to(self.ends, sample + self.part)
+            self.raise_to(ENDS, sample + self.part)
         return True
 
     def fill(self, series, away):
@@ -410,22 +449,20 @@ class Flow:
         events: cython.int = self.phases.events(self.place)
         v: cython.double = self.shaking[2]
         rise: cython.double = self.shaking[3]
-        first: cython.double
         self.terms = CURVED if self.curved[self.place, 0] > 0 else TERMS if v == 0.0 and rise == 0.0 else TERMS + 1
-        self.phases.bend(self.place, self.part * self.h, self.shaking, self.y, self.work, series, self.counts)
+        self.phases.bend(self.place, self.counts, series)
         for k in range(TERMS, self.terms):
             for i in range(self.states):
                 series[k, i] = 0.0
         for e in range(events):
             away[e] = 0.0
         for k in range(self.terms):
-            first = v if k == 0 else rise if k == 1 else 0.0
-            self.phases.rows_of(
-                self.place, False, series[k], series[max(k - 1, 0)], (v, rise if k > 0 else 0.0, first), self.beyond
-            )
+            for i in range(self.n + 2):
+                self.rows[BEFORE, i], self.rows[TERM, i] = self.rows[TERM, i], series[k, i]
+            self.phases.look(self.place, False, (v, rise), k, BEFORE, TERM, BEYOND)
             for e in range(events):
-                series[k, self.states + e] = self.beyond[e] + (self.more[e] if k == 0 else 0.0)
-                away[e] += fabs(self.beyond[e]) if k > 0 else 0.0
+                series[k, self.states + e] = self.found[BEYOND, e] + (self.found[MORE, e] if k == 0 else 0.0)
+                away[e] += fabs(self.found[BEYOND, e]) if k > 0 else 0.0
         return self.terms
 
     def complete(self, series, first):
@@ -445,14 +482,13 @@ class Flow:
         for r in range(CURVED):
             t = self.nodes[r]
             a, v = self.shaking[0] + t * self.shaking[1], self.shaking[2] + t * self.shaking[3]
-            self.phases.evaluate(series, TERMS, t, self.spot)
-            self.spot[self.n], self.spot[self.n + 1] = a, 1.0
-            self.phases.rates(self.place, a, v, self.spot, self.spot_rates, False)
-            self.look(self.place, a, v, self.spot, self.spot_rates, self.early)
+            self.phases.evaluate(series, TERMS, t, self.rows[PLACE])
+            self.phases.rates(self.place, a, v, PLACE, PLACE_RATES, False)
+            self.look(self.place, a, v, PLACE, PLACE_RATES, EARLY_OUTS)
             for k in range(self.curved[self.place, 0]):
                 j = self.curved[self.place, 1 + k]
                 for i in range(CURVED):
-                    series[i, first + j] += self.fits[i, r] * self.early[j]
+                    series[i, first + j] += self.fits[i, r] * self.found[EARLY_OUTS, j]
 
     def sum_up(self, order, series, sizes, away, sums):
         """Sum the magnitudes of the terms of the conditions' coefficients, as far as they are known.
@@ -463,52 +499,50 @@ class Flow:
         i: cython.int
         e: cython.int
         v: cython.int
-        rise: cython.double
+        rise: cython.double = self.shaking[2]
+        risen: cython.double = self.shaking[3]
         length: cython.double = self.part * self.h
         events: cython.int = self.phases.events(self.place)
         for i in range(self.n):
-            self.term[i] = self.vector[i]
+            self.rows[BEFORE, i] = self.rows[TERM, i]
         if order == 0:
             for i in range(self.n):
-                self.vector[i] = max(fabs(self.y[i]), sizes[i])
+                self.rows[TERM, i] = max(fabs(self.rows[START, i]), sizes[i])
         elif order <= 2:
-            self.phases.terms_of_rates(self.place, self.shaking[0], self.shaking[2], self.y, self.spot_rates)
+            self.phases.terms_of_rates(self.place, self.shaking[0], self.shaking[2], START, PLACE_RATES)
             for i in range(self.n):
                 v = i if order == 1 else self.velocities[self.place, i]
-                self.vector[i] = 0.0 if v < 0 else self.spot_rates[v]
-                self.vector[i] *= length if order == 1 else 0.5 * length * length
+                self.rows[TERM, i] = 0.0 if v < 0 else self.rows[PLACE_RATES, v]
+                self.rows[TERM, i] *= length if order == 1 else 0.5 * length * length
         if order <= 2:
-            self.vector[self.n] = fabs(self.shaking[order]) if order < 2 else 0.0
-            self.vector[self.n + 1] = 1.0 if order == 0 else 0.0
-            self.phases.magnitudes(
-                self.place, (self.shaking[2], self.shaking[3]), order, self.term, self.vector, sums[order]
-            )
+            self.rows[TERM, self.n] = fabs(self.shaking[order]) if order < 2 else 0.0
+            self.rows[TERM, self.n + 1] = 1.0 if order == 0 else 0.0
+            self.phases.magnitudes(self.place, (rise, risen), order, self.rows[BEFORE], self.rows[TERM], sums[order])
         for e in range(events):
             if order == 0:
-                sums[0, e] += fabs(self.more[e])
+                sums[0, e] += fabs(self.found[MORE, e])
             elif order > 2 or (order == 2 and self.exact[self.place, e] == 0):
                 sums[order, e] = away[e]
         if order == 2:
             for i in range(self.n):
                 v = self.velocities[self.place, i]
-                self.vector[i] = 0.0 if v < 0 else self.first[v] * 0.5 * length * length
-                self.term[i] = self.first[i] * length
-            self.vector[self.n] = self.vector[self.n + 1] = 0.0
-            rise = self.shaking[3]
-            self.phases.rows_of(self.place, False, self.vector, self.term, (self.shaking[2], rise, 0.0), self.beyond)
+                self.rows[TERM, i] = 0.0 if v < 0 else self.rows[FIRST, v] * 0.5 * length * length
+                self.rows[BEFORE, i] = self.rows[FIRST, i] * length
+            self.rows[TERM, self.n] = self.rows[TERM, self.n + 1] = 0.0
+            self.phases.look(self.place, False, (rise, risen), 2, BEFORE, TERM, BEYOND)
             for e in range(events):
                 if self.exact[self.place, e] == 0 or fabs(series[0, self.states + e]) > VANISHES * sums[0, e]:
                     continue
                 if fabs(series[1, self.states + e]) <= VANISHES * sums[1, e]:
-                    series[2, self.states + e] = self.beyond[e]
+                    series[2, self.states + e] = self.found[BEYOND, e]
 
     def time_to_rest(self, place):
         """Return 0 at rest, where all rates are tiny next to the largest states; otherwise a time to wait."""
         i: cython.int
         worst: cython.double = 0.0
-        self.phases.rates(place, 0.0, 0.0, self.y, self.spot_rates, False)
+        self.phases.rates(place, 0.0, 0.0, START, PLACE_RATES, False)
         for i in range(self.phases.moving(place)):
-            worst = max(worst, fabs(self.spot_rates[i]) - CALM * self.largest[i])
+            worst = max(worst, fabs(self.rows[PLACE_RATES, i]) - CALM * self.rows[LARGEST, i])
         return 0.0 if worst <= 0.0 else self.h
 
 

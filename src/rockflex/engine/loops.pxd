@@ -1,3 +1,5 @@
+cimport cython
+
 cdef extern from "march.h" nogil:
     int AHEAD, BLOCK, MAX_STATES, MAX_ROWS
     ctypedef struct Shaken:
@@ -66,6 +68,17 @@ cdef extern from "march.h" nogil:
         int moving, counted
         const double *floor
     int UNKNOWN, ENDS, ASKED
+    ctypedef struct Step:
+        int width
+        double *rates
+        double *start
+        double *end
+        double *place
+        double *largest
+        const double *weights
+        const double *nodes
+        double length, a, rise, v, climb
+    ctypedef void (*Rates)(void *field, const double *y, double a, double a_v, double *out, int counted) noexcept nogil
     ctypedef struct Loops:
         const char *level
         int group
@@ -79,12 +92,14 @@ cdef extern from "march.h" nogil:
         void (*complete)(const Tables *p, Climb v, int terms, int width, double *series) noexcept nogil
         void (*magnitudes)(const Tables *p, Climb v, int order, const double *before, const double *x, double *out) noexcept nogil
         int (*march)(const Tables *p, int phase, const double *a, const double *v, int i, int last, double *y, Log *log) noexcept nogil
-        void (*combine)(int count, int terms, const int *which, const double *weights, double h, const double *start, const double *rates, int width, double *out) noexcept nogil
-        void (*errors)(int count, const double *coarse, const double *fine, const double *size, const double *y, const double *end, const double *floor, double *out) noexcept nogil
-        void (*powers)(int count, double h, const double *y, const double *end, const double *first, const double *last, const double *bends, int stride, int width, double *series) noexcept nogil
+        double (*attempt)(const Phase *p, const Step *s, Rates rates, int counted) noexcept nogil
+        void (*look)(const Phase *p, int outputs, Climb v, int k, const double *before, const double *x, double *out) noexcept nogil
+        void (*within)(const Phase *p, const Step *s, int stage) noexcept nogil
+        void (*bend)(const Phase *p, const Step *s, Rates rates, int counted, int width, double *series) noexcept nogil
     const Loops *rockflex_loops(const char *level)
 
 
+@cython.final
 cdef class Peaks:
     cdef Log log
     cdef double[::1] high_, when_, seen
@@ -101,13 +116,15 @@ cdef class Peaks:
     cdef double before(self) noexcept nogil
 
 
+@cython.final
 cdef class Phases:
     cdef Phase *phases
     cdef readonly int count
     cdef readonly int n, states
     cdef double[::1] one_sided
     cdef list contents, offsets, shaken, fields, shook
-    cdef double[::1] room
+    cdef Step step
+    cdef readonly double[:, ::1] rows, found  # of a step: states and rates, outputs and conditions; see `tableau`
 
     cdef int events(self, int place) noexcept nogil
     cdef int halvings(self, int place) noexcept nogil
@@ -125,14 +142,13 @@ cdef class Phases:
     cdef void magnitudes(self, int place, (double, double) v, int order, double[::1] before, double[::1] x, double[::1] out) noexcept nogil
     cdef bint nonlinear(self, int place) noexcept nogil
     cdef int leap(self, int place, int event, double[::1] y, double a, double a_v) noexcept nogil
-    cdef void begin(self, int place, double[::1] y, double[::1] more) noexcept nogil
-    cdef void rates(self, int place, double a, double a_v, double[::1] y, double[::1] out, bint counted) noexcept nogil
-    cdef void terms_of_rates(self, int place, double a, double a_v, double[::1] y, double[::1] out) noexcept nogil
-    cdef void sum_stages(self, int place, int stage, double h, const double *y, double[:, ::1] work, double *out) noexcept nogil
-    cdef void combined(self, int which, int count, double h, double[:, ::1] work, int row) noexcept nogil
-    cdef void within(self, int place, int stage, double h, double[::1] y, double[:, ::1] work, double[::1] out) noexcept nogil
-    cdef double attempt(self, int place, double h, double[::1] shaking, double[::1] y, double[::1] sizes, double[:, ::1] work, bint counted) noexcept nogil
-    cdef void bend(self, int place, double h, double[::1] shaking, double[::1] y, double[:, ::1] work, double[:, ::1] series, bint counted) noexcept nogil
-    cdef void rows_of(self, int place, bint outputs, double[::1] x, double[::1] before, (double, double, double) v, double[::1] out) noexcept nogil
-    cdef void observe(self, int place, double a, double a_v, double[::1] y, double[::1] rates, double[::1] out) noexcept nogil
+    cdef double *row(self, int number) noexcept nogil
+    cdef void begin(self, int place) noexcept nogil
+    cdef void rates(self, int place, double a, double a_v, int at, int to, bint counted) noexcept nogil
+    cdef void terms_of_rates(self, int place, double a, double a_v, int at, int to) noexcept nogil
+    cdef double attempt(self, int place, double length, double a, double rise, double v, double climb, bint counted) noexcept nogil
+    cdef void within(self, int place, int stage) noexcept nogil
+    cdef void bend(self, int place, bint counted, double[:, ::1] series) noexcept nogil
+    cdef void look(self, int place, bint outputs, (double, double) v, int k, int before, int at, int to) noexcept nogil
+    cdef void observe(self, int place, double a, double a_v, int at, int rates, int to) noexcept nogil
     cdef int moving(self, int place) noexcept nogil

@@ -4,7 +4,7 @@ import os
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import INFINITY, sqrt
+from cython.cimports.libc.math import INFINITY
 from cython.cimports.libc.stdlib import calloc, free, malloc, realloc
 from cython.cimports.rockflex.engine.field import Field, Jump
 
@@ -27,23 +27,9 @@ def chosen_level():
 LOOPS = cython.declare(cython.pointer(cython.const[Loops]), rockflex_loops(chosen_level()))
 LEVEL = LOOPS.level.decode()
 
-# The sums of stages: that before each stage, then two error estimates and the four that bend the polynomial.
-LAST = cython.declare(cython.int, tableau.LAST)
-STAGES = cython.declare(cython.int, tableau.STAGES)
-COARSE = cython.declare(cython.int, tableau.STAGES)
-BENDS = cython.declare(cython.int, tableau.STAGES + 2)
-TERMS = cython.declare(cython.int, 8)  # of the polynomial over a step
 NODES = cython.declare(cython.double[::1], tableau.C)
-SUMS = tableau.sums()
-WHICH = cython.declare(cython.int[:, ::1], SUMS[0])
-WEIGHTS = cython.declare(cython.double[:, ::1], SUMS[1])
-COUNTS = cython.declare(cython.int[::1], SUMS[2])
-
-# Rows of the room for a step, after the rates of the stages; as in `flow`.
-TRIAL = cython.declare(cython.int, tableau.STAGES)
-ERRORS = cython.declare(cython.int, tableau.STAGES + 1)
-BENT = cython.declare(cython.int, tableau.STAGES + 3)
-PLACE = cython.declare(cython.int, tableau.STAGES + 7)
+WEIGHTS = cython.declare(cython.double[:, ::1], tableau.SUMS)
+MORE = cython.declare(cython.int, tableau.MORE)
 
 
 @cython.cclass
@@ -124,7 +110,11 @@ class Phases:
         self.one_sided, self.n, self.states = one_sided, states, up8(states + 2)
         self.contents, self.offsets, self.shaken, self.count = [], [], [], 0
         self.fields, self.shook = [], []
-        self.room = np.zeros(2 * states + 8)
+        self.rows, self.found = np.zeros((tableau.ROWS, self.states)), np.zeros((tableau.FOUND, one_sided.shape[0]))
+        self.step.width, self.step.rates = self.states, cython.address(self.rows[0, 0])
+        self.step.start, self.step.end = self.row(tableau.START), self.row(tableau.END)
+        self.step.place, self.step.largest = self.row(tableau.PLACE), self.row(tableau.LARGEST)
+        self.step.weights, self.step.nodes = cython.address(WEIGHTS[0, 0]), cython.address(NODES[0])
 
     def __dealloc__(self):
         k: cython.int
@@ -388,6 +378,8 @@ class Phases:
         phase.field, phase.floor = cython.cast(cython.p_void, field), cython.address(known[0])
         phase.moving, phase.counted = len(floor), counted
         self.fields.append((field, least))
+        if self.found.shape[1] < up8_(phase.events):
+            self.found = np.zeros((tableau.FOUND, up8_(phase.events)))
 
     def nonlinear(self, place):
         """Whether a phase is not linear."""
@@ -404,169 +396,65 @@ class Phases:
             return -2
         return cython.cast(Jump, jump).apply(cython.address(y[0]), a, a_v)
 
-    def begin(self, place, y, more):
+    def row(self, number):
+        """A row of the states of a step or of their rates, see `tableau`."""
+        return cython.address(self.rows[number, 0])
+
+    def begin(self, place):
         """Let the constant states add to the constants of the conditions."""
-        cython.cast(Field, self.phases[place].field).enter(cython.address(y[0]), cython.address(more[0]))
+        cython.cast(Field, self.phases[place].field).enter(self.step.start, cython.address(self.found[MORE, 0]))
 
-    def rates(self, place, a, a_v, y, out, counted):
-        """The rates of the states."""
-        field: cython.p_void = self.phases[place].field
-        cython.cast(Field, field).rates(cython.address(y[0]), a, a_v, cython.address(out[0]), counted)
+    def rates(self, place, a, a_v, at, to, counted):
+        """Compute the rates of the states in a row."""
+        rates_of(self.phases[place].field, self.row(at), a, a_v, self.row(to), counted)
 
-    def terms_of_rates(self, place, a, a_v, y, out):
-        """The magnitudes of the terms of the rates."""
-        cython.cast(Field, self.phases[place].field).sizes(cython.address(y[0]), a, a_v, cython.address(out[0]))
+    def terms_of_rates(self, place, a, a_v, at, to):
+        """Compute the magnitudes of the terms of the rates."""
+        cython.cast(Field, self.phases[place].field).sizes(self.row(at), a, a_v, self.row(to))
 
-    def within(self, place, stage, h, y, work, out):
-        """The state at which a stage of a step has been evaluated."""
-        k: cython.int
-        for k in range(self.phases[place].moving, self.n):
-            out[k] = y[k]
-        self.sum_stages(place, stage, h, cython.address(y[0]), work, cython.address(out[0]))
+    def attempt(self, place, length, a, rise, v, climb, counted):
+        """Take the stages of a step from the first one on; its error over the sizes of the states."""
+        self.step.length, self.step.a, self.step.rise, self.step.v, self.step.climb = length, a, rise, v, climb
+        return LOOPS.attempt(cython.address(self.phases[place]), cython.address(self.step), rates_of, counted)
 
-    def sum_stages(self, place, stage, h, y, work, out):
-        """The moving states at a stage."""
-        phase: cython.pointer(Phase) = cython.address(self.phases[place])
-        rates: cython.p_double = cython.address(work[0, 0])
-        LOOPS.combine(
-            phase.moving,
-            COUNTS[stage],
-            cython.address(WHICH[stage, 0]),
-            cython.address(WEIGHTS[stage, 0]),
-            h,
-            y,
-            rates,
-            work.shape[1],
-            out,
-        )
+    def within(self, place, stage):
+        """Compute the state at which a stage of a step has been evaluated."""
+        LOOPS.within(cython.address(self.phases[place]), cython.address(self.step), stage)
 
-    def attempt(self, place, h, shaking, y, sizes, work, counted):
-        """Take the stages of a step from the first one on; its end, and its error over the sizes of the states."""
-        phase: cython.pointer(Phase) = cython.address(self.phases[place])
-        field: cython.p_void = phase.field
-        start: cython.p_double = cython.address(y[0])
-        end: cython.p_double = cython.address(work[TRIAL, 0])
-        rates: cython.p_double = cython.address(work[0, 0])
-        width: cython.Py_ssize_t = work.shape[1]
-        found: cython.double[2]
-        stage: cython.int
-        k: cython.int
-        for k in range(phase.moving, self.n):
-            end[k] = start[k]
-        for stage in range(1, LAST + 1):
-            self.sum_stages(place, stage, h, start, work, end)
-            cython.cast(Field, field).rates(
-                end,
-                shaking[0] + shaking[1] * NODES[stage],
-                shaking[2] + shaking[3] * NODES[stage],
-                rates + stage * width,
-                counted,
-            )
-        for k in range(2):
-            self.combined(COARSE + k, phase.moving, h, work, ERRORS + k)
-        if counted:
-            self.combined(LAST, phase.counted, h, work, PLACE)
-            for k in range(phase.moving, phase.counted):
-                end[k] = start[k] + work[PLACE, k]
-        end[self.n], end[self.n + 1] = shaking[0] + shaking[1], 1.0
-        LOOPS.errors(
-            up8_(phase.moving),
-            cython.address(work[ERRORS, 0]),
-            cython.address(work[ERRORS + 1, 0]),
-            cython.address(sizes[0]),
-            start,
-            end,
-            phase.floor,
-            found,
-        )
-        if found[1] == 0.0:
-            return 0.0
-        return found[1] / sqrt((found[1] + 0.01 * found[0]) * phase.moving)
-
-    def combined(self, which, count, h, work, row):
-        """A sum of stages in a row of the room for a step."""
-        LOOPS.combine(
-            count,
-            COUNTS[which],
-            cython.address(WHICH[which, 0]),
-            cython.address(WEIGHTS[which, 0]),
-            h,
-            cython.NULL,
-            cython.address(work[0, 0]),
-            work.shape[1],
-            cython.address(work[row, 0]),
-        )
-
-    def bend(self, place, h, shaking, y, work, series, counted):
+    def bend(self, place, counted, series):
         """Fill the series with the polynomials of the states over the step that was attempted."""
         phase: cython.pointer(Phase) = cython.address(self.phases[place])
-        field: cython.p_void = phase.field
-        end: cython.p_double = cython.address(work[PLACE, 0])
-        rates: cython.p_double = cython.address(work[0, 0])
-        count: cython.int = phase.counted if counted else phase.moving
-        stage: cython.int
-        k: cython.int
-        i: cython.int
-        for i in range(phase.moving, self.n):
-            end[i] = y[i]
-        for stage in range(LAST + 1, STAGES):
-            self.sum_stages(place, stage, h, cython.address(y[0]), work, end)
-            cython.cast(Field, field).rates(
-                end,
-                shaking[0] + shaking[1] * NODES[stage],
-                shaking[2] + shaking[3] * NODES[stage],
-                rates + stage * work.shape[1],
-                counted,
-            )
-        for k in range(4):
-            if counted:  # apart, because the order of a sum depends on how many states there are
-                self.combined(BENDS + k, count, h, work, BENT + k)
-            self.combined(BENDS + k, phase.moving, h, work, BENT + k)
-        for k in range(TERMS):
-            for i in range(count, self.states):
-                series[k, i] = y[i] if k == 0 and i < self.n else 0.0
-        series[0, self.n], series[1, self.n], series[0, self.n + 1] = shaking[0], shaking[1], 1.0
-        LOOPS.powers(
-            count,
-            h,
-            cython.address(y[0]),
-            cython.address(work[TRIAL, 0]),
-            rates,
-            cython.address(work[LAST, 0]),
-            cython.address(work[BENT, 0]),
-            work.shape[1],
-            series.shape[1],
-            cython.address(series[0, 0]),
-        )
+        first: cython.p_double = cython.address(series[0, 0])
+        LOOPS.bend(phase, cython.address(self.step), rates_of, counted, series.shape[1], first)
 
-    def rows_of(self, place, outputs, x, before, v, out):
-        """The outputs or conditions of y, a and 1, those that are not linear as their rows say.
+    def look(self, place, outputs, v, k, before, at, to):
+        """Compute the outputs or conditions of a row that has y, a and 1, those that are not linear as their rows say.
 
-        Under vertical acceleration v[0] multiplies this term of the states and v[1] that before; v[2] is a term itself.
+        It is the term of order k of a series under the vertical acceleration v, whose term before is another row.
         """
-        tables: cython.pointer(Tables) = cython.address(self.phases[place].tables)
-        shaken: cython.pointer(Shaken) = cython.address(tables.shaken)
-        rows: cython.int = up8_(tables.outputs if outputs else self.phases[place].events)
-        columns: cython.int = self.n + 2
-        given: cython.p_const_double = cython.address(x[0])
-        table: cython.p_const_double = tables.outs if outputs else tables.now
-        j: cython.int
-        if shaken.now != cython.NULL and (v[0] != 0.0 or v[1] != 0.0 or v[2] != 0.0):
-            for j in range(columns):
-                self.room[j] = x[j]
-            self.room[columns] = v[2]
-            for j in range(shaken.fed):
-                self.room[columns + 1 + j] = v[0] * x[shaken.places[j]] + v[1] * before[shaken.places[j]]
-            columns += 1 + shaken.fed
-            given, table = cython.address(self.room[0]), shaken.outs if outputs else shaken.now
-        LOOPS.product(columns, rows, table, given, cython.address(out[0]))
+        phase: cython.pointer(Phase) = cython.address(self.phases[place])
+        found: cython.p_double = cython.address(self.found[to, 0])
+        LOOPS.look(phase, outputs, climb(v), k, self.row(before), self.row(at), found)
 
-    def observe(self, place, a, a_v, y, rates, out):
+    def observe(self, place, a, a_v, at, rates, to):
         """Replace the outputs that are not linear."""
-        field: cython.p_void = self.phases[place].field
-        cython.cast(Field, field).observe(
-            cython.address(y[0]), cython.address(rates[0]), a, a_v, cython.address(out[0])
-        )
+        found: cython.p_double = cython.address(self.found[to, 0])
+        cython.cast(Field, self.phases[place].field).observe(self.row(at), self.row(rates), a, a_v, found)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def rates_of(
+    field: cython.p_void,
+    y: cython.p_const_double,
+    a: cython.double,
+    a_v: cython.double,
+    out: cython.p_double,
+    counted: cython.int,
+) -> cython.void:
+    """Compute the rates of a `Field`."""
+    cython.cast(Field, field).rates(y, a, a_v, out, counted)
 
 
 @cython.cfunc

@@ -92,7 +92,8 @@ class Phases(Steps):
     """The phases that a run has met, each with the loops over its tables."""
 
     def __init__(self, one_sided: Array, states: int) -> None:
-        self.one_sided, self.n, self.states, self.which = one_sided > 0.0, states, up8(states + 2), 0
+        super().__init__(states, one_sided.size)
+        self.one_sided, self.which = one_sided > 0.0, 0
         self.phases: list[PhaseLoops] = []
 
     def add(self, tables: Tables, events: Sequence[Event], h: float) -> None:

@@ -49,8 +49,6 @@ static inline vec larger(vec a, vec b) { return chosen(a > b, a, b); }
 static inline vec absolute(vec a) { return (vec)((mask)a & 0x7fffffffffffffffLL); }
 static inline int up8(int n) { return (n + 7) / 8 * 8; }
 
-#include "steps.h"
-
 /* out = table · x for a group of rows that fills so many registers. */
 static inline __attribute__((always_inline)) void group(int registers, int columns, const double *table,
                                                         const double *x, double *out) {
@@ -590,5 +588,7 @@ static int march(const Tables *p, int phase, const double *a, const double *v, i
     return i;
 }
 
+#include "steps.h"
+
 const Loops JOIN(rockflex_loops_, LEVEL) = {TEXT(LEVEL), UNITS * 8, sizeof(Workspace), product, expand, evaluate, amounts, spread,
-                                            reach, complete, magnitudes, march, combine, errors, powers};
+                                            reach, complete, magnitudes, march, attempt, look, within, bend};

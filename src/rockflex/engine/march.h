@@ -93,6 +93,20 @@ typedef struct {
 } Phase;
 enum { UNKNOWN = -1, ENDS = -2, ASKED = -3 };
 
+typedef struct { /* a step of a phase that is not linear */
+    int width;                 /* doubles in a row; those of the states follow one another */
+    double *rates;             /* of every stage */
+    double *start, *end;       /* the states there */
+    double *place;             /* at a further stage */
+    double *largest;           /* magnitudes of the moving states so far */
+    const double *weights;     /* of the sums before each stage, then of two error estimates and of what bends a step */
+    const double *nodes;       /* of the stages, parts of a step */
+    double length, a, rise, v, climb; /* s; the accelerations at the start, each with its change */
+} Step;
+
+/* y' = F(y, a, a_v), as `Field.rates`. */
+typedef void (*Rates)(void *field, const double *y, double a, double a_v, double *out, int counted);
+
 typedef struct { /* the loops for one level of vector instructions */
     const char *level;
     int group; /* rows in a group of a table, at most */
@@ -107,9 +121,10 @@ typedef struct { /* the loops for one level of vector instructions */
     void (*complete)(const Tables *p, Climb v, int terms, int width, double *series);
     void (*magnitudes)(const Tables *p, Climb v, int order, const double *before, const double *x, double *out);
     int (*march)(const Tables *p, int phase, const double *a, const double *v, int i, int last, double *y, Log *log);
-    void (*combine)(int count, int terms, const int *which, const double *weights, double h, const double *start, const double *rates, int width, double *out);
-    void (*errors)(int count, const double *coarse, const double *fine, const double *size, const double *y, const double *end, const double *floor, double *out);
-    void (*powers)(int count, double h, const double *y, const double *end, const double *first, const double *last, const double *bends, int stride, int width, double *series);
+    double (*attempt)(const Phase *p, const Step *s, Rates rates, int counted);
+    void (*look)(const Phase *p, int outputs, Climb v, int k, const double *before, const double *x, double *out);
+    void (*within)(const Phase *p, const Step *s, int stage);
+    void (*bend)(const Phase *p, const Step *s, Rates rates, int counted, int width, double *series);
 } Loops;
 
 /* Those of the best level that this processor has, or of the named one; null if it has not. */

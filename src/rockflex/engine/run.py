@@ -14,6 +14,7 @@ from rockflex._errors import InputError
 from rockflex.engine import failures
 from rockflex.engine.rest import Fading
 from rockflex.engine.system import NonlinearPhase, acceleration, array, as_long, up8
+from rockflex.engine.tableau import START
 from rockflex.engine.tables import prepared
 
 if cython.compiled:
@@ -122,8 +123,8 @@ class Run:
         self.one_sided, self.phases = one_sided, Phases(one_sided, self.n)
         self.peaks_ = Peaks(one_sided, self.n, CANDIDATES)
         self.high, self.when = self.peaks_.high, self.peaks_.when
-        self.y, self.sizes, self.before = np.zeros(self.states), np.zeros(self.states), np.zeros(self.states)
-        self.flow = Flow(self.phases, self.peaks_, one_sided, self.y, self.outputs, h)
+        self.y, self.sizes, self.before = self.phases.rows[START], np.zeros(self.states), np.zeros(self.states)
+        self.flow = Flow(self.phases, self.peaks_, one_sided, self.outputs, h)
         self.series = Series(self.phases, self.peaks_, self.flow, one_sided, self.y, self.sizes, h)
         self.start, self.workspace, self.quiet = np.zeros(self.n), np.zeros(self.n), np.zeros(QUIET + 1)
         self.journal, self.still = Journal(self.n), np.zeros(0)
@@ -459,7 +460,8 @@ class Run:
         history: cython.bint,
     ) -> cython.int:
         """Advance over a sample in which something may happen."""
-        u: cython.double = 0.0  # the part of the sample that has passed
+        u: cython.double = self.flow.reached if self.phases.nonlinear(self.now) else 0.0  # the part that has passed
+        reached: cython.double
         a: cython.double
         rise: cython.double
         part: cython.double
@@ -469,6 +471,11 @@ class Run:
         in_sample: cython.int = 0
         while u < 1.0:
             self.look_up()
+            if self.phases.nonlinear(self.now) and not self.flow.tried:
+                reached = self.flow.cross(self.now, start, end, v, u, self.passed + i)
+                if reached > u:
+                    u, at_once = reached, 0
+                    continue
             part = self.series.expand(self.now, start, end, v, u)
             if part < 0.0:
                 with cython.gil:

@@ -6,24 +6,43 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex.engine.field import Field, Jump
-from rockflex.engine.system import Event
-from rockflex.engine.tableau import DENSE, ERROR_3, ERROR_5, LAST, STAGES, A, C
+from rockflex.engine.system import Event, up8
+from rockflex.engine.tableau import (
+    DENSE,
+    END,
+    ERROR_3,
+    ERROR_5,
+    FOUND,
+    LARGEST,
+    LAST,
+    MORE,
+    PLACE,
+    ROWS,
+    STAGES,
+    START,
+    A,
+    C,
+)
 from rockflex.engine.tables import Tables
 
 TERMS = 8  # of the polynomial over a step
-TRIAL = STAGES  # row of the room for a step
 
 
 class Steps:
     """What `loops_twin.Phases` knows of phases that are not linear."""
 
-    n: int
-    states: int
     phases: list[Any]
+    step: tuple[float, float, float, float, float]  # its length, and the accelerations at its start with their changes
+
+    def __init__(self, states: int, outputs: int) -> None:
+        self.n, self.states = states, up8(states + 2)
+        self.rows, self.found = np.zeros((ROWS, self.states)), np.zeros((FOUND, outputs))
 
     def drive(self, place: int, field: Field, floor: Array, counted: int) -> None:
         """Say that a phase is not linear: its field, the least sizes of its moving states, and states with rates."""
         self.phases[place].field, self.phases[place].floor, self.phases[place].counted = field, floor, counted
+        if self.found.shape[1] < len(self._events(place)):
+            self.found = np.zeros((FOUND, len(self._events(place))))
 
     def _field(self, place: int) -> Field:
         return self.phases[place].field
@@ -47,58 +66,68 @@ class Steps:
         jump = self._events(place)[event].jump
         return jump.apply_at(y, a, a_v) if isinstance(jump, Jump) else -2
 
-    def begin(self, place: int, y: Array, more: Array) -> None:
+    def begin(self, place: int) -> None:
         """Let the constant states add to the constants of the conditions."""
-        self._field(place).enter_at(np.array(y[: self.n]), more)
+        self._field(place).enter_at(self._state(START), self.found[MORE])
 
-    def rates(self, place: int, a: float, a_v: float, y: Array, out: Array, counted: bool) -> None:
-        """The rates of the states."""
-        out[: self.n] = self._field(place).rates_at(np.array(y[: self.n]), a, a_v, counted)[: self.n]
+    def _state(self, row: int) -> Array:
+        return self.rows[row, : self.n].copy()
 
-    def terms_of_rates(self, place: int, a: float, a_v: float, y: Array, out: Array) -> None:
-        """The magnitudes of the terms of the rates."""
-        out[: self.n] = self._field(place).sizes_at(np.array(y[: self.n]), a, a_v)[: self.n]
+    def rates(self, place: int, a: float, a_v: float, at: int, to: int, counted: bool) -> None:
+        """Compute the rates of the states in a row."""
+        self.rows[to, : self.n] = self._field(place).rates_at(self._state(at), a, a_v, counted)[: self.n]
 
-    def within(self, place: int, stage: int, h: float, y: Array, work: Array, out: Array) -> None:
-        """The state at which a stage of a step has been evaluated."""
-        m, rates = self.moving(place), np.asarray(work)[:STAGES]
-        out[: self.n] = y[: self.n]
-        out[:m] = y[:m] + h * (A[stage] @ rates[:, :m])
+    def terms_of_rates(self, place: int, a: float, a_v: float, at: int, to: int) -> None:
+        """Compute the magnitudes of the terms of the rates."""
+        self.rows[to, : self.n] = self._field(place).sizes_at(self._state(at), a, a_v)[: self.n]
 
-    def _stage(self, place: int, stage: int, h: float, shaking: Array, y: Array, work: Array, counted: bool) -> None:
-        """Evaluate a stage at its state, which is kept where the end of the step will be."""
-        self.within(place, stage, h, y, work, work[TRIAL])
-        a, a_v = shaking[0] + shaking[1] * C[stage], shaking[2] + shaking[3] * C[stage]
-        self.rates(place, a, a_v, work[TRIAL], work[stage], counted)
+    def within(self, place: int, stage: int, row: int = PLACE) -> None:
+        """Compute the state at which a stage of a step has been evaluated."""
+        m = self.moving(place)
+        self.rows[row] = self.rows[START]
+        self.rows[row, :m] += self.step[0] * (A[stage] @ self.rows[:STAGES, :m])
 
-    def attempt(
-        self, place: int, h: float, shaking: Array, y: Array, sizes: Array, work: Array, counted: bool
-    ) -> float:
-        """Take the stages of a step from the first one on; its end, and its error over the sizes of the states."""
-        m, rates, end = self.moving(place), np.asarray(work)[:STAGES], np.asarray(work)[TRIAL]
+    def _stage(self, place: int, stage: int, row: int, counted: bool) -> None:
+        """Evaluate a stage at its state, which is kept in a row."""
+        _, a, rise, v, climb = self.step
+        self.within(place, stage, row)
+        self.rates(place, a + rise * C[stage], v + climb * C[stage], row, stage, counted)
+
+    @np.errstate(over="ignore", invalid="ignore")
+    def attempt(self, place: int, length: float, a: float, rise: float, v: float, climb: float, counted: bool) -> float:
+        """Take the stages of a step from the first one on; its error over the sizes of the states."""
+        m, last, rates, start, end = (
+            self.moving(place),
+            self.phases[place].counted,
+            self.rows[:STAGES],
+            self.rows[START],
+            self.rows[END],
+        )
+        self.step = length, a, rise, v, climb
         for stage in range(1, LAST + 1):
-            self._stage(place, stage, h, shaking, y, work, counted)
+            self._stage(place, stage, END, counted)
         if counted:
-            last = self.phases[place].counted
-            end[m:last] = y[m:last] + h * (A[LAST] @ rates[:, m:last])
-        end[self.n : self.n + 2] = shaking[0] + shaking[1], 1.0
-        size = np.max((np.abs(y[:m]), np.abs(end[:m]), np.asarray(sizes)[:m], self.phases[place].floor), axis=0)
-        third, fifth = (((h * (each @ rates[:13, :m]) / size) ** 2).sum() for each in (ERROR_3, ERROR_5))
+            end[m:last] = start[m:last] + length * (A[LAST] @ rates[:, m:last])
+        end[self.n : self.n + 2] = a + rise, 1.0
+        floor = self.phases[place].floor
+        size = np.max((np.abs(start[:m]), np.abs(end[:m]), self.rows[LARGEST, :m], floor), axis=0)
+        third, fifth = (((length * (each @ rates[:13, :m]) / size) ** 2).sum() for each in (ERROR_3, ERROR_5))
         return 0.0 if fifth == 0.0 else float(fifth / np.sqrt((fifth + 0.01 * third) * m))
 
-    def bend(self, place: int, h: float, shaking: Array, y: Array, work: Array, series: Array, counted: bool) -> None:
+    @np.errstate(over="ignore", invalid="ignore")
+    def bend(self, place: int, counted: bool, series: Array) -> None:
         """Fill the series with the polynomials of the states over the step that was attempted."""
-        rates, end = np.asarray(work)[:STAGES], np.array(work[TRIAL])
+        h, a, rise, _, _ = self.step
+        rates, start = self.rows[:STAGES], self.rows[START]
         count = self.phases[place].counted if counted else self.moving(place)
         for stage in range(LAST + 1, STAGES):
-            self._stage(place, stage, h, shaking, y, work, counted)
-        np.asarray(work)[TRIAL] = end
-        rise = end[:count] - y[:count]
+            self._stage(place, stage, PLACE, counted)
+        change = self.rows[END, :count] - start[:count]
         first, last = h * rates[0, :count], h * rates[LAST, :count]
-        nested = rise, first - rise, 2.0 * rise - first - last, *(h * (DENSE @ rates[:, :count]))
+        nested = change, first - change, 2.0 * change - first - last, *(h * (DENSE @ rates[:, :count]))
         u, v = np.polynomial.Polynomial((0.0, 1.0)), np.polynomial.Polynomial((1.0, -1.0))
         series[:TERMS, : self.states] = 0.0
-        series[0, : self.n] = y[: self.n]
+        series[0, : self.n] = start[: self.n]
         for i in range(count):
             total = np.polynomial.Polynomial((0.0,))
             for k in range(6, -1, -1):
@@ -106,24 +135,23 @@ class Steps:
             found = (u * total).coef
             series[1 : found.size, i] = found[1:]
             series[1, i] = first[i]
-        series[0, self.n : self.n + 2], series[1, self.n] = (shaking[0], 1.0), shaking[1]
+        series[0, self.n : self.n + 2], series[1, self.n] = (a, 1.0), rise
 
-    def rows_of(
-        self, place: int, outputs: bool, x: Array, before: Array, v: tuple[float, float, float], out: Array
-    ) -> None:
-        """The outputs or conditions of y, a and 1, those that are not linear as their rows say.
+    def look(self, place: int, outputs: bool, v: tuple[float, float], k: int, before: int, at: int, to: int) -> None:
+        """Compute the outputs or conditions of a row that has y, a and 1, those that are not linear as their rows say.
 
-        Under vertical acceleration v[0] multiplies this term of the states and v[1] that before; v[2] is a term itself.
+        It is the term of order k of a series under the vertical acceleration v, whose term before is another row.
         """
         tables, shaken, n = self._tables(place), self.phases[place].shaken, self.n
         count = tables.outputs if outputs else len(self._events(place))
-        x, before = np.asarray(x), np.asarray(before)
+        x = self.rows[at]
         table, given = tables.outs if outputs else tables.now, x[: n + 2]
         if shaken is not None and any(v):
-            fed = v[0] * x[shaken.places] + v[1] * before[shaken.places]
-            table, given = shaken.outs if outputs else shaken.now, np.concatenate((given, (v[2],), fed))
-        out[:count] = table[0, :count] @ given
+            fed = v[0] * x[shaken.places] + (v[1] * self.rows[before][shaken.places] if k > 0 else 0.0)
+            table = shaken.outs if outputs else shaken.now
+            given = np.concatenate((given, (v[k] if k < 2 else 0.0,), fed))
+        self.found[to, :count] = table[0, :count] @ given
 
-    def observe(self, place: int, a: float, a_v: float, y: Array, rates: Array, out: Array) -> None:
+    def observe(self, place: int, a: float, a_v: float, at: int, rates: int, to: int) -> None:
         """Replace the outputs that are not linear."""
-        self._field(place).observe_at(np.array(y[: self.n]), np.array(rates[: self.n]), a, a_v, out)
+        self._field(place).observe_at(self._state(at), self._state(rates), a, a_v, self.found[to])

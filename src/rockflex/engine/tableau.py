@@ -9,6 +9,15 @@ import numpy as np
 
 LAST, STAGES = 12, 16  # the stage at the end of the step; number of stages
 
+# Rows of the room for a step, after the rates of the stages: its start and its end, a state between them with its
+# rates, magnitudes of the states so far, two terms of a series.
+START, END, PLACE, PLACE_RATES, LARGEST, TERM, BEFORE = range(STAGES, STAGES + 7)
+ROWS = STAGES + 7
+# Rows for what is found there: outputs at the start, the end and two places between, conditions at the start and the
+# end, rates of rows at both, and what the constant states add to the conditions.
+OUTS, ENDS, EARLY_OUTS, LATE_OUTS, BELOW, BEYOND, SLOPES, BENDS, MORE = range(9)
+FOUND = 9
+
 
 def _rows(
     shape: tuple[int, int], entries: dict[int, dict[int, float]]
@@ -258,21 +267,5 @@ ERROR_5 = np.array(
     ]
 )
 
-
-def sums() -> tuple[
-    "np.ndarray[tuple[int, int], np.dtype[np.intc]]",
-    "np.ndarray[tuple[int, int], np.dtype[np.float64]]",
-    "np.ndarray[tuple[int], np.dtype[np.intc]]",
-]:
-    """Return every sum of stages: which stages, their weights, and how many there are.
-
-    That before each stage comes first, then those of ERROR_3, ERROR_5 and the four rows of DENSE.
-    """
-    rows = [*A, ERROR_3, ERROR_5, *DENSE]
-    which, weights = np.zeros((len(rows), STAGES), dtype=np.intc), np.zeros((len(rows), STAGES))
-    counts = np.zeros(len(rows), dtype=np.intc)
-    for k, row in enumerate(rows):
-        places = np.flatnonzero(row)
-        counts[k] = places.size
-        which[k, : places.size], weights[k, : places.size] = places, row[places]
-    return which, weights, counts
+# Every sum of stages: that before each stage, then two error estimates and what bends the polynomial.
+SUMS = np.vstack((A, np.pad((ERROR_3, ERROR_5), ((0, 0), (0, STAGES - ERROR_3.size))), DENSE))

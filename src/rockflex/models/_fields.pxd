@@ -6,9 +6,9 @@ from rockflex.engine.field cimport Field, Jump
 cdef class RockingField(Field):
     cdef int n, side, branch, whole, memory, remembered, kinds_count, stops_count
     cdef bint complete, hysteretic, viscous, pulled, held
-    cdef double[::1] omega2, drag, height, mass
-    cdef double offset, inertia, weight_arm, total_mass, gravity, resting
-    cdef double yields, ratio, gamma, beta, exponent
+    cdef double[::1] omega2, stiffness, drag, height, mass, lever
+    cdef double offset, left, inverse, levers_sum, weight_arm, total_mass, gravity, resting
+    cdef double yields, loading, slip, ratio, gamma, beta, exponent
     cdef double[:, ::1] pulls
     cdef int[::1] kinds
     cdef double[:, ::1] levers
@@ -17,13 +17,13 @@ cdef class RockingField(Field):
 
     cdef double pull(self, const double *y, int which) noexcept nogil
     cdef double inertia_left(self, const double *y) noexcept nogil
-    cdef void in_contact(self, const double *y, double a, double *out, bint counted) noexcept nogil
-    cdef void by_small_rotations(self, const double *y, double a, double a_v, double *out, bint counted) noexcept nogil
-    cdef void by_large_rotations(self, const double *y, double a, double a_v, double *out, bint counted) noexcept nogil
-    cdef double restoring(self, const double *y, double *out, bint counted) noexcept nogil
+    cdef inline void rates_of(self, int n, const double *y, double a, double a_v, double *out, bint counted) noexcept nogil
+    cdef inline void in_contact(self, int n, const double *y, double a, double *out, bint counted) noexcept nogil
+    cdef inline void by_small_rotations(self, int n, const double *y, double a, double a_v, double *out, bint counted) noexcept nogil
+    cdef inline void by_large_rotations(self, int n, const double *y, double a, double a_v, double *out, bint counted) noexcept nogil
+    cdef inline double restoring(self, int n, const double *y, double *out, bint counted) noexcept nogil
     cdef double power(self, double z) noexcept nogil
-    cdef void turn(self, const double *y, double moment, double *out) noexcept nogil
-    cdef void enter_energies(self, double damped, double work, double swing, double *out) noexcept nogil
+    cdef void enter_energies(self, const double *y, double turning, double pushing, double spin, double swing, double *out) noexcept nogil
 
 
 @cython.final

@@ -62,6 +62,7 @@ C8 = cython.declare(cython.double, 1.0 / math.factorial(16))
 
 
 @cython.cfunc
+@cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
 def sine_and_cosine(theta: cython.double) -> tuple[cython.double, cython.double]:
@@ -106,12 +107,17 @@ class RockingField(Field):
         self.omega2, self.drag = p.omega**2, 2.0 * p.zeta * p.omega
         self.height, self.mass = np.array(p.effective_height, dtype=float), np.array(p.effective_mass, dtype=float)
         pivot = p.pivot(side or 1)
-        self.offset, self.inertia = side * pivot.arm, pivot.i_theta
+        self.offset = side * pivot.arm
+        self.lever, self.levers_sum = p.effective_mass * p.effective_height, p.effective_mass @ p.effective_height
+        self.left = pivot.i_theta - p.effective_mass @ p.effective_height**2
+        self.inverse = 1.0 / self.left
         self.weight_arm, self.total_mass, self.gravity, self.resting = p.l0r, p.m_tot, numbers.gravity, numbers.resting
         self.yields, self.ratio, self.gamma, self.beta, self.exponent = 1.0, 1.0, 0.0, 0.0, 1.0
         if b is not None:
             self.yields, self.ratio, self.gamma, self.beta = b.yield_displacement, b.post_yield_ratio, b.gamma, b.beta
             self.exponent = b.exponent
+        self.stiffness, self.loading = self.ratio * p.omega**2, 1.0 / self.yields
+        self.slip = float(p.omega[0] ** 2) * self.yields * (1.0 - self.ratio) if b is not None else 0.0
         self.whole = int(self.exponent) if float(self.exponent).is_integer() else 0
         self.pulls, self.memory, self.remembered = np.array(pulls), numbers.memory, pulls.shape[1] - 1
         self.pulled, self.held = bool(pulls[[MOMENT, FORCE]].any()), bool(pulls[HOLD, 0])
@@ -126,13 +132,20 @@ class RockingField(Field):
         return self.memory + self.remembered
 
     def rates(self, y, a, a_v, out, counted):
-        """Compute the rates of the states."""
-        if self.side == 0:
-            self.in_contact(y, a, out, counted)
-        elif self.complete:
-            self.by_large_rotations(y, a, a_v, out, counted)
+        """Compute the rates of the states; the compiler makes a copy without loops for a single mode."""
+        if self.n == 1:
+            self.rates_of(1, y, a, a_v, out, counted)
         else:
-            self.by_small_rotations(y, a, a_v, out, counted)
+            self.rates_of(self.n, y, a, a_v, out, counted)
+
+    def rates_of(self, n, y, a, a_v, out, counted):
+        """Compute the rates of the states, n of which are displacements."""
+        if self.side == 0:
+            self.in_contact(n, y, a, out, counted)
+        elif self.complete:
+            self.by_large_rotations(n, y, a, a_v, out, counted)
+        else:
+            self.by_small_rotations(n, y, a, a_v, out, counted)
 
     def pull(self, y, which):
         """A sum over the elements, with their memories."""
@@ -145,128 +158,114 @@ class RockingField(Field):
     def inertia_left(self, y):
         """The factor of θ'' after eliminating D'': I_θ - Σ m* h*², in complete models plus the terms of D."""
         i: cython.int
-        total: cython.double = self.inertia
-        for i in range(self.n):
-            total -= self.mass[i] * self.height[i] * self.height[i]
-            if self.complete:
+        total: cython.double = self.left
+        if self.complete:
+            for i in range(self.n):
                 total += self.mass[i] * y[i] * (y[i] - 2.0 * self.offset)
         return total
 
-    def in_contact(self, y, a, out, counted):
+    def in_contact(self, n, y, a, out, counted):
         """Rates while the base stands still: Eq. 13 or 23 without rotation."""
-        n: cython.int = self.n
         i: cython.int
-        damped: cython.double = 0.0
-        carried: cython.double = 0.0
-        spring: cython.double = 0.0
+        drive: cython.double = -a
         if self.hysteretic:
-            spring = self.restoring(y, out, counted)
+            drive -= self.restoring(n, y, out, counted)
         for i in range(n):
             out[i] = y[n + i]
-            out[n + i] = -a - self.ratio * self.omega2[i] * y[i] - spring - self.drag[i] * y[n + i]
+            out[n + i] = drive - self.stiffness[i] * y[i] - self.drag[i] * y[n + i]
         out[2 * n], out[2 * n + 1] = y[2 * n + 1], 0.0
         if counted:
-            for i in range(n):
-                damped += self.mass[i] * self.drag[i] * y[n + i] * y[n + i]
-                carried += self.mass[i] * y[n + i]
-            self.enter_energies(damped, -a * carried, 0.0, out)
+            self.enter_energies(y, 0.0, -a, 0.0, 0.0, out)
 
-    def by_small_rotations(self, y, a, a_v, out, counted):
+    def by_small_rotations(self, n, y, a, a_v, out, counted):
         """Rates of the simplified models while rocking: Eq. 23."""
-        n: cython.int = self.n
         i: cython.int
         theta: cython.double = y[2 * n]
         spin: cython.double = y[2 * n + 1]
         across: cython.double = self.total_mass * self.offset - self.weight_arm * theta
-        moment: cython.double = (self.gravity + a_v) * across + a * self.weight_arm
-        damped: cython.double = 0.0
-        carried: cython.double = 0.0
-        spring: cython.double = 0.0
-        moment += self.pulls[P_STIFFNESS, 0] * theta
+        moment: cython.double = (self.gravity + a_v) * across + a * self.weight_arm + self.pulls[P_STIFFNESS, 0] * theta
+        drive: cython.double = -a
+        turn: cython.double = 0.0
         if self.pulled:
             moment += self.side * self.pull(y, P_MOMENT)
         if self.viscous:
             moment += self.pulls[P_DAMPING, 0] * spin
         if self.hysteretic:
-            spring = self.restoring(y, out, counted)
+            drive -= self.restoring(n, y, out, counted)
         for i in range(n):
             out[i] = y[n + i]
-            out[n + i] = -a - self.ratio * self.omega2[i] * y[i] - spring - self.drag[i] * y[n + i]
-            moment += self.mass[i] * self.height[i] * out[n + i]
-        self.turn(y, moment, out)
+            out[n + i] = drive - self.stiffness[i] * y[i] - self.drag[i] * y[n + i]
+            moment += self.lever[i] * out[n + i]
+        if not self.held:
+            turn = -moment * self.inverse
+        for i in range(n):
+            out[n + i] -= self.height[i] * turn
+        out[2 * n], out[2 * n + 1] = spin, turn
         if counted:
-            for i in range(n):
-                damped += self.mass[i] * self.drag[i] * y[n + i] * y[n + i]
-                carried += self.mass[i] * y[n + i]
-            carried = -a * (self.weight_arm * spin + carried) - a_v * across * spin
-            self.enter_energies(damped, carried, spin, out)
+            self.enter_energies(y, -a * self.weight_arm - a_v * across, -a, spin, spin, out)
 
-    def by_large_rotations(self, y, a, a_v, out, counted):
-        """Rates of the complete models while rocking: Eqs. 13 and 14."""
-        n: cython.int = self.n
+    def by_large_rotations(self, n, y, a, a_v, out, counted):
+        """Rates of the complete models while rocking: Eqs. 13 and 14, the moment by its parts of sin θ and cos θ."""
         i: cython.int
         spin: cython.double = y[2 * n + 1]
         sine: cython.double
         cosine: cython.double
         square: cython.double = spin * spin
+        gravity: cython.double = self.gravity + a_v
         lever: cython.double = 1.0
         displaced: cython.double = 0.0
-        weighted: cython.double = 0.0
         moment: cython.double = 0.0
         coriolis: cython.double = 0.0
-        damped: cython.double = 0.0
-        carried: cython.double = 0.0
         spring: cython.double = 0.0
-        inertia: cython.double = self.inertia
-        share: cython.double
+        inertia: cython.double = self.left
         drive: cython.double
         behind: cython.double
         beside: cython.double
-        arm: cython.double
-        across: cython.double
-        sine, cosine = sine_and_cosine(y[2 * n])
+        share: cython.double = 0.0
+        turn: cython.double
+        part: cython.double
         if self.hysteretic:
-            spring = self.restoring(y, out, counted)
-        drive = (self.gravity + a_v) * sine - a * cosine - spring
+            spring = self.restoring(n, y, out, counted)
         for i in range(n):
             behind = y[i] - self.offset
             displaced += self.mass[i] * y[i]
-            inertia += self.mass[i] * (y[i] * (behind - self.offset) - self.height[i] * self.height[i])
+            inertia += self.mass[i] * y[i] * (behind - self.offset)
             coriolis += self.mass[i] * behind * y[n + i]
             out[i] = y[n + i]
-            out[n + i] = drive + square * behind - self.ratio * self.omega2[i] * y[i] - self.drag[i] * y[n + i]
-            moment += self.mass[i] * self.height[i] * out[n + i]
-        share = 0.0 if self.held else -1.0 / inertia  # before the moment is known
+            part = square * behind - self.stiffness[i] * y[i] - self.drag[i] * y[n + i]
+            moment += self.lever[i] * part
+            out[n + i] = part
+        if not self.held:
+            share = -1.0 / inertia
+        moment += 2.0 * spin * coriolis - self.levers_sum * spring
         beside = self.total_mass * self.offset - displaced
-        arm = beside * sine + self.weight_arm * cosine
-        across = beside * cosine - self.weight_arm * sine
-        moment += (self.gravity + a_v) * across + a * arm + self.pulls[P_STIFFNESS, 0] * sine + 2.0 * spin * coriolis
+        drive = self.weight_arm - self.levers_sum
+        sine, cosine = sine_and_cosine(y[2 * n])
         # An element is stretched by 2 r sin(|θ|/2) and pulls with the lever arm r cos(θ/2).
         if self.viscous or self.pulled:
             lever = sqrt(0.5 + 0.5 * cosine)
             moment += self.side * self.pull(y, P_MOMENT) * lever + self.pulls[P_DAMPING, 0] * lever * lever * spin
-        weighted = moment * share
+        moment += (a * beside - gravity * drive + self.pulls[P_STIFFNESS, 0]) * sine
+        moment += (a * drive + gravity * beside) * cosine
+        turn = moment * share
+        drive = gravity * sine - a * cosine - spring
         for i in range(n):
-            out[n + i] -= self.height[i] * weighted
-        out[2 * n], out[2 * n + 1] = spin, weighted
+            out[n + i] += drive - self.height[i] * turn
+        out[2 * n], out[2 * n + 1] = spin, turn
         if counted:
-            for i in range(n):
-                damped += self.mass[i] * self.drag[i] * y[n + i] * y[n + i]
-                carried += self.mass[i] * y[n + i]
-            weighted = -a * (arm * spin + cosine * carried) - a_v * (across * spin - carried * sine)
-            self.enter_energies(damped, weighted, lever * spin, out)
+            part = -a * (beside * sine + self.weight_arm * cosine) - a_v * (beside * cosine - self.weight_arm * sine)
+            self.enter_energies(y, part, a_v * sine - a * cosine, spin, lever * spin, out)
 
-    def restoring(self, y, out, counted):
+    def restoring(self, n, y, out, counted):
         """What z adds to the restoring acceleration of the one mode, Eq. 37; its rate is that of Eq. 38.
 
         With the branch times D' in place of |D'| the law is smooth up to the reversal.
         """
-        n: cython.int = self.n
         z: cython.double = y[2 * n + 2]
-        slip: cython.double = self.omega2[0] * self.yields * (1.0 - self.ratio) * z
+        slip: cython.double = self.slip * z
         # z |z|^(n-1) |D'| is |z|^n |D'| with the sign of z.
         lean: cython.double = self.beta + (self.branch * self.gamma if z >= 0.0 else -self.branch * self.gamma)
-        out[2 * n + 2] = y[n] / self.yields * (1.0 - lean * self.power(fabs(z)))
+        out[2 * n + 2] = y[n] * self.loading * (1.0 - lean * self.power(fabs(z)))
         if counted:
             out[2 * n + 5] = self.mass[0] * slip * y[n]
         return slip
@@ -290,19 +289,16 @@ class RockingField(Field):
             left >>= 1
         return power
 
-    def turn(self, y, moment, out):
-        """Compute θ'' from the moment with θ'' = 0, and what it adds to D''."""
+    def enter_energies(self, y, turning, pushing, spin, swing, out):
+        """Rates of the damped energy, of the work of the ground on θ and on D, and of what viscous dampers sweep."""
         n: cython.int = self.n
         i: cython.int
-        angular: cython.double = 0.0 if self.held else -moment / self.inertia_left(y)
+        damped: cython.double = 0.0
+        carried: cython.double = 0.0
         for i in range(n):
-            out[n + i] -= self.height[i] * angular
-        out[2 * n], out[2 * n + 1] = y[2 * n + 1], angular
-
-    def enter_energies(self, damped, work, swing, out):
-        """Rates of the damped energy, of the work of the ground, and of what viscous dampers sweep."""
-        n: cython.int = self.n
-        out[2 * n + 3], out[2 * n + 4] = damped, work
+            damped += self.mass[i] * self.drag[i] * y[n + i] * y[n + i]
+            carried += self.mass[i] * y[n + i]
+        out[2 * n + 3], out[2 * n + 4] = damped, turning * spin + pushing * carried
         if not self.hysteretic:
             out[2 * n + 2] = out[2 * n + 5] = 0.0
         if self.viscous:
