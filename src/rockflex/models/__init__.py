@@ -2,7 +2,7 @@
 
 from rockflex.models._between import LinearMotion, MotionBetween, Part, Shaking, inside
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._element import BROKEN, Bar, Dashpot, Element, Slider, Spring
+from rockflex.models._element import BROKEN, Bar, Dashpot, Element, Slider
 from rockflex.models._element_states import (
     arms,
     element_energies,
@@ -31,7 +31,7 @@ from rockflex.models._kept import (
 )
 from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._landing import GainsEnergyError
-from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout, layout_of
+from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout
 from rockflex.models._linear_system import ElementBase, element_base, linear_system_of
 from rockflex.models._modal_model import LinearModel, horizontal_reaction
 from rockflex.models._named import (
@@ -45,7 +45,7 @@ from rockflex.models._named import (
 )
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._nonlinear_system import key_of, nonlinear_system, with_marks
-from rockflex.models._phase import Arrow, Border, Key
+from rockflex.models._phase import Arrow, Key
 from rockflex.models._quantities import (
     HORIZONTAL,
     LEFT_OUT,
@@ -54,9 +54,7 @@ from rockflex.models._quantities import (
     SWING,
     VERTICAL,
     Quantities,
-    lost_support_row,
     rows_of,
-    turning_row,
 )
 from rockflex.models._reactions import Reactions, lifted_springs, printed_reactions, reactions, spring_forces
 from rockflex.models._sliding import SlidingModel
@@ -84,7 +82,6 @@ __all__ = [
     "VERTICAL",
     "Arrow",
     "Bar",
-    "Border",
     "BoucWen",
     "Dashpot",
     "Element",
@@ -107,7 +104,6 @@ __all__ = [
     "SidedRestitution",
     "Slider",
     "SlidingModel",
-    "Spring",
     "SpringModel",
     "StateLayout",
     "VVELComplete",
@@ -129,10 +125,8 @@ __all__ = [
     "housner",
     "inside",
     "key_of",
-    "layout_of",
     "lifted_springs",
     "linear_system_of",
-    "lost_support_row",
     "may_stack",
     "modal_displacement",
     "nonlinear_system",
@@ -153,7 +147,6 @@ __all__ = [
     "stored_energy",
     "swing_by_side",
     "system_of",
-    "turning_row",
     "under_more_gravity",
     "values_of",
     "with_marks",

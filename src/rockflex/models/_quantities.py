@@ -226,10 +226,3 @@ def hold(model: ModalModel, key: Key, rows: Array) -> None:
     capacity = sum(each.force * abs(arm_of(p, each, side)) for each in sliders.values())
     for place, each in sliders.items():
         rows[place] = side * np.sign(arm_of(p, each, side)) * each.force / capacity * moment
-
-
-def turning_row(model: ModalModel) -> Array:
-    """Return θ' in rad/s: a row, shape (C,)."""
-    row = np.zeros(model.layout.columns)
-    row[model.layout.spin] = 1.0
-    return row
