@@ -1,4 +1,4 @@
-"""The vector field of the nonlinear models and their guards, against the twin's, at random states."""
+"""The vector field of the nonlinear models and their uplifts, against the twin's, at random states."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,17 @@ import pytest
 from builders import frame_values, vector_field
 from rockflex import BoucWen
 from rockflex.modal import RockingProperties
-from rockflex.models import HORIZONTAL, LEFT_OUT, LINEAR, SWAY, SWING, VERTICAL, Model
+from rockflex.models import (
+    HORIZONTAL,
+    LEFT_OUT,
+    LINEAR,
+    SWAY,
+    SWING,
+    VERTICAL,
+    Model,
+    Quantities,
+    nonlinear_system,
+)
 from twins import complete_model as twin
 from twins.complete import complete_frame
 
@@ -105,21 +115,20 @@ def test_energies_are_counted(n, complete, spring, side):
 
 
 @pytest.mark.parametrize(("n", "complete", "spring"), CASES)
-def test_guards_are_equations_16_and_24(n, complete, spring):
+def test_uplift_is_by_equations_16_and_24(n, complete, spring):
     model, other = pair(n, complete=complete, spring=spring)
-    phases = {side: model.phase(model.start(side)) for side in (0, 1, -1)}
-    contact, right, left = (phases[side].guard for side in (0, 1, -1))
-    assert (contact.low, contact.high) == pytest.approx((-other.resisting(1), other.resisting(-1)), rel=1e-12)
-    assert (right.low, right.high) == (0.0, 0.5 * np.pi)
-    assert (left.low, left.high) == (-0.5 * np.pi, 0.0)
+    key = (*model.start(0), *((1,) if spring else ()))
+    phase = nonlinear_system(model, Quantities.none(n)).phase(key)
+    right, left = (event for event in phase.events if event.name == "uplift")
+    assert (right.constant, left.constant) == pytest.approx((other.resisting(1), other.resisting(-1)), rel=1e-12)
     for motion, a in states(n):
         state = np.concatenate(([0.0, 0.0], motion[: 2 * n], motion[-1:] if spring else []))
-        vector = np.concatenate((motion, [a, 1.0]))
-        vector[2 * n : 2 * n + 2] = 0.0
+        motion[2 * n : 2 * n + 2] = 0.0
+        full = np.concatenate((motion, np.zeros(model.layout.size - motion.size)))
         expected = other.overturning(state, a)
-        assert contact.row @ vector == pytest.approx(expected, rel=1e-11, abs=1e-12 * other.resisting(1))
-        vector[2 * n] = 0.3
-        assert right.row @ vector == left.row @ vector == 0.3
+        for side, event in ((1, right), (-1, left)):
+            found = side * (event.row @ full + event.direct * a)
+            assert found == pytest.approx(expected, rel=1e-11, abs=1e-12 * other.resisting(1))
 
 
 def test_at_uplift_the_complete_rotation_starts_from_the_excess():

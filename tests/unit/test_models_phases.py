@@ -1,4 +1,4 @@
-"""Phases as data: their arrows, guards and borders against the equations as they are printed."""
+"""The equations of motion of a phase and the events that end it, against the equations as they are printed."""
 
 import dataclasses
 
@@ -7,7 +7,7 @@ import pytest
 
 from builders import make_frame
 from rockflex import BoucWen, Tendon
-from rockflex.models import LANDS, LIFTS, OVERTURNS, LinearModel, Model
+from rockflex.models import Model, Quantities, element_base, linear_system_of, nonlinear_system, system_of
 from rockflex.models._elements import border_of
 
 GRAVITY = 9.81
@@ -63,7 +63,7 @@ def test_an_arrow_solved_for_the_rotation_is_its_angular_acceleration(n, name, s
     np.testing.assert_allclose(
         row / left, tied.angular_acceleration(key), rtol=1e-12, atol=1e-12 * np.abs(row).max() / left
     )
-    assert arrow.free
+    assert arrow.freed.tolist() == [True]
 
 
 def reach(p, tendon, side):
@@ -75,7 +75,7 @@ def reach(p, tendon, side):
 def test_in_contact_nothing_of_the_base_is_free(name):
     tied = model(name)
     arrow = tied.arrow(tied.start(0))
-    assert not arrow.free
+    assert arrow.freed.tolist() == [False]
     assert not arrow.flexibility.any()
     assert not tied.angular_acceleration(tied.start(0)).any()
 
@@ -83,26 +83,28 @@ def test_in_contact_nothing_of_the_base_is_free(name):
 @STRUCTURES
 @pytest.mark.parametrize("bouc_wen", [None, BoucWen(0.05)])
 @pytest.mark.parametrize("complete", [False, True])
-def test_guards_are_the_resisting_moments_of_the_pivots(name, complete, bouc_wen):
-    tied = Model(1, complete=complete).of(CASES[name], bouc_wen=bouc_wen)
-    p = tied.properties
-    contact = tied.phase(tied.start(0)).guard
-    assert contact.low == pytest.approx(-p.pivot(1).resisting_moment, rel=1e-14)
-    assert contact.high == pytest.approx(p.pivot(-1).resisting_moment, rel=1e-14)
-    assert np.array_equal(contact.row, tied.overturning_moment())
-    assert (contact.below.event, contact.below.key) == (LIFTS, tied.start(1))
-    assert (contact.above.event, contact.above.key) == (LIFTS, tied.start(-1))
-    for side in (1, -1):
-        phase = tied.phase(tied.start(side))
-        rotation = phase.guard
-        assert phase.side == phase.key[0] == side
-        assert rotation.row.tolist() == np.eye(tied.layout.columns)[tied.layout.rotation].tolist()
-        inner, outer = (rotation.below, rotation.above) if side > 0 else (rotation.above, rotation.below)
-        assert (rotation.low, rotation.high) == ((0.0, 0.5 * np.pi) if side > 0 else (-0.5 * np.pi, 0.0))
-        assert (inner.event, inner.key) == (LANDS, tied.start(0))
-        assert outer.event == OVERTURNS
-        assert (phase.arrow is None) == (complete or bouc_wen is not None)
-    assert (tied.phase(tied.start(0)).arrow is None) == (bouc_wen is not None)
+def test_phases_end_at_the_resisting_moments_of_the_pivots_and_at_a_quarter_turn(name, complete, bouc_wen):
+    if not complete and bouc_wen is None:
+        tied, none = Model(1).of(CASES[name]), Quantities.none(1)
+        system = linear_system_of(element_base(tied, none, none)) if tied.elements else system_of([tied], [none])
+        phase_of, sign = system.phase, ()
+    else:
+        tied = Model(1, complete=complete).of(CASES[name], bouc_wen=bouc_wen)
+        phase_of, sign = nonlinear_system(tied, Quantities.none(1)).phase, (1,) * (bouc_wen is not None)
+    p, moving = tied.properties, [*range(tied.layout.moving)]
+    uplifts = [event for event in phase_of((*tied.start(0), *sign)).events if event.name == "uplift"]
+    assert [event.target for event in uplifts] == [(*tied.start(side), *sign) for side in (1, -1)]
+    for side, event in zip((1, -1), uplifts, strict=True):
+        assert float(np.squeeze(event.constant)) == pytest.approx(p.pivot(side).resisting_moment, rel=1e-14)
+        row, moment = np.squeeze(event.row)[moving], side * tied.overturning_moment()
+        assert np.array_equal(row, moment[:-2])
+        assert float(np.squeeze(event.direct)) == moment[-2]
+        ends = {each.name: each for each in phase_of((*tied.start(side), *sign)).events}
+        turned = np.eye(tied.layout.size)[tied.layout.rotation][moving]
+        assert np.array_equal(np.squeeze(ends["impact"].row)[moving], side * turned)
+        assert ends["impact"].target == (*tied.start(0), *sign)
+        assert np.array_equal(np.squeeze(ends["overturning"].row)[moving], -side * turned)
+        assert (ends["overturning"].target, ends["overturning"].constant) == (None, 0.5 * np.pi)
 
 
 @EITHER
@@ -117,11 +119,3 @@ def test_the_border_of_base_and_tendons_is_that_of_the_pivot(name, side):
     assert whole.constant[0] == pytest.approx(-side * pivot.resisting_moment, rel=1e-14)
     assert whole.ground[0] == -p.l0r
     assert not whole.damping.any()
-
-
-def test_both_sides_of_a_symmetric_base_have_the_same_eigenvectors():
-    tied, skew = model("plain"), model("eccentric")
-    assert tied.arrow(tied.start(1)).alike(tied.arrow(tied.start(-1)))
-    assert not tied.arrow(tied.start(1)).alike(tied.arrow(tied.start(0)))
-    assert not skew.arrow(skew.start(1)).alike(skew.arrow(skew.start(-1)))
-    assert LinearModel("mine", PLAIN).sides == (0, 1, -1)

@@ -10,7 +10,7 @@ from builders import frame_values
 from rockflex import Frame, GroundMotion, InitialState, InputError, load_suite, simulate, simulate_many
 from rockflex.response import PEAKS
 from rockflex.solve import engine
-from rockflex.solve.status import Status
+from rockflex.solve._failures import Status
 
 RECORD = load_suite("el-centro-1940")[0].acceleration
 

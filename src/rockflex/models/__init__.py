@@ -1,10 +1,8 @@
 """Models of a structure on a base that may uplift."""
 
-from rockflex.models._bar import Bar
-from rockflex.models._based import horizontal_reaction
 from rockflex.models._between import LinearMotion, MotionBetween, Part, Shaking, inside
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._element import BROKEN, Dashpot, Element, Spring
+from rockflex.models._element import BROKEN, Bar, Dashpot, Element, Slider
 from rockflex.models._element_states import (
     arms,
     element_energies,
@@ -13,7 +11,7 @@ from rockflex.models._element_states import (
     plastic_stretches,
     stored_energy,
 )
-from rockflex.models._elements import CLOSED, LEFT, RIGHT, arm_of, elements_of, stiffness_of_fuses
+from rockflex.models._elements import CLOSED, LEFT, RIGHT, SUMS, arm_of, elements_of, pulls_of, stiffness_of_fuses
 from rockflex.models._impact import (
     ForgottenLaw,
     ImpactLaw,
@@ -33,9 +31,9 @@ from rockflex.models._kept import (
 )
 from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._landing import GainsEnergyError
-from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout, layout_of
-from rockflex.models._linear import LinearModel
+from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout
 from rockflex.models._linear_system import ElementBase, element_base, linear_system_of
+from rockflex.models._modal_model import LinearModel, horizontal_reaction
 from rockflex.models._named import (
     element_moves,
     element_speeds,
@@ -47,83 +45,49 @@ from rockflex.models._named import (
 )
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._nonlinear_system import key_of, nonlinear_system, with_marks
-from rockflex.models._observe import (
+from rockflex.models._phase import Arrow, Key
+from rockflex.models._quantities import (
     HORIZONTAL,
     LEFT_OUT,
     LINEAR,
     SWAY,
     SWING,
     VERTICAL,
+    Quantities,
+    rows_of,
 )
-from rockflex.models._phase import (
-    CHANGES,
-    CLOSES,
-    LANDS,
-    LIFTS,
-    OPENS,
-    OVERTURNS,
-    RELEASES,
-    SLIPS,
-    STICKS,
-    TURNS,
-    Arrow,
-    Border,
-    Exit,
-    Fence,
-    Guard,
-    Key,
-    Phase,
-)
-from rockflex.models._pulls import SUMS, pulls_of
-from rockflex.models._quantities import Quantities, lost_support_row, rows_of, turning_row
 from rockflex.models._reactions import Reactions, lifted_springs, printed_reactions, reactions, spring_forces
-from rockflex.models._slider import Slider
 from rockflex.models._sliding import SlidingModel
-from rockflex.models._spring_forces import LOADED
-from rockflex.models._springs import SpringModel
+from rockflex.models._spring_model import LOADED, SpringModel
 from rockflex.models._stored import floor_accelerations, soil_strain, stored_energies
 from rockflex.models._system import may_stack, system_of
 
 __all__ = [
     "BROKEN",
-    "CHANGES",
     "CLOSED",
-    "CLOSES",
     "GROUND",
     "HEADER",
     "HORIZONTAL",
-    "LANDS",
     "LEFT",
     "LEFT_OUT",
-    "LIFTS",
     "LINEAR",
     "LOADED",
-    "OPENS",
-    "OVERTURNS",
-    "RELEASES",
     "RIGHT",
     "RISE",
     "SIDE",
-    "SLIPS",
-    "STICKS",
     "SUMS",
     "SWAY",
     "SWING",
     "TIME",
-    "TURNS",
     "VERTICAL",
     "Arrow",
     "Bar",
-    "Border",
     "BoucWen",
     "Dashpot",
     "Element",
     "ElementBase",
-    "Exit",
-    "Fence",
     "ForgottenLaw",
     "GainsEnergyError",
-    "Guard",
     "ImpactLaw",
     "Key",
     "LinearModel",
@@ -132,7 +96,6 @@ __all__ = [
     "MotionBetween",
     "NonlinearModel",
     "Part",
-    "Phase",
     "Quantities",
     "Reactions",
     "Restitution",
@@ -141,7 +104,6 @@ __all__ = [
     "SidedRestitution",
     "Slider",
     "SlidingModel",
-    "Spring",
     "SpringModel",
     "StateLayout",
     "VVELComplete",
@@ -163,10 +125,8 @@ __all__ = [
     "housner",
     "inside",
     "key_of",
-    "layout_of",
     "lifted_springs",
     "linear_system_of",
-    "lost_support_row",
     "may_stack",
     "modal_displacement",
     "nonlinear_system",
@@ -187,7 +147,6 @@ __all__ = [
     "stored_energy",
     "swing_by_side",
     "system_of",
-    "turning_row",
     "under_more_gravity",
     "values_of",
     "with_marks",

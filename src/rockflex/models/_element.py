@@ -1,4 +1,4 @@
-"""What an element between the base and the ground is, and elements without memory: elastic tendons and dashpots."""
+"""The elements between base and ground: tendons, fuses, viscous and friction dampers, each with its branches."""
 
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 
 ELASTIC, UP, DOWN, SLACK, BROKEN = range(5)  # branches of a bar; UP and DOWN: it yields as it is stretched or shortened
+HELD, OUTWARD, INWARD = ELASTIC, UP, DOWN  # branches of a friction damper
 BORDER = 1e-12  # relative: an elongation this close to the end of a branch still belongs to it
+BROKEN_FOR_GOOD = 1e30  # the memory of an element that has broken, m
 
 
 class Pull(NamedTuple):
@@ -163,3 +165,137 @@ class Dashpot(WithoutMemory):
     def pull(self, branch: int) -> Pull:
         del branch
         return Pull(damping=self.coefficient)
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A fuse, or a tendon that yields: F = α k e + (1 - α) z, z = k (e - m) within ± F_y, e = δ + e_0.
+
+    The memory m is the plastic stretch. A bar that cannot push has no compression: F = max(0, ·).
+    """
+
+    stiffness: float
+    yield_force: float
+    ratio: float
+    position: float
+    stretched: float = 0.0  # e_0
+    pulls_only: bool = False
+    rupture: float = np.inf  # elongation δ at which it breaks
+
+    @property
+    def remembers(self) -> bool:
+        return True
+
+    @property
+    def branches(self) -> tuple[int, ...]:
+        return (ELASTIC, UP, DOWN, SLACK, BROKEN)
+
+    def pull(self, branch: int) -> Pull:
+        k, a, e0 = self.stiffness, self.ratio, self.stretched
+        if branch == ELASTIC:
+            return Pull(k, 0.0, k * e0, -(1.0 - a) * k)
+        if branch in (UP, DOWN):
+            sign = 1.0 if branch == UP else -1.0
+            return Pull(a * k, 0.0, a * k * e0 + sign * (1.0 - a) * self.yield_force)
+        return Pull()
+
+    def stops(self, branch: int) -> tuple[Stop, ...]:
+        reach, e0 = self.yield_force / self.stiffness, self.stretched
+        breaks = () if np.isinf(self.rupture) else (Stop(True, self.rupture, 0.0, BROKEN),)
+        empty = 1.0 - self.ratio
+        if branch == ELASTIC:
+            slackens = (Stop(False, -e0, empty, SLACK),) if self.pulls_only else ()
+            return (Stop(True, reach - e0, 1.0, UP), Stop(False, -reach - e0, 1.0, DOWN), *slackens, *breaks)
+        if branch == SLACK:
+            return (Stop(True, -e0, empty, ELASTIC), *breaks)
+        if branch == DOWN and self.pulls_only and self.ratio > 0.0:
+            return (Stop(False, empty / self.ratio * reach - e0, 0.0, SLACK),)
+        return breaks if branch == UP else ()
+
+    def direction(self, branch: int) -> int:
+        return 1 if branch == UP else -1 if branch == DOWN else 0
+
+    def turning(self, branch: int) -> float | None:
+        sign = self.direction(branch)
+        return None if sign == 0 else sign * self.yield_force / self.stiffness - self.stretched
+
+    def stopped(self, branch: int) -> int:
+        return ELASTIC if branch in (UP, DOWN) else branch
+
+    def moving(self, branch: int, direction: int) -> int:
+        del direction
+        return branch
+
+    def mark(self, branch: int) -> float | None:
+        return BROKEN_FOR_GOOD if branch == BROKEN else None
+
+    def memory_at(self, elongation: float) -> float:
+        if elongation >= self.rupture:
+            return BROKEN_FOR_GOOD
+        stretch, reach = elongation + self.stretched, self.yield_force / self.stiffness
+        if self.pulls_only:
+            return max(stretch - reach, 0.0)
+        return stretch - min(max(stretch, -reach), reach)
+
+    def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
+        reach, e = self.yield_force / self.stiffness, elongation + self.stretched
+        found = np.full(e.size, ELASTIC, dtype=np.int64)
+        room = BORDER * (reach + np.abs(e) + np.abs(memory))
+        found[e - memory > reach + room] = UP
+        found[e - memory < -reach - room] = DOWN
+        if self.pulls_only:
+            empty = (1.0 - self.ratio) * memory
+            pulls = self.ratio * e >= (1.0 - self.ratio) * reach - room  # while it yields back
+            found[(e < empty - room) & ~((found == DOWN) & pulls)] = SLACK
+        found[memory == BROKEN_FOR_GOOD] = BROKEN
+        return found
+
+
+@dataclass(frozen=True)
+class Slider:
+    """A friction damper: F = ± F_0 while it slides, less while it sticks. Its memory is its direction, 1, 0 or -1."""
+
+    force: float
+    position: float
+
+    @property
+    def remembers(self) -> bool:
+        return True
+
+    @property
+    def branches(self) -> tuple[int, ...]:
+        return (HELD, OUTWARD, INWARD)
+
+    def pull(self, branch: int) -> Pull:
+        return Pull(force=self.direction(branch) * self.force)
+
+    def stops(self, branch: int) -> tuple[Stop, ...]:
+        del branch
+        return ()
+
+    def direction(self, branch: int) -> int:
+        return 1 if branch == OUTWARD else -1 if branch == INWARD else 0
+
+    def turning(self, branch: int) -> float | None:
+        del branch
+
+    def stopped(self, branch: int) -> int:
+        del branch
+        return HELD
+
+    def moving(self, branch: int, direction: int) -> int:
+        del branch
+        return OUTWARD if direction > 0 else INWARD if direction < 0 else HELD
+
+    def mark(self, branch: int) -> float | None:
+        return float(self.direction(branch))
+
+    def memory_at(self, elongation: float) -> float:
+        del elongation
+        return 0.0
+
+    def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
+        found = np.full(elongation.size, HELD, dtype=np.int64)
+        found[memory > 0.0] = OUTWARD
+        found[memory < 0.0] = INWARD
+        return found

@@ -3,14 +3,12 @@
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex.models._bar import Bar
-from rockflex.models._element import BROKEN, Element, Spring
+from rockflex.models._element import BROKEN, Bar, Element, Slider, Spring
 from rockflex.models._elements import LEFT, RIGHT, arm_of
 from rockflex.models._kept import acting_side, by_phase
 from rockflex.models._label import RockingModel
 from rockflex.models._quantities import tensions
-from rockflex.models._slider import Slider
-from rockflex.models._springs import SpringModel
+from rockflex.models._spring_model import SpringModel
 
 
 def arms(model: RockingModel, side: Array) -> Array:

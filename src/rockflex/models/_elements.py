@@ -1,15 +1,22 @@
 """The elements of a base together: their branches in a phase, the forces on the base, and what ends the phase."""
 
+import math
+
 import numpy as np
 
+from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, ViscousDamper, YieldingDissipator
-from rockflex.models._bar import Bar
-from rockflex.models._element import Dashpot, Element, Spring, Stop
-from rockflex.models._phase import Border, Change, Key, Turning
-from rockflex.models._slider import HELD, Slider
+from rockflex.models._element import HELD, Bar, Dashpot, Element, Slider, Spring, Stop
+from rockflex.models._phase import Border, Key
 
 CLOSED, RIGHT, LEFT = 0, 1, -1  # branches of the base: in contact, or rotating about one pivot; the sign of θ
+QUARTER_TURN = 0.5 * np.pi  # rad: a base that has rotated so far has overturned
+
+# Indices in the sums: Σ f r, Σ k r², Σ c r² for the moment; Σ f, Σ k r, Σ c r for the force. Those with f also have a
+# share g of every memory. The last is 1 if friction dampers hold the base, otherwise 0.
+MOMENT, STIFFNESS, DAMPING, FORCE, PULL, DRAG, HOLD = range(7)
+SUMS = 7
 
 
 def base_border(properties: RockingProperties, side: int, memories: int, gravity: float = GRAVITY) -> Border:
@@ -77,20 +84,26 @@ def border_of(
     return total
 
 
-def changes_of(properties: RockingProperties, elements: tuple[Element, ...], key: Key) -> tuple[Change, ...]:
-    """Return the limits of |θ| at which elements change their branches, while the base rocks."""
-    found: list[Change] = []
+def pulls_of(properties: RockingProperties, elements: tuple[Element, ...], key: Key) -> Array:
+    """Return the sums over the elements on their branches, and what each memory adds to them, shape (7, 1 + M).
+
+    An element at the distance r from the pivot is stretched by δ = 2 r sin(|θ|/2). Its tension with its memory m,
+    F = k δ + c δ' + f + g m, adds the moment -s F r cos(θ/2). For small rotations these are δ = r |θ| and -s F r.
+    """
     known = memories(elements)
+    total = np.zeros((SUMS, 1 + len(known)))
+    terms: list[tuple[float, ...]] = []
     for place, (each, branch) in enumerate(zip(elements, key[1:], strict=True)):
-        r = arm_of(properties, each, key[0])
-        if r == 0.0:
-            continue
-        for stop in each.stops(branch):
-            if is_in_reach(stop, r):
-                following = (*key[: place + 1], stop.branch, *key[place + 2 :])
-                memory = known.get(place, -1)
-                found.append(Change(stop.upper == (r > 0.0), stop.place / r, stop.recall / r, memory, following))
-    return tuple(found)
+        r = arm_of(properties, each, key[0]) if key[0] != CLOSED else 0.0
+        k, c, f, g = each.pull(branch)
+        terms.append((f * r, k * r**2, c * r**2, f, k * r, c * r))
+        if place in known:
+            total[MOMENT, 1 + known[place]], total[FORCE, 1 + known[place]] = g * r, g
+    # Exactly rounded, so that mirrored bases have the same sums to the last digit.
+    total[:HOLD, 0] = [math.fsum(values) for values in zip(*terms, strict=True)] or 0.0
+    total[HOLD, 0] = is_held(properties, elements, key)
+    total.setflags(write=False)
+    return total
 
 
 def is_in_reach(stop: Stop, arm: float) -> bool:
@@ -102,18 +115,13 @@ def is_in_reach(stop: Stop, arm: float) -> bool:
     return arm != 0.0 and (stop.recall != 0.0 or stop.place / arm > 0.0 or (outer and stop.place == 0.0))
 
 
-def turnings_of(
-    properties: RockingProperties, elements: tuple[Element, ...], key: Key
-) -> tuple[int, tuple[Turning, ...]]:
-    """Return the sign of |θ|' on branches that end where it vanishes (0: there are none), and what memories become."""
-    sign, found = 0, list[Turning]()
-    known = memories(elements)
-    for place, (each, branch) in enumerate(zip(elements, key[1:], strict=True)):
-        offset, r = each.turning(branch), arm_of(properties, each, key[0])
-        if offset is not None:
-            found.append(Turning(known[place], r, offset))
-        sign = each.direction(branch) * int(np.sign(r)) or sign
-    return sign, tuple(found)
+def turning_way(properties: RockingProperties, elements: tuple[Element, ...], key: Key) -> int:
+    """Return the sign of |θ|' while elements yield or slide, which ends where it vanishes; 0 if none does."""
+    ways = (
+        each.direction(branch) * int(np.sign(arm_of(properties, each, key[0])))
+        for each, branch in zip(reversed(elements), reversed(key[1:]), strict=True)
+    )
+    return next((way for way in ways if way), 0)
 
 
 def marks_of(elements: tuple[Element, ...], key: Key) -> tuple[tuple[int, float], ...]:

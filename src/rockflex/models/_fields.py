@@ -12,7 +12,7 @@ from math import pow as power_of
 import cython
 import numpy as np
 
-from rockflex.models._pulls import DAMPING, DRAG, FORCE, HOLD, MOMENT, PULL, STIFFNESS
+from rockflex.models._elements import DAMPING, DRAG, FORCE, HOLD, MOMENT, PULL, STIFFNESS
 
 if cython.compiled:
     from cython.cimports.libc.math import asin, cos, fabs, sin, sqrt
@@ -31,7 +31,7 @@ GAIN = cython.declare(cython.double, 1e-9)  # relative gain of energy in an impa
 CLOSE = cython.declare(cython.double, 1e-13)  # of the terms of a limit
 NEVER = cython.declare(cython.double, 10.0)  # rad: no rotation is as large
 
-# Kinds of outputs, see `rockflex.models._observe`.
+# Kinds of outputs, see `rockflex.models._quantities`.
 LINEAR = cython.declare(cython.int, 0)
 SWAY = cython.declare(cython.int, 1)
 LEFT_OUT = cython.declare(cython.int, 2)
@@ -91,7 +91,7 @@ class RockingField(Field):
     side, branch
         Pivot about which the base rotates, 1 right, -1 left, 0 in contact; sign of D'_1 in the law of Bouc and Wen.
     numbers
-        Of the model: see `rockflex.models._numbers.Numbers`.
+        Of the model: see `rockflex.models._nonlinear.Numbers`.
     pulls : ndarray, shape (7, 1 + M)
         Sums over the elements, see `pulls_of`.
     stops : list
@@ -338,7 +338,7 @@ class RockingField(Field):
             )
 
     def observe(self, y, rates, a, a_v, out):
-        """Replace the outputs that are not linear in large rotations: see `rockflex.models._observe`."""
+        """Replace the outputs that are not linear in large rotations: see `rockflex.models._quantities`."""
         n: cython.int = self.n
         i: cython.int
         j: cython.int

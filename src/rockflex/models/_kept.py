@@ -7,15 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
+from rockflex.models._elements import pulls_of
 from rockflex.models._fields import RockingField
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME
-from rockflex.models._nonlinear import NonlinearModel
-from rockflex.models._numbers import Numbers, numbers_of
-from rockflex.models._observe import LINEAR
+from rockflex.models._nonlinear import NonlinearModel, Numbers, numbers_of
 from rockflex.models._phase import Key
-from rockflex.models._pulls import pulls_of
-from rockflex.models._quantities import Quantities, rows_of
+from rockflex.models._quantities import LINEAR, Quantities, rows_of
 
 _MOST_CODES = 2**31  # beyond which they are numbered anew, before they overflow
 

@@ -12,10 +12,9 @@ from rockflex._errors import InputError
 from rockflex._shown import counted, shown
 from rockflex.modal import FrictionDamper, Ground, RockingProperties
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._ground_checks import check_base
-from rockflex.models._grounded import grounded
+from rockflex.models._ground import check_base, grounded
 from rockflex.models._impact import ImpactLaw, VVELComplete, VVELSimplified, housner
-from rockflex.models._linear import LinearModel
+from rockflex.models._modal_model import LinearModel
 from rockflex.models._nonlinear import NonlinearModel
 
 RockingModel = LinearModel | NonlinearModel

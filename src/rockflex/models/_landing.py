@@ -10,21 +10,29 @@ from rockflex._checks import finite, finite_vector
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
-from rockflex.models._elements import CLOSED, LEFT, RIGHT
+from rockflex.models._elements import CLOSED, RIGHT
 from rockflex.models._impact import ImpactLaw, Restitution, SidedRestitution
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._phase import Key
 
 GAIN = 1e-9  # relative gain of energy in an impact that is attributed to rounding
-WITHOUT = Restitution(0.0)  # of a law that says nothing of the shortest excursion
 
 
 class GainsEnergyError(SolverError):
     """An impact law returns more energy than there was."""
 
 
+def gains_energy(model: ModalModel) -> GainsEnergyError:
+    """Return the error of a model whose impact law returns energy."""
+    return GainsEnergyError(f"The impact law {shown(model.law)} returns energy.")
+
+
 def landing_of(
-    model: ModalModel, keys: Mapping[int, Key], turns: Mapping[int, tuple[Array, Array]]
+    model: ModalModel,
+    side: int,
+    keys: Mapping[int, Key],
+    inertia: Callable[[int, Array], float],
+    turn: Callable[[int, Array, float, float], float],
 ) -> Callable[[Array, float, float], tuple[Array, Key]]:
     """Return the jump at an impact, from the states [D, D', θ, θ', ..] and both accelerations.
 
@@ -32,18 +40,21 @@ def landing_of(
     ----------
     model
         The model, with its law.
+    side
+        The side to which the base was rotated.
     keys
         The phases that may follow, by side.
-    turns
-        θ'' in those of a base that rocks: a row over the states, the acceleration and 1, and what each m/s² of vertical
-        acceleration adds to it.
+    inertia
+        The inertia of the rotation with free modes about the pivot of a side, in a state.
+    turn
+        θ'' about the pivot of a side, in a state and under both accelerations.
 
     Returns
     -------
     callable
         It raises `GainsEnergyError` if the law returns energy, and `InputError` if the law fails.
     """
-    p = model.properties
+    p, shortest = model.properties, shortest_excursion(sided(model.law, side))
     N, height, mass = p.n_modes, p.effective_height, p.effective_mass
     modes, rotation, spin = slice(N, 2 * N), 2 * N, 2 * N + 1
 
@@ -52,31 +63,46 @@ def landing_of(
         return 0.5 * inertia * state[spin] ** 2 + 0.5 * float(mass @ velocity**2)
 
     def land(state: Array, acceleration: float, vertical: float) -> tuple[Array, Key]:
-        before = energy(state, model.free_inertia(RIGHT if state[spin] < 0.0 else LEFT))
-        law = sided(model.law, state[spin])
+        before = energy(state, inertia(side, state))
         velocity, passed = velocities_after(model.law, p, state[modes], float(state[spin]))
-        after, side = state.copy(), int(np.sign(passed))
+        after, onto = state.copy(), int(np.sign(passed))
         after[modes], after[rotation], after[spin] = velocity, 0.0, passed
-        gained = energy(after, model.free_inertia(side) if side != CLOSED else 0.0) - before
-        if side != CLOSED:
-            shortest = law.shortest_excursion if isinstance(law, Restitution) else WITHOUT.shortest_excursion
-            row = turns[side][0] + vertical * turns[side][1]
-            back = -side * float(row[:-2] @ after + row[-2] * acceleration + row[-1])
+        gained = energy(after, inertia(onto, after) if onto != CLOSED else 0.0) - before
+        if onto != CLOSED:
+            back = -onto * turn(onto, after, acceleration, vertical)
             if 2.0 * abs(passed) < back * shortest:
                 after[modes] += height * passed
-                after[spin], side = 0.0, CLOSED
+                after[spin], onto = 0.0, CLOSED
         if gained > GAIN * before:
-            raise GainsEnergyError(f"The impact law {shown(model.law)} returns energy.")
-        return after, keys[side]
+            raise gains_energy(model)
+        return after, keys[onto]
 
     return land
 
 
-def sided(law: ImpactLaw, spin: float) -> ImpactLaw:
-    """Return the law of the edge about which the base rotated before an impact, by the sign of θ'."""
+def turn_by_rows(rows: Mapping[int, tuple[Array, Array]]) -> Callable[[int, Array, float, float], float]:
+    """Return θ'' as `landing_of` needs it, from a row of each side over the states, the acceleration and 1.
+
+    The second row of a side is what each m/s² of vertical acceleration adds to the first.
+    """
+
+    def turn(side: int, state: Array, acceleration: float, vertical: float) -> float:
+        row = rows[side][0] + vertical * rows[side][1]
+        return float(row[:-2] @ state + row[-2] * acceleration + row[-1])
+
+    return turn
+
+
+def sided(law: ImpactLaw, side: int) -> ImpactLaw:
+    """Return the law of the edge about which the base rotates on a side."""
     if isinstance(law, SidedRestitution):
-        return law.right if spin < 0.0 else law.left
+        return law.right if side == RIGHT else law.left
     return law
+
+
+def shortest_excursion(law: ImpactLaw) -> float:
+    """Return the duration in s below which an excursion after an impact does not count."""
+    return law.shortest_excursion if isinstance(law, Restitution) else Restitution(0.0).shortest_excursion
 
 
 def velocities_after(

@@ -9,20 +9,26 @@ import numpy as np
 
 from rockflex._arrays import Array, Integers
 from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System
-from rockflex.models._bar import BROKEN_FOR_GOOD, Bar
-from rockflex.models._based import horizontal_reaction
-from rockflex.models._branch_code import code_of
-from rockflex.models._element import BROKEN, ELASTIC, SLACK
-from rockflex.models._elements import CLOSED, LEFT, RIGHT, arm_of, border_of, is_in_reach, memories, set_off
+from rockflex.models._element import BROKEN, BROKEN_FOR_GOOD, ELASTIC, SLACK, Bar
+from rockflex.models._elements import (
+    CLOSED,
+    LEFT,
+    QUARTER_TURN,
+    RIGHT,
+    arm_of,
+    border_of,
+    is_in_reach,
+    memories,
+    set_off,
+    turning_way,
+)
 from rockflex.models._impact import Restitution, VVELSimplified
-from rockflex.models._landing import landing_of, sided
-from rockflex.models._linear import LinearModel
+from rockflex.models._landing import landing_of, sided, turn_by_rows
+from rockflex.models._modal_model import LinearModel, horizontal_reaction
 from rockflex.models._phase import Key
 from rockflex.models._quantities import Quantities, lost_support_row, rows_of
-from rockflex.models._rocking_phase import QUARTER_TURN
 from rockflex.models._sliding import LOST, STICK, SlidingModel
-from rockflex.models._spring_forces import LIFTED, LOADED, RECEDING
-from rockflex.models._springs import SpringModel
+from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, SpringModel, code_of
 
 TINY = 1e-300
 MORE = 1e6  # m/s², of gravity: the terms that it adds outweigh the rounding of all others
@@ -341,15 +347,10 @@ class OnRigidGround(ElementBase):
     def turning(self, key: Key) -> list[Event]:
         """The rotation turns back while elements yield or slide, whose branches then end."""
         model, base, spin = self.model, self.model.element_key(key), self.model.layout.spin
-        p = model.properties
-        ways = [
-            each.direction(branch) * np.sign(arm_of(p, each, base[0]))
-            for each, branch in zip(model.elements, base[1:], strict=True)
-        ]
-        way = next((each for each in reversed(ways) if each), 0.0)
-        if way == 0.0:
+        way = turning_way(model.properties, model.elements, base)
+        if way == 0:
             return []
-        turned = set_off(p, model.elements, base, 0)
+        turned = set_off(model.properties, model.elements, base, 0)
         row = base[0] * way * self.unit(spin)
         return [self.event("turn", row, self.along(key, turned), 1.0, self.without(spin))]
 
@@ -357,13 +358,14 @@ class OnRigidGround(ElementBase):
         """The impact, after which rocking may go on to the other side."""
         model, side = self.model, key[0]
         contact, other = self.beside(key, CLOSED), self.beside(key, -side)
-        row, law = side * self.unit(model.layout.rotation), sided(model.law, -side)
+        row, law = side * self.unit(model.layout.rotation), sided(model.law, side)
         if isinstance(law, VVELSimplified) or (isinstance(law, Restitution) and law.e == 0.0):
             return self.event("impact", row, contact, QUARTER_TURN, self.struck(0.0))
         if not isinstance(law, Restitution) or self._gains(side, law):
             keys = {each: self.beside(key, each) for each in (CLOSED, RIGHT, LEFT)}
             turns = {each: (self.turn(keys[each]), self.turn_by_weight(keys[each])) for each in (RIGHT, LEFT)}
-            return self.event("impact", row, contact, QUARTER_TURN, landing_of(model, keys, turns))
+            jump = landing_of(model, side, keys, lambda each, _: model.free_inertia(each), turn_by_rows(turns))
+            return self.event("impact", row, contact, QUARTER_TURN, jump)
         back = law.shortest_excursion * side * self.turn(other)  # what θ' would lose within the shortest excursion
         back[model.layout.spin] += 2.0 * side
         n = self.layout.size

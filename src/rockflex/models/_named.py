@@ -7,8 +7,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex.modal import FloorModes
 from rockflex.models._modal_model import ModalModel
-from rockflex.models._observe import HORIZONTAL, LEFT_OUT, LINEAR, SWAY, SWING
-from rockflex.models._quantities import Quantities, Share, collected, joined
+from rockflex.models._quantities import HORIZONTAL, LEFT_OUT, LINEAR, SWAY, SWING, Quantities, Share, collected, joined
 
 
 def quantities(model: ModalModel, names: Iterable[str]) -> Quantities:

@@ -1,16 +1,16 @@
-"""The nonlinear models: complete (Eqs. 13-16 and 26-29), yielding (Eqs. 37-38), or both."""
+"""The nonlinear models: complete (Eqs. 13-16 and 26-29), yielding (Eqs. 37-38), or both; what their fields know."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._elements import CLOSED
 from rockflex.models._impact import ImpactLaw, VVELSimplified
-from rockflex.models._linear import LinearModel
-from rockflex.models._modal_model import ModalModel
-from rockflex.models._phase import Key, Phase
-from rockflex.models._rocking_phase import phase_of
+from rockflex.models._modal_model import LinearModel, ModalModel
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +54,32 @@ class NonlinearModel(ModalModel):
         """The simplified, elastic model of the same modes."""
         return LinearModel(self.label, self.properties, self.lifts, self.law, self.missing_mass, self.gravity)
 
-    def phase(self, key: Key) -> Phase:
-        """Return one phase; it is linear only in contact with an elastic superstructure."""
-        linear = key[0] == CLOSED and self.bouc_wen is None
-        return phase_of(self, key, self.arrow(key) if linear else None)
+
+@dataclass(frozen=True, eq=False)
+class Numbers:
+    """What a vector field knows of a model."""
+
+    properties: RockingProperties
+    bouc_wen: BoucWen | None
+    complete: bool
+    viscous: bool
+    gravity: float
+    resting: float  # vertical reaction at rest
+    memory: int  # place of the first memory of an element
+    kinds: Sequence[int]  # of the outputs
+    levers: Array
+
+
+def numbers_of(model: ModalModel, kinds: Sequence[int] = (), levers: Array | None = None) -> Numbers:
+    """Return what the vector field of a model knows, with outputs of these kinds, each with two levers."""
+    return Numbers(
+        properties=model.properties,
+        bouc_wen=model.bouc_wen,
+        complete=model.complete,
+        viscous=model.layout.swept >= 0,
+        gravity=model.gravity,
+        resting=model.properties.resting_reaction,
+        memory=model.layout.memory,
+        kinds=kinds,
+        levers=np.zeros((len(kinds), 2)) if levers is None else levers,
+    )

@@ -10,18 +10,27 @@ import numpy as np
 
 from rockflex._arrays import Array, Integers
 from rockflex._constants import GRAVITY
-from rockflex._shown import shown
 from rockflex.engine import Event, LinearPhase, NonlinearPhase, StateLayout, System
-from rockflex.models._elements import CLOSED, LEFT, RIGHT
+from rockflex.models._elements import (
+    CLOSED,
+    LEFT,
+    QUARTER_TURN,
+    RIGHT,
+    arm_of,
+    border_of,
+    is_in_reach,
+    marks_of,
+    memories,
+    pulls_of,
+    set_off,
+    turning_way,
+)
 from rockflex.models._fields import Change, Landing, Reversal, RockingField
-from rockflex.models._impact import Restitution, SidedRestitution, VVELComplete, VVELSimplified
-from rockflex.models._landing import GAIN, WITHOUT, GainsEnergyError, velocities_after
-from rockflex.models._nonlinear import NonlinearModel
-from rockflex.models._numbers import numbers_of
-from rockflex.models._observe import LINEAR, VERTICAL
-from rockflex.models._phase import Guard, Key, Phase
-from rockflex.models._quantities import Quantities, lost_support_row, rows_of
-from rockflex.models._rocking_phase import QUARTER_TURN
+from rockflex.models._impact import Restitution, VVELComplete, VVELSimplified
+from rockflex.models._landing import gains_energy, landing_of, shortest_excursion, sided
+from rockflex.models._nonlinear import NonlinearModel, numbers_of
+from rockflex.models._phase import Key
+from rockflex.models._quantities import LINEAR, VERTICAL, Quantities, lost_support_row, rows_of
 
 TREMOR = 0.01  # m/s²: the error of a step is relative to the response to it, or to a larger motion so far
 LIGHT = 0.05  # of the vertical reaction at rest: the least size of the loss of support
@@ -50,7 +59,7 @@ def key_of(model: NonlinearModel, key: Key, state: Array | None = None) -> Key:
 
 def with_marks(model: NonlinearModel, keys: Sequence[Key], places: Integers, states: Array) -> Array:
     """Return states in which the memories of friction dampers are those of their phases, at keys[places]."""
-    marks = [model.phase(key[:-1] if model.bouc_wen is not None else key).marks for key in keys]
+    marks = [marks_of(model.elements, key[:-1] if model.bouc_wen is not None else key) for key in keys]
     if any(marks):
         states = states.copy()
         for place, of_phase in enumerate(marks):
@@ -89,17 +98,16 @@ class Rocks:
         """Return a phase: full contact, or rocking about one side."""
         model, layout = self.model, self.model.layout
         branch, own = (key[-1], key[:-1]) if model.bouc_wen is not None else (1, key)
-        known = model.phase(own)
         side, n = own[0], layout.size
         rows = self.rows(model, own)
         more = self.rows(self.heavier, own) - rows
         outputs = rows[:, :n], rows[:, n], rows[:, n + 1]
-        if not known.free:
-            stops, events = [], self.uplifts(known, branch)
+        if not model.is_free(own):
+            stops, events = [], self.uplifts(own, branch)
         else:
-            stops, events = self.changes(known, branch)
-            events += (*self.ends(known, branch), *self.turns(known, branch))
-        if known.arrow is not None:
+            stops, events = self.changes(own, branch)
+            events += (*self.ends(own, branch), *self.turns(own, branch))
+        if side == CLOSED and model.bouc_wen is None:
             rates = np.zeros((n, n + 2))
             modes = np.arange(layout.modes)
             rates[modes, layout.modes + modes] = 1.0
@@ -111,7 +119,7 @@ class Rocks:
             events += (self.reversal(own, branch),)
         modes = range(layout.modes)
         return NonlinearPhase(
-            RockingField(self.numbers, side, branch, known.pulls, stops),
+            self.field(own, branch, stops),
             *outputs,
             events,
             self.scale,
@@ -134,29 +142,36 @@ class Rocks:
         """The key of a phase from that of the model and the sign of the velocity of a hysteretic spring."""
         return (*key, branch) if self.model.bouc_wen is not None else key
 
-    def uplifts(self, known: Phase, branch: int) -> tuple[Event, ...]:
+    def uplifts(self, key: Key, branch: int) -> tuple[Event, ...]:
         """The base lifts, or leaves friction dampers, where the moment exceeds a limit (Eq. 16 or 24)."""
-        guard, found, heavier = known.guard, list[Event](), self.heavier.phase(known.key).guard
-        scale = max([abs(each) for each in (guard.low, guard.high) if 0.0 < abs(each) < np.inf], default=1.0)
-        for bound, leads in enumerate((guard.below, guard.above)):
-            if leads is not None:
-                row, more = (self.limit(each, bound) for each in (guard, heavier))
-                target, heavy = self.full(leads.key, branch), more - row
-                event = Event(
-                    "release" if known.side else "uplift", row[:-2], target, float(row[-1]), float(row[-2]), scale
-                )
-                found.append(replace(event, row_v=heavy[:-2], direct_v=float(heavy[-1])))
+        model, (side, *rest) = self.model, key
+        if not model.lifts:
+            return ()
+        following = [set_off(model.properties, model.elements, (side or turn, *rest), turn) for turn in (RIGHT, LEFT)]
+        rows, limits = self.margins(model, key, following)
+        heavier, _ = self.margins(self.heavier, key, following)
+        scale = max([abs(each) for each in limits if 0.0 < abs(each) < np.inf], default=1.0)
+        name, found = "uplift" if side == CLOSED else "release", list[Event]()
+        for row, heavy, after in zip(rows, heavier - rows, following, strict=True):
+            event = Event(name, row[:-2], self.full(after, branch), float(row[-1]), float(row[-2]), scale)
+            found.append(replace(event, row_v=heavy[:-2], direct_v=float(heavy[-1])))
         return tuple(found)
 
-    def limit(self, guard: Guard, bound: int) -> Array:
-        """By how much a moment is within its lower (0) or upper (1) limit: a row over the state, a and 1."""
-        layout, sign = self.model.layout, 1.0 - 2.0 * bound
-        row = np.zeros(layout.size + 2)
-        row[[*range(layout.moving), -2, -1]] = sign * guard.row
-        row[layout.memory : layout.memory + layout.remembered] -= sign * guard.recall[bound]
-        row[-1] -= sign * (guard.high if bound else guard.low)
-        row[layout.rotation] -= sign * guard.turn
-        return row
+    def margins(self, model: NonlinearModel, key: Key, following: Sequence[Key]) -> tuple[Array, list[float]]:
+        """By how much the moment is within its limits, rows over the state, a and 1, and these limits.
+
+        A limit is the moment at which the forces of the phase that follows would turn the base.
+        """
+        layout, p = model.layout, model.properties
+        borders = [border_of(p, model.elements, each, model.gravity) for each in following]
+        rows = np.zeros((2, layout.size + 2))
+        for row, border, sign in zip(rows, borders, (1.0, -1.0), strict=True):
+            row[[*range(layout.moving), -2, -1]] = sign * model.overturning_moment()
+            row[layout.memory : layout.memory + layout.remembered] -= sign * border.recall[0]
+            row[-1] -= sign * border.constant[0]
+            if key[0] != CLOSED:
+                row[layout.rotation] += sign * borders[0].stiffness[0, 0]
+        return rows, [float(each.constant[0]) for each in borders]
 
     def rotation(self, factor: float) -> Array:
         """A row that is a factor times θ."""
@@ -164,104 +179,99 @@ class Rocks:
         found[self.model.layout.rotation] = factor
         return found
 
-    def changes(self, known: Phase, branch: int) -> tuple[list[Any], tuple[Event, ...]]:
+    def changes(self, key: Key, branch: int) -> tuple[list[Any], tuple[Event, ...]]:
         """The elongations at which an element changes its branch, each a limit of |θ| that its memory moves."""
         stops, found = list[Any](), list[Event]()
-        for change in known.changes:
-            kind = -1 if change.outer else 1
-            stops.append((kind, change.memory, (change.place, change.recall)))
-            jump = self.change(known, change.key, stops=False)
-            row = self.rotation(kind * known.side)
-            found.append(Event("change", row, self.full(change.key, branch), jump=jump))
+        model, known = self.model, memories(self.model.elements)
+        for place, (each, taken) in enumerate(zip(model.elements, key[1:], strict=True)):
+            arm = arm_of(model.properties, each, key[0])
+            for stop in each.stops(taken):
+                if not is_in_reach(stop, arm):
+                    continue
+                kind = -1 if stop.upper == (arm > 0.0) else 1  # the limit is above |θ|, or below
+                stops.append((kind, known.get(place, -1), (stop.place / arm, stop.recall / arm)))
+                following = (*key[: place + 1], stop.branch, *key[place + 2 :])
+                jump = self.change(key, following, stops=False)
+                found.append(Event("change", self.rotation(kind * key[0]), self.full(following, branch), jump=jump))
         return stops, tuple(found)
 
-    def change(self, known: Phase, following: Key, *, stops: bool) -> Change:
+    def change(self, key: Key, following: Key, *, stops: bool) -> Change:
         """The jump from a phase to one in which other branches are taken."""
-        layout, marks = self.model.layout, self.model.phase(following).marks
+        layout, marks = self.model.layout, marks_of(self.model.elements, following)
         places = [(layout.memory + index, value) for index, value in marks]
-        return Change(layout.rotation, self.model.complete, stops, self.turnings(known), places)
+        return Change(layout.rotation, self.model.complete, stops, self.turnings(key), places)
 
-    def turnings(self, known: Phase) -> list[tuple[int, float, float]]:
-        """The memories of the elements that yield: their places, and as in `Turning`."""
-        return [(self.model.layout.memory + each.memory, each.arm, each.offset) for each in known.turnings]
+    def turnings(self, key: Key) -> list[tuple[int, float, float]]:
+        """The memories m that are set where elements cease to yield: place, r, and δ - m."""
+        model, known, found = self.model, memories(self.model.elements), list[tuple[int, float, float]]()
+        for place, (each, taken) in enumerate(zip(model.elements, key[1:], strict=True)):
+            offset = each.turning(taken)
+            if offset is not None:
+                arm = arm_of(model.properties, each, key[0])
+                found.append((model.layout.memory + known[place], arm, offset))
+        return found
 
-    def turns(self, known: Phase, branch: int) -> tuple[Event, ...]:
+    def turns(self, key: Key, branch: int) -> tuple[Event, ...]:
         """The rotation turns back while an element yields."""
-        if known.turns == 0:
+        way = turning_way(self.model.properties, self.model.elements, key)
+        if way == 0:
             return ()
         row = np.zeros(self.model.layout.size)
-        row[self.model.layout.spin] = known.turns * known.side
-        target = self.full(known.turned, branch)
-        return (Event("turn", row, target, jump=self.change(known, known.turned, stops=True)),)
+        row[self.model.layout.spin] = way * key[0]
+        turned = set_off(self.model.properties, self.model.elements, key, 0)
+        return (Event("turn", row, self.full(turned, branch), jump=self.change(key, turned, stops=True)),)
 
-    def ends(self, known: Phase, branch: int) -> tuple[Event, Event]:
+    def beside(self, key: Key, side: int) -> Key:
+        """The phase after an impact, on one side or in contact, as a key of the model."""
+        return set_off(self.model.properties, self.model.elements, (side, *key[1:]), side)
+
+    def ends(self, key: Key, branch: int) -> tuple[Event, Event]:
         """The landing, after which rocking may go on about the other edge, and overturning."""
-        side, law = known.side, self.model.law
-        contact, other = (self.full(known.beside[k], branch) for k in (0, 1 if side == LEFT else 2))
+        side, law = key[0], sided(self.model.law, key[0])
+        contact, other = self.full(self.beside(key, CLOSED), branch), self.full(self.beside(key, -side), branch)
         tips = Event("overturning", self.rotation(-side), None, QUARTER_TURN, scale=QUARTER_TURN)
-        if isinstance(law, SidedRestitution):
-            law = law.right if side == RIGHT else law.left
         if not isinstance(law, VVELSimplified | VVELComplete | Restitution):
-            return Event("impact", self.rotation(side), contact, jump=self.told(known, branch)), tips
+            return Event("impact", self.rotation(side), contact, jump=self.landing(key, branch)), tips
         p = self.model.properties
-        own, beyond = (self.field(key, branch) for key in (known.key, known.beside[1 if side == LEFT else 2]))
+        own, beyond = self.field(key, branch), self.field(self.beside(key, -side), branch)
         unseen = p.translational_inertia - float(p.effective_mass @ p.effective_height**2)
         jump = Landing(
-            partial(_gains, self.model),
+            partial(gains_energy, self.model),
             own,
             beyond,
             law.e if isinstance(law, Restitution) else 0.0,
-            law.shortest_excursion if isinstance(law, Restitution) else WITHOUT.shortest_excursion,
+            shortest_excursion(law),
             unseen if isinstance(law, VVELComplete) else None,
-            self.turnings(known),
+            self.turnings(key),
         )
         return Event("impact", self.rotation(side), contact, jump=jump, other=other), tips
 
-    def field(self, key: Key, branch: int) -> RockingField:
-        """The vector field of a phase, without its conditions."""
-        return RockingField(self.numbers, key[0], branch, self.model.phase(key).pulls, [])
+    def landing(self, key: Key, branch: int) -> Callable[[Array, float, float], tuple[Array, Key]]:
+        """The jump of a law of the user's own, at which elements cease to yield."""
+        spin, turnings = self.model.layout.spin, self.turnings(key)
+        fields = {side: self.field(self.beside(key, side), branch) for side in (RIGHT, LEFT)}
+        land = landing_of(
+            self.model,
+            key[0],
+            {side: self.full(self.beside(key, side), branch) for side in (CLOSED, RIGHT, LEFT)},
+            lambda side, state: fields[side].inertia_at(state),
+            lambda side, state, a, a_v: float(fields[side].rates_at(state, a, a_v)[spin]),
+        )
+
+        def jump(state: Array, acceleration: float, vertical: float) -> tuple[Array, Key]:
+            for place, _, offset in turnings:
+                state[place] = -offset
+            return land(state, acceleration, vertical)
+
+        return jump
+
+    def field(self, key: Key, branch: int, stops: Sequence[Any] = ()) -> RockingField:
+        """The vector field of a phase, with conditions or without."""
+        pulls = pulls_of(self.model.properties, self.model.elements, key)
+        return RockingField(self.numbers, key[0], branch, pulls, list(stops))
 
     def reversal(self, key: Key, branch: int) -> Event:
         """The velocity of the hysteretic spring changes its sign."""
         row = np.zeros(self.model.layout.size)
         row[self.model.layout.modes] = branch
         return Event("reversal", row, (*key, -branch), jump=Reversal(self.model.layout.modes, self.barely))
-
-    def told(self, known: Phase, branch: int) -> Callable[[Array, float, float], tuple[Array, Key]]:
-        """The jump of a law of the user's own."""
-        model, N = self.model, self.model.layout.modes
-        p, layout = model.properties, model.layout
-        fields = {side: self.field(known.beside[k], branch) for k, side in ((1, RIGHT), (2, LEFT))}
-        turnings = self.turnings(known)
-
-        def land(state: Array, acceleration: float, vertical: float) -> tuple[Array, Key]:
-            before = energy(state, fields[known.side].inertia_at(state))
-            for place, _, offset in turnings:
-                state[place] = -offset
-            state[layout.rotation] = 0.0
-            velocity, spin = velocities_after(model.law, p, state[N : 2 * N], float(state[layout.spin]))
-            state[N : 2 * N], state[layout.spin], key = velocity, spin, known.beside[0]
-            if spin != 0.0:
-                side, key = (RIGHT, known.beside[1]) if spin > 0.0 else (LEFT, known.beside[2])
-                after = energy(state, fields[side].inertia_at(state))
-                back = -side * float(fields[side].rates_at(state, acceleration, vertical)[layout.spin])
-                if 2.0 * abs(spin) < back * WITHOUT.shortest_excursion:
-                    state[N : 2 * N] += p.effective_height * spin
-                    state[layout.spin], key = 0.0, known.beside[0]
-                    after = energy(state, 0.0)
-            else:
-                after = energy(state, 0.0)
-            if after > before * (1.0 + GAIN):
-                raise _gains(model)
-            return state, self.full(key, branch)
-
-        def energy(state: Array, inertia: float) -> float:
-            velocity, spin = state[N : 2 * N] + p.effective_height * state[layout.spin], state[layout.spin]
-            return 0.5 * float(inertia * spin**2 + p.effective_mass @ velocity**2)
-
-        return land
-
-
-def _gains(model: NonlinearModel) -> GainsEnergyError:
-    """The error of a law that returns energy."""
-    return GainsEnergyError(f"The impact law {shown(model.law)} returns energy.")

@@ -11,12 +11,23 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.engine import by_rows
+from rockflex.models._element import Slider
 from rockflex.models._elements import CLOSED, RIGHT, arm_of, border_of, is_held, memories
 from rockflex.models._modal_model import ModalModel
-from rockflex.models._observe import LEFT_OUT, LINEAR, SWAY
 from rockflex.models._phase import Key
-from rockflex.models._slider import Slider
-from rockflex.models._springs import SpringModel
+from rockflex.models._spring_model import SpringModel
+
+# Kinds of quantities (Silva & Stojadinović 2024, Eqs. 3-22). In contact, and always in the simplified models, each is a
+# linear row over the motion. While a complete model rocks, displacements are nonlinear in the rotation, and forces
+# depend on accelerations: `RockingField.observe` then replaces the value of the row by that of the quantity, for which
+# it has two levers.
+LINEAR = 0  # the row itself
+SWAY = 1  # horizontal displacement of a point at the height levers[0]; the row gives its u (Eq. 3)
+LEFT_OUT = 2  # the row and the masses left out: levers[0] is Σ m_i or Σ m_i h_i, levers[1] Σ m_i h_i or Σ m_i h_i²
+SWING = 3  # rate of the elongation of an element per unit distance from the pivot; the row gives θ'
+HORIZONTAL = 4  # Σ F_x (Eq. 21) including the forces of elements
+# By how much Σ F_z is below its value at rest (Eq. 22 with the sign of the weight corrected), including these forces.
+VERTICAL = 5
 
 Share = tuple[int, dict[str, Any]]  # the kind of a quantity, and its shares by name
 
@@ -43,7 +54,7 @@ class Quantities:
         Weights of the `slip` and the `heave` of the base and of the rate of the heave (`heaving`), in models that have
         them.
     kinds : ndarray, shape (F,)
-        Kind of the quantity for large rotations; see `rockflex.models._observe`.
+        Kind of the quantity for large rotations; see `rockflex.models._quantities`.
     """
 
     shares: Array
@@ -78,7 +89,7 @@ class Quantities:
 
     @property
     def levers(self) -> Array:
-        """Additional coefficients of quantities that are nonlinear in large rotations, (F, 2); see `_observe`."""
+        """Additional coefficients of quantities that are nonlinear in large rotations, (F, 2); see above."""
         rotation, turn, ground = (self.shares[:, column] for column in (ROTATION, TURN, GROUND))
         near = np.where(self.kinds == SWAY, rotation, np.where(self.kinds == LEFT_OUT, -ground, 0.0))
         return np.column_stack((near, np.where(self.kinds == LEFT_OUT, -turn, 0.0)))
@@ -216,10 +227,3 @@ def hold(model: ModalModel, key: Key, rows: Array) -> None:
     capacity = sum(each.force * abs(arm_of(p, each, side)) for each in sliders.values())
     for place, each in sliders.items():
         rows[place] = side * np.sign(arm_of(p, each, side)) * each.force / capacity * moment
-
-
-def turning_row(model: ModalModel) -> Array:
-    """Return θ' in rad/s: a row, shape (C,)."""
-    row = np.zeros(model.layout.columns)
-    row[model.layout.spin] = 1.0
-    return row

@@ -13,10 +13,9 @@ from rockflex.models._element_states import element_forces
 from rockflex.models._kept import acting_side, by_phase, observed, rates_of
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, RISE, SIDE
-from rockflex.models._numbers import numbers_of
-from rockflex.models._observe import HORIZONTAL, VERTICAL
-from rockflex.models._spring_forces import LIFTED
-from rockflex.models._springs import SpringModel
+from rockflex.models._nonlinear import numbers_of
+from rockflex.models._quantities import HORIZONTAL, VERTICAL
+from rockflex.models._spring_model import LIFTED, SpringModel
 
 
 class Reactions(NamedTuple):

@@ -1,6 +1,6 @@
 """The simplified models on rigid ground on which they may slide, with Coulomb friction."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -9,14 +9,12 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties
-from rockflex.models._based import accelerations_of, arrow_of, blank_border, horizontal_reaction
 from rockflex.models._elements import CLOSED, border_of, memories
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._layout import HEADER, StateLayout, layout_of
-from rockflex.models._linear import LinearModel
-from rockflex.models._phase import CHANGES, SLIPS, STICKS, Arrow, Border, Exit, Fence, Key, Phase
+from rockflex.models._modal_model import LinearModel, accelerations_of, arrow_of
+from rockflex.models._phase import Arrow, Border, Key
 from rockflex.models._quantities import lost_support_row, tensions
-from rockflex.models._rocking_phase import phase_of
 
 STICK = 0  # the last branch of a key: it sticks, slips to the right (1) or left (-1), or does so without friction (±2)
 LOST = 2  # magnitude of the branch on which the ground has no pressure to rub against
@@ -79,7 +77,7 @@ class SlidingModel(LinearModel):
     def _border(self, key: Key) -> Border:
         """Return the forces on the rotation and the slip; friction is -sign(x') μ N."""
         p, side, slip, elements = self.properties, key[0], key[-1], self.element_key(key)
-        border = blank_border(2, self.layout.remembered)
+        border = Border.blank(2, self.layout.remembered)
         border.inertia[1, 1], border.ground[1] = p.m_tot, -p.m_tot
         border.inertia[0, 1] = border.inertia[1, 0] = p.l0r
         border.ground[0] = -p.l0r
@@ -111,57 +109,3 @@ class SlidingModel(LinearModel):
         row = -lost_support_row(self, key)
         row[-1] += self.properties.resting_reaction
         return row
-
-    def phase(self, key: Key) -> Phase:
-        """Return one phase: the equations of motion on these branches, and the conditions that end it."""
-        slip = key[-1]
-        base = phase_of(self, self.element_key(key), self.arrow(key))
-
-        def along(other: Key) -> Key:
-            return (*other, slip)
-
-        guard = base.guard
-        return replace(
-            base,
-            key=key,
-            guard=replace(
-                guard,
-                row=guard.row if base.free else self._moment_with_slip(key),
-                below=_along(guard.below, slip),
-                above=_along(guard.above, slip),
-                recall=np.column_stack((guard.recall[:, : self.layout.remembered - 1], np.zeros(2))),
-            ),
-            pulls=np.column_stack((base.pulls, np.zeros(base.pulls.shape[0]))),
-            changes=tuple(each._replace(key=along(each.key)) for each in base.changes),
-            fences=self._fences(key),
-            turned=along(base.turned),
-            beside=(along(base.beside[0]), along(base.beside[1]), along(base.beside[2])),
-            marks=(*base.marks, (self.layout.remembered - 1, float(slip))),
-        )
-
-    def _moment_with_slip(self, key: Key) -> Array:
-        """Return the overturning moment in contact, with the acceleration of a base that slides: a row, shape (C,)."""
-        p = self.properties
-        left = p.l0r - float(np.sum(p.effective_mass * p.effective_height))
-        return self.overturning_moment() + left * self.accelerations(key)[-1]
-
-    def _fences(self, key: Key) -> tuple[Fence, ...]:
-        before, slip = key[:-1], key[-1]
-        pressure = self.pressure(key)
-        if slip == STICK:
-            held = horizontal_reaction(self, self.accelerations(key))
-            # The ground pushes to the right on a base that would slide to the left.
-            return (
-                Fence(self.friction * pressure - held, SLIPS, (*before, -1)),
-                Fence(self.friction * pressure + held, SLIPS, (*before, 1)),
-            )
-        way = 1 if slip > 0 else -1
-        going = np.zeros(self.layout.columns)
-        going[self.layout.slip + 1] = way
-        if abs(slip) == LOST:
-            return (Fence(going, STICKS, (*before, -slip)), Fence(-pressure, CHANGES, (*before, way)))
-        return (Fence(going, STICKS, (*before, STICK)), Fence(pressure, CHANGES, (*before, LOST * way)))
-
-
-def _along(leads: Exit | None, slip: int) -> Exit | None:
-    return None if leads is None else Exit(leads.event, (*leads.key, slip))

@@ -7,7 +7,7 @@ from rockflex.modal import FloorModes
 from rockflex.models._kept import accelerations, acting_side
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, SIDE
-from rockflex.models._springs import SpringModel
+from rockflex.models._spring_model import SpringModel
 
 
 def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, Array]:

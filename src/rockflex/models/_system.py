@@ -8,13 +8,12 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System, by_rows
-from rockflex.models._elements import CLOSED, LEFT, RIGHT
+from rockflex.models._elements import CLOSED, LEFT, QUARTER_TURN, RIGHT
 from rockflex.models._impact import Restitution, VVELSimplified
-from rockflex.models._landing import landing_of, sided
-from rockflex.models._linear import LinearModel
+from rockflex.models._landing import landing_of, sided, turn_by_rows
+from rockflex.models._modal_model import LinearModel
 from rockflex.models._phase import Key
 from rockflex.models._quantities import GROUND, RIGHT_ROTATION, ROTATION, TURN, Quantities
-from rockflex.models._rocking_phase import QUARTER_TURN
 
 SMALL, LARGE = 1e-30, 1e30  # of numbers in SI units that certainly do not overflow
 CONTACT, ALONE = (CLOSED,), {RIGHT: (RIGHT,), LEFT: (LEFT,)}
@@ -186,12 +185,14 @@ class RigidGround:
 
     def landing(self, side: int) -> Event:
         """The impact, after which rocking may go on to the other side."""
-        row, law = side * self.rotation()[:, 0, :-2], sided(self.model.law, -side)
+        row, law = side * self.rotation()[:, 0, :-2], sided(self.model.law, side)
         if isinstance(law, VVELSimplified) or (isinstance(law, Restitution) and law.e == 0.0):
             return Event("impact", row, CONTACT, jump=self.struck(0.0))
         if not isinstance(law, Restitution) or self.gains(side, law):
             turns = {each: (self.turn(each)[0], self.turn_by_weight(each)[0]) for each in (RIGHT, LEFT)}
-            return Event("impact", row, CONTACT, jump=landing_of(self.model, {0: CONTACT, **ALONE}, turns))
+            model, keys = self.model, {CLOSED: CONTACT, **ALONE}
+            jump = landing_of(model, side, keys, lambda each, _: model.free_inertia(each), turn_by_rows(turns))
+            return Event("impact", row, CONTACT, jump=jump)
         turn = self.turn(-side)
         back = law.shortest_excursion * side * turn  # what the rotation would lose within the shortest excursion
         back[:, -3] += 2.0 * side

@@ -1,9 +1,16 @@
-"""What shakes a run, and its result."""
+"""What shakes a run, and the results of one run or of a batch."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from rockflex._arrays import Array
+import numpy as np
+
+from rockflex._arrays import Array, Bools, Integers
+from rockflex._errors import InputError, SolverError
+from rockflex.solve._failures import Status
+
+OVERTURNED, SETTLED = int(Status.OVERTURNED), int(Status.SETTLED)
 
 
 class Excitation(NamedTuple):
@@ -54,3 +61,119 @@ class Solution:
     n_impacts: int
     final_state: Array
     states: Array | None
+
+
+class Ends(NamedTuple):
+    """How R runs ended."""
+
+    status: Integers  # (R,): of `Status`
+    samples: Integers  # (R,): completed
+    uplifts: Integers  # (R,)
+    impacts: Integers  # (R,)
+    peaks: Array  # (R, F)
+    times: Array  # (R, F)
+    states: Array  # (R, S): the last ones
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solutions:
+    """The results of R runs of a model, as in `Solution`, with a first axis for the runs.
+
+    Parameters
+    ----------
+    ends
+        How the runs ended.
+    dt
+        Time step, s.
+    n_peaks
+        Number of rows whose peaks were asked for, the first ones.
+    signed
+        Of the rows from this one on only the largest value matters; the last one is the loss of support.
+    failures
+        Errors of the runs that could not be solved, by their index; their other results mean nothing.
+    states
+        Of a single run with a history.
+    """
+
+    ends: Ends
+    dt: float
+    n_peaks: int
+    signed: int
+    failures: Mapping[int, InputError | SolverError]
+    states: Array | None
+
+    def __len__(self) -> int:
+        return len(self.ends.status)
+
+    @property
+    def overturned(self) -> Bools:
+        """Whether each run ended at a rotation of π/2, shape (R,)."""
+        return np.asarray(self.ends.status == OVERTURNED)
+
+    @property
+    def settled(self) -> Bools:
+        """Whether each run ended at rest, shape (R,)."""
+        return np.asarray(self.ends.status == SETTLED)
+
+    @property
+    def end_time(self) -> Array:
+        """Time of the last state in s, shape (R,)."""
+        return np.where(self.overturned, self.ends.times[:, 0], self.ends.samples * self.dt)
+
+    @property
+    def peaks(self) -> Array:
+        """Largest magnitude of each row, shape (R, F)."""
+        return self.ends.peaks[:, : self.n_peaks]
+
+    @property
+    def peak_times(self) -> Array:
+        """Its time in s, shape (R, F)."""
+        return self.ends.times[:, : self.n_peaks]
+
+    @property
+    def lost_support(self) -> Array:
+        """Largest decrease of the vertical reaction below its value at rest in N, shape (R,)."""
+        return self.ends.peaks[:, -1]
+
+    @property
+    def time_of_lost_support(self) -> Array:
+        """Its time in s, shape (R,)."""
+        return self.ends.times[:, -1]
+
+    @property
+    def n_uplifts(self) -> Integers:
+        """Number of uplifts, shape (R,)."""
+        return self.ends.uplifts
+
+    @property
+    def n_impacts(self) -> Integers:
+        """Number of impacts, shape (R,)."""
+        return self.ends.impacts
+
+    @property
+    def final_state(self) -> Array:
+        """The last states, shape (R, S')."""
+        return self.ends.states
+
+    def one(self, index: int) -> Solution:
+        """Return the result of one run; raises its error if it could not be solved."""
+        if index in self.failures:
+            raise self.failures[index]
+        status, samples, uplifts, impacts = (int(each[index]) for each in self.ends[:4])
+        peaks, times = self.ends.peaks[index], self.ends.times[index]
+        overturned = status == OVERTURNED
+        return Solution(
+            overturned=overturned,
+            settled=status == SETTLED,
+            end_time=float(times[0]) if overturned else samples * self.dt,
+            peaks=peaks[: self.n_peaks],
+            peak_times=times[: self.n_peaks],
+            extremes=peaks[self.signed : -1],
+            extreme_times=times[self.signed : -1],
+            lost_support=float(peaks[-1]),
+            time_of_lost_support=float(times[-1]),
+            n_uplifts=uplifts,
+            n_impacts=impacts,
+            final_state=self.ends.states[index],
+            states=self.states,
+        )

@@ -33,14 +33,9 @@ from rockflex.models import (
     system_of,
     with_marks,
 )
-from rockflex.solve._failures import failure_of, failure_of_limit, failure_of_step
-from rockflex.solve._pace import SEARCH, Pace, pace_of
-from rockflex.solve._preparing import preparing
-from rockflex.solve._solution import Excitation, Solution
-from rockflex.solve._solutions import Ends, Solutions
-from rockflex.solve._task import Gate, Task
-from rockflex.solve.interruption import check_interruption
-from rockflex.solve.status import Status
+from rockflex.solve._failures import Status, failure_of, failure_of_limit, failure_of_step, preparing
+from rockflex.solve._solution import Ends, Excitation, Solution, Solutions
+from rockflex.solve._work import SEARCH, Gate, Pace, Task, check_interruption, pace_of
 
 SHARE = 0.5  # of the estimated time of a sample that one takes here
 STEP = 12.0  # samples that a step of a nonlinear model counts like

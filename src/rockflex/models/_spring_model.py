@@ -1,4 +1,4 @@
-"""The forces on a base on springs that cannot pull, in each of its phases."""
+"""The simplified models on springs that cannot pull: the base rotates, heaves and, with friction, slides."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -9,28 +9,28 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties, Springs
-from rockflex.models._based import accelerations_of, arrow_of, blank_border
-from rockflex.models._branch_code import codes_for, decoded
 from rockflex.models._element import Element
 from rockflex.models._elements import CLOSED, memories
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._layout import HEADER, StateLayout, layout_of
-from rockflex.models._linear import LinearModel
-from rockflex.models._phase import (
-    Arrow,
-    Border,
-    Key,
-)
-from rockflex.models._rest_on_springs import Pose
+from rockflex.models._modal_model import LinearModel, accelerations_of, arrow_of
+from rockflex.models._phase import Arrow, Border, Key
 
 # Branches of a spring. RECEDING: still compressed, but unloaded, since its dashpot would have to pull the base.
 LOADED, LIFTED, RECEDING = 0, 1, 2
 STICK = 0  # the branch of the slip; 1 and -1: it slips to the right or left
 
 
+# Branches of many elements are kept in the state as a few numbers.
+BASE, DIGITS = 8, 17  # a double holds 17 octal digits exactly
+SHIFT = 1  # the lowest branch is -1
+
+Pose = tuple[float, float]  # rotation in rad and heave in m
+
+
 @dataclass(frozen=True, eq=False)
-class SpringForces(LinearModel):
-    """N modes on a base on springs and dashpots that cannot pull: its equations of motion as rows.
+class SpringModel(LinearModel):
+    """N modes on a base on springs and dashpots that cannot pull: no impact law, and flight as one more phase.
 
     A key has the side, always 0, the branches of the springs, that of the slip, and those of the elements. The state
     keeps them as the last memories.
@@ -142,7 +142,7 @@ class SpringForces(LinearModel):
     def _border(self, key: Key) -> Border:
         p, layout = self.properties, self.layout
         b = layout.freedoms
-        border = blank_border(b, layout.remembered)
+        border = Border.blank(b, layout.remembered)
         z = b - 1
         border.inertia[0, 0], border.inertia[z, z] = self.inertia, p.m_tot
         border.stiffness[0, 0] = -p.l0r * self.gravity
@@ -176,5 +176,70 @@ class SpringForces(LinearModel):
         """Return Σ μ_j N_j as a row, shape (C,)."""
         return self.friction @ self.spring_forces(key) if self.friction is not None else np.zeros(self.layout.columns)
 
+    def initial(self, state: Array | None) -> tuple[Key, Array]:
+        """Return the branches and the state at the start of a run, from [D.., D'.., θ, θ'] or at rest.
+
+        The rotation of a state counts from the base at rest. The base heaves as the weight on its springs demands, and
+        the elements as built are brought to this position.
+        """
+        layout, springs = self.layout, self.springs
+        start = np.zeros(layout.size)
+        rotation, heave = self.rest
+        if state is not None:
+            start[: state.size] = state
+            rotation += start[layout.rotation]
+            heave = heave_at(springs, rotation, self._weight)
+        start[layout.rotation], start[layout.heave] = rotation, heave
+        depth = heave - springs.positions * rotation
+        pressed = np.where(depth < 0.0, springs.stiffness, 0.0)
+        spin = start[layout.spin]
+        start[layout.heave + 1] = pressed @ springs.positions / pressed.sum() * spin if spin else 0.0
+        speed = start[layout.heave + 1] - springs.positions * spin
+        force = -springs.stiffness * depth - springs.damping * speed
+        branches = np.where(depth >= 0.0, LIFTED, np.where(force > 0.0, LOADED, RECEDING))
+        known, kept, of_elements = memories(self.elements), list[float](), list[int]()
+        for place, each in enumerate(self.elements):
+            stretch = self.stretch(each)
+            elongation = float(stretch[-1] + stretch[layout.rotation] * rotation + stretch[layout.heave] * heave)
+            memory = each.memory_at(elongation)
+            of_elements.append(int(each.branch_at(np.array([elongation]), np.array([memory]))[0]))
+            kept += [memory] if place in known else []
+        key = (CLOSED, *(int(branch) for branch in branches), STICK, *of_elements)
+        start[layout.memory :] = (*kept, *code_of(key[1:]))
+        return key, start
+
+    @property
+    def _weight(self) -> float:
+        """Weight with the initial tensions of the elements, N."""
+        return self.properties.m_tot * GRAVITY + sum(each.pull(each.branches[0]).force for each in self.elements)
+
     def _new_accelerations(self, key: Key) -> Array:
         return accelerations_of(self, self.arrow(key))
+
+
+def heave_at(springs: Springs, rotation: float, weight: float) -> float:
+    """Return the heave in m at which the springs carry a weight in N at a rotation in rad."""
+    ends = springs.positions * rotation  # a spring is compressed while the heave is below its end
+    order = np.argsort(-ends)
+    stiffness = np.cumsum(springs.stiffness[order])
+    heaves = (np.cumsum(springs.stiffness[order] * ends[order]) - weight) / stiffness
+    fits = np.append(heaves[:-1] >= ends[order][1:], True)
+    return float(heaves[np.argmax(fits)])
+
+
+def codes_for(size: int) -> int:
+    """Return how many numbers hold the branches of `size` elements."""
+    return -(-size // DIGITS)
+
+
+def code_of(branches: tuple[int, ...]) -> tuple[float, ...]:
+    """Return the numbers that stand for branches from -1 to 6."""
+    parts = (branches[first : first + DIGITS] for first in range(0, len(branches), DIGITS))
+    return tuple(float(sum((branch + SHIFT) * BASE**k for k, branch in enumerate(part))) for part in parts)
+
+
+def decoded(codes: Array, size: int) -> NDArray[np.int64]:
+    """Return the branches of `size` elements from their numbers, (n, codes_for(size)), as (n, size)."""
+    whole = codes.astype(np.int64)
+    columns = [whole[:, k // DIGITS] // BASE ** (k % DIGITS) % BASE - SHIFT for k in range(size)]
+    return np.stack(columns, axis=1)

@@ -1,0 +1,124 @@
+"""Models on springs, and models that slide: what they are made of, and what they demand of the ground."""
+
+import numpy as np
+
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+from rockflex.modal import FrictionDamper, Ground, RockingProperties, Springs
+from rockflex.models._elements import elements_of
+from rockflex.models._impact import ImpactLaw, VVELSimplified
+from rockflex.models._modal_model import LinearModel
+from rockflex.models._sliding import SlidingModel
+from rockflex.models._spring_model import Pose, SpringModel
+
+STABLE = 1e-9  # relative: least stiffness of a base against toppling
+SAME = 1e-9  # relative to the half width: positions at the edges may be rounded
+
+
+def grounded(
+    label: str, kept: RockingProperties, ground: Ground, law: ImpactLaw | None, missing_mass: bool
+) -> LinearModel:
+    """Return the model of a structure on springs, without impact law, or of one that slides.
+
+    Raises
+    ------
+    InputError
+        If the structure topples on its springs under its own weight, or some but not all springs have infinite
+        friction.
+    """
+    if ground.springs is None:
+        friction = float(np.max(np.asarray(ground.friction)))
+        return SlidingModel(label, kept, law=law or VVELSimplified(), missing_mass=missing_mass, friction=friction)
+    friction = None
+    if ground.slides:
+        friction = np.broadcast_to(np.asarray(ground.friction, dtype=np.float64), ground.springs.n).copy()
+        if not np.isfinite(friction).all():
+            raise InputError(
+                "friction must be finite for all springs or infinite for all, since a base slides on all of them at "
+                f"once, but {friction.tolist()} was given.",
+                field="friction",
+            )
+    return SpringModel(
+        label,
+        kept,
+        missing_mass=missing_mass,
+        springs=ground.springs,
+        inertia=kept.translational_inertia + float(ground.base_inertia or 0.0),
+        friction=friction,
+        rest=pose_at_rest(label, kept, ground.springs),
+    )
+
+
+def pose_at_rest(label: str, properties: RockingProperties, springs: Springs) -> Pose:
+    """Return rotation and heave of a base on springs under its weight and the initial tensions of its elements.
+
+    Raises
+    ------
+    InputError
+        If it topples.
+    """
+    p = properties
+    pulls = [(each.position, each.pull(each.branches[0]).force) for each in elements_of(p)]
+    forces = np.array([sum(x * force for x, force in pulls), -p.m_tot * GRAVITY - sum(force for _, force in pulls)])
+    pressed = np.ones(springs.n, dtype=bool)
+    for _ in range(springs.n):
+        levers = np.stack((-springs.positions, np.ones(springs.n)))[:, pressed]
+        stiffness = levers * springs.stiffness[pressed] @ levers.T
+        stiffness[0, 0] -= p.l0r * GRAVITY
+        if not np.linalg.det(stiffness) > STABLE * stiffness[1, 1] * springs.rotational_stiffness:
+            break
+        rotation, heave = np.linalg.solve(stiffness, forces)
+        depth = heave - springs.positions * rotation
+        if ((depth < 0.0) == pressed).all():
+            return float(rotation), float(heave)
+        pressed = depth < 0.0
+    raise InputError(
+        f"{label} topples on its springs under its own weight: their rotational stiffness of "
+        f"{springs.tilting_stiffness:.4g} N m/rad is too small for L_0^r g = {p.l0r * GRAVITY:.4g} N m/rad. Give "
+        "stiffer springs, or springs farther from the axis of the masses.",
+        field="springs",
+    )
+
+
+def check_base(properties: RockingProperties, ground: Ground) -> None:
+    """Check that a structure can stand on the ground.
+
+    Raises
+    ------
+    InputError
+        If a spring is not under the base, the springs are too soft to keep the structure upright, or friction dampers
+        hold the base.
+    """
+    if ground.springs is not None:
+        _check_under_base(properties, ground.springs)
+        _check_upright(properties, ground.springs)
+    if any(isinstance(each, FrictionDamper) and each.force > 0.0 for each in properties.elements):
+        what = "slides" if ground.springs is None else "stands on springs"
+        raise InputError(
+            f"No model has friction dampers under a base that {what}. Use a YieldingDissipator with yield_force = F_0 "
+            "and a stiffness far above that of the structure, or leave the ground out.",
+            field="elements",
+        )
+
+
+def _check_under_base(properties: RockingProperties, springs: Springs) -> None:
+    left, right = (side * properties.half_width - properties.eccentricity for side in (-1, 1))
+    margin = SAME * properties.half_width
+    if springs.positions[0] < left - margin or springs.positions[-1] > right + margin:
+        raise InputError(
+            f"The springs must be under the base, which reaches from {left:.6g} to {right:.6g} m from the axis of the "
+            f"masses, but their positions reach from {springs.positions[0]:.6g} to {springs.positions[-1]:.6g} m. Move "
+            "them, or use winkler_bed with the half_width and the eccentricity of the structure.",
+            field="positions",
+        )
+
+
+def _check_upright(properties: RockingProperties, springs: Springs) -> None:
+    needed = properties.l0r * GRAVITY
+    if springs.tilting_stiffness <= needed:
+        raise InputError(
+            "The springs are too soft: the structure falls over under its own weight. Their stiffness against tilting "
+            f"is {springs.tilting_stiffness:.4g} N m/rad, and must exceed L_0^r g = {needed:.4g} N m/rad. Check the "
+            f"unit, N/m, and multiply the stiffness by more than {needed / springs.tilting_stiffness:.3g}.",
+            field="stiffness",
+        )
