@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.cli import _simulations, app
+from rockflex.cli import _batch, app
 
 STRUCTURE = str(Path(rf.__file__).parents[2] / "examples" / "structure_1.toml")
 FRAME = make_frame()
@@ -114,7 +114,7 @@ def test_many_runs_of_elastic_and_yielding_models_in_batches(monkeypatch):
     flags = ("--model", "2DOF-S-BW,2DOF-S,1DOF-fixed-BW", *YIELDING, "--scale", 1, "--scale", 0.5)
     arguments = (STRUCTURE, "fema-p695-near-field-pulse", *flags, "--impact", "complete")
     many = document(*arguments)["runs"]
-    monkeypatch.setattr(_simulations, "FEW", 10**6)
+    monkeypatch.setattr(_batch, "MAX_TIMED_RUNS", 10**6)
     few = document(*arguments)["runs"]
     for rows in (many, few):
         for row in rows:

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.cli import _simulations, app
+from rockflex.cli import _batch, app
 from rockflex.study import Case
 
 STRUCTURE = str(Path(rf.__file__).parents[2] / "examples" / "structure_1.toml")
@@ -104,7 +104,7 @@ def test_many_runs(monkeypatch):
     scales = [item for k in range(22) for item in ("--scale", 0.5 + k / 16)]
     arguments = (STRUCTURE, "el-centro-1940", *scales, "--model", "2DOF-S,rigid,fixed", "--friction", 0.4)
     many = rows_of(*arguments)
-    monkeypatch.setattr(_simulations, "FEW", 10**6)
+    monkeypatch.setattr(_batch, "MAX_TIMED_RUNS", 10**6)
     few = rows_of(*arguments)
     assert len(many) == 66
     assert {row.pop("run_time") for row in many} == {None}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockflex import InputError, RecordWarning, load_suite, read_motion
-from rockflex.cli._motions import embedded_suites, find_motions
+from rockflex.cli._find_motions import embedded_suites, find_motions
 
 ACCELERATION = 0.1 * np.sin(np.arange(50))
 

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.cli import _run_output, _simulations, app
+from rockflex.cli import _batch, _run_results, app
 from rockflex.cli._console import Styled, grid, number
 from rockflex.response import PEAKS
 from rockflex.study import Case
@@ -109,7 +109,7 @@ def test_many_runs_are_those_done_one_by_one(monkeypatch, workers):
         *workers,
     ]
     many = document(*arguments)["runs"]
-    monkeypatch.setattr(_simulations, "FEW", 10**6)
+    monkeypatch.setattr(_batch, "MAX_TIMED_RUNS", 10**6)
     few = document(*arguments)["runs"]
     assert len(many) == len(few) == 112
     assert {row.pop("run_time") for row in many} == {None}
@@ -289,7 +289,7 @@ def test_nothing_is_written_when_a_figure_fails(tmp_path, monkeypatch):
 
 def test_full_folder_is_refused_before_anything_runs(tmp_path, monkeypatch):
     (tmp_path / "notes.txt").touch()
-    monkeypatch.setattr(_simulations, "perform", lambda _: pytest.fail("must not run"))
+    monkeypatch.setattr(_batch, "run_batch", lambda _: pytest.fail("must not run"))
     result = invoke(STRUCTURE, "el-centro-1940", "--out", tmp_path)
     assert result.exit_code == 2
     assert "is not empty. Give another one, or --force" in result.stderr
@@ -395,7 +395,7 @@ def test_bad_usage():
 
 def test_units_cover_every_number_of_a_run():
     dimensionless = {"scale", "n_uplifts", "n_impacts", "tendon_utilisation", "balance_ratio"}
-    named = {name.removesuffix("*") for name in _run_output.UNITS}
+    named = {name.removesuffix("*") for name in _run_results.UNITS}
     row = document(STRUCTURE, "el-centro-1940", "--model", "fixed")["runs"][0]
     for name, value in row.items():
         if isinstance(value, int | float) and not isinstance(value, bool) and name not in dimensionless:

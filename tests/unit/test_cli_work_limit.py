@@ -5,7 +5,7 @@ import json
 import pytest
 from typer.testing import CliRunner
 
-from rockflex.cli import _simulations, app
+from rockflex.cli import _batch, app
 
 STRUCTURE = """
 [frame]
@@ -47,7 +47,7 @@ def test_beside_others_it_is_a_run_that_could_not_be_solved(tmp_path) -> None:
 
 
 def test_in_batches_too(tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(_simulations, "FEW", 1)
+    monkeypatch.setattr(_batch, "MAX_TIMED_RUNS", 1)
     options = ["--model", "MDOF-S,2DOF-S-BW", "--yield-displacement", "0.01", "--work-limit", "0.001", "--json"]
     result = invoke("run", structure_file(tmp_path), "el-centro-1940", *options)
     errors = {run["model"]: run["error"] for run in json.loads(result.stdout)["runs"]}
@@ -57,8 +57,8 @@ def test_in_batches_too(tmp_path, monkeypatch) -> None:
 
 def test_none_lifts_the_limit(tmp_path, monkeypatch) -> None:
     found = []
-    perform = _simulations.perform
-    monkeypatch.setattr(_simulations, "perform", lambda plan: (found.append(plan.work_limit), perform(plan))[1])
+    perform = _batch.run_batch
+    monkeypatch.setattr(_batch, "run_batch", lambda plan: (found.append(plan.options.work_limit), perform(plan))[1])
     file = structure_file(tmp_path)
     for given in ([], ["--work-limit", "7"], ["--work-limit", "none"]):
         assert invoke("run", file, "el-centro-1940", "--model", "fixed", *given).exit_code == 0
