@@ -511,7 +511,6 @@ def test_long_messages_are_cut(client) -> None:
 
 
 RUN = [sys.executable, "-m", "rockflex", "serve"]
-HANG_CLI = 60.0  # s: a guard against what never ends
 
 
 @contextmanager
@@ -547,7 +546,7 @@ def test_the_page_is_served_on_loopback_and_stops_cleanly(how) -> None:
             # Another address of this machine reaches nothing.
             assert other.connect_ex(("127.0.0.2", port)) != 0
         process.send_signal(how)
-        _, said = process.communicate(timeout=HANG_CLI)
+        _, said = process.communicate(timeout=HANG)
     assert f"http://127.0.0.1:{port} (stop with Ctrl-C)" in said
     assert "Traceback" not in said
 
@@ -567,7 +566,7 @@ def test_half_a_request_is_given_up() -> None:
     program = "import rockflex.web._protection as c; c.REQUEST_TIMEOUT = 0.5\nfrom rockflex.cli import main; main()"
     with served(sys.executable, "-c", program, "serve") as (_, port):
         for half in (b"", b"GET / HT", b"GET / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\n"):
-            with socket.create_connection(("127.0.0.1", port), timeout=HANG_CLI) as connection:
+            with socket.create_connection(("127.0.0.1", port), timeout=HANG) as connection:
                 connection.sendall(half)
                 while connection.recv(1 << 16):  # until it is closed
                     pass
@@ -589,7 +588,7 @@ def test_a_file_that_is_read_for_ever_does_not_keep_the_server_from_stopping() -
         while "reading" not in process.stderr.readline():
             pass
         process.send_signal(signal.SIGINT)
-        _, said = process.communicate(timeout=HANG_CLI)
+        _, said = process.communicate(timeout=HANG)
     assert "Traceback" not in said
 
 

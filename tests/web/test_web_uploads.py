@@ -26,7 +26,7 @@ from rockflex.web._folders import Folders, SentFile, flat_names, read_folder, un
 from rockflex.web._limits import MAX_FILE_BYTES, MAX_FOLDER_BYTES, MAX_FOLDER_FILES
 from rockflex.web._refusal import Refusal
 from rockflex.web._state import parse_state
-from rockflex.web._uploads import KEPT, Uploads, clean_name, read_matrices, read_record, read_vertical
+from rockflex.web._uploads import MAX_RECORDS, Uploads, clean_name, read_matrices, read_record, read_vertical
 
 HANG = 120.0  # s: a guard against what never ends, not a measure of speed
 
@@ -256,7 +256,7 @@ def test_any_bytes_are_matrices_or_a_refusal(content) -> None:
 
 def test_the_latest_records_are_kept_by_their_checksum() -> None:
     kept, motion = Uploads(), rf.quiet_motion(1.0)
-    keys = [kept.add(motion, bytes([i]), "") for i in range(KEPT + 1)]
+    keys = [kept.add(motion, bytes([i]), "") for i in range(MAX_RECORDS + 1)]
     assert kept.get(keys[-1]) is motion
     with pytest.raises(Refusal, match=r"which a link does not contain\. Choose the file again\.") as caught:
         kept.get(keys[0])

@@ -94,7 +94,7 @@ class Run:
     def row(self) -> dict[str, Any]:
         """Return everything but the run time and the history, in the columns of `simulate_many`.
 
-        Those of an element have its number, from 1, at the end of their names.
+        Columns of an element end in its number, from 1.
         """
         head = {"motion": self.motion, "scale": self.scale, "model": self.model}
         elements = {f"{name}_{k}": each for name, values in self.elements.items() for k, each in enumerate(values, 1)}

@@ -163,7 +163,7 @@ def quiet_ground(free: float | Literal["settle"]) -> tuple[list[FoundMotion], fl
 
 
 def _files(name: str) -> list[Path]:
-    """The file of a name, or those of a directory."""
+    """Return the file of a name, or the files of a directory."""
     path = Path(name)
     if path.suffix.lower() == ".toml":
         raise InputError(
@@ -188,7 +188,7 @@ def _read(
 
 @contextmanager
 def _naming_flags() -> Generator[None]:
-    """Name the options for what a message says of the arguments in Python."""
+    """Name the options in messages about `units` and `dt`."""
     try:
         yield
     except InputError as error:

@@ -286,7 +286,7 @@ def _of_each_pivot(p: "RockingProperties") -> list[tuple[str, str, str, str]]:
 
 
 def _self_centring_rows(p: "RockingProperties", size: float, unit: str) -> list[tuple[str, tuple[str, str], str]]:
-    """What the dissipators change about each pivot: the name, the values to the right and to the left, their unit."""
+    """Rows about the dissipators: the name, the values about the right and the left pivot, the unit."""
     right, left = p.pivot(1), p.pivot(-1)
     if not right.dissipator_moment and not left.dissipator_moment:
         return []

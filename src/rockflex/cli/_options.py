@@ -1,4 +1,4 @@
-"""Options that commands share: those written here, and those generated from the keys of files."""
+"""Options that several commands share, and options generated from the keys of files."""
 
 import inspect
 from collections.abc import Generator, Mapping
@@ -57,7 +57,7 @@ class FrameCommand(TyperCommand):
         return typer.main.get_command(app).params
 
     def get_params(self, ctx: Any) -> list[Any]:
-        """Return the command's own parameters and, before its first panel, those of the tables."""
+        """Return the command's own parameters, with the generated ones before its first panel."""
         own = super().get_params(ctx)
         first = next((place for place, each in enumerate(own) if getattr(each, "rich_help_panel", None)), len(own))
         return [*own[:first], *self.generated, *own[first:]]
@@ -107,7 +107,7 @@ def naming(flags: Mapping[str, str]) -> Generator[None]:
 
 
 def _destination(name: str, key: Key) -> str:
-    """Return the name of an option among those of its command, where keys of several tables may be the same."""
+    """Return the name of an option, which differs between tables with the same key."""
     return key.flag or name
 
 

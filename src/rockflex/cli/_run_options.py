@@ -28,7 +28,7 @@ _FIELDS = {f"ground.{name}": (name, flag) for name, flag in flags_of(GroundKeys)
 def make_ground(
     file: Path | None, in_file: dict[str, Any], flags: dict[str, Any], properties: RockingProperties
 ) -> tuple[Ground | None, dict[str, Any]]:
-    """Combine the ground of a structure file with that of flags, which take precedence.
+    """Combine the ground in a structure file with the ground given by flags, which take precedence.
 
     Parameters
     ----------

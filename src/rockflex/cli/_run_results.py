@@ -350,7 +350,7 @@ def check_page(path: Path, *, force: bool) -> Path:
 
 
 def check_runs(batch: Batch) -> None:
-    """Refuse what does not fit on a page, before anything is simulated.
+    """Refuse more than one page holds, before anything is simulated.
 
     Raises
     ------

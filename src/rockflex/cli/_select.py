@@ -174,7 +174,7 @@ A file with the columns "period (s), sa (g)".
 
 Accelerations A are written with their unit, such as 0.25g or 2.45m/s2."""
 
-CHOICE, WRITTEN = "Choice", "Results"
+CHOICE = "Choice"
 _MEASURES: "dict[str, Combination]" = {
     "component": "component",
     "geometric-mean": "geometric mean",

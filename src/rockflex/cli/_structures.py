@@ -127,7 +127,7 @@ class LoadedStructure:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What looks like a wrong unit."""
+        """Warnings about values that may be in another unit."""
         return structure_warnings(self.built)
 
     def describe(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""``rockflex survey``: what a folder of records holds, and what of it is taken."""
+"""``rockflex survey``: the records in a folder, and which of them are taken."""
 
 from collections.abc import Iterable
 from pathlib import Path

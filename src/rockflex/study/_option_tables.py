@@ -216,6 +216,10 @@ class RunOptionKeys(ImpactKeys, Table):
         """
         return None if self.bouc_wen is None else BoucWen(**self.bouc_wen.model_dump())
 
+    def ground_rule(self) -> Callable[[RockingProperties], Ground] | None:
+        """Return the function that gives each structure its ground; None for rigid ground without sliding."""
+        return None if self.ground is None else self.ground.under
+
 
 def name_of(law: ImpactLaw) -> str:
     """Return the name of an impact law of the package in a file."""

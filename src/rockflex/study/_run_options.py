@@ -78,7 +78,7 @@ class RunOptions:
         )
 
     def among(self, models: Iterable[Model]) -> Self:
-        """Return the options for some models: where none of their labels ends in -BW, the hysteresis is that of all."""
+        """Return the options for a set of models: if no label ends in -BW, all of them have the hysteresis."""
         return replace(self, all_yield=not yielding(models))
 
     def tied(self, model: Model, properties: RockingProperties) -> RockingModel:

@@ -67,7 +67,7 @@ class Server:
         self._limiters: dict[int, anyio.CapacityLimiter] = {}
 
     def warm_up(self) -> None:
-        """Import what answers need, before the first visitor needs it."""
+        """Import the modules and prepare the engine before the first visitor needs them."""
         pulse = {"source": "pulse", "pulse": {"shape": "one_sine", "amplitude": 5.0, "period": 0.5}}
         content = {"structure": PRESETS[0]["structure"], "record": pulse, "free_vibration": 0.0}
         state = State.model_validate(content | {"models": ["MDOF-S", "2DOF-S", "2DOF-C", "fixed"]})

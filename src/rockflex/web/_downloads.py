@@ -336,7 +336,7 @@ def _python(state: State, uploads: Uploads) -> tuple[str, str]:
 
 
 def _study_maker(what: str) -> Callable[[State, Uploads], tuple[str, str | bytes]] | None:
-    """What makes the file or the program of a study, such as "cloud-study" or "design-python"; None if nothing does."""
+    """Return the maker of a file of a study, such as "cloud-study" or "design-python"; None if there is none."""
     kind, _, form = what.partition("-")
     page = PAGES.get(kind)
     if page is None:

@@ -37,7 +37,7 @@ PERIODS = np.geomspace(0.05, 5.0, 90)
 
 
 class Pulse(NamedTuple):
-    """A pulse: its title, the function that makes it, and what this takes besides amplitude and period."""
+    """A pulse: its title, the function that makes it, and the arguments besides amplitude and period."""
 
     title: str
     maker: Callable[..., GroundMotion]

@@ -6,18 +6,17 @@ import re
 import warnings
 import zipfile
 import zlib
-from collections import OrderedDict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
-from threading import Lock
 from typing import Any
 
 from rockflex._errors import InputError, RecordWarning
 from rockflex._json import plain
 from rockflex.motion import GroundMotion, RecordSurvey, Suite, SurveyEntry, record_csv, survey_plain
 from rockflex.motion._direction import told_apart
+from rockflex.web._cache import Cache
 from rockflex.web._limits import (
     MAX_CACHED_SAMPLES,
     MAX_FILE_BYTES,
@@ -139,7 +138,7 @@ def _archived(path: str, content: bytes, room: int) -> Iterator[tuple[str, bytes
 
 
 def _unpacked_bytes(content: bytes | None) -> int:
-    """The bytes that are read of a file: of a workbook, which is an archive too, those unpacked."""
+    """Return the number of bytes read from a file; a workbook is an archive, so its unpacked size counts."""
     if content is None or not content.startswith(b"PK"):
         return len(content or b"")
     try:
@@ -207,7 +206,7 @@ ZIP_DATE = (1980, 1, 1, 0, 0, 0)  # the same records give the same archive
 
 
 def packed_records(motions: Iterable[GroundMotion]) -> bytes:
-    """Return a ZIP archive with a CSV file of each motion, which says what is known of it."""
+    """Return a ZIP archive with a CSV file of each motion and its metadata."""
     members = list(motions)
     names = flat_names(f"{motion.name.replace('/', '_')}.csv" for motion in members)
     packed = io.BytesIO()
@@ -226,7 +225,7 @@ NO_FOLDER = "no records were given yet. Choose a folder on the Earthquake tab fi
 
 @dataclass(frozen=True, eq=False)
 class Folder:
-    """Records of a visitor, and what the page reports of them.
+    """Records of a visitor, and the report of them on the page.
 
     Attributes
     ----------
@@ -258,8 +257,7 @@ class Folders:
     """
 
     def __init__(self) -> None:
-        self._kept: OrderedDict[str, Folder] = OrderedDict()
-        self._lock = Lock()
+        self._folders = Cache[Folder](lambda: MAX_CACHED_SAMPLES, lambda folder: folder.samples)
 
     def add(self, folder: Folder, files: Sequence[SentFile], options: str) -> str:
         """Keep a set, and return its checksum."""
@@ -269,11 +267,7 @@ class Folders:
             digest.update(f"\0{each.name}\0{each.size}\0{len(content)}\0".encode())
             digest.update(content)
         token = digest.hexdigest()
-        with self._lock:
-            self._kept[token] = folder
-            self._kept.move_to_end(token)
-            while len(self._kept) > 1 and sum(each.samples for each in self._kept.values()) > MAX_CACHED_SAMPLES:
-                self._kept.popitem(last=False)
+        self._folders.put(token, folder)
         return token
 
     def get(self, token: str) -> Folder:
@@ -284,10 +278,7 @@ class Folders:
         Refusal
             If it is not, or no longer, kept.
         """
-        with self._lock:
-            found = self._kept.get(token)
-            if found is not None:
-                self._kept.move_to_end(token)
+        found = self._folders.get(token)
         if found is None:
             raise Refusal({FIELD: FOLDER_LOST if token else NO_FOLDER}, 410)
         return found

@@ -21,7 +21,7 @@ ABANDONED_AFTER = 30.0  # s without a request after which a job stops, because i
 
 
 class Work:
-    """What one thread computes and others watch.
+    """Work of one thread whose progress others read.
 
     Attributes
     ----------

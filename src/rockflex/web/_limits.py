@@ -1,4 +1,4 @@
-"""The limits of what one visitor may request: the same for forms, links and files."""
+"""Limits of the requests of one visitor, the same for forms, links and files."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -40,7 +40,7 @@ MAX_NUMBER = 1e15
 
 
 def check_numbers(path: str, value: Any, table: type[Table]) -> None:
-    """Refuse what `errors_of_numbers` finds."""
+    """Raise the errors of `errors_of_numbers` as a refusal."""
     if errors := errors_of_numbers(path, value, table):
         raise Refusal(errors)
 
@@ -67,7 +67,7 @@ def errors_of_numbers(path: str, value: Any, table: type[Table]) -> dict[str, st
 
 
 def wanted(field: FieldInfo) -> str:
-    """Say what a field of a form must be."""
+    """Return the condition on the value of a field, for a message."""
     return key_of(field).page or expected(field)
 
 

@@ -2,12 +2,10 @@
 
 import json
 import warnings
-from collections import OrderedDict
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -30,6 +28,7 @@ from rockflex.motion import (
 )
 from rockflex.solve import check_interruption
 from rockflex.study.plan import Records
+from rockflex.web._cache import Cache
 from rockflex.web._earthquake import motion_of
 from rockflex.web._limits import unclear
 from rockflex.web._refusal import Refusal, refusing
@@ -66,7 +65,7 @@ class VisitorRecords(Records):
         return found
 
     def load(self, base: Path) -> Suite:  # noqa: ARG002 - nothing is read from files
-        """Load the records, first those of the suites.
+        """Load the records; the suites come first.
 
         Raises
         ------
@@ -175,8 +174,7 @@ class Selections:
     """The latest choices of records of all visitors, so that charts, files and studies do not repeat them."""
 
     def __init__(self) -> None:
-        self._kept: OrderedDict[str, Selected] = OrderedDict()
-        self._lock = Lock()
+        self._selections = Cache[Selected](lambda: MAX_SELECTIONS)
 
     def of(self, state: State, uploads: Uploads) -> Selected:
         """Return the records chosen for the target of a state, and remarks on the choice.
@@ -190,11 +188,9 @@ class Selections:
         """
         choice = state.target
         key = json.dumps([choice.model_dump(exclude={"shown"}), self._source(state)])
-        with self._lock:
-            found = self._kept.get(key)
-            if found is not None:
-                self._kept.move_to_end(key)
-                return found
+        found = self._selections.get(key)
+        if found is not None:
+            return found
         target, suite = target_of(choice), source_of(state, uploads)
         _check_work(suite, choice)
         check_interruption()  # the visitor may have changed the choice while it waited for its turn
@@ -202,10 +198,7 @@ class Selections:
             warnings.simplefilter("always", RecordWarning)
             chosen = suite.select(target, choice.count, (choice.shortest, choice.longest), **options_of(choice))
         found = (chosen, [str(each.message) for each in caught])
-        with self._lock:
-            self._kept[key] = found
-            while len(self._kept) > MAX_SELECTIONS:
-                self._kept.popitem(last=False)
+        self._selections.put(key, found)
         return found
 
     @staticmethod

@@ -53,7 +53,7 @@ DesignLimit = Annotated[str, among(lambda: [each.name for each in LIMIT_STATE_CH
 
 
 def limit_state(name: str, rotation: float) -> LimitState:
-    """Return a limit by its name on the page; `rotation` in rad is that of "rotation"."""
+    """Return a limit by its name on the page; `rotation` in rad belongs to the limit "rotation"."""
     return beyond(rotation) if name == ROTATION else LIMIT_STATES[name]
 
 

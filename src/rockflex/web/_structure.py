@@ -185,7 +185,7 @@ def structure_view(entry: StructureEntry, table: GroundTable | None = None) -> d
 
 
 def outline(entry: StructureEntry, built: Built) -> dict[str, Any]:
-    """Return what the drawing of a structure needs."""
+    """Return the data of the drawing of a structure."""
     p = built.properties
     return {
         "kind": entry.kind,
@@ -199,7 +199,7 @@ def outline(entry: StructureEntry, built: Built) -> dict[str, Any]:
 
 
 def _freedoms(table: StructureTable) -> str:
-    """Say what the degrees of freedom of given matrices do; empty for other structures."""
+    """Describe the degrees of freedom of given matrices; empty for other structures."""
     if not isinstance(table, MatricesTable | ModesTable):
         return ""
     given = table.arguments(Path())

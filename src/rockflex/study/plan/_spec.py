@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 from rockflex._errors import InputError
 from rockflex._json import plain
 from rockflex._shown import shown
-from rockflex.modal import Ground, RockingProperties
+from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.structure.file import StructureEntry, Table, problems
 from rockflex.study._arguments import WORK_LIMIT, free_vibration_time, properties_of, work_limit_of
@@ -136,10 +136,6 @@ class RunsSpec(RunOptionKeys, Spec):
             work_limit=self.work_limit,
         )  # fmt: skip
         return replace(options, models=tuple(map(parse_model, self.models)), friction=friction)
-
-    def ground_rule(self) -> Callable[[RockingProperties], Ground] | None:
-        """Return the function that gives each structure its ground; None for rigid ground without sliding."""
-        return None if self.ground is None else self.ground.under
 
 
 class StructuresSpec(RunsSpec):
