@@ -9,7 +9,7 @@ import zipfile
 import pytest
 
 import rockflex as rf
-from rockflex.motion import _excel
+from rockflex.motion import _columns
 
 openpyxl = pytest.importorskip("openpyxl")
 
@@ -87,7 +87,7 @@ def test_refuses(tmp_path):
 
 def test_a_workbook_that_unpacks_to_more_than_it_may(tmp_path, monkeypatch):
     file = write(tmp_path, {"S": ROWS})
-    monkeypatch.setattr(_excel, "LARGEST", 100)
+    monkeypatch.setattr(_columns, "MAX_UNPACKED_BYTES", 100)
     with pytest.raises(rf.InputError, match=r"has 0 MB when unpacked, above 0\.0001 MB\. Save it as CSV"):
         rf.read_motion(file)
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from rockflex import GroundMotion, InputError, RecordInfo, RecordWarning, read_suite
-from rockflex.motion._pairs import named, paired
+from rockflex.motion._recordings import file_names, pair_vertical
 
 AT2 = "{}, 1/1/2001, {}, {}\nACCELERATION IN UNITS OF G\nNPTS= 3, DT= {}\n0 {} 0\n"
 
@@ -23,7 +23,7 @@ def pairs_of(horizontal, vertical):
     """Which vertical record, by its name, each horizontal one gets; file names as they are in one folder."""
     along = {Path(name): motion(name) for name in horizontal}
     upwards = {Path(name): motion(name, direction="vertical") for name in vertical}
-    both, without, left = paired(along, upwards)
+    both, without, left = pair_vertical(along, upwards)
     found = {file.name: each.metadata.vertical_source for file, each in both.items() if each.vertical is not None}
     return found, {file.name: reason for file, reason in without.items()}, [file.name for file in left]
 
@@ -60,17 +60,17 @@ def test_stations_whose_names_begin_alike():
 def test_other_folders_and_other_stations_are_none():
     found, without, left = pairs_of(["ABC090.AT2", "ABCD.AT2"], ["ABD-UP.AT2"])
     assert (found, without, left) == ({}, {"ABC090.AT2": "", "ABCD.AT2": ""}, ["ABD-UP.AT2"])
-    both, *_ = paired({Path("a/X090.csv"): motion("h")}, {Path("b/X-UP.csv"): motion("v")})
+    both, *_ = pair_vertical({Path("a/X090.csv"): motion("h")}, {Path("b/X-UP.csv"): motion("v")})
     assert both[Path("a/X090.csv")].vertical is None
 
 
 def test_headers_tell_what_names_do_not():
     along = {Path("a/first.csv"): motion("1", rsn=7), Path("a/second.csv"): motion("2", event="E", year=1, station="S")}
     upwards = {Path("b/up.csv"): motion("v7", rsn=7), Path("b/v.csv"): motion("vs", event="E", year=1, station="S")}
-    both, without, left = paired(along, upwards)
+    both, without, left = pair_vertical(along, upwards)
     assert [each.metadata.vertical_source for each in both.values()] == ["v7", "vs"]
     assert (without, left) == ({}, [])
-    nothing = paired({Path("c.csv"): motion("3", event="E", station="S")}, upwards)
+    nothing = pair_vertical({Path("c.csv"): motion("3", event="E", station="S")}, upwards)
     assert nothing[1] == {Path("c.csv"): ""}
 
 
@@ -82,13 +82,13 @@ def test_of_two_none_is_chosen():
 
 def test_a_record_with_both_stays_as_it_is():
     own = GroundMotion([0.0, 1.0, 0.0], 0.1, "ABC090", vertical=[0.0, 2.0, 0.0])
-    both, without, left = paired({Path("ABC090.csv"): own}, {Path("ABC-UP.csv"): motion("ABC-UP")})
+    both, without, left = pair_vertical({Path("ABC090.csv"): own}, {Path("ABC-UP.csv"): motion("ABC-UP")})
     assert both[Path("ABC090.csv")] is own
     assert (without, left) == ({}, [Path("ABC-UP.csv")])
 
 
 def test_many_names_are_shortened():
-    assert named(Path(f"{k}.txt") for k in range(12)).endswith(", 9.txt and 2 more")
+    assert file_names(Path(f"{k}.txt") for k in range(12)).endswith(", 9.txt and 2 more")
 
 
 def test_folder(tmp_path):

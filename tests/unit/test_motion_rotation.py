@@ -101,7 +101,7 @@ def test_a_spectrum_does_not_depend_on_what_else_is_asked():
     ("arguments", "text"),
     [
         ((FIRST, SECOND.refined(2), [1.0]), r"first and second need the same time step, but 0\.01 s and 0\.005 s"),
-        ((FIRST, 3, [1.0]), "second must be of type Samples, but int was given"),
+        ((FIRST, 3, [1.0]), "second must be of type GroundMotion, but int was given"),
         ((FIRST, SECOND, [-1.0]), "periods must be zero or at least 1e-6 s"),
         ((FIRST, SECOND, [1.0], 5), r"damping_ratio must lie in \[0, 1\), but 5 was given"),
     ],
