@@ -33,7 +33,7 @@ from rockflex.motion._recordings import (
     rotated_spectrum,
 )
 from rockflex.motion._selection import Selection
-from rockflex.motion._spectra import TargetSpectrum
+from rockflex.motion._spectra import ResponseSpectrum, TargetSpectrum
 from rockflex.motion._suite import Suite, load_suite, suite_names
 from rockflex.motion._survey import RecordSurvey, SurveyEntry, survey_plain, survey_records
 from rockflex.motion._targets import asce7_site_spectrum, asce7_spectrum, ec8_second_spectrum, ec8_spectrum, read_target
@@ -48,6 +48,7 @@ __all__ = [
     "OnError",
     "RecordInfo",
     "RecordSurvey",
+    "ResponseSpectrum",
     "RotatedSpectrum",
     "Selection",
     "Shaking",

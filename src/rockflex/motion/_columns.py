@@ -124,7 +124,7 @@ def _column(file: Path, table: Table, k: int) -> Array:
 
 
 def _component(label: str) -> str:
-    """Return what a label says besides acceleration and unit."""
+    """Return the label without the words for acceleration and the unit: the name of the component."""
     return ACCELERATION_LABEL.sub(
         "", BRACKET.sub("", label[: after_brackets(label)]) + label[after_brackets(label) :], 1
     ).strip(" _-.")
@@ -133,7 +133,7 @@ def _component(label: str) -> str:
 def _column_roles(file: Path, labels: list[str], n_columns: int) -> ColumnRoles:
     """Return which columns are which."""
     times = [i for i, label in enumerate(labels) if TIME_LABEL.match(label)]
-    # Of two columns one is the time, unless the labels are those of two components.
+    # Of two columns one is the time, unless the labels name two components.
     beside = len(labels) > 2 or (len(labels) == 2 and not times)
     upwards = [i for i, label in enumerate(labels) if VERTICAL_LABEL.match(label)] if beside else []
     others = [i for i in range(len(labels)) if i not in (*times, *upwards)]
@@ -272,7 +272,7 @@ def _common_step(file: Path, times: Array, lines: list[int], dt: float | None) -
 
 
 def is_excel(content: bytes) -> bool:
-    """Return whether the bytes are those of a workbook, or of another file in the containers that Excel uses."""
+    """Return whether the bytes begin as an Excel workbook, or as another file in the same container (ZIP, OLE)."""
     return content.startswith((ZIP_MAGIC, OLD_EXCEL_MAGIC))
 
 
@@ -328,7 +328,7 @@ def sheets_of(file: Path, content: bytes) -> dict[str, list[list[str]]]:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             if any(_longest_row(archive.read(part)) > MAX_ROW_BYTES for part in archive.namelist()):
                 raise InputError(
-                    f"{file} has a row of more than {MAX_ROW_BYTES / 1e6:g} MB. Delete what is beside the record."
+                    f"{file} has a row of more than {MAX_ROW_BYTES / 1e6:g} MB. Delete the cells beside the record."
                 )
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about styles and other extensions that do not matter here
@@ -347,7 +347,7 @@ def _longest_row(part: bytes) -> int:
 
 
 def _sheet_cells(file: Path, book: Any) -> dict[str, list[list[str]]]:
-    """Return the cells of the sheets of an open workbook; those that only lie far apart are not filled up for long."""
+    """Return the cells of the sheets of an open workbook; sheets whose few cells lie far apart are refused."""
     sheets: dict[str, list[list[str]]] = {}
     count, empty = 0, list[str]()
     for sheet in book.worksheets:
@@ -364,7 +364,7 @@ def _sheet_cells(file: Path, book: Any) -> dict[str, list[list[str]]]:
             if count > MAX_CELLS:
                 raise InputError(
                     f"{file}: more than {MAX_CELLS / 1e6:g} million cells lie before its last filled ones, with the "
-                    "empty ones between them. Delete what is far from the record, or save the sheet as CSV."
+                    "empty ones between them. Delete the cells far from the record, or save the sheet as CSV."
                 )
             rows.append(cells if any(cells) else empty)
     return sheets
@@ -413,7 +413,7 @@ def record_csv(motion: GroundMotion) -> str:
 
 
 def stated_record_info(file: Path, heads: list[str]) -> RecordInfo:
-    """Return what the first lines of a file say of its record, if `record_csv` wrote them.
+    """Return the metadata in the first lines of a file that `record_csv` wrote; empty for other files.
 
     Raises
     ------

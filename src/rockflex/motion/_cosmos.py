@@ -65,14 +65,14 @@ class Channel:
 
 
 def unit_of(file: Path, channel: Channel) -> Unit:
-    """Return the unit of the samples; that of counts follows from the recorder and the sensor."""
+    """Return the unit of the samples; a count is converted with the constants of recorder and sensor."""
     code = channel.integer(3)
     if code == COUNTS_CODE:
         step, sensitivity = channel.real(22), channel.real(42)  # µV a count, V a g
         if not step or not sensitivity or step < 0.0:
             raise InputError(
-                f"{file} holds raw counts, and its real header does not state what one count is (places 22 and 42). "
-                "Download the corrected record (V2)."
+                f"{file} holds raw counts, and its real header does not state the value of one count (places 22 "
+                "and 42). Download the corrected record (V2)."
             )
         return Unit("g", step * MICROVOLT / abs(sensitivity) / (non_negative(channel.real(47)) or 1.0))
     if code in UNIT_CODES:
@@ -105,7 +105,7 @@ def step_of(file: Path, channel: Channel, n_samples: int) -> float:
 
 
 def info_of(file: Path, channel: Channel) -> RecordInfo:
-    """Return what the headers say of the record."""
+    """Return the metadata in the headers."""
     component, direction, azimuth = _sensor(channel)
     lines = [*channel.text, *[""] * 13]
     code = re.search(r"Code:\s*+(\w++)-(\S++)", lines[4])
@@ -177,7 +177,7 @@ def _start_time(channel: Channel, line: str) -> str | None:
 
 
 def is_cosmos(lines: list[str]) -> bool:
-    """Return whether the lines begin as those of a COSMOS file."""
+    """Return whether the lines begin as a COSMOS file does."""
     return FIRST_LINE.search(lines[0][:500]) is not None
 
 

@@ -22,7 +22,7 @@ START_TIME = re.compile(r"(\d{4})(\d{2})(\d{2})_(\d{2})(\d{2})(\d{2}(?:\.\d{1,6}
 
 
 def is_esm(lines: list[str]) -> bool:
-    """Return whether the lines begin as those of an ESM file."""
+    """Return whether the lines begin as an ESM file does."""
     return lines[0].lstrip().startswith(FIRST_KEYS)
 
 
@@ -69,7 +69,7 @@ def _info(file: Path, header: dict[str, str]) -> RecordInfo:
     name = next((each for each in event if each not in ("", "None")), None)
     when = EVENT_TIME.fullmatch(header.get("EVENT_DATE_YYYYMMDD", "") + header.get("EVENT_TIME_HHMMSS", ""))
     return RecordInfo(
-        # Many earthquakes have the same name, that of their region.
+        # Many earthquakes are named after their region, so the time of origin is added.
         event=name if name is None or when is None else "{} {}-{}-{} {}:{}".format(name, *when.groups()),
         year=int(year) if year.isdecimal() and year.isascii() else None,
         magnitude=local if moment is None else moment,

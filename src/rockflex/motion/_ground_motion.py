@@ -40,9 +40,9 @@ class GroundMotion(HtmlTable, Value):
     acceleration is zero. Every measure is exact for this piecewise linear function, including peaks between
     samples, and covers the time from the first sample to the last.
 
-    The ground may also move vertically. All measures are those of the horizontal component, unless their name says
-    otherwise; those of the vertical one are those of `vertical_motion`. What changes a motion, such as `scaled`,
-    changes both components.
+    The ground may also move vertically. Measures refer to the horizontal component, unless their name says otherwise;
+    `vertical_motion` gives the measures of the vertical one. Methods that change a motion, such as `scaled`, change
+    both components.
 
     Parameters
     ----------

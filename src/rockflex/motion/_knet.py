@@ -26,7 +26,7 @@ CHANNELS = {"1": "N-S", "2": "E-W", "3": "U-D", "4": "N-S", "5": "E-W", "6": "U-
 
 
 def is_knet(lines: list[str]) -> bool:
-    """Return whether the lines begin as those of a K-NET file."""
+    """Return whether the lines begin as a K-NET file does."""
     return lines[0].lstrip().startswith("Origin Time")
 
 

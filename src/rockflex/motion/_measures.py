@@ -46,7 +46,7 @@ class Shaking:
         if math.isnan(self.omega):
             return math.nan
         period = 2.0 * math.pi / self.omega
-        # Such a stiff structure moves with the ground; its period is below those of a spectrum.
+        # Such a stiff structure moves with the ground; spectra have no shorter periods.
         return self.motion.sd(period, damping_ratio) if period >= MIN_PERIOD else self.motion.pga / self.omega**2
 
 

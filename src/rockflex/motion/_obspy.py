@@ -15,7 +15,7 @@ from rockflex.motion._text import Unit, build_motion
 
 INSTALL = "For MiniSEED, SAC, GSE2 and other formats of seismology, install ObsPy: pip install 'rockflex[obspy]'."
 UNSAFE_FORMATS = ("PICKLE",)  # reading it would run code that the file contains
-# Formats whose calibration is that of an acceleration, in m/s² a count.
+# Formats that state the acceleration of one count, in m/s².
 CALIBRATED = ("KINEMETRICS_EVT", "KNET")
 VELOCITY_CODES = "HMP"  # the second letter of a channel of a velocity sensor
 
@@ -52,7 +52,7 @@ def is_installed() -> bool:
 
 
 def parse_obspy(file: Path, content: bytes, form: str, units: Unit | None) -> list[GroundMotion]:
-    """Build the motions of all traces of a file; from those of recorders, the mean is subtracted."""
+    """Build the motions of all traces of a file; the mean of calibrated recorders is subtracted."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -76,7 +76,7 @@ def _motion(file: Path, trace: Any, form: str, units: Unit | None, name: str) ->
     channel = str(trace.stats.channel).strip().upper()
     if len(channel) == 3 and channel[1] in VELOCITY_CODES:
         raise InputError(
-            f"{file}: channel {channel} is that of a velocity sensor, but an acceleration is expected. Give the "
+            f"{file}: channel {channel} belongs to a velocity sensor, but an acceleration is expected. Give the "
             f"channel of the accelerometer, such as {channel[0]}N{channel[2]}."
         )
     if np.ma.isMaskedArray(trace.data):
@@ -102,7 +102,7 @@ def _motion(file: Path, trace: Any, form: str, units: Unit | None, name: str) ->
     if form in CALIBRATED:
         values = values - values.mean()
     dt = float(f"{float(trace.stats.delta):.12g}")
-    return build_motion(file, values, unit, dt, info, "Check what one count is.", name)
+    return build_motion(file, values, unit, dt, info, "Check the value of one count.", name)
 
 
 def _unit(file: Path, trace: Any, form: str, units: Unit | None) -> Unit:

@@ -97,7 +97,7 @@ def is_record(file: Path) -> bool:
 
 @dataclass(frozen=True)
 class FileRead:
-    """What a file holds: motions, by a path that is named after them; or a table about records; or why neither."""
+    """The content of a file: motions by paths named after them, or a table about records, or the error."""
 
     file: Path
     motions: Mapping[Path, GroundMotion] = field(default_factory=dict[Path, GroundMotion])
@@ -114,7 +114,7 @@ def read_many(
     *,
     use_obspy: bool = True,
 ) -> list[FileRead]:
-    """Read files, in their order; those that cannot be read have a fault. `use_obspy` as in `components_in`.
+    """Read files, in their order; files that cannot be read have a fault. `use_obspy` as in `components_in`.
 
     Raises
     ------
@@ -177,7 +177,7 @@ def _read_file(file: Path, given: RecordTable, common: Unit | None, dt: float | 
 
 @dataclass(frozen=True)
 class ChosenComponents:
-    """Components by their paths: those taken, and those left out.
+    """Components by their paths: the horizontal ones that are taken, and the ones left out.
 
     Attributes
     ----------
@@ -264,7 +264,7 @@ def _are_copies(path: Path, motion: GroundMotion, other: Path, kept: GroundMotio
 
 
 def _equal_samples(one: Array, other: Array) -> bool:
-    """Return whether samples are the same but for rounding; those at rest say nothing."""
+    """Return whether samples are the same but for rounding; two records at rest do not count as the same."""
     peak = float(np.max(np.abs(other)))
     return peak > 0.0 and bool(np.max(np.abs(one - other)) <= COPY_TOLERANCE * peak)
 
@@ -289,7 +289,7 @@ def read_suite(
     """Read the horizontal components among record files into a suite, sorted by file name.
 
     The formats are those of `read_motion`. Of a file with several horizontal components, each becomes a motion. For a
-    report of what is taken, and what is not, see `survey_records`.
+    report of the files taken and left out, see `survey_records`.
 
     Tables about the records among the files fill in what headers do not say: PEER's ``_SearchResults.csv``, a flatfile
     of NGA, or a CSV file or workbook of one's own with a column ``file`` or ``RSN`` and any of ``units``, ``dt``,
@@ -403,7 +403,7 @@ def read_files(
 
 
 def check_vertical(vertical: object) -> None:
-    """Raise an InputError if `vertical` is not what `read_suite` takes."""
+    """Raise an InputError unless `vertical` is "pair" or None."""
     if vertical not in (None, *get_args(Vertical)):
         raise InputError(
             f'vertical must be "pair" or None, but {shown(vertical)} was given. A file of its own is for one record: '

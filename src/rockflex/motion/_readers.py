@@ -38,7 +38,7 @@ def read_motion(
     - K-NET and KiK-net ASCII: counts times the scale factor of the header. The mean of the record is subtracted, as
       for the peak that the header states.
     - ESM and ITACA ASCII (DYNA 1.2), in the unit that the header states.
-    - COSMOS (V1, V2; V0 if the header says what a count is), with one or more channels.
+    - COSMOS (V1, V2; V0 if the header states the value of a count), with one or more channels.
     - CSV, and text in columns. Columns are separated by commas, semicolons, tabs or blanks; decimals may be marked by
       commas where something else separates; ``#``, ``%`` and ``!`` begin comments. A single column is the
       acceleration, two columns are time (s) and acceleration, unless a header line names them as two components. With
@@ -47,7 +47,7 @@ def read_motion(
       horizontal acceleration needs names, as in "acc NS (g), acc EW (g)", "a_x (g), a_y (g), a_z (g)" or "NS (gal),
       EW (gal), UD (gal)"; z, v and UD are vertical.
     - Excel workbooks (.xlsx), with the same columns in one or more sheets; needs openpyxl, ``rockflex[excel]``.
-    - What ObsPy reads, such as MiniSEED, SAC, GSE2 and Kinemetrics EVT; needs ObsPy, ``rockflex[obspy]``.
+    - Formats that ObsPy reads, such as MiniSEED, SAC, GSE2 and Kinemetrics EVT; needs ObsPy, ``rockflex[obspy]``.
 
     The motion starts at the first sample, whatever its time.
 
@@ -57,7 +57,7 @@ def read_motion(
         The file.
     units : str, optional
         Unit of the acceleration: "g", "m/s2", "cm/s2", "mm/s2", "mg", "in/s2", or a number and one of these, such as
-        "2.4e-4 cm/s2" for what one count is. Needed unless a column header states it in brackets, as "acc (g)",
+        "2.4e-4 cm/s2" for the value of one count. Needed unless a column header states it in brackets, as "acc (g)",
         "a [m/s^2]" or "acceleration (gal)", or a line above the numbers says "units: g", or the format does.
     dt : float, optional
         Sampling step in s; needed if the file has no times, and no line above the numbers says "dt = 0.01 s". For a
@@ -74,8 +74,8 @@ def read_motion(
     Returns
     -------
     GroundMotion
-        The record in m/s², named after the file without its suffix; that of a file with several components also after
-        the component. `GroundMotion.metadata` contains what the header says.
+        The record in m/s², named after the file without its suffix, and after the component if the file has several.
+        `GroundMotion.metadata` contains the information in the header.
 
     Raises
     ------
@@ -180,7 +180,7 @@ def components_in(
     use_obspy
         Whether the readers of ObsPy may be used.
     common
-        Whether `units` and `dt` are for many files, so that those of a format that states them need not agree.
+        Whether `units` and `dt` are for many files, so that a format that states its own need not agree.
 
     Raises
     ------

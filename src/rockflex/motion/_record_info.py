@@ -25,7 +25,7 @@ HORIZONTAL_NAME = re.compile(
 )
 SEPARATED_SUFFIX = re.compile(rf"(.*)(?:[-_. ](?:{UP_NAMES})|[-_.][VZ])", re.IGNORECASE)
 DOWN_SUFFIX = re.compile(rf".*(?:{DOWN_NAMES})", re.IGNORECASE)
-COPY_SUFFIX = re.compile(r"(?: \(\d+\)| - copy)+$", re.IGNORECASE)  # what browsers and desktops add to a name
+COPY_SUFFIX = re.compile(r"(?: \(\d+\)| - copy)+$", re.IGNORECASE)  # added to a name by browsers and desktops
 JOINED_SUFFIX = re.compile(rf"(.*?)(?:{UP_NAMES}|(?<=\d)V|-V[12])", re.IGNORECASE)
 
 
@@ -77,7 +77,7 @@ class RecordInfo:
     stated_pga : float, optional
         Peak ground acceleration that the header of the file states, in m/s².
     processing : str, optional
-        What was done to the samples when they were read, such as "mean subtracted".
+        Change made to the samples when they were read, such as "mean subtracted".
     event_id : str, optional
         Identifier of the earthquake in the catalogue of the source, such as "EMSC-20161030_0000029".
     scale : float, optional
@@ -122,7 +122,7 @@ class RecordInfo:
         return self.direction in ("vertical", "down")
 
     def completed(self, other: "RecordInfo") -> "RecordInfo":
-        """Return this information, with what is unknown taken from another source.
+        """Return this information, with unknown fields taken from another source.
 
         Examples
         --------
@@ -194,5 +194,5 @@ def is_horizontal_name(component: str) -> bool:
 
 
 def unique_names(names: list[str]) -> list[str]:
-    """Return names that differ, those that occur twice with their place among the equal ones."""
+    """Return the names, with a number added to those that occur more than once."""
     return [name if names.count(name) == 1 else f"{name}-{names[: i + 1].count(name)}" for i, name in enumerate(names)]

@@ -23,7 +23,7 @@ V = TypeVar("V")
 Recording: TypeAlias = tuple[str, str | None, str]  # event, network and station
 
 MAX_HEADER_LINE = 80  # lines before the header of the table; PEER's search results state their criteria first
-# Labels, reduced to letters and digits, of what a table says.
+# Labels of columns, reduced to letters and digits, by the field that they give.
 LABELS = {
     "rsn": ("recordsequencenumber", "rsn"),
     "event": ("earthquakename", "eventname", "event"),
@@ -57,7 +57,7 @@ TEXT_FIELDS = ("event", "station", "network", "event_id")
 
 @dataclass(frozen=True)
 class RecordTable:
-    """What tables say of records: by record sequence number, by file, and by event, network and station."""
+    """Information about records from tables: by record sequence number, by file, and by event, network and station."""
 
     by_number: Mapping[int, RecordInfo] = field(default_factory=lambda: MappingProxyType({}))
     by_file: Mapping[str, RecordInfo] = field(default_factory=lambda: MappingProxyType({}))
@@ -76,7 +76,7 @@ class RecordTable:
         )
 
     def completed(self, file: Path, info: RecordInfo) -> RecordInfo:
-        """Return what a header says of a record, with what it leaves open from the tables."""
+        """Return the metadata of a record, with unknown fields taken from the tables."""
         rsn = info.rsn
         if rsn is None and (named := re.match(r"RSN(\d{1,9})(?!\d)", file.name, re.IGNORECASE)):
             rsn = int(named[1])
@@ -166,7 +166,7 @@ def _cells(line: str, separator: str) -> list[str]:
 
 
 def _columns(cells: list[str]) -> dict[int, str] | None:
-    """Return what the columns under a header hold, by their places; None if it is not the header of such a table."""
+    """Return the field that each column gives, by its index; None if the cells are no header of such a table."""
     plain = [re.sub(r"[^a-z0-9]", "", cell.casefold()) for cell in cells]
     found: dict[int, str] = {}
     for name, labels in LABELS.items():

@@ -39,8 +39,8 @@ def pair_vertical(
     Returns
     -------
     tuple
-        All horizontal records; for those that remain without a vertical component, the reason, which is empty if no
-        vertical record belongs to them; the vertical records that belong to none.
+        All horizontal records; the reasons why some remain without a vertical component, empty where there is no
+        vertical record of the station; the vertical records that were not used.
     """
     both: dict[Path, GroundMotion] = {}
     without: dict[Path, str] = {}
@@ -63,7 +63,7 @@ def pair_vertical(
 
 
 def station_names(motions: Sequence[tuple[Path, GroundMotion]]) -> list[str]:
-    """Return the name of the recording of each component, the same for those that belong together.
+    """Return the name of the recording of each component, the same for all components of a recording.
 
     `motions` are the components with paths whose stems are their names; see `group_stations`.
     """
@@ -79,7 +79,7 @@ def station_names(motions: Sequence[tuple[Path, GroundMotion]]) -> list[str]:
 
 
 def recording_names(names: Sequence[str]) -> list[str]:
-    """Return what the name of each component shares with that of the other one of its recording, else the whole name.
+    """Return the common part of the names of the two components of each recording; the whole name of a single one.
 
     A recording has two horizontal components, at right angles: ABC000 and ABC090, or A-H1 and A-H2. Records that are
     merely numbered, such as GM1 and GM2, do not belong together.
@@ -118,7 +118,7 @@ def _header_name(info: RecordInfo | None) -> str | None:
 
 
 def _possible_stems(file: Path, motion: GroundMotion) -> list[str]:
-    """Return what a name may be without its component, the surest first."""
+    """Return the names of the station that a name may contain, the most likely first."""
     upright = station_of_vertical(file)
     if motion.metadata is not None and motion.metadata.is_vertical:
         return [] if upright is None else [upright]
@@ -137,7 +137,7 @@ def are_different_components(file: Path, info: RecordInfo | None, other: Path, k
 
 
 def _component_words(file: Path) -> dict[Key, str]:
-    """Return what the name of a file may say of its component, by the station that the rest of it then is."""
+    """Return the possible names of the component in the name of a file, by the key of the station in the rest of it."""
     return {key: file.stem[len(str(key[1])) :].lstrip(SEPARATORS).casefold() for key in _possible_keys(file, None)}
 
 
@@ -199,7 +199,7 @@ class StationRecord(Value):
     ----------
     name : str
         Name of the recording: the record sequence number as in RSN953, else the station with its network and
-        earthquake, else what the names of its components share.
+        earthquake, else the common part of the names of its components.
     horizontal : tuple of GroundMotion
         The horizontal components, in the order given; two for most instruments.
     vertical : GroundMotion, optional
@@ -245,8 +245,8 @@ def group_stations(motions: Iterable[GroundMotion]) -> tuple[StationRecord, ...]
     Parameters
     ----------
     motions : iterable of GroundMotion
-        Components, such as a suite, or those of `read_components`. A vertical component that a horizontal one brings is
-        that of the station.
+        Components, such as a suite, or those of `read_components`. A vertical component that belongs to a
+        horizontal one becomes the vertical component of the station.
 
     Returns
     -------
@@ -425,13 +425,13 @@ class Recording:
 
     @property
     def event(self) -> GroupKey:
-        """What recordings of one earthquake share; None if it is not known."""
+        """Key of the earthquake; None if it is not known."""
         info = self.motions[0].metadata
         return None if info is None or info.event is None else (info.event.casefold(), info.year)
 
     @property
     def station(self) -> GroupKey:
-        """What recordings at one station share; None if it is not known."""
+        """Key of the station; None if it is not known."""
         info = self.motions[0].metadata
         return None if info is None or info.station is None else (info.station.casefold(),)
 

@@ -33,14 +33,14 @@ S = TypeVar("S", bound=Sequence[GroundMotion])
 
 @dataclass(frozen=True, eq=False)
 class SelectionProblem:
-    """What is chosen from, and how sets are compared.
+    """The spectra to choose from, and the objective by which sets are compared.
 
     Parameters
     ----------
     spectra
         Scaled spectra, divided by the target, shape (n_records, m).
     record_weight
-        Weight of the mean of the squared misfits of the records; the rest is that of the squared misfit of their mean.
+        Weight w of the mean of the squared misfits of the records; 1 - w weighs the squared misfit of their mean.
     group_limits
         Limits of records of one group.
     """
@@ -55,11 +55,11 @@ class SelectionProblem:
         return misfit(self.spectra)
 
     def objective(self, total: Array, squares: Array, count: int) -> Array:
-        """Return what is minimised, for sets of `count` spectra with the given sums, along the first axis."""
+        """Return the objective of sets of `count` spectra with the given sums, along the first axis."""
         return (1.0 - self.record_weight) * misfit(total / count) ** 2 + self.record_weight * squares / count
 
     def objective_of(self, chosen: Sequence[int]) -> float:
-        """Return what is minimised, for one set."""
+        """Return the objective of one set."""
         rows = list(chosen)
         total, squares = self.spectra[rows].sum(axis=0), np.sum(self.misfits[rows] ** 2)
         return float(self.objective(total[None], np.array([squares]), len(rows))[0])
@@ -141,7 +141,7 @@ class Selection(HtmlTable, Value, Generic[S]):
     periods : ndarray, shape (m,)
         Periods in s at which spectra were compared.
     measure : {"component", "geometric mean", "rotd50", "rotd100"}
-        What the ordinate of a record is: that of one component, or of the two of a pair.
+        Ordinate of a record: of one component, or of the two of a pair.
     suite : Suite
         The chosen motions, scaled; the two components of a pair follow each other.
     names : tuple of tuple of str
@@ -244,7 +244,7 @@ class Selection(HtmlTable, Value, Generic[S]):
     def table(self) -> "pd.DataFrame":
         """Return a pandas table with one row for each record.
 
-        Its columns are the record, what is known of it (event, year, magnitude, distance_km, vs30, station), its factor
+        Its columns are the record, its metadata (event, year, magnitude, distance_km, vs30, station), its factor
         and misfit, and the smallest and largest ratio of its spectrum to the target.
         """
         import pandas as pd

@@ -41,7 +41,7 @@ def checked_damping(damping_ratio: float) -> float:
 
 
 def comparison_periods(periods: ArrayLike) -> Array:
-    """Return the periods at which spectra are compared: those between two ends, evenly in ln T, or those given.
+    """Return the periods at which spectra are compared: between two ends evenly in ln T, or as given.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Sets of ground motions, and those included in the package."""
+"""Sets of ground motions, and the suites included in the package."""
 
 import json
 from collections import Counter
@@ -175,14 +175,14 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
         Parameters
         ----------
         target : TargetSpectrum
-            The target; spectra are those for its damping ratio.
+            The target; spectra have its damping ratio.
         n : int
             Number of records; with a measure of pairs, of pairs.
         periods : array_like
             The two ends of a range in s, such as (0.2 T, 2 T), which is examined at 50 periods evenly spaced in ln T;
             or three and more increasing periods.
         measure : {"component", "geometric mean", "rotd50", "rotd100"}
-            The ordinate of a record: that of each motion by itself, or of the two horizontal components of a recording,
+            The ordinate of a record: of each motion by itself, or of the two horizontal components of a recording,
             which are chosen and scaled together. Components belong together if they have the same record sequence
             number; else the same event, year and station; else names as ABC000 and ABC090. "rotd50" and "rotd100" are
             those of `rotated_spectrum`.

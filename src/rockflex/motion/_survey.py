@@ -1,4 +1,4 @@
-"""A report of what is taken from a folder of records, and what is not, and why."""
+"""A report of the records in a folder: which components are taken, which are not, and why."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
@@ -37,7 +37,7 @@ class SurveyEntry:
     taken : bool
         Whether `read_suite` takes the component as a horizontal motion, or as the vertical one of such a motion.
     reason : str
-        Why it is not taken, or what is to be known of one that is; empty if there is nothing to say.
+        Why it is not taken, or a remark on one that is; may be empty.
     name : str, optional
         Name of the motion.
     format : str, optional
@@ -82,7 +82,7 @@ class SurveyEntry:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RecordSurvey(Value):
-    r"""What is taken from a folder of records, and what is not; the result of `survey_records`.
+    r"""The components taken from a folder of records, and the ones left out; the result of `survey_records`.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def survey_records(
     vertical: Vertical | None = None,
     table: str | Path | None = None,
 ) -> RecordSurvey:
-    r"""Say of each file in a folder what it holds, whether `read_suite` takes it, and why not.
+    r"""Report the content of each file in a folder, whether `read_suite` takes it, and why not.
 
     No file is an error: one that cannot be read has an entry with the reason. Files that are no records by their suffix
     and their beginning have entries too, but not the folders within a folder.
@@ -195,7 +195,7 @@ def survey_plain(folder: Path, units: str | None = None, dt: float | None = None
     Returns
     -------
     tuple of RecordSurvey
-        That of the horizontal components, and that with the vertical ones of their stations.
+        With the horizontal components alone, and with the vertical ones of their stations.
 
     Raises
     ------

@@ -294,7 +294,7 @@ def ec8_second_spectrum(
     site : {"A", "B", "C", "D"}
         Site category, for the default factors F_α and F_β, which need no depth or shear wave velocity.
     amplification : tuple of float, optional
-        F_α and F_β of the site, in the place of those of `site`: from the shear wave velocity and the depth of the
+        F_α and F_β of the site, in place of the defaults for `site`: from the shear wave velocity and the depth of the
         bedrock, or for categories E and F.
     topography : float
         Topography amplification factor F_T.
@@ -313,7 +313,7 @@ def ec8_second_spectrum(
 
     Notes
     -----
-    The formulas and the default factors are those of the public drafts; compare them with your edition and its
+    The formulas and the default factors are taken from the public drafts; compare them with your edition and its
     National Annex before you rely on them.
 
     References
@@ -380,7 +380,7 @@ def _amplification(alpha: float, beta: float, site: str, given: tuple[float, flo
     if min(of_alpha, of_beta) < 1.0:
         raise InputError(
             f"For s_alpha = {alpha:g} m/s² and s_beta = {beta:g} m/s² the default factors of site category {site} are "
-            f"F_α = {of_alpha:.3g} and F_β = {of_beta:.3g}, below 1. Give those of the site: amplification=(F_α, F_β).",
+            f"F_α = {of_alpha:.3g} and F_β = {of_beta:.3g}, below 1. Give the site's own: amplification=(F_α, F_β).",
             field="site",
         )
     return of_alpha, of_beta
@@ -443,9 +443,9 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
 
 
 def _unit(file: Path, head: str, units: str | None) -> str:
-    """Return the unit in the last brackets of the header, or that of the caller; both must agree."""
+    """Return the unit in the last brackets of the header, or `units`; both must agree."""
     found = BRACKET.findall(head[: after_brackets(head)])
-    written = found[-1] if found and found[-1].strip().lower() not in SECONDS else ""  # that of the periods
+    written = found[-1] if found and found[-1].strip().lower() not in SECONDS else ""  # unit of the periods
     stated = unit_name(written)
     if written and stated is None:
         raise InputError(

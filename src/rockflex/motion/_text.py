@@ -91,7 +91,7 @@ def declared_unit(units: object) -> Unit:
             return Unit(name, factor)
     raise InputError(
         f"units must be one of {', '.join(map(repr, UNITS))}, but {shown(units)} was given. If the file holds counts, "
-        'write what one count is: units="2.4e-4 cm/s2".',
+        'write the value of one count: units="2.4e-4 cm/s2".',
         field="units",
     )
 
@@ -216,7 +216,7 @@ def table_of(file: Path, lines: list[str], expected: str = EXPECTED_RECORD) -> T
 
     Cells are separated by semicolons, commas, tabs or blanks; ``#``, ``%`` and ``!`` begin comments. A comma is a
     decimal one where something else separates the cells; and in a single column, unless the numbers before it increase
-    like times. `expected` says in the message for a file without numbers what it should hold.
+    like times. `expected` describes the expected content in the message for a file without numbers.
     """
     heads: list[str] = []
     plain: list[tuple[int, str]] = []  # header lines that are not comments

@@ -15,7 +15,7 @@ from rockflex.response._missing import MissingQuantityError
 from rockflex.response._sampled import even_instants, states_at
 
 if TYPE_CHECKING:
-    from rockflex.motion._spectra import ResponseSpectrum
+    from rockflex.motion import ResponseSpectrum
 
 FINE = 0.005  # s: the longest step of a floor's motion unless another is given
 PER_PERIOD = 20  # steps in the shortest period of the modes

@@ -1,9 +1,9 @@
 """How uncertain parameters are when runs share recordings: the jackknife that leaves out one recording at a time.
 
 The covariance is (G - 1)/G Σ (θ_g - mean θ)(θ_g - mean θ)ᵀ over the parameters θ_g without recording g of G, and bands
-are those of Student's t with G - 1 degrees of freedom (MacKinnon, Nielsen & Webb 2023, J. Econometrics 232(2), 272-299:
-their CV3J). What is no straight line in the parameters, such as an annual rate, has the quantiles of its values at
-parameters drawn from that t distribution.
+follow Student's t with G - 1 degrees of freedom (MacKinnon, Nielsen & Webb 2023, J. Econometrics 232(2), 272-299:
+their CV3J). Quantities that are not linear in the parameters, such as an annual rate, have the quantiles of their
+values at parameters drawn from that t distribution.
 """
 
 from collections.abc import Callable
@@ -18,15 +18,15 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.fragility._arguments import same_length
 
-DRAWS = 2048  # parameters drawn; a power of two, as Sobol's sequence wants
-_CELLS = 2_000_000  # weights held at once
+N_SAMPLES = 2048  # parameters drawn; a power of two, as Sobol's sequence wants
+_MAX_WEIGHTS = 2_000_000  # weights held at once
 ONE_RECORDING = "All runs belong to one recording, so nothing is known about the scatter between recordings: no band."
 
 
 class Recordings(NamedTuple):
     """The number of the recording of every run, from 0 in the order in which they first appear, and how many there are.
 
-    Some of the runs may hold none of a recording: parameters without it are then those of all.
+    A subset of the runs may lack a recording; its parameters without that recording are then those of the subset.
     """
 
     codes: NDArray[np.int64]
@@ -74,7 +74,7 @@ class Recordings(NamedTuple):
         return found
 
     def some(self, chosen: Bools) -> "Recordings":
-        """Those of some of the runs, with the same numbers."""
+        """The recordings of a subset of the runs, with the same numbers."""
         return Recordings(self.codes[chosen], self.n)
 
     @property
@@ -84,14 +84,14 @@ class Recordings(NamedTuple):
 
     def without_each(self, fit: Callable[[Array], Array]) -> Array:
         """Parameters without each recording, shape (n, k); `fit` takes weights of shape (m, n)."""
-        step = max(1, _CELLS // max(1, self.codes.size))
+        step = max(1, _MAX_WEIGHTS // max(1, self.codes.size))
         numbers = np.arange(self.n)
         parts = (numbers[first : first + step, None] != self.codes for first in range(0, self.n, step))
         return np.concatenate([fit(part.astype(float)) for part in parts])
 
 
-def jackknifed(replicates: Array) -> Array:
-    """Covariance of the parameters from those without each recording.
+def jackknife_covariance(replicates: Array) -> Array:
+    """Covariance of the parameters from their values without each recording.
 
     NaN for a single recording, and for parameters that could not be fitted without one of the recordings.
     """
@@ -111,26 +111,26 @@ def quantile_of_t(confidence: float, n_groups: int) -> float:
     return float(stdtrit(n_groups - 1, p) if n_groups > 1 else ndtri(p) if n_groups == 0 else np.nan)
 
 
-def drawn(parameters: ArrayLike, covariance: Array, n_groups: int) -> Array:
-    """Parameters drawn from the t distribution of an estimate, shape (DRAWS, k); the same ones on every call."""
+def sample_parameters(parameters: ArrayLike, covariance: Array, n_groups: int) -> Array:
+    """Parameters drawn from the t distribution of an estimate, shape (N_SAMPLES, k); the same ones on every call."""
     values, vectors = np.linalg.eigh(covariance) if np.isfinite(covariance).all() else (np.nan, np.eye(len(covariance)))
     root = vectors * np.sqrt(np.maximum(values, 0.0))
-    return np.asarray(parameters) + _standard(len(covariance), n_groups) @ root.T
+    return np.asarray(parameters) + _standard_sample(len(covariance), n_groups) @ root.T
 
 
-def limits(values: Array, confidence: float) -> tuple[Any, Any]:
+def sample_limits(values: Array, confidence: float) -> tuple[Any, Any]:
     """Lower and upper limit of values at drawn parameters, along the first axis."""
     low, high = np.quantile(values, (0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence), axis=0)
     return low, high
 
 
 @cache
-def _standard(size: int, n_groups: int) -> Array:
+def _standard_sample(size: int, n_groups: int) -> Array:
     """Quasi-random sample of Student's t in `size` dimensions, with unit scale; normal for `n_groups` = 0."""
     from scipy.special import chdtri, ndtri
     from scipy.stats import qmc
 
-    uniform = qmc.Sobol(size + 1, seed=0).random(DRAWS)
+    uniform = qmc.Sobol(size + 1, seed=0).random(N_SAMPLES)
     normal, freedom = ndtri(uniform[:, :size]), n_groups - 1
     if n_groups < 2:
         return normal

@@ -1,13 +1,45 @@
-"""Target spectra: tables, files, and the formulas of codes evaluated by hand."""
+"""Target spectra: tables, files, and codes."""
 
 import math
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import rockflex as rf
 
 TABLE = rf.TargetSpectrum([0.0, 0.1, 0.5, 2.0], [3.0, 7.5, 7.5, 1.875], name="site")
+# EN 1998-1:2004: every ordinate is a product of the numbers of Tables 3.2 and 3.3, written out.
+EC8 = [
+    ("A", 1, 0.0, 1.0),
+    ("A", 1, 0.075, 1.0 + 0.5 * 1.5),
+    ("A", 1, 0.15, 2.5),
+    ("A", 1, 0.4, 2.5),
+    ("A", 1, 1.0, 2.5 * 0.4 / 1.0),
+    ("A", 1, 2.0, 2.5 * 0.4 / 2.0),
+    ("A", 1, 4.0, 2.5 * 0.4 * 2.0 / 16.0),
+    ("B", 1, 0.5, 1.2 * 2.5),
+    ("B", 1, 3.0, 1.2 * 2.5 * 0.5 * 2.0 / 9.0),
+    ("C", 1, 0.2, 1.15 * 2.5),
+    ("C", 1, 1.2, 1.15 * 2.5 * 0.6 / 1.2),
+    ("D", 1, 0.1, 1.35 * (1.0 + 0.5 * 1.5)),
+    ("D", 1, 0.8, 1.35 * 2.5),
+    ("E", 1, 1.0, 1.4 * 2.5 * 0.5),
+    ("A", 2, 0.05, 2.5),
+    ("A", 2, 0.25, 2.5),
+    ("A", 2, 1.2, 2.5 * 0.25 / 1.2),
+    ("A", 2, 4.0, 2.5 * 0.25 * 1.2 / 16.0),
+    ("B", 2, 0.1, 1.35 * 2.5),
+    ("B", 2, 0.025, 1.35 * (1.0 + 0.5 * 1.5)),
+    ("C", 2, 0.1, 1.5 * 2.5),
+    ("C", 2, 0.5, 1.5 * 2.5 * 0.25 / 0.5),
+    ("D", 2, 0.3, 1.8 * 2.5),
+    ("D", 2, 2.4, 1.8 * 2.5 * 0.3 * 1.2 / 2.4**2),
+    ("E", 2, 1.0, 1.6 * 2.5 * 0.25),
+]
+G = 9.81
+EC8_SECOND_G = 9.81
 
 
 def test_between_the_rows_of_a_table():
@@ -51,36 +83,6 @@ def test_outside_the_table_it_is_unknown():
     )
 
 
-# EN 1998-1:2004: every ordinate is a product of the numbers of Tables 3.2 and 3.3, written out.
-EC8 = [
-    ("A", 1, 0.0, 1.0),
-    ("A", 1, 0.075, 1.0 + 0.5 * 1.5),
-    ("A", 1, 0.15, 2.5),
-    ("A", 1, 0.4, 2.5),
-    ("A", 1, 1.0, 2.5 * 0.4 / 1.0),
-    ("A", 1, 2.0, 2.5 * 0.4 / 2.0),
-    ("A", 1, 4.0, 2.5 * 0.4 * 2.0 / 16.0),
-    ("B", 1, 0.5, 1.2 * 2.5),
-    ("B", 1, 3.0, 1.2 * 2.5 * 0.5 * 2.0 / 9.0),
-    ("C", 1, 0.2, 1.15 * 2.5),
-    ("C", 1, 1.2, 1.15 * 2.5 * 0.6 / 1.2),
-    ("D", 1, 0.1, 1.35 * (1.0 + 0.5 * 1.5)),
-    ("D", 1, 0.8, 1.35 * 2.5),
-    ("E", 1, 1.0, 1.4 * 2.5 * 0.5),
-    ("A", 2, 0.05, 2.5),
-    ("A", 2, 0.25, 2.5),
-    ("A", 2, 1.2, 2.5 * 0.25 / 1.2),
-    ("A", 2, 4.0, 2.5 * 0.25 * 1.2 / 16.0),
-    ("B", 2, 0.1, 1.35 * 2.5),
-    ("B", 2, 0.025, 1.35 * (1.0 + 0.5 * 1.5)),
-    ("C", 2, 0.1, 1.5 * 2.5),
-    ("C", 2, 0.5, 1.5 * 2.5 * 0.25 / 0.5),
-    ("D", 2, 0.3, 1.8 * 2.5),
-    ("D", 2, 2.4, 1.8 * 2.5 * 0.3 * 1.2 / 2.4**2),
-    ("E", 2, 1.0, 1.6 * 2.5 * 0.25),
-]
-
-
 @pytest.mark.parametrize(("ground", "kind", "period", "over_ag"), EC8)
 def test_ec8(ground, kind, period, over_ag):
     target = rf.ec8_spectrum(2.0, ground, kind, importance=1.4)
@@ -111,9 +113,6 @@ def test_ec8_damping():
 def test_ec8_refuses(arguments, options, text):
     with pytest.raises(rf.InputError, match=text):
         rf.ec8_spectrum(*arguments, **options)
-
-
-G = 9.81
 
 
 @pytest.mark.parametrize("mce", [False, True])
@@ -242,3 +241,69 @@ def test_refuses_files(tmp_path, text, options, message):
     (tmp_path / "site.txt").write_text(text)
     with pytest.raises(rf.InputError, match=message):
         rf.read_target(tmp_path / "site.txt", **options)
+
+
+def formula(period, s_alpha, s_beta, factors, rock, zeta):
+    """S_e of EN 1998-1-1:2024, 5.2.2.2, case by case; `rock` is S_β,RP."""
+    plateau, second = factors[0] * s_alpha, factors[1] * s_beta
+    t_c = second / plateau
+    t_b = 0.05 if t_c / 4 < 0.05 else 0.1 if t_c / 4 > 0.1 else t_c / 4
+    t_d = 2.0 if rock <= 1.0 else 1.0 + rock
+    eta = max(math.sqrt(10 / (5 + 100 * zeta)), 0.55)
+    if period <= 0.02:
+        return plateau / 2.5
+    if period <= t_b:
+        return plateau / (t_b - 0.02) * (eta * (period - 0.02) + (t_b - period) / 2.5)
+    if period <= t_c:
+        return eta * plateau
+    return eta * second / period if period <= t_d else eta * t_d * second / period**2
+
+
+@settings(deadline=None, max_examples=100)
+@given(st.floats(1.0, 12.0), st.floats(0.15, 0.6), st.floats(0.0, 0.3), st.floats(0.0, 10.0))
+def test_formulas_for_given_factors(s_alpha, share, zeta, period):
+    s_beta = share * s_alpha
+    target = rf.ec8_second_spectrum(s_alpha, s_beta, amplification=(1.2, 1.5), damping_ratio=zeta)
+    expected = formula(period, s_alpha, s_beta, (1.2, 1.5), s_beta, zeta)
+    assert target.at([period])[0] == pytest.approx(expected, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("site", "of_alpha", "of_beta"),
+    [("A", 1.0, 1.0), ("B", 1.3 * 0.96, 1.6 * 0.98), ("C", 1.6 * 0.92, 2.3 * 0.97), ("D", 1.8 * 0.88, 3.2 * 0.9)],
+)
+def test_default_factors(site, of_alpha, of_beta):
+    target = rf.ec8_second_spectrum(0.4 * EC8_SECOND_G, 0.1 * EC8_SECOND_G, site, topography=1.2)
+    assert target.at([0.0, 0.15, 1.0]) == pytest.approx(
+        1.2 * EC8_SECOND_G * np.array([0.4 * of_alpha / 2.5, 0.4 * of_alpha, 0.1 * of_beta])
+    )
+    assert f"site {site}, S_α 0.4 g, S_β 0.1 g" in target.name
+
+
+@pytest.mark.parametrize(
+    ("arguments", "options", "text"),
+    [
+        ((0.0, 1.0), {}, r"s_alpha must be a positive, finite number in m/s²"),
+        ((5.0, -1.0), {}, r"s_beta must be a positive, finite number"),
+        ((5.0, 1.0, "E"), {}, r"site must be one of A, B, C, D, .* but 'E' was given\. For E and F, .*amplification="),
+        ((5.0, 1.0), {"amplification": (1.0,)}, r"amplification must be the two positive factors F_α and F_β"),
+        ((5.0, 1.0), {"amplification": (1.0, 0.0)}, r"amplification must be the two positive factors F_α and F_β"),
+        ((5.0, 1.0), {"amplification": "ab"}, "amplification must be a sequence of numbers, but"),
+        ((5.0, 1.0, "C"), {"amplification": (1.2, 1.5)}, "site='C' and amplification were both given. Give one"),
+        ((5.0, 1.0), {"topography": 0.0}, "topography must be a positive, finite number, but 0.0 was"),
+        ((5.0, 1.0), {"damping_ratio": 2.0}, "damping_ratio must lie in"),
+        (
+            (5.0, 0.1),
+            {},
+            r"T_B = 0\.05 s, T_C = 0\.02 s and T_D = 2 s, which must increase and stay below 10 s\. Check",
+        ),
+        (
+            (5.0, 8.0, "D"),
+            {},
+            r"F_α = 1\.52 and F_β = 0\.59, below 1\. Give those of the site: amplification=\(F_α, F_β",
+        ),
+    ],
+)
+def test_refuses(arguments, options, text):
+    with pytest.raises(rf.InputError, match=text):
+        rf.ec8_second_spectrum(*arguments, **options)
