@@ -13,7 +13,7 @@ from timing import frame, least
 
 import rockflex as rf
 from rockflex.models import NonlinearModel, parse_model
-from rockflex.response import asked_of
+from rockflex.response import tracked_quantities
 from rockflex.solve import Engine
 
 HELD = 1e-7
@@ -41,7 +41,7 @@ def measure(label: str, motion: rf.GroundMotion) -> tuple[str, ...]:
     structure = frame(5)
     tied = parse_model(label).of(structure.rocking(), None, bouc_wen)
     assert isinstance(tied, NonlinearModel)
-    reference = Engine(tied, asked_of(tied), tolerance=1e-13).run(motion.acceleration, motion.dt)
+    reference = Engine(tied, tracked_quantities(tied), tolerance=1e-13).run(motion.acceleration, motion.dt)
     row = 0 if tied.lifts else 1
     top = tied.properties.top_ordinate[0]
 

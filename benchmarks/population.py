@@ -1,6 +1,6 @@
-"""A population, one structure a run: against the same number of runs on one structure, and on two workers.
+"""A population, one structure a run: against the same number of runs on one structure, and on two threads.
 
-``python benchmarks/population.py`` prints ratios of times taken in turn; they need as many idle cores as workers.
+``python benchmarks/population.py`` prints ratios of times taken in turn; they need two idle cores.
 """
 
 import statistics
@@ -39,7 +39,7 @@ def population(seed: int) -> list[rf.Frame]:
 
 def table() -> Table:
     motion = rf.load_suite("fema-p695-far-field")["FF-1-a"].scaled(1.5)
-    found = Table("", "one core / one structure", "two workers, times as fast", title=f"{STRUCTURES} structures")
+    found = Table("", "one core / one structure", "two threads, times as fast", title=f"{STRUCTURES} structures")
     for model in ("2DOF-S", "MDOF-S"):
         rounds = [measured(model, motion, seed) for seed in range(ROUNDS)]
         found.add_row(model, *(f"{statistics.median(column):.2f}" for column in zip(*rounds, strict=True)))
@@ -55,10 +55,10 @@ def measured(model: str, motion: rf.GroundMotion, seed: int) -> tuple[float, flo
         return time.perf_counter() - started
 
     rf.simulate_many(population(seed)[:4], motion, model, workers=1)
-    alone, apart = taken(population(seed), [motion], 1), taken(population(seed), [motion], 2)
+    alone, shared = taken(population(seed), [motion], 1), taken(population(seed), [motion], 2)
     some = population(seed)[::20]
     single = sum(taken([each], [motion] * (STRUCTURES // len(some)), 1) for each in some)
-    return alone / single, alone / apart
+    return alone / single, alone / shared
 
 
 if __name__ == "__main__":

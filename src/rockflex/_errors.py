@@ -1,4 +1,4 @@
-"""The two errors that calls raise, and the warning about records that are left out."""
+"""The errors that calls raise, and the warning about records that are left out."""
 
 from rockflex._shown import shortened
 
@@ -22,6 +22,10 @@ class InputError(ValueError):
         super().__init__(shortened(message if place is None else f"{place}: {message}", longest))
         self.field = field
         self.said = message if place is not None else str(self)
+
+
+class MissingQuantityError(InputError, AttributeError):
+    """A quantity that this run did not store; also an AttributeError, so that `hasattr` returns False."""
 
 
 class SolverError(RuntimeError):

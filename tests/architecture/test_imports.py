@@ -95,7 +95,9 @@ NOT_LOADED = {
     *("scipy", "pandas", "matplotlib", "typer", "rich", "pydantic", "pyarrow", "statsmodels", "sklearn"),
     *("distributed", "jinja2", "IPython", "starlette", "uvicorn", "obspy", "openpyxl", "xarray", "PIL"),
 }  # by `import rockflex`
-LONGEST = 600  # lines
+MAX_LINES = 600
+MAX_LINES_OF_ONE_CLASS = 900  # of a module that is one class
+ONE_CLASS = {"rockflex.response._history"}
 
 RUNTIME, TYPING, DEFERRED = "when the module is imported", "for the type checker", "inside a function"
 
@@ -210,7 +212,7 @@ def careless(sources: dict[str, str]) -> list[str]:
     wrong = []
     for name, source in sources.items():
         length = len(source.splitlines())
-        if length > LONGEST:
+        if length > (MAX_LINES_OF_ONE_CLASS if name in ONE_CLASS else MAX_LINES):
             wrong.append(f"{name} has {length} lines")
         if not ast.get_docstring(ast.parse(source)):
             wrong.append(f"{name} has no docstring")
@@ -332,7 +334,7 @@ def test_a_cycle_is_seen() -> None:
 
 def test_a_careless_module_is_seen() -> None:
     text = '"""A docstring."""\n'
-    assert careless({"rockflex.modal": text * LONGEST}) == []
-    assert careless({"rockflex.modal": text * (LONGEST + 1)}) == [f"rockflex.modal has {LONGEST + 1} lines"]
+    assert careless({"rockflex.modal": text * MAX_LINES}) == []
+    assert careless({"rockflex.modal": text * (MAX_LINES + 1)}) == [f"rockflex.modal has {MAX_LINES + 1} lines"]
     assert careless({"rockflex.modal": "x = 1"}) == ["rockflex.modal has no docstring"]
     assert careless({"rockflex.wizard._a": text}) == ["rockflex.wizard._a belongs to no layer of the table"]

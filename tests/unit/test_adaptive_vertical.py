@@ -8,7 +8,7 @@ import pytest
 import rockflex as rf
 from builders import frame_values
 from rockflex.models import LinearModel, Model, accelerations, acting_side, parse_model, reactions
-from rockflex.response._global import asked_of
+from rockflex.response._peaks import tracked_quantities
 from rockflex.response._respond import respond
 from rockflex.solve import Engine
 from twins import impact_laws
@@ -45,7 +45,7 @@ def model_of(label, **options):
 
 
 def run(model, acceleration, dt, vertical=None, *, history=True, **options):
-    engine = Engine(model, asked_of(model))
+    engine = Engine(model, tracked_quantities(model))
     return respond(model, "", engine.run(acceleration, dt, vertical=vertical, history=history, **options))
 
 

@@ -6,7 +6,7 @@ import pytest
 import rockflex as rf
 from builders import make_frame
 from rockflex.models import parse_model
-from rockflex.response import asked_of
+from rockflex.response import tracked_quantities
 
 MOTION = rf.GroundMotion(rf.load_suite("el-centro-1940")[0].acceleration[:500] * 2.5, 0.02)
 FRAME = make_frame(
@@ -112,7 +112,7 @@ def test_a_base_with_one_element_off_its_axis_knows_both_sides():
 @pytest.mark.parametrize("elements", [(), TENDONS[:1], [rf.Tendon(1e5, 1e6)]], ids=["none", "yields", "elastic"])
 def test_no_rows_are_added_for_what_follows_from_the_rotation(elements):
     model = parse_model("MDOF-S").of(held(elements).rocking() if elements else FRAME.rocking())
-    assert len(asked_of(model)) == 5
+    assert len(tracked_quantities(model)) == 5
 
 
 def test_without_elements_there_is_nothing():

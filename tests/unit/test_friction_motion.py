@@ -8,7 +8,7 @@ from scipy.integrate import simpson
 
 from rockflex import BoucWen, Ground, GroundMotion, LumpedStructure, Restitution, load_suite, simulate
 from rockflex.models import accelerations, printed_reactions, reactions
-from rockflex.response._quintic import quintic
+from rockflex.response._interpolation import quintic
 
 GRAVITY = 9.81
 EL_CENTRO = load_suite("el-centro-1940")[0]

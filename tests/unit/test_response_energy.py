@@ -8,7 +8,7 @@ from scipy.integrate import simpson
 
 from builders import frame_values
 from rockflex import Frame, Ground, GroundMotion, InitialState, InputError, Springs, load_suite, quiet_motion, simulate
-from rockflex.response import _work
+from rockflex.response import _energy
 
 GRAVITY = 9.81
 
@@ -146,9 +146,9 @@ def test_energies_in_parts_are_those_at_once(monkeypatch):
     motion = GroundMotion(load_suite("el-centro-1940")[0].acceleration[:600] * 2.0, 0.02)
     run = simulate(frame(), motion, "MDOF-S")
     states, model = run.history.states, run.history.model
-    whole = _work.work_between(model, states)
-    monkeypatch.setattr(_work, "AT_ONCE", 37)
-    for one, other in zip(_work.work_between(model, states), whole, strict=True):
+    whole = _energy.work_between(model, states)
+    monkeypatch.setattr(_energy, "CHUNK", 37)
+    for one, other in zip(_energy.work_between(model, states), whole, strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9 * np.abs(other).max(initial=0.0))
 
 
@@ -156,7 +156,7 @@ def test_a_model_too_fast_for_its_record(monkeypatch):
     """Hours of power series are refused under vertical motion; the rest of the response is there."""
     start = InitialState(rotation=1e-3)
     run = simulate(frame(), GroundMotion(np.zeros(3), 0.05, vertical=[0.0, 1.0, 0.0]), "2DOF-S", initial=start)
-    monkeypatch.setattr(_work, "MOST_PARTS", 0)
+    monkeypatch.setattr(_energy, "MAX_SERIES", 0)
     text = (
         r"The energy ledger of 2DOF-S needs \d power series per step, above the limit of 0, since the ground moves "
         r"vertically: the model vibrates or decays at up to \d+\.?\d* rad/s, and steps last up to 0\.0\d* s\. Keep "

@@ -7,7 +7,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame, random_shaking
-from rockflex.response._history_columns import QUANTITIES
+from rockflex.response._tables import QUANTITIES
 
 FRAME = make_frame(n_stories=3, period=0.6, aspect_ratio=8.0)
 MOTION = rf.GroundMotion(random_shaking(4, 9.0, 4.0, 0.02), 0.02, "random")

@@ -1,15 +1,13 @@
 """What `simulate` keeps of a structure, and what many structures share."""
 
 import threading
-import time
 
 import numpy as np
 import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.parallel import left, map_processes, may_fork
-from rockflex.study import _prepared, _runs, _simulate_many
+from rockflex.study import _prepared, _simulate_many
 from rockflex.study._case import Case
 
 PULSE = rf.one_sine_pulse(amplitude=4.0, period=0.8)
@@ -113,82 +111,11 @@ def test_threads_may_simulate_the_same_structure():
     assert found == [expected] * 80
 
 
-@pytest.fixture
-def copied(monkeypatch):
-    """Whether processes were used; they are from four structures on."""
-    if not may_fork():
-        pytest.skip("this process cannot be copied: it may have threads of earlier tests")
-    used = []
-
-    def watched(*arguments):
-        used.append(True)
-        return map_processes(*arguments)
-
-    monkeypatch.setattr(_runs, "map_processes", watched)
-    monkeypatch.setattr(_simulate_many, "MANY", 4)
+def test_many_structures_give_the_same_table_on_threads(monkeypatch):
     monkeypatch.setattr(_simulate_many, "CHUNK", 8)
-    return used
-
-
-def test_many_structures_give_the_same_table_in_processes(copied):
     frames = {f"{t:.3g} s": make_frame(n_stories=2, period=t) for t in np.linspace(0.3, 1.5, 20)}
     frames["low"] = make_frame(n_stories=1)  # has one mode only
     options = {"models": ["2DOF-S", "3DOF-S"], "scales": (0.5, 1.0)}
     alone = rf.simulate_many(frames, PULSE, workers=1, **options)
-    assert not copied
-    together = rf.simulate_many(frames, PULSE, workers=2, **options)
-    assert copied
-    assert together.equals(alone)
+    assert rf.simulate_many(frames, PULSE, workers=2, **options).equals(alone)
     assert alone["error"].notna().sum() == 2
-
-
-def test_work_limits_count_in_processes_too(copied):
-    frames = [make_frame(n_stories=2, period=t) for t in np.linspace(0.3, 1.5, 20)]
-    with pytest.raises(rf.InputError, match="work_limit is 1e-09 s"):
-        rf.simulate_many(frames, PULSE, workers=2, work_limit=1e-9)
-    assert copied
-
-
-def test_histories_and_functions_stay_in_this_process(copied):
-    frames = [make_frame(n_stories=2, period=t) for t in (0.4, 0.5, 0.6, 0.7)]
-    rf.simulate_many(frames, PULSE, workers=2, output="history")
-    rf.simulate_many(frames, PULSE, workers=2, ground=lambda _: rf.Ground(friction=0.5))
-    assert not copied
-
-
-def test_copies_tell_their_errors():
-    def fails(task):
-        raise rf.InputError(f"task {task} is bad", field="task")
-
-    with pytest.raises(rf.InputError, match=r"task \d is bad") as caught:
-        list(map_processes(fails, range(3), 2, lambda: False))
-    assert caught.value.field == "task"
-
-
-def test_copies_end_when_nobody_waits():
-    def waits(task):
-        started = time.monotonic()
-        while task and not left() and time.monotonic() < started + 60.0:
-            time.sleep(0.01)
-        return task
-
-    started = time.monotonic()
-    results = map_processes(waits, range(8), 2, lambda: False)
-    assert next(results) == 0
-    results.close()
-    assert time.monotonic() < started + 30.0
-    stopped = list(map_processes(waits, range(1, 3), 2, lambda: time.monotonic() > started + 1.0))
-    assert sorted(stopped) == [1, 2]
-
-
-def test_no_copies_beside_other_threads():
-    asked, done = [], threading.Event()
-    waiting = threading.Thread(target=done.wait)
-    waiting.start()
-    asked.append(may_fork())
-    done.set()
-    waiting.join()
-    asker = threading.Thread(target=lambda: asked.append(may_fork()))
-    asker.start()
-    asker.join()
-    assert asked == [False, False]

@@ -42,7 +42,7 @@ Dask = Annotated[
     str | None,
     typer.Option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster, such as tcp://10.0.0.1:8786."),
 ]
-Workers = Annotated[int | None, typer.Option(min=1, metavar="N", help="Threads or processes. Default: one a core.")]
+Workers = Annotated[int | None, typer.Option(min=1, metavar="N", help="Threads. Default: one a core.")]
 AnyVersion = Annotated[
     bool, typer.Option("--any-version", help="Resume a study that was started with other versions of the libraries.")
 ]

@@ -1,6 +1,6 @@
 """Running a study: here or on a cluster, in memory or in a folder from which it can be resumed."""
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -47,8 +47,7 @@ def run_study(
         Where the study is stored, as ``spec.json``, ``manifest.json`` and ``parts/*.parquet``. An existing folder of
         this study is resumed; completed parts are skipped. With None nothing is stored.
     workers
-        Number of threads or processes here; None for one a core. Hundreds of runs are shared among processes where
-        this one can be copied: on Linux, without other threads and without functions of the user.
+        Number of threads here; None for one a core.
     dask
         Address of a Dask scheduler, such as ``"tcp://10.0.0.1:8786"``, whose workers do the runs.
     any_version
@@ -226,6 +225,8 @@ def _compute(
     parts: int | None = None,
 ) -> None:
     """Compute these of `parts` chunks, round by round; `keep` takes each one when it is done, and counts its rows."""
+    from rockflex.study.plan import map_chunks
+
     total = plan.n_chunks if parts is None else parts
     done = kept = total - len(numbers)
     runs = 0
@@ -239,20 +240,12 @@ def _compute(
                 plan = plan.informed(so_far())
             work = sent(plan)
             # Closed at once if a part cannot be stored, or a cluster would hold the plan until this process ends.
-            coming = _here(plan, work, missing, workers) if dask is None else map_dask(work, missing, dask)
+            coming = map_chunks(work.chunk, missing, workers) if dask is None else map_dask(work, missing, dask)
             with closing(coming):
                 for number, result in coming:
                     runs += keep(number, result)
                     done += 1
                     tell(Progress(total, done, kept, runs))
-
-
-def _here(
-    plan: "ChunkedPlan", work: "Chunks[Result]", numbers: Sequence[int], workers: SupportsIndex | None
-) -> Generator[tuple[int, Result]]:
-    from rockflex.study.plan import map_chunks
-
-    return map_chunks(plan, work.chunk, numbers, workers)
 
 
 def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:

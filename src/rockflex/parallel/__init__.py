@@ -1,17 +1,13 @@
 """Maps over independent tasks."""
 
 from rockflex.parallel._dask import Chunks, ClusterError, map_dask
-from rockflex.parallel._processes import left, map_processes, may_fork
 from rockflex.parallel._threads import core_count, map_threads, worker_count
 
 __all__ = [
     "Chunks",
     "ClusterError",
     "core_count",
-    "left",
     "map_dask",
-    "map_processes",
     "map_threads",
-    "may_fork",
     "worker_count",
 ]

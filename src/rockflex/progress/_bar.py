@@ -25,7 +25,7 @@ def bar(title: str, *, transient: bool = False) -> Generator[Show]:
     """Show a bar on stderr; the yielded function takes what is done, the total, and a remark.
 
     A terminal or a notebook shows the bar with its count and the remaining time, and keeps it unless `transient`; any
-    other stderr gets lines. No thread draws it: with one, this process could not be copied for the runs.
+    other stderr gets lines.
     """
     from rich.console import Console
 

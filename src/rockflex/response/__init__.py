@@ -1,21 +1,34 @@
 """Responses: forces, displacements, energies and peaks from a solution."""
 
-from rockflex.response._base_path import base_path
-from rockflex.response._columns import NAMES, STATUSES, columns_among, columns_of
 from rockflex.response._energy import EnergyLedger
-from rockflex.response._floor_peaks import FloorPeaks
+from rockflex.response._floors import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
-from rockflex.response._global import GLOBAL, asked_of, extremes_of
 from rockflex.response._history import History, SampledHistory
-from rockflex.response._history_columns import UNITS_OF_GROUND, UNITS_OF_HISTORY, ground_columns, history_columns
-from rockflex.response._moment_rotation import MomentRotation
-from rockflex.response._moment_rotation_on_springs import MomentRotationOnSprings
-from rockflex.response._resistance import element_resistance, large_resistance, weight_resistance
-from rockflex.response._resistance_on_springs import push_on_springs, resistance_on_springs
-from rockflex.response._respond import respond
-from rockflex.response._response import PEAKS, Response
-from rockflex.response._springs_path import springs_path
-from rockflex.response._warnings import BALANCED, complete_of, leaves_range, warnings_of, warnings_of_energy
+from rockflex.response._peaks import GLOBAL, tracked_extremes, tracked_quantities
+from rockflex.response._quasi_static import (
+    MomentRotation,
+    base_path,
+    element_resistance,
+    large_resistance,
+    weight_resistance,
+)
+from rockflex.response._quasi_static_on_springs import (
+    MomentRotationOnSprings,
+    push_on_springs,
+    resistance_on_springs,
+    springs_path,
+)
+from rockflex.response._respond import NAMES, STATUSES, columns_among, columns_of, respond
+from rockflex.response._response import (
+    BALANCED,
+    PEAKS,
+    Response,
+    complete_of,
+    leaves_range,
+    warnings_of,
+    warnings_of_energy,
+)
+from rockflex.response._tables import UNITS_OF_GROUND, UNITS_OF_HISTORY, ground_columns, history_columns
 
 __all__ = [
     "BALANCED",
@@ -33,13 +46,11 @@ __all__ = [
     "MomentRotationOnSprings",
     "Response",
     "SampledHistory",
-    "asked_of",
     "base_path",
     "columns_among",
     "columns_of",
     "complete_of",
     "element_resistance",
-    "extremes_of",
     "friction_coefficient",
     "ground_columns",
     "history_columns",
@@ -49,6 +60,8 @@ __all__ = [
     "resistance_on_springs",
     "respond",
     "springs_path",
+    "tracked_extremes",
+    "tracked_quantities",
     "warnings_of",
     "warnings_of_energy",
     "weight_resistance",

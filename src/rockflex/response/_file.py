@@ -41,10 +41,17 @@ from rockflex.models import (
     VVELComplete,
     VVELSimplified,
 )
-from rockflex.response._edges import balance_ratio, tilt_at_rest
-from rockflex.response._element_peaks import ELEMENT_PEAKS, NONE, Reach, element_peaks, moves_about_pivots
-from rockflex.response._floor_peaks import FloorPeaks
+from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History
+from rockflex.response._peaks import (
+    ELEMENT_PEAKS,
+    NONE,
+    RotationExtremes,
+    balance_ratio,
+    element_peaks,
+    elongations_about_pivots,
+    rotation_at_rest,
+)
 
 Kept = tuple[dict[str, Any], FloorPeaks | None, History | None]
 
@@ -160,7 +167,7 @@ def _kept(scalars: dict[str, Any], arrays: dict[str, Any], kinds: dict[str, type
     if "balance_ratio" not in scalars:  # nor was the residual rotation measured from that at rest
         later["balance_ratio"] = math.nan if history is None else _balance_ratio(scalars, history)
         if history is not None and isinstance(history.model, SpringModel):
-            later["residual_rotation"] = scalars["residual_rotation"] - tilt_at_rest(history.model)
+            later["residual_rotation"] = scalars["residual_rotation"] - rotation_at_rest(history.model)
     peaks = later | {name: _typed(scalars, name, kind) for name, kind in kinds.items() if name not in later}
     if "floors.story_drift" in arrays:
         floors = FloorPeaks(*(arrays[f"floors.{name}"] for name in FLOOR_PEAKS))
@@ -194,8 +201,8 @@ def _later(scalars: dict[str, Any], history: History | None) -> dict[str, Any]:
             found["residual_rotation"] = float(rotation[-1])
         sides = max(float(rotation.max()), 0.0), max(-float(rotation.min()), 0.0)
         largest = [scalars["max_rotation"] if side == max(sides) else side for side in sides]
-        reach = Reach((largest[0], largest[1]), (0.0, 0.0))
-        moves = moves_about_pivots(history.model, reach)
+        reach = RotationExtremes((largest[0], largest[1]), (0.0, 0.0))
+        moves = elongations_about_pivots(history.model, reach)
         of_elements = element_peaks(history.model, moves, history.states[-1, HEADER:])
     return found | {name: getattr(of_elements, name) for name in ELEMENT_PEAKS}
 

@@ -26,12 +26,12 @@ from rockflex.models import (
     reactions,
 )
 from rockflex.response._energy import is_impact
-from rockflex.response._quintic import quintic
+from rockflex.response._interpolation import quintic
 
 IMPACT_WINDOW = 0.05  # s after an impact, in which the demand has short spikes
-TURN = 0.2  # radians of the fastest mode between adjacent evaluation points
+MAX_PHASE_STEP = 0.2  # radians of the fastest mode between adjacent evaluation points
 ROUNDING = 1e-12  # relative: a base that slides demands its coefficient all the time
-FEWEST, MOST = 4, 2000  # evaluation points in the interval between adjacent states
+MIN_POINTS, MAX_POINTS = 4, 2000  # evaluation points in the interval between adjacent states
 
 
 def friction_coefficient(mu: float) -> float:
@@ -161,11 +161,11 @@ class Friction:
     @cached_property
     def _places(self) -> Array:
         longest = float(np.diff(self._states[:, TIME]).max(initial=0.0))
-        pieces = max(math.ceil(self._fastest * longest / TURN), FEWEST)
-        if pieces > MOST:
+        pieces = max(math.ceil(self._fastest * longest / MAX_PHASE_STEP), MIN_POINTS)
+        if pieces > MAX_POINTS:
             raise InputError(
                 f"The friction demand of {self._model.label} needs {pieces} points per step, above the limit of "
-                f"{MOST}: the model vibrates or decays at up to {self._fastest:.3g} rad/s, and steps last up to "
+                f"{MAX_POINTS}: the model vibrates or decays at up to {self._fastest:.3g} rad/s, and steps last up to "
                 f"{longest:.3g} s. Keep fewer modes, damp them less, or refine the record."
             )
         return np.linspace(0.0, 1.0, pieces + 1)

@@ -1,39 +1,50 @@
 """The time history of one run."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
+from rockflex._arrays import Array, Bools
 from rockflex._checks import finite_rows
+from rockflex._errors import MissingQuantityError
 from rockflex._shown import counted
 from rockflex._values import Value
+from rockflex.modal import Springs, Tendon
 from rockflex.models import (
     GROUND,
     HEADER,
+    RISE,
     SIDE,
     TIME,
     RockingModel,
     SpringModel,
     accelerations,
+    element_forces,
+    elongations,
+    lifted_springs,
+    spring_forces,
 )
-from rockflex.response._element_history import ElementHistory
+from rockflex.motion import GroundMotion
 from rockflex.response._energy import EnergyLedger, energy_ledger, is_impact
-from rockflex.response._floor_motion import FloorMotions
-from rockflex.response._floors import floor_histories
-from rockflex.response._global import global_histories
-from rockflex.response._ground_history import GroundHistory, edge_times
-from rockflex.response._history_columns import TabledHistory
-from rockflex.response._missing import MissingQuantityError
-from rockflex.response._reaction_history import ReactionHistory
-from rockflex.response._sampled import even_instants, instants, of_run, states_at
-from rockflex.response._settled import settled_rotation
+from rockflex.response._floors import floor_histories, floor_motion
+from rockflex.response._friction import IMPACT_WINDOW, Friction
+from rockflex.response._interpolation import even_instants, instants, only_of_run, settled_rotation, states_at
+from rockflex.response._peaks import global_histories
+from rockflex.response._tables import dataset_of, frame_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+    from rockflex.motion import ResponseSpectrum
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class History(GroundHistory, ReactionHistory, ElementHistory, FloorMotions, TabledHistory, Value):
+class History(Value):
     """States at the samples of the record and before and after every event; all arrays are read-only.
 
     Parameters
@@ -275,6 +286,300 @@ class History(GroundHistory, ReactionHistory, ElementHistory, FloorMotions, Tabl
         """
         return energy_ledger(self.model, self.states)
 
+    @property
+    def tendon_force(self) -> Array:
+        """Force of each tendon in N, in the order of `RockingProperties.tendons`, shape (n_states, n_tendons)."""
+        places = [k for k, each in enumerate(self.model.properties.elements) if isinstance(each, Tendon)]
+        return self.element_force[:, places]
+
+    @cached_property
+    def element_force(self) -> Array:
+        """Force of each element of the base in N, positive if it pulls the base down, shape (n_states, E).
+
+        The order is that of `RockingProperties.elements`.
+        """
+        values = element_forces(self.model, self.states)
+        values.setflags(write=False)
+        return values
+
+    @property
+    def element_elongation(self) -> Array:
+        """Elongation r |θ| of each element in m, in complete models 2 r sin(|θ|/2), shape (n_states, E)."""
+        return elongations(self.model, self.states)
+
+    @property
+    def vertical_ground_acceleration(self) -> Array:
+        """Vertical acceleration of the ground in m/s², positive upwards, shape (n_states,)."""
+        return self.states[:, RISE]
+
+    @property
+    def slip(self) -> Array:
+        """Displacement of the base along the ground in m, positive to the right; zero if it cannot slide."""
+        return self._of_base(self.model.layout.slip)
+
+    @property
+    def slip_velocity(self) -> Array:
+        """Velocity of the slip in m/s, shape (n_states,)."""
+        layout = self.model.layout
+        return self._of_base(layout.slip + 1 if layout.slip >= 0 else -1)
+
+    @property
+    def heave(self) -> Array:
+        """Rise of the base at the axis of the masses in m, shape (n_states,).
+
+        On springs from the level at which they are unloaded, on rigid ground the distance to the pivot times |θ|.
+        """
+        if isinstance(self.model, SpringModel):
+            return self._of_base(self.model.layout.heave)
+        p, left, right = self.model.properties, self.edge_uplift[:, 0], self.edge_uplift[:, 1]
+        return (p.pivot(1).arm * left + p.pivot(-1).arm * right) / (2.0 * p.half_width)
+
+    @property
+    def edge_uplift(self) -> Array:
+        """Rise of the left and of the right edge of the base in m, negative where it settles, shape (n_states, 2)."""
+        p, rotation = self.model.properties, self.model.layout.of(self.states, self.model.layout.rotation)
+        if isinstance(self.model, SpringModel):
+            places = np.array([-p.pivot(-1).arm, p.pivot(1).arm])
+            return self.heave[:, None] - places * rotation[:, None]
+        turn = np.sin(rotation) if self.model.complete else rotation
+        return 2.0 * p.half_width * np.stack((np.maximum(turn, 0.0), np.maximum(-turn, 0.0)), axis=1)
+
+    @property
+    def uplifted(self) -> Bools:
+        """Whether the base is off the ground, on springs whether an edge has left its spring, shape (n_states,)."""
+        if isinstance(self.model, SpringModel):
+            lifted = lifted_springs(self.model, self.states)
+            return lifted[:, 0] | lifted[:, -1]
+        return self.states[:, SIDE] != 0.0
+
+    @property
+    def spring_force(self) -> Array:
+        """Upward force of each spring under the base in N, shape (n_states, n_springs); none on rigid ground."""
+        if not isinstance(self.model, SpringModel):
+            return np.zeros((self.states.shape[0], 0))
+        return spring_forces(self.model, self.states)
+
+    @property
+    def soil_pressure(self) -> Array:
+        """Pressure under the base at each spring in Pa, shape (n_states, n_springs).
+
+        Raises
+        ------
+        InputError
+            If the springs have no `area`.
+        """
+        return pressure_of(self.spring_force, self.model.springs if isinstance(self.model, SpringModel) else None)
+
+    @property
+    def bearing_pressure(self) -> Array:
+        """Static bearing pressure in Pa, shape (n_states,): the resultant of the springs over its effective area.
+
+        Without dashpots, and uniform over the part 2 (B - |e|) of the base whose middle is the resultant, at the
+        eccentricity e: the area of Meyerhof (1953), by which bearing capacities are given, whatever the distribution of
+        stiffness. The end zones of a bed and its dashpots raise `soil_pressure` above it. Zero in flight; on one spring
+        alone it is the pressure of that spring.
+
+        Raises
+        ------
+        InputError
+            If the springs have no `area`.
+        """
+        model = self.model
+        springs = model.springs if isinstance(model, SpringModel) else None
+        if springs is None or springs.area is None:
+            raise no_area()
+        turn = model.layout.of(self.states, model.layout.rotation)[:, None]
+        pushes = springs.stiffness * np.maximum(springs.positions * turn - self.heave[:, None], 0.0)
+        force, p = pushes.sum(axis=1), model.properties
+        middle = 0.5 * (p.pivot(1).arm - p.pivot(-1).arm)
+        moved = np.abs(pushes @ (springs.positions - middle)) / np.where(force > 0.0, force, 1.0)
+        return force / (springs.area.sum() * (1.0 - moved / p.half_width))
+
+    def _of_base(self, place: int) -> Array:
+        return self.model.layout.of(self.states, place) if place >= 0 else np.zeros(self.states.shape[0])
+
+    @property
+    def horizontal_reaction(self) -> Array:
+        """Horizontal ground reaction Σ m_i (a + x''_i) of Eq. 21, in N, shape (n_states,).
+
+        In the simplified models, for small rotations: m_tot a + L_0^r θ'' + Σ m* D''.
+        """
+        return self._friction.reactions.horizontal
+
+    @property
+    def vertical_reaction(self) -> Array:
+        """Vertical ground reaction Σ m_i (g + z''_i), in N, positive upwards, shape (n_states,).
+
+        This is Eq. 22 with the sign of the weight corrected; as printed, it is smaller by 2 m_tot g. Tendon forces are
+        included. In the simplified models, for small rotations: m_tot (g + s B θ'').
+        """
+        return self._friction.reactions.vertical
+
+    @property
+    def friction_demand(self) -> Array:
+        """|ΣF_x| / ΣF_z of Eq. 20, dimensionless, shape (n_states,); infinite if the base would lose contact."""
+        return self._friction.demand
+
+    @cached_property
+    def required_friction(self) -> float:
+        """Largest friction demand of the run, including between states; infinite if the base would lose contact.
+
+        Raises
+        ------
+        InputError
+            If the model is too fast for the sampling.
+        """
+        return self._friction.required()
+
+    def required_friction_excluding_impacts(self, window: float = IMPACT_WINDOW, printed: bool = False) -> float:
+        """Return the largest friction demand except for the time after each impact, when it has short spikes.
+
+        Parameters
+        ----------
+        window
+            Seconds after each impact to exclude; with zero nothing is excluded. If no time remains, the result is zero.
+        printed
+            Use the magnitude of Eq. 22 as printed, Σ m_i (-g + z''_i), which has a wrong sign; for comparison.
+
+        Raises
+        ------
+        InputError
+            If `window` is negative or not finite, or the model is too fast for the sampling.
+        """
+        return self._friction_by(printed).required(window)
+
+    def sliding_time(self, mu: float, printed: bool = False) -> float | None:
+        """Return the time in s at which the friction demand first exceeds `mu` and sliding would start, or None.
+
+        Parameters
+        ----------
+        mu
+            Coefficient of friction, positive.
+        printed
+            As in `required_friction_excluding_impacts`.
+
+        Raises
+        ------
+        InputError
+            If `mu` is not a positive number, or the model is too fast for the sampling.
+        """
+        return self._friction_by(printed).sliding_time(mu)
+
+    @cached_property
+    def _friction(self) -> Friction:
+        return Friction(self.model, self.states)
+
+    def _friction_by(self, printed: bool) -> Friction:
+        return Friction(self.model, self.states, printed=True) if printed else self._friction
+
+    def floor_motion(self, floor: SupportsIndex, dt: float | None = None, *, impulses: bool = True) -> GroundMotion:
+        """Return the total horizontal acceleration of a floor as a motion, for its measures and spectra.
+
+        Parameters
+        ----------
+        floor
+            Number of the floor; 1 is the first above the base, as in the columns of `to_frame`.
+        dt
+            Longest step in s between samples, which are joined linearly; the step divides the history equally. None:
+            0.005 s, or a twentieth of the shortest period of the modes if that is shorter.
+        impulses
+            Whether to include what an impact changes in the velocity of the floor at once. The samples before and after
+            it take it as an acceleration during `dt`, and likewise what a straight line between samples leaves out of a
+            sudden change of the acceleration, so that the velocity of the floor is right. With False the samples are
+            those of `floor_acceleration`.
+
+        Returns
+        -------
+        GroundMotion
+            From the first state to the last, with the free vibration.
+
+        Raises
+        ------
+        InputError
+            If the structure has no floors or not this one, or `dt` is not positive or too short.
+        """
+        return floor_motion(self.model, self.states, floor, dt, impulses=impulses)
+
+    def floor_spectrum(
+        self,
+        floor: SupportsIndex,
+        periods: ArrayLike,
+        damping_ratio: float = 0.05,
+        *,
+        dt: float | None = None,
+        impulses: bool = True,
+    ) -> "ResponseSpectrum":
+        """Return the response spectrum of the total horizontal acceleration of a floor, for light equipment on it.
+
+        It is exact for the motion of `floor_motion`, whose error is proportional to `dt`²; at periods shorter than `dt`
+        the impulses of impacts count as accelerations during `dt`.
+
+        Parameters
+        ----------
+        floor, dt, impulses
+            As in `floor_motion`.
+        periods, damping_ratio
+            As in `GroundMotion.spectrum`: periods in s, and the fraction of critical damping of the equipment.
+
+        Raises
+        ------
+        InputError
+            As for `floor_motion` and `GroundMotion.spectrum`.
+        """
+        return self.floor_motion(floor, dt, impulses=impulses).spectrum(periods, damping_ratio)
+
+    def to_frame(self, quantities: Sequence[str] | None = None) -> "pd.DataFrame":
+        """Return the history as a table, one row a state, in SI units.
+
+        An event is two rows at the same time, the motion before and after it, so the index is not unique;
+        ``history.resample(dt).to_frame()`` has every instant once.
+
+        Parameters
+        ----------
+        quantities
+            Names of quantities of the history, such as ``["modal_displacement", "floor_acceleration"]``. One with
+            several values, as for every floor, has a column for each: ``floor_acceleration_1``, ... None: those that
+            ``rockflex run --out`` writes.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Indexed by `time` (s). By default the columns are `side`, `ground_acceleration` (m/s²), `rotation` (rad),
+            `rotation_velocity` (rad/s), `top_displacement` and `total_top_displacement` (m; NaN if the height of the
+            top is not known), `base_moment` (N m), `base_shear`, `horizontal_reaction` and `vertical_reaction` (N);
+            `yielding` with a hysteresis; `vertical_ground_acceleration` if there is any; `slip` and `slip_velocity`
+            where the base can slide; on springs `heave`, `left_edge_uplift`, `right_edge_uplift` and `spring_force_1`,
+            ...
+
+        Raises
+        ------
+        InputError
+            If there is no such quantity, or the structure has no floors.
+        """
+        return frame_of(self, quantities)
+
+    def to_xarray(self, quantities: Sequence[str] | None = None) -> "xr.Dataset":
+        """Return the history as a labelled data set, in SI units; it needs the extra ``rockflex[xarray]``.
+
+        Parameters
+        ----------
+        quantities
+            Names of quantities of the history. None: all that the model has.
+
+        Returns
+        -------
+        xarray.Dataset
+            A variable for each quantity, with its unit in ``attrs["units"]``. Dimensions are `time` (s), in which an
+            event occurs twice, and where there are several values `mode`, `floor`, `element`, `tendon` or `spring`,
+            counted from 1, or `edge`, "left" and "right".
+
+        Raises
+        ------
+        InputError
+            If xarray is not installed, there is no such quantity, or the structure has no floors.
+        """
+        return dataset_of(self, quantities)
+
     @cached_property
     def _global(self) -> Array:
         return global_histories(self.model, self.states)
@@ -310,17 +615,45 @@ class SampledHistory(History):
     -0.0207
     """
 
-    uplift_times = of_run()  # pyright: ignore[reportIncompatibleMethodOverride]
-    impact_times = of_run()  # pyright: ignore[reportIncompatibleMethodOverride]
-    energy = of_run()
-    element_energy = of_run()  # pyright: ignore[reportIncompatibleMethodOverride]
-    required_friction = of_run()
-    required_friction_excluding_impacts = of_run()
-    sliding_time = of_run()
-    floor_motion = of_run()
-    floor_spectrum = of_run()
-    at = of_run()
-    resample = of_run()
+    uplift_times = only_of_run()  # pyright: ignore[reportIncompatibleMethodOverride]
+    impact_times = only_of_run()  # pyright: ignore[reportIncompatibleMethodOverride]
+    energy = only_of_run()
+    element_energy = only_of_run()  # pyright: ignore[reportIncompatibleMethodOverride]
+    required_friction = only_of_run()
+    required_friction_excluding_impacts = only_of_run()
+    sliding_time = only_of_run()
+    floor_motion = only_of_run()
+    floor_spectrum = only_of_run()
+    at = only_of_run()
+    resample = only_of_run()
 
     def __repr__(self) -> str:
         return f"SampledHistory({self.model.label}, {self.time.size} instants, {self.time[0]:g} to {self.time[-1]:g} s)"
+
+
+def edge_times(model: SpringModel, states: Array, *, lifts: bool) -> Array:
+    """Return the times in s at which an edge of a base leaves its spring, or comes back to it."""
+    lifted = lifted_springs(model, states)[:, [0, -1]]
+    changes = lifted[1:] & ~lifted[:-1] if lifts else ~lifted[1:] & lifted[:-1]
+    return np.repeat(states[1:, TIME], changes.sum(axis=1))
+
+
+def pressure_of(force: Array, springs: Springs | None) -> Array:
+    """Return the pressure at each spring in Pa from its force in N, shape (n, S).
+
+    Raises
+    ------
+    MissingQuantityError
+        If there are no springs, or they have no `area`.
+    """
+    if springs is None or springs.area is None:
+        raise no_area()
+    return force / springs.area
+
+
+def no_area() -> MissingQuantityError:
+    """Return the error of a pressure without areas."""
+    return MissingQuantityError(
+        "The springs under the base have no area, so there is no soil pressure. Give Springs the area that each "
+        "supports, in m², or use winkler_bed."
+    )

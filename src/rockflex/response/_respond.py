@@ -1,34 +1,56 @@
-"""From the solution of a run to its response."""
+"""From the solutions of runs to their responses, or to columns of a table for many runs."""
 
 import math
+from collections.abc import Sequence
+from operator import attrgetter
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex.models import HEADER, RockingModel, SpringModel, floor_accelerations, lifted_springs, swing_by_side
-from rockflex.response._edges import balance_ratio, edges_of, tilt_at_rest
-from rockflex.response._element_peaks import Reach, element_peaks, moves_about_pivots, moves_on_springs
-from rockflex.response._floor_peaks import FloorPeaks
-from rockflex.response._global import EDGES, GLOBAL, is_damped, is_sided, tracked_of_floors
+from rockflex.models import (
+    HEADER,
+    RockingModel,
+    SpringModel,
+    floor_accelerations,
+    lifted_springs,
+    swing_by_side,
+)
+from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History
-from rockflex.response._response import Response
-from rockflex.solve import Solution
+from rockflex.response._peaks import (
+    EDGES,
+    GLOBAL,
+    RotationExtremes,
+    balance_ratio,
+    edges_of,
+    element_peaks,
+    elongations_about_pivots,
+    elongations_on_springs,
+    rotation_at_rest,
+    tracked_floor_quantities,
+    tracks_both_sides,
+    tracks_elongation_rate,
+)
+from rockflex.response._response import PEAKS, Response
+from rockflex.solve import Solution, Solutions
 
 MAXIMA = tuple(f"max_{name}" for name in GLOBAL)
 TIMES = tuple(f"time_of_{name}" for name in MAXIMA)
 
 
 def respond(model: RockingModel, motion: str, solution: Solution, *, floors: bool = False) -> Response:
-    """Return the response for a solution whose rows are those of `asked_of`, with or without the floors."""
+    """Return the response for a solution whose rows are those of `tracked_quantities`, with or without the floors."""
     p = model.properties
     rotation, peaks = float(solution.peaks[0]), solution.peaks[1:]
     right = left = rotation
     swing = (0.0, 0.0)
     end = len(GLOBAL)
-    if is_sided(model):
+    if tracks_both_sides(model):
         right, left = peaks[end : end + 2].tolist()
         end += 2
-    if is_damped(model):
+    if tracks_elongation_rate(model):
         count = len(swing_by_side(model))
         swing = float(peaks[end]), float(peaks[end + count - 1])
         end += count
@@ -39,10 +61,10 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
     if isinstance(model, SpringModel):
         count = len(model.elements)
         right, left = (max(each, 0.0) for each in solution.extremes[len(EDGES) - 2 : len(EDGES)].tolist())
-        moves = moves_on_springs(model, solution.extremes[len(EDGES) :], peaks[end : end + count])
+        moves = elongations_on_springs(model, solution.extremes[len(EDGES) :], peaks[end : end + count])
         end += count
     else:
-        moves = moves_about_pivots(model, Reach((right, left), swing))
+        moves = elongations_about_pivots(model, RotationExtremes((right, left), swing))
     edges = edges_of(model, (right, left), solution)
     left_ground = solution.n_uplifts > 0 or solution.n_impacts > 0
     left_ground = left_ground or _open_throughout(model, rotation, solution.final_state)
@@ -66,7 +88,7 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
         **of_elements._asdict(),
         residual_rotation=math.nan
         if solution.overturned
-        else float(final[model.layout.rotation]) - tilt_at_rest(model),
+        else float(final[model.layout.rotation]) - rotation_at_rest(model),
         balance_ratio=float(balance_ratio(model, right, left)),
         max_slip=slid,
         residual_slip=float(final[model.layout.slip]) if model.layout.slip >= 0 else 0.0,
@@ -97,10 +119,83 @@ def _least_support(model: RockingModel, found: float) -> float:
 
 
 def _floor_peaks(model: RockingModel, solution: Solution, peaks: Array) -> FloorPeaks:
-    names = tracked_of_floors(model)
+    names = tracked_floor_quantities(model)
     found = dict(zip(names, np.split(peaks, len(names)), strict=True))
     floors = model.properties.floors
     if "floor_acceleration" not in found and floors is not None and solution.states is not None:
         # Not a linear functional for large rotations: take the largest value at samples and events.
         found["floor_acceleration"] = np.abs(floor_accelerations(model, floors, solution.states)).max(axis=0)
     return FloorPeaks(**found)
+
+
+STATUSES = ("no_uplift", "rocking", "overturned")
+
+NAMES = ("status", *(name for name in PEAKS if name not in ("model", "motion", "status")))
+
+_values_of = attrgetter(*NAMES)
+
+Columns = dict[str, NDArray[Any]]
+
+
+def columns_of(model: RockingModel, solutions: Solutions) -> Columns:
+    """Return the status and every number and flag of the responses of R runs, as `columns_among` does."""
+    if model.properties.elements or isinstance(model, SpringModel) or model.layout.slip >= 0:
+        runs = range(len(solutions))
+        return columns_among([None if k in solutions.failures else respond(model, "", solutions.one(k)) for k in runs])
+    return _of_bare_base(model, solutions)
+
+
+def columns_among(responses: Sequence[Response | None]) -> Columns:
+    """Return the status, as a place in `STATUSES`, and every number and flag of R responses, each of shape (R,).
+
+    The values where there is no response mean nothing; if there is none at all, there are no columns.
+    """
+    found: Columns = {}
+    for place, response in enumerate(responses):
+        if response is None:
+            continue
+        for name, value in zip(NAMES, _values_of(response), strict=True):
+            if name not in found:
+                found[name] = np.zeros(len(responses), np.int64 if name == "status" else type(value))
+            found[name][place] = STATUSES.index(value) if name == "status" else value
+    return found
+
+
+def _of_bare_base(model: RockingModel, solutions: Solutions) -> Columns:
+    """Return the columns of a base on rigid ground without elements, on which it does not slide."""
+    p, runs, last = model.properties, len(solutions), 1 + len(GLOBAL)
+    rotation = solutions.peaks[:, 0]
+    right, left = (
+        (solutions.peaks[:, last], solutions.peaks[:, last + 1]) if tracks_both_sides(model) else (rotation, rotation)
+    )
+    found: Columns = dict(zip(MAXIMA, solutions.peaks[:, 1:last].T, strict=True))
+    found |= dict(zip(TIMES, solutions.peak_times[:, 1:last].T, strict=True))
+    if p.top_height is None:
+        missing = np.full(runs, np.nan)
+        found |= {"max_total_top_displacement": missing, "time_of_max_total_top_displacement": missing}
+    rocks = (solutions.n_uplifts > 0) | (solutions.n_impacts > 0) | (rotation > 0.0)
+    lever = np.maximum(np.sin(left), np.sin(right)) if model.complete else np.maximum(left, right)
+    nothing, never = np.zeros(runs), np.zeros(runs, dtype=np.bool_)
+    return found | {
+        "status": np.where(solutions.overturned, 2, rocks.astype(np.int64)),
+        "max_rotation": rotation,
+        "time_of_max_rotation": solutions.peak_times[:, 0],
+        "min_vertical_reaction": p.resting_reaction - solutions.lost_support,
+        "time_of_min_vertical_reaction": solutions.time_of_lost_support,
+        "max_tendon_force": nothing,
+        "tendon_utilisation": nothing,
+        "tendon_yield": never,
+        "tendon_overload": never,
+        "residual_rotation": np.where(solutions.overturned, np.nan, solutions.final_state[:, model.layout.rotation]),
+        "balance_ratio": balance_ratio(model, right, left),
+        "max_slip": nothing,
+        "residual_slip": nothing,
+        "max_edge_uplift": 2.0 * p.half_width * lever,
+        "max_edge_settlement": nothing,
+        "n_uplifts": solutions.n_uplifts,
+        "n_impacts": solutions.n_impacts,
+        "nominal_overturning": (right > p.pivot(1).nominal_overturning_rotation)
+        | (left > p.pivot(-1).nominal_overturning_rotation),
+        "end_time": solutions.end_time,
+        "settled": solutions.settled,
+    }

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from rockflex._errors import InputError, SolverError
 from rockflex.models import Quantities, RockingModel
 from rockflex.motion import GroundMotion
-from rockflex.response import Response, asked_of, extremes_of, respond
+from rockflex.response import Response, respond, tracked_extremes, tracked_quantities
 from rockflex.solve import Engine, Excitation, Solution, Solutions, Task, gather, preparing
 from rockflex.study._arguments import WORK_LIMIT
 from rockflex.study._initial import InitialState
@@ -58,9 +58,9 @@ class Case:
                 field="free_vibration",
             )
         with preparing(self.model):
-            asked = asked_of(self.model, floors=self.floors)
+            asked = tracked_quantities(self.model, floors=self.floors)
         asked = asked if self.extra is None else asked + self.extra
-        most = extremes_of(self.model)
+        most = tracked_extremes(self.model)
         object.__setattr__(self, "engine", Engine(self.model, asked, most))
 
     def task(self, motion: GroundMotion, scale: float = 1.0) -> Task:

@@ -25,9 +25,8 @@ from rockflex.study._arguments import (
 from rockflex.study._case import Case, prepare_together
 from rockflex.study._initial import InitialState
 from rockflex.study._peaks import Peaks, Scaled, peaks_among, peaks_of
-from rockflex.study._prepared import FIXED
 from rockflex.study._results import RESULTS
-from rockflex.study._runs import in_order, in_order_apart
+from rockflex.study._runs import in_order
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
 from rockflex.study._tables import Sheet
 from rockflex.study._yielding import hysteresis_of
@@ -35,7 +34,6 @@ from rockflex.study._yielding import hysteresis_of
 if TYPE_CHECKING:
     import pandas as pd
 
-MANY = 256  # structures from which it is worth while to start processes
 CHUNK = 64  # runs a task: long enough to hide a task's cost, short enough to share the work evenly
 
 # Some runs of a structure: its index, the first and the last of them, and its case for each model, once prepared.
@@ -59,9 +57,8 @@ def simulate_many(
 ) -> "pd.DataFrame":
     """Simulate every structure under every motion with every model at every scale.
 
-    The runs are shared among threads; the engine releases the interpreter lock. Peaks of hundreds of structures with a
-    few runs each are shared among processes, where this one can be copied: on Linux, without other threads. With
-    ``output="peaks"`` only the table grows with the number of runs.
+    The runs are shared among threads; the engine releases the interpreter lock. With ``output="peaks"`` only the table
+    grows with the number of runs.
 
     Parameters
     ----------
@@ -78,7 +75,7 @@ def simulate_many(
         none, which must then have one mode. All models start from the same initial state. A run fails if its model has
         fewer modes than the state has values, or a fixed base where the state rotates.
     workers
-        Number of threads or processes; None for one a core.
+        Number of threads; None for one a core.
     work_limit
         Work limit of each run, as in `simulate`. A run that exceeds it has a message in `error`.
     ground
@@ -191,10 +188,8 @@ def simulate_many(
         return sheet, refused
 
     columns = {"status": STATUSES, "error": str, **RESULTS}
-    own = impact is not None and type(impact) not in FIXED  # it may keep what it is told
-    many = len(everything) >= MANY and each <= CHUNK and not (options["history"] or own or callable(ground))
     with telling(progress, len(everything) * each, "runs") as advance:
-        found = (in_order_apart if many else in_order)(work, tasks(), workers, lambda made: advance(made[0].size))
+        found = in_order(work, tasks(), workers, lambda made: advance(made[0].size))
     results = Sheet.joined([sheet for sheet, _ in found])
     refused = [error for _, errors in found for error in errors]
     if len(refused) == len(everything) * each:

@@ -109,7 +109,7 @@ def run_cloud(
     friction
         Whether to find the friction that prevents sliding (Eqs. 20-22), which needs the history of every run.
     workers
-        Number of threads or processes; None for one a core.
+        Number of threads; None for one a core.
     work_limit
         Work limit of each run, as in `simulate`. A run that exceeds it has a message in `error`.
     ground

@@ -182,11 +182,6 @@ class MonteCarloPlan(ChunkedPlan):
         return self.n_units * self._per_structure * len(self.bench.labels) * len(self.scales)
 
     @property
-    def copyable(self) -> bool:
-        """Whether copies of this process may compute the chunks."""
-        return not self.bench.foreign
-
-    @property
     def columns(self) -> Columns:
         """Columns of every chunk's table."""
         head, *rest = self.bench.columns.items()

@@ -24,9 +24,7 @@ from rockflex.study._arguments import (
     work_limit_of,
 )
 from rockflex.study._case import Case, prepare_together
-from rockflex.study._ground_table import GroundTable
 from rockflex.study._peaks import peaks_of
-from rockflex.study._prepared import FIXED
 from rockflex.study._results import result_columns, results_of
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
 from rockflex.study._tables import Columns, Row, kinds_of
@@ -99,14 +97,6 @@ class Bench:
         other.structures, other._cases, other._measures = [properties], {}, {}
         other.assumptions = replace(self.assumptions, ground=ground)
         return other
-
-    @property
-    def foreign(self) -> bool:
-        """Whether runs call a law or a function of the user, which may keep what it is told."""
-        impact, ground = self.assumptions.impact, self.assumptions.ground
-        own_law = impact is not None and type(impact) not in FIXED
-        own_ground = callable(ground) and not isinstance(getattr(ground, "__self__", None), GroundTable)
-        return own_law or own_ground or bool(self.assumptions.demands)
 
     @property
     def columns(self) -> Columns:

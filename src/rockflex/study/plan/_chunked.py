@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar, SupportsIndex, TypeVar
 from rockflex._checks import whole_number
 from rockflex.motion import Suite, check_horizontal
 from rockflex.progress import ProgressChoice, telling
-from rockflex.study._runs import map_runs, map_runs_apart
+from rockflex.study._runs import map_runs
 from rockflex.study._tables import ArrowTable, Columns, Row, tabulate, to_frame
 from rockflex.study.plan._records import checksums
 
@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Result = TypeVar("Result")
-
-FEW = 256  # runs for which it is not worth while to start processes
 
 
 class ChunkedPlan(ABC):
@@ -61,11 +59,6 @@ class ChunkedPlan(ABC):
             If no run is within its work limit.
         """
         return
-
-    @property
-    def copyable(self) -> bool:
-        """Whether copies of this process may compute the chunks: they need nothing that others change in memory."""
-        return False
 
     @property
     def rounds(self) -> list[range]:
@@ -118,7 +111,7 @@ def run_plan(
     plan
         The plan that `.plan()` of a study returns.
     workers
-        Number of threads or processes; None for one a core.
+        Number of threads; None for one a core.
     progress
         None, "bar", or a function of the number of units that are done, and of all.
 
@@ -134,7 +127,7 @@ def run_plan(
             if tables:
                 plan = plan.informed(to_frame(*tables))
             found = dict[int, ArrowTable]()
-            with closing(map_chunks(plan, plan.chunk, numbers, workers)) as coming:
+            with closing(map_chunks(plan.chunk, numbers, workers)) as coming:
                 for number, table in coming:
                     found[number] = table
                     advance(len(plan.units_of(number)))
@@ -143,17 +136,7 @@ def run_plan(
 
 
 def map_chunks(
-    plan: ChunkedPlan, chunk: Callable[[int], Result], numbers: Sequence[int], workers: SupportsIndex | None
+    chunk: Callable[[int], Result], numbers: Sequence[int], workers: SupportsIndex | None
 ) -> Generator[tuple[int, Result]]:
-    """Yield the number and the result of chunks in order of completion.
-
-    Processes compute them where this one can be copied, if the plan allows it and there are more than a few runs;
-    otherwise threads.
-    """
-
-    def numbered(number: int) -> tuple[int, Result]:
-        return number, chunk(number)
-
-    if plan.copyable and len(numbers) > 1 and plan.n_runs * len(numbers) >= FEW * plan.n_chunks:
-        return map_runs_apart(numbered, numbers, workers)
-    return map_runs(numbered, numbers, workers)
+    """Yield the number and the result of chunks in order of completion."""
+    return map_runs(lambda number: (number, chunk(number)), numbers, workers)

@@ -44,11 +44,6 @@ class CrossPlan(ChunkedPlan):
         """
         self.bench.check_work(map(self.run_of, range(self.n_units)))
 
-    @property
-    def copyable(self) -> bool:
-        """Whether copies of this process may compute the chunks."""
-        return not self.bench.foreign
-
     def run_of(self, unit: int) -> tuple[int, int, int, float]:
         """Return the places of the structure, record and model of a unit, and the scale of its (first) run."""
         rest, level = divmod(unit, self._n_levels)

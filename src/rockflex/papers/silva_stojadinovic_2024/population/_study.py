@@ -106,11 +106,6 @@ class PopulationPlan(ChunkedPlan):
         return 2 * self.n_units
 
     @property
-    def copyable(self) -> bool:
-        """Whether copies of this process may compute the chunks: always."""
-        return True
-
-    @property
     def columns(self) -> Columns:
         """Columns of every chunk's table."""
         found: dict[str, Any] = {"pair": int, "n_stories": int, "behaviour": BEHAVIOURS, **kinds_of(DRAWN, float)}

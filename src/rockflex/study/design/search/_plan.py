@@ -119,11 +119,6 @@ class SearchPlan(ChunkedPlan):
         return self.cost.of(values[:, 0], prestress, dissipator_force_of(self.structure) * values[:, 2])
 
     @property
-    def copyable(self) -> bool:
-        """Whether copies of this process may compute the chunks."""
-        return not self._bench.foreign
-
-    @property
     def columns(self) -> Columns:
         """Columns of every chunk's table."""
         names = [f"design {unit + 1}" for unit in range(self.n_units)]

@@ -1,5 +1,6 @@
-"""The motion between the states of a history."""
+"""The motion between the states of a history, and beyond its end."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -7,22 +8,63 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array
 from rockflex._checks import finite_vector, positive
-from rockflex._errors import InputError
+from rockflex._errors import InputError, MissingQuantityError
 from rockflex._shown import shown
-from rockflex.models import GROUND, HEADER, RISE, SIDE, TIME, BoucWen, MotionBetween, RockingModel, accelerations
-from rockflex.response._missing import MissingQuantityError
-from rockflex.response._quintic import Motion, quintic_between
+from rockflex.models import (
+    GROUND,
+    HEADER,
+    RISE,
+    SIDE,
+    TIME,
+    BoucWen,
+    MotionBetween,
+    Quantities,
+    RockingModel,
+    accelerations,
+)
+from rockflex.response._peaks import rotation_at_rest
+from rockflex.solve import Engine
 
-MOST = 10_000_000  # instants
-PIECES = 16  # of an interval in which z is integrated
+Motion = tuple[Array, Array, Array]
 
 
-def of_run() -> Any:
+def quintic(value: Array, slope: Array, bend: Array, step: Array, place: float) -> Motion:
+    """Return value, slope and second derivative between adjacent rows, from those of the rows, (n, K) each."""
+    return quintic_between((value[:-1], slope[:-1], bend[:-1]), (value[1:], slope[1:], bend[1:]), step, place)
+
+
+def quintic_between(before: Motion, after: Motion, step: Array, place: float | Array) -> Motion:
+    """Return value, slope and second derivative between two states, from those of both, (n, K) each.
+
+    `step` (n,) is the time between them, and `place` the part of it that has next_branch, for all or of shape (n, 1).
+    """
+    h = step[:, None]
+    safe = np.where(h > 0.0, h, 1.0)
+    (value, slope, bend), (next_value, next_slope, next_bend) = before, after
+    start, end = slope * h, next_slope * h
+    first, last = bend * h**2, next_bend * h**2
+    rise = next_value - value - start - 0.5 * first
+    tilt = end - start - first
+    curl = last - first
+    c3, c4, c5 = 10 * rise - 4 * tilt + 0.5 * curl, -15 * rise + 7 * tilt - curl, 6 * rise - 3 * tilt + 0.5 * curl
+    f = place
+    return (
+        value + f * (start + f * (0.5 * first + f * (c3 + f * (c4 + f * c5)))),
+        (start + f * (first + f * (3 * c3 + f * (4 * c4 + f * 5 * c5)))) / safe,
+        (first + f * (6 * c3 + f * (12 * c4 + f * 20 * c5))) / safe**2,
+    )
+
+
+MAX_INSTANTS = 10_000_000  # instants
+STEPS_PER_INTERVAL = 16  # of an interval in which z is integrated
+
+
+def only_of_run() -> Any:
     """Return a quantity that states at other instants than those of the run cannot tell."""
-    return OfRun()
+    return OnlyOfRun()
 
 
-class OfRun:
+class OnlyOfRun:
     """A quantity of the continuous motion, which states at other instants than those of the run cannot tell."""
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -68,10 +110,10 @@ def even_instants(dt: float, known: Array) -> Array:
         If `dt` is not a positive number, or gives more than 10 million instants.
     """
     step, begin, end = positive("dt", dt, "s"), float(known[0]), float(known[-1])
-    if (end - begin) / step > MOST:
+    if (end - begin) / step > MAX_INSTANTS:
         raise InputError(
             f"dt = {shown(dt)} s gives {(end - begin) / step:.3g} instants over {end - begin:g} s, above the limit of "
-            f"{MOST}. Give a dt of at least {(end - begin) / MOST:.3g} s.",
+            f"{MAX_INSTANTS}. Give a dt of at least {(end - begin) / MAX_INSTANTS:.3g} s.",
             field="dt",
         )
     steps = round((end - begin) / step)
@@ -142,12 +184,27 @@ def _hysteresis(law: BoucWen, z: Array, first: Motion, last: Motion, step: Array
         lean = law.beta + law.gamma * np.where((z >= 0.0) == (v >= 0.0), 1.0, -1.0)
         return v / law.yield_displacement * (1.0 - lean * np.abs(z) ** law.exponent)
 
-    h, v = part * step / PIECES, velocity(np.zeros_like(part))
-    for k in range(PIECES):
-        middle, end = (velocity(part * (k + more) / PIECES) for more in (0.5, 1.0))
+    h, v = part * step / STEPS_PER_INTERVAL, velocity(np.zeros_like(part))
+    for k in range(STEPS_PER_INTERVAL):
+        middle, end = (velocity(part * (k + more) / STEPS_PER_INTERVAL) for more in (0.5, 1.0))
         k1 = rate(v, z)
         k2 = rate(middle, z + 0.5 * h * k1)
         k3 = rate(middle, z + 0.5 * h * k2)
         k4 = rate(end, z + h * k3)
         z, v = z + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4), end
     return z
+
+
+def settled_rotation(model: RockingModel, states: Array, work_limit: float | None) -> float:
+    """Continue a run from its last state until it settles; see `History.settled_rotation`."""
+    layout, last = model.layout, states[-1:]
+    if model.bouc_wen is not None:
+        raise InputError(f"The hysteretic spring of {model.label} never comes to rest, so no rotation remains.")
+    if abs(layout.of(last, layout.rotation)[0]) >= 0.5 * math.pi:
+        return math.nan
+    (key,) = model.branches_at(last[:, SIDE], layout.of(last, layout.rotation), last).astype(np.int64).tolist()
+    step = float(np.median(np.diff(np.unique(states[:, 0])))) if states.shape[0] > 1 else 0.01
+    found = Engine(model, Quantities.none(layout.modes)).run(
+        np.zeros(2), step, free_vibration=None, state=(tuple(key), last[0, HEADER:].copy()), work_limit=work_limit
+    )
+    return math.nan if found.overturned else float(found.final_state[layout.rotation]) - rotation_at_rest(model)

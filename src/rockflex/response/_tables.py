@@ -11,11 +11,13 @@ from rockflex._arrays import Array
 from rockflex._checks import one_of
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.models import RockingModel, SpringModel
+from rockflex.models import SpringModel
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+
+History = Any  # rockflex.response.History, which imports this module
 
 UNITS_OF_HISTORY = {
     "time": "s",
@@ -73,82 +75,33 @@ DIMENSIONS = {
 """The second dimension of quantities with several values."""
 
 
-class TabledHistory:
-    """The quantities of a history as the columns of a table."""
+def frame_of(history: History, quantities: Sequence[str] | None) -> "pd.DataFrame":
+    """Return a history as a table; see `History.to_frame`."""
+    import pandas as pd
 
-    model: RockingModel
-    states: Array
+    if quantities is None:
+        columns = history_columns(history, ("yielding",) if history.model.bouc_wen is not None else ())
+    else:
+        columns = {"time": history.time} | _chosen(history, quantities)
+    return pd.DataFrame(columns).set_index("time")
 
-    def to_frame(self, quantities: Sequence[str] | None = None) -> "pd.DataFrame":
-        """Return the history as a table, one row a state, in SI units.
 
-        An event is two rows at the same time, the motion before and after it, so the index is not unique;
-        ``history.resample(dt).to_frame()`` has every instant once.
-
-        Parameters
-        ----------
-        quantities
-            Names of quantities of the history, such as ``["modal_displacement", "floor_acceleration"]``. One with
-            several values, as for every floor, has a column for each: ``floor_acceleration_1``, ... None: those that
-            ``rockflex run --out`` writes.
-
-        Returns
-        -------
-        pandas.DataFrame
-            Indexed by `time` (s). By default the columns are `side`, `ground_acceleration` (m/s²), `rotation` (rad),
-            `rotation_velocity` (rad/s), `top_displacement` and `total_top_displacement` (m; NaN if the height of the
-            top is not known), `base_moment` (N m), `base_shear`, `horizontal_reaction` and `vertical_reaction` (N);
-            `yielding` with a hysteresis; `vertical_ground_acceleration` if there is any; `slip` and `slip_velocity`
-            where the base can slide; on springs `heave`, `left_edge_uplift`, `right_edge_uplift` and `spring_force_1`,
-            ...
-
-        Raises
-        ------
-        InputError
-            If there is no such quantity, or the structure has no floors.
-        """
-        import pandas as pd
-
-        if quantities is None:
-            columns = history_columns(self, ("yielding",) if self.model.bouc_wen is not None else ())
-        else:
-            columns = {"time": getattr(self, "time")} | _chosen(self, quantities)  # noqa: B009
-        return pd.DataFrame(columns).set_index("time")
-
-    def to_xarray(self, quantities: Sequence[str] | None = None) -> "xr.Dataset":
-        """Return the history as a labelled data set, in SI units; it needs the extra ``rockflex[xarray]``.
-
-        Parameters
-        ----------
-        quantities
-            Names of quantities of the history. None: all that the model has.
-
-        Returns
-        -------
-        xarray.Dataset
-            A variable for each quantity, with its unit in ``attrs["units"]``. Dimensions are `time` (s), in which an
-            event occurs twice, and where there are several values `mode`, `floor`, `element`, `tendon` or `spring`,
-            counted from 1, or `edge`, "left" and "right".
-
-        Raises
-        ------
-        InputError
-            If xarray is not installed, there is no such quantity, or the structure has no floors.
-        """
-        xr = _xarray()
-        names = [name for name in QUANTITIES if hasattr(self, name)] if quantities is None else quantities
-        check_quantities(names)
-        variables: dict[str, Any] = {}
-        labels: dict[str, Any] = {"time": ("time", getattr(self, "time"), {"units": "s"})}  # noqa: B009
-        for name in names:
-            values, dims = getattr(self, name), ("time",)
-            if name == "time" or (quantities is None and values.size == 0):
-                continue
-            if values.ndim > 1:
-                dims = ("time", DIMENSIONS[name])
-                labels[dims[1]] = ["left", "right"] if dims[1] == "edge" else np.arange(values.shape[1]) + 1
-            variables[name] = (dims, values, {"units": QUANTITIES[name]} if QUANTITIES[name] else {})
-        return xr.Dataset(variables, labels, {"model": self.model.label})
+def dataset_of(history: History, quantities: Sequence[str] | None) -> "xr.Dataset":
+    """Return a history as a labelled data set; see `History.to_xarray`."""
+    xr = _xarray()
+    names = [name for name in QUANTITIES if hasattr(history, name)] if quantities is None else quantities
+    check_quantities(names)
+    variables: dict[str, Any] = {}
+    labels: dict[str, Any] = {"time": ("time", history.time, {"units": "s"})}
+    for name in names:
+        values, dims = getattr(history, name), ("time",)
+        if name == "time" or (quantities is None and values.size == 0):
+            continue
+        if values.ndim > 1:
+            dims = ("time", DIMENSIONS[name])
+            labels[dims[1]] = ["left", "right"] if dims[1] == "edge" else np.arange(values.shape[1]) + 1
+        variables[name] = (dims, values, {"units": QUANTITIES[name]} if QUANTITIES[name] else {})
+    return xr.Dataset(variables, labels, {"model": history.model.label})
 
 
 def _xarray() -> Any:
@@ -169,34 +122,32 @@ def _xarray() -> Any:
     return xarray
 
 
-def history_columns(history: TabledHistory, more: Iterable[str] = ()) -> dict[str, Array]:
+def history_columns(history: History, more: Iterable[str] = ()) -> dict[str, Array]:
     """Return the columns of a history and `more` of its quantities by their names, each of shape (n_states,).
 
     These are `UNITS_OF_HISTORY`, the quantities of `more`, and `ground_columns`. The total displacement is NaN where
-    the height of the top is not known.
+    the height of the top is not history.
     """
-    known: Any = history
     missing = np.full(history.states.shape[0], math.nan)
-    found = {name: getattr(known, name, missing) for name in UNITS_OF_HISTORY}
-    return found | {name: getattr(known, name) for name in more} | ground_columns(history)
+    found = {name: getattr(history, name, missing) for name in UNITS_OF_HISTORY}
+    return found | {name: getattr(history, name) for name in more} | ground_columns(history)
 
 
-def ground_columns(history: TabledHistory) -> dict[str, Array]:
+def ground_columns(history: History) -> dict[str, Array]:
     """Return what a history has beyond that of a base that stands on rigid ground, each of shape (n_states,).
 
     The vertical acceleration of the ground if there is any, the slip if the base can slide, and on springs the heave,
     the rise of the edges and the force of every spring.
     """
-    known: Any = history
     columns: dict[str, Array] = {}
-    if known.vertical_ground_acceleration.any():
-        columns["vertical_ground_acceleration"] = known.vertical_ground_acceleration
+    if history.vertical_ground_acceleration.any():
+        columns["vertical_ground_acceleration"] = history.vertical_ground_acceleration
     if history.model.layout.slip >= 0:
-        columns |= {"slip": known.slip, "slip_velocity": known.slip_velocity}
+        columns |= {"slip": history.slip, "slip_velocity": history.slip_velocity}
     if isinstance(history.model, SpringModel):
-        left, right = known.edge_uplift.T
-        columns |= {"heave": known.heave, "left_edge_uplift": left, "right_edge_uplift": right}
-        columns |= {f"spring_force_{k}": force for k, force in enumerate(known.spring_force.T, 1)}
+        left, right = history.edge_uplift.T
+        columns |= {"heave": history.heave, "left_edge_uplift": left, "right_edge_uplift": right}
+        columns |= {f"spring_force_{k}": force for k, force in enumerate(history.spring_force.T, 1)}
     return columns
 
 
@@ -215,7 +166,7 @@ def check_quantities(names: Any) -> None:
         )
 
 
-def _chosen(history: TabledHistory, names: Sequence[str]) -> dict[str, Array]:
+def _chosen(history: History, names: Sequence[str]) -> dict[str, Array]:
     """Return chosen quantities as columns; those of several values are numbered from 1."""
     check_quantities(names)
     columns: dict[str, Array] = {}
