@@ -300,7 +300,7 @@ def test_default_factors(site, of_alpha, of_beta):
         (
             (5.0, 8.0, "D"),
             {},
-            r"F_α = 1\.52 and F_β = 0\.59, below 1\. Give those of the site: amplification=\(F_α, F_β",
+            r"F_α = 1\.52 and F_β = 0\.59, below 1\. .*amplification=\(F_α, F_β",
         ),
     ],
 )
