@@ -297,7 +297,7 @@ def test_units_of_the_caller(tmp_path, units, factor):
 
 @pytest.mark.parametrize("units", ["", "counts", "0 g", "-1 g", "1e999 g", "g g", "2", 2, None.__class__, "x" * 10_000])
 def test_units_that_are_none(tmp_path, units):
-    with pytest.raises(InputError, match=r'units must be one of .* one count is: units="2\.4e-4 cm/s2"'):
+    with pytest.raises(InputError, match=r'units must be one of .* one count: units="2\.4e-4 cm/s2"'):
         read_motion(write(tmp_path, table()), units=units)
 
 
