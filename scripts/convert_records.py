@@ -17,7 +17,7 @@ import h5py
 import hdf5plugin  # noqa: F401  (registers the compression of the files)
 import numpy as np
 
-from rockflex.motion._embedded import DATA, encode
+from rockflex.motion._suite import DATA, encode
 
 FEMA = {
     "fema-p695-far-field": ("farfield", "FF", 6),

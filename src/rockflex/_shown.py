@@ -25,6 +25,12 @@ def few(texts: Sequence[str]) -> str:
     return ", ".join(texts if len(texts) <= FEW else [*texts[:4], "...", *texts[-2:]])
 
 
+def listed(texts: Sequence[str], most: int = 10) -> str:
+    """Return some texts separated by commas; of many the first ones, and how many more there are."""
+    more = f" and {len(texts) - most} more" if len(texts) > most else ""
+    return ", ".join(texts[:most]) + more
+
+
 def counted(n: int, one: str, several: str = "") -> str:
     """Return a number with its noun: 1 record, 2 records; `several` is the plural if it is not `one` with an s."""
     return f"{n} {one if n == 1 else several or f'{one}s'}"

@@ -295,8 +295,8 @@ def test_allowed_arrows_pass() -> None:
     sources = synthetic(
         {
             "_checks": "from rockflex._errors import InputError",
-            "structure/_frame": "from rockflex.modal import f\nfrom ._lumped import g\nfrom .. import _checks",
-            "structure/_lumped": "import numpy",
+            "structure/_frames": "from rockflex.modal import f\nfrom ._beam import g\nfrom .. import _checks",
+            "structure/_beam": "import numpy",
             "cli/_run": "import rockflex as rf, typer, rich.console\nfrom rockflex.study import simulate",
             "study/_table": "import pandasql\ndef f():\n    import pandas\nif TYPE_CHECKING:\n    import pandas as pd",
             "plot/_history": "import matplotlib.pyplot as plt",
@@ -317,7 +317,7 @@ def test_allowed_arrows_pass() -> None:
         ("study/_table", "if TYPE_CHECKING:\n    pass\nelse:\n    import pandas"),
         ("response___history", "def show():\n    import matplotlib.pyplot as plt"),
         ("study/_table", "from rich.table import Table"),
-        ("motion/_spectrum", "from xarray import Dataset"),
+        ("motion/_spectra", "from xarray import Dataset"),
     ],
 )
 def test_a_misplaced_library_is_seen(module: str, source: str) -> None:

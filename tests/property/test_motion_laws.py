@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from rockflex._constants import GRAVITY
 from rockflex.motion import GroundMotion, one_sine_pulse, read_at2, read_motion, ricker_pulse
-from rockflex.motion._embedded import decode, encode
+from rockflex.motion._suite import decode, encode
 
 MEASURES = ("pga", "pgv", "pgd", "arias", "cav", "d5_95")
 

@@ -96,7 +96,7 @@ def test_a_few_blocks_are_told():
         ({"at": [0.0, 1.0]}, "im must be positive and finite, but 0"),
         ({"groups": [1, 2]}, "im has 144, outcome_or_response has 144, groups has 2"),
         ({"groups": np.ones(144)}, "at least two groups, but all 144 runs belong to 1"),
-        ({"groups": np.where(IM > 0.5, np.nan, 1.0)}, r"groups must name the record of every run, but \d+ names"),
+        ({"groups": np.where(IM > 0.5, np.nan, 1.0)}, r"groups must name the recording of every run, but \d+ names"),
         ({"outcome_or_response": np.zeros(144)}, "response must be positive"),
         ({"curve": lambda fit, at: np.where(np.array(at) > 0.2, np.nan, 1.0)}, "Only 0 of 30 .* 20 are needed.*finite"),
     ],

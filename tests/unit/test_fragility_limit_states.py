@@ -1,4 +1,4 @@
-"""Limit states as values: which runs exceed them, and how their names appear."""
+"""Limit states of runs, and observed fractions."""
 
 import math
 
@@ -17,6 +17,7 @@ from rockflex.fragility import (
     UPLIFT,
     beyond,
     limit_label,
+    observed_fractions,
     residual_beyond,
     symbol_of_nominal,
 )
@@ -94,3 +95,18 @@ def test_a_base_on_springs_that_turns_without_uplift_does_not_rock():
     tilted = RUNS.assign(status=["no_uplift", "no_uplift", "no_uplift", "rocking", "overturned"])
     assert ROCKING.exceeded(tilted).tolist() == [False, False, False, True, True]
     assert beyond(0.01).exceeded(tilted).tolist() == [False, False, True, True, True]  # it turned all the same
+
+
+@pytest.mark.parametrize("groups", [1, 3, 7, 40])
+def test_against_a_loop(groups):
+    rng = np.random.default_rng(3)
+    im, exceeded = rng.lognormal(size=23), rng.random(23) < 0.4
+    found = observed_fractions(im, exceeded, groups)
+    runs = sorted(zip(im, exceeded, strict=True))
+    sizes = [23 // groups + (place < 23 % groups) for place in range(groups)]
+    ends = np.cumsum(sizes)
+    parts = [runs[end - size : end] for size, end in zip(sizes, ends, strict=True) if size]
+    expected = [
+        (np.prod([m for m, _ in part]) ** (1 / len(part)), sum(e for _, e in part) / len(part)) for part in parts
+    ]
+    np.testing.assert_allclose(found, expected, rtol=1e-12)

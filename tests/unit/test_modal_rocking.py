@@ -276,7 +276,7 @@ def test_first_mode_that_takes_part_in_the_base_moment_alone():
     [
         (
             {"heights": [2.0, 5.0, 8.0]},
-            r"heights must be those .*, \[2. 5. 7.\], but \[2. 5. 8.\] was given",
+            r"heights must .*, \[2. 5. 7.\], but \[2. 5. 8.\] was given",
         ),
         ({"mass": [1.0, 2.0]}, r"one mass for each of the 3 heights, but 2 were given"),
         ({"base_mass": -1.0}, r"base_mass must be a zero or positive, finite number in kg, but -1.0"),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from rockflex.modal._uplifted_damping import uplifted_damping
+from rockflex.modal._uplifted import uplifted_damping
 from rockflex.papers.silva_stojadinovic_2024._structures import TOWER, frame_of
 
 

@@ -1,3 +1,5 @@
+"""Ground motions: construction, integrals, finer sampling, correction and filtering."""
+
 import copy
 import pickle
 import subprocess
@@ -5,10 +7,13 @@ import sys
 
 import numpy as np
 import pytest
+from scipy.signal import butter, sosfreqz
 
 import rockflex.motion as motion_layer
 from rockflex._errors import InputError
 from rockflex.motion import GroundMotion, RecordInfo
+
+MOTION = GroundMotion(np.random.default_rng(5).normal(size=400), 0.01, "noise")
 
 
 def test_holds_a_read_only_copy():
@@ -93,3 +98,88 @@ def test_importing_the_layer_loads_no_heavy_package():
 def test_exports_are_what_is_listed():
     assert all(hasattr(motion_layer, name) for name in motion_layer.__all__)
     assert sorted(motion_layer.__all__) == sorted(set(motion_layer.__all__))
+
+
+def test_refining_splits_every_interval():
+    fine = GroundMotion([0, 3, -3], 0.3).refined(3)
+    assert fine.acceleration == pytest.approx([0, 1, 2, 3, 1, -1, -3])
+    assert fine.dt == pytest.approx(0.1)
+    assert fine.duration == pytest.approx(0.6)
+    assert np.array_equal(MOTION.refined(7).acceleration[::7], MOTION.acceleration)
+    assert np.array_equal(MOTION.refined(1).acceleration, MOTION.acceleration)
+
+
+@pytest.mark.parametrize("k", [0, -1, 1.5, "2", None])
+def test_refining_refuses(k):
+    with pytest.raises(InputError, match="k must be a whole number from 1 to 10000"):
+        MOTION.refined(k)
+
+
+def test_resampling_is_refining():
+    fine = MOTION.resampled(0.0025)
+    assert fine.dt == 0.0025
+    assert np.array_equal(fine.acceleration, MOTION.refined(4).acceleration)
+    assert MOTION.resampled(0.01 * (1 + 1e-12)).dt == 0.01
+
+
+@pytest.mark.parametrize(
+    ("dt", "steps"),
+    [(0.004, "0.005 s or 0.00333333333333 s"), (0.02, "0.01 s"), (0.0099, "0.01 s or 0.005 s")],
+)
+def test_resampling_names_the_steps_that_can_be_had(dt, steps):
+    with pytest.raises(InputError, match=f"cannot be resampled exactly to dt = {dt} s.*Use {steps}\\."):
+        MOTION.resampled(dt)
+
+
+def test_resampling_refuses_no_step():
+    with pytest.raises(InputError, match="dt must be a positive"):
+        MOTION.resampled(0)
+
+
+@pytest.mark.parametrize("degree", [0, 1, 3])
+def test_baseline_removes_the_polynomial_and_nothing_else(degree):
+    t = MOTION.time
+    drift = sum((0.3 - 0.1 * k) * (t / 4) ** k for k in range(degree + 1))
+    clean = MOTION.baseline_corrected(degree)
+    drifted = GroundMotion(MOTION.acceleration + drift, MOTION.dt).baseline_corrected(degree)
+    assert drifted.acceleration == pytest.approx(clean.acceleration, abs=1e-12)
+    # What remains of the velocity is orthogonal to every drift that could have been removed.
+    for k in range(degree + 1):
+        assert clean.velocity @ GroundMotion((t / 4) ** k, MOTION.dt).velocity == pytest.approx(0, abs=1e-9)
+    # The least-squares fit through the normal equations, in plain powers.
+    basis = np.stack([GroundMotion((t / 4) ** k, MOTION.dt).velocity for k in range(degree + 1)], axis=1)
+    weights = np.linalg.solve(basis.T @ basis, basis.T @ MOTION.velocity)
+    assert clean.velocity == pytest.approx(MOTION.velocity - basis @ weights, abs=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("degree", "text"),
+    [(-1, "at least 0, but -1"), (1.5, "at least 0, but 1.5"), (399, "at most 398 for 400 samples")],
+)
+def test_baseline_refuses(degree, text):
+    with pytest.raises(InputError, match=text):
+        MOTION.baseline_corrected(degree)
+
+
+def test_band_pass_has_the_squared_gain_and_no_phase():
+    t = np.arange(20000) * 0.01
+    sections = butter(4, (0.5, 10), btype="bandpass", output="sos", fs=100)
+    for frequency in (0.2, 0.5, 2.0, 10.0, 20.0):
+        sine = np.sin(2 * np.pi * frequency * t)
+        filtered = GroundMotion(sine, 0.01).band_passed(0.5, 10.0).acceleration
+        _, gain = sosfreqz(sections, [frequency], fs=100)
+        middle = slice(5000, 15000)
+        assert filtered[middle] == pytest.approx(abs(gain[0]) ** 2 * sine[middle], abs=1e-6)
+
+
+@pytest.mark.parametrize(("low", "high"), [(0, 10), (10, 1), (1, 50), (-1, 10), (1, 1)])
+def test_band_pass_checks_the_corners(low, high):
+    with pytest.raises(InputError, match=r"0 < low < high < 50 Hz, the Nyquist frequency of dt = 0\.01 s"):
+        MOTION.band_passed(low, high)
+
+
+def test_band_pass_checks_order_and_length():
+    with pytest.raises(InputError, match="order must be a whole number from 1 to 100, but 0"):
+        MOTION.band_passed(1, 10, order=0)
+    with pytest.raises(InputError, match="order 4 needs more than 27 samples, but the record has 20"):
+        GroundMotion(np.ones(20), 0.01).band_passed(1, 10)

@@ -1,12 +1,30 @@
-"""Record files read into a suite: what is read, what is left out, and what is said of it."""
+"""Many record files: suites, surveys, and tables about records."""
 
+import numpy as np
 import pytest
 
+import rockflex as rf
+from record_samples import SEARCH_RESULTS, at2, cosmos, esm, knet
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, RecordWarning
 from rockflex.motion import read_suite
+from rockflex.motion._record_table import read_table
 
 AT2 = "Some Event, 1/1/2001, Some Station, {}\nACCELERATION IN UNITS OF G\nNPTS= 3, DT= .1\n0 {} 0\n"
+FLATFILE = (
+    "Record Sequence Number,EQID,Earthquake Name,YEAR,Station Name,Earthquake Magnitude,EpiD (km),"
+    "Joyner-Boore Dist. (km),ClstD (km),Vs30 (m/s) selected for analysis,File Name (Horizontal 1),"
+    "File Name (Horizontal 2),File Name (Vertical)\n"
+    '9001,1,"Somewhere, Italy-02",1940,Array #9,6.95,12.99,6.09,7.5,213.44,SOME\\ABC180.AT2,SOME\\ABC270.AT2,'
+    "SOME\\ABC-UP.AT2\n"
+    "9002,2,Elsewhere,1952,Courthouse,-999,-999,81.3,82.19,-999,-999,-999,-999\n"
+)
+ESM_FLATFILE = (
+    "event_id;event_time;ML;Mw;EMEC_Mw;network_code;station_code;location_code;vs30_m_sec;vs30_m_sec_WA;epi_dist;JB_dist;"
+    "rup_dist\n"
+    "EMSC-20161030_0000029;2016-10-30 06:40:18;6.1;6.5;6.6;IT;NRC;00;498;450;4.6;0.1;5.4\n"
+    "EMSC-20161030_0000029;2016-10-30 06:40:18;6.1;;6.6;IT;ACC;00;;712;19.5;11.2;12.8\n"
+)
 
 
 @pytest.fixture
@@ -97,3 +115,310 @@ def test_without_any_record_nothing_can_be_skipped(tmp_path):
             read_suite(tmp_path, on_error=choice)
     with pytest.raises(InputError, match='on_error must be "raise" or "skip", but \'warn\' was given'):
         read_suite(tmp_path, on_error="warn")
+
+
+@pytest.fixture
+def folder_survey(tmp_path):
+    folder_survey = tmp_path / "mixed"
+    folder_survey.mkdir()
+    files = {
+        "RSN9001_SOME_ABC180.AT2": at2("180"),
+        "RSN9001_SOME_ABC270.AT2": at2("270", 0.2),
+        "RSN9001_SOME_ABC-UP.AT2": at2("UP"),
+        "_SearchResults.csv": SEARCH_RESULTS,
+        "MYG002.NS": knet("N-S"),
+        "MYG002.UD": knet("U-D"),
+        "IT.NRC.HNE.ASC": esm(PGA_CM_S_2="13.0"),
+        "CE13921.V2c": cosmos(90) + cosmos(360) + cosmos(400),
+        "lab.csv": "time;acc\n0,0;1\n0,1;2\n0,2;3\n",
+        "readme.md": "A folder of records.\n",
+        "notes.txt": "Downloaded in spring\n",
+        ".hidden.txt": "0 1\n",
+    }
+    for name, text in files.items():
+        (folder_survey / name).write_text(text)
+    (folder_survey / "inner").mkdir()
+    return folder_survey
+
+
+def test_survey(folder_survey):
+    survey = rf.survey_records(folder_survey)
+    assert [(entry.file, entry.name) for entry in survey.taken] == [
+        ("CE13921.V2c", "CE13921-090"),
+        ("CE13921.V2c", "CE13921-360"),
+        ("IT.NRC.HNE.ASC", "IT.NRC.HNE"),
+        ("MYG002.NS", "MYG002-NS"),
+        ("RSN9001_SOME_ABC180.AT2", "RSN9001_SOME_ABC180"),
+        ("RSN9001_SOME_ABC270.AT2", "RSN9001_SOME_ABC270"),
+    ]
+    assert [entry.format for entry in survey.taken] == ["COSMOS", "COSMOS", "ESM", "K-NET", "AT2", "AT2"]
+    left = {entry.file: entry.reason for entry in survey.left_out}
+    assert list(left) == [
+        ".hidden.txt", "CE13921.V2c", "MYG002.UD", "RSN9001_SOME_ABC-UP.AT2", "_SearchResults.csv", "lab.csv",
+        "notes.txt", "readme.md",
+    ]  # fmt: skip
+    assert {left[name] for name in ("CE13921.V2c", "MYG002.UD", "RSN9001_SOME_ABC-UP.AT2")} == {"vertical component"}
+    assert left["_SearchResults.csv"] == (
+        "a table about the records; it lists 2 files that are not there: RSN9002_ELSE_DEF042.AT2, "
+        "RSN9002_ELSE_DEF132.AT2"
+    )
+    assert left["lab.csv"].startswith("lab.csv does not state the unit of its acceleration")
+    assert left["notes.txt"].startswith("notes.txt holds no numbers")
+    assert left["readme.md"] == left[".hidden.txt"] == "no record, by suffix and beginning"
+    told = {entry.file: entry.reason for entry in survey.taken if entry.reason}
+    assert list(told) == ["IT.NRC.HNE.ASC"]
+    assert told["IT.NRC.HNE.ASC"].startswith("the header states a PGA of 0.13 m/s², but the samples reach 0.12125")
+
+
+def test_entries_state_what_is_known(folder_survey):
+    entry = next(each for each in rf.survey_records(folder_survey).entries if each.name == "RSN9001_SOME_ABC270")
+    assert (entry.dt, entry.n_samples, entry.pga, entry.stated_pga) == (0.1, 3, 0.2 * 9.81, None)
+    assert (entry.magnitude, entry.distance_km, entry.vs30) == (6.95, 7.5, 213.44)
+    assert (entry.station, entry.component, entry.direction) == ("Some Station", "270", "horizontal")
+
+
+def test_it_agrees_with_read_suite(folder_survey):
+    survey = rf.survey_records(folder_survey)
+    with pytest.warns(rf.RecordWarning) as caught:
+        suite = rf.read_suite(folder_survey, on_error="skip")
+    assert survey.suite() == suite
+    assert survey.name == suite.name == "mixed"
+    said = " ".join(str(each.message) for each in caught)
+    assert all(entry.file.rpartition(".")[0].split("-")[0] in said for entry in survey.left_out if
+               "component" in entry.reason or "holds no numbers" in entry.reason)  # fmt: skip
+
+
+def test_pairs(folder_survey):
+    survey = rf.survey_records(folder_survey, units={"lab.csv": "m/s2"}, vertical="pair")
+    assert {entry.name for entry in survey.taken} >= {"MYG002-UD", "CE13921-UP", "RSN9001_SOME_ABC-UP", "lab"}
+    assert {entry.name: entry.reason for entry in survey.taken if entry.reason}.keys() == {"IT.NRC.HNE", "lab"}
+    assert next(e.reason for e in survey.entries if e.name == "lab") == "without a vertical component"
+    stations = {each.name: (len(each.horizontal), each.vertical is not None) for each in survey.stations}
+    assert stations == {
+        "CE 13921 Fontana, Wed Jan 15, 2014 01:35 PST": (2, True),
+        "IT NRC 00 CENTRAL_ITALY 2016-10-30 06:40": (1, False),
+        "NIED MYG002 2006-01-18 23:25": (1, True),
+        "RSN9001": (2, True),
+        "lab": (1, False),
+    }
+    with pytest.raises(rf.InputError, match='vertical must be "pair" or None'):
+        rf.survey_records(folder_survey, vertical="yes")
+
+
+def test_frame_and_text(folder_survey):
+    survey = rf.survey_records(folder_survey)
+    frame = survey.to_frame()
+    assert len(frame) == len(survey.entries)
+    assert list(frame.columns[:3]) == ["file", "taken", "reason"]
+    assert frame["taken"].sum() == 6
+    assert repr(survey) == "RecordSurvey('mixed', 6 taken, 8 left out)"
+
+
+def test_a_list_of_files(folder_survey):
+    survey = rf.survey_records([folder_survey / "notes.txt"])
+    assert (survey.name, len(survey.entries), survey.taken) == ("", 1, ())
+    with pytest.raises(rf.InputError, match="A suite needs at least one motion"):
+        survey.suite()
+    with pytest.raises(rf.InputError, match="is not a directory"):
+        rf.survey_records(folder_survey / "none")
+    with pytest.raises(rf.InputError, match="paths must be a directory or a sequence of files, but int was given"):
+        rf.survey_records(3)
+
+
+def motion(name, **info):
+    return rf.GroundMotion([0.0, 1.0, 0.0], 0.1, name, rf.RecordInfo(**info) if info else None)
+
+
+def test_stations_by_name():
+    found = rf.group_stations(
+        [motion("ABC090"), motion("ABC180"), motion("abc-UP", direction="vertical"), motion("DEF090"), motion("plain")]
+    )
+    assert [(each.name, len(each.horizontal), each.vertical is not None) for each in found] == [
+        ("ABC", 2, True),
+        ("DEF090", 1, False),
+        ("plain", 1, False),
+    ]
+    assert [each.name for each in found[0].pair] == ["ABC090", "ABC180"]
+    with pytest.raises(rf.InputError, match="A pair of horizontal components is expected, but the record DEF090 has 1"):
+        found[1].pair  # noqa: B018
+
+
+def test_stations_bring_their_vertical_component():
+    both = rf.GroundMotion([0.0, 1.0, 0.0], 0.1, "A", rf.RecordInfo(rsn=3), vertical=[0.0, 0.5, 0.0])
+    (found,) = rf.group_stations([both])
+    assert found.vertical.pga == 0.5
+    with pytest.raises(rf.InputError, match="motions must be a sequence of GroundMotion objects, but int was given"):
+        rf.group_stations(3)
+    with pytest.raises(rf.InputError, match="motions must hold GroundMotion objects, but str was given"):
+        rf.group_stations(["a"])
+
+
+def long_at2(component, samples):
+    lines = "\n".join(f" {value: .7E}" for value in samples)
+    return f"Event, 1/1/2001, Station, {component}\nUNITS OF G\nNPTS= {len(samples)}, DT= .01\n{lines}\n"
+
+
+def table_of(samples, head, unit=1.0):
+    return f"time (s),{head}\n" + "".join(f"{0.01 * k:.2f},{unit * value:.6f}\n" for k, value in enumerate(samples))
+
+
+def test_a_record_that_several_files_hold_is_taken_once_and_its_pair_stays_a_pair(tmp_path):
+    first, second = 0.2 * np.random.default_rng(1).standard_normal((2, 300))
+    files = {
+        "RSN5_ABC000.AT2": long_at2("000", first),
+        "RSN5_ABC090.AT2": long_at2("090", second),
+        "Copy of RSN5_ABC000.AT2": long_at2("000", first),
+        "a.csv": table_of(first, "acc (g)"),
+        "b.csv": table_of(second, "acc (m/s2)", 9.80665),
+        "half.csv": table_of(0.5 * first, "acc (g)"),
+    }
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    survey = rf.survey_records(tmp_path)
+    assert [entry.file for entry in survey.taken] == ["RSN5_ABC000.AT2", "RSN5_ABC090.AT2", "half.csv"]
+    kept = {entry.file: name for entry in survey.left_out for name in files if name in entry.reason}
+    assert kept == {
+        "Copy of RSN5_ABC000.AT2": "RSN5_ABC000.AT2",
+        "a.csv": "RSN5_ABC000.AT2",
+        "b.csv": "RSN5_ABC090.AT2",
+    }
+    with pytest.warns(rf.RecordWarning, match=r"Left out: 3 copies .*a\.csv \(of RSN5_ABC000\.AT2\)"):
+        suite = rf.read_suite(tmp_path)
+    assert suite.names == ("RSN5_ABC000", "RSN5_ABC090", "half")
+    assert [each.pair for each in rf.group_stations(suite) if len(each.horizontal) == 2] == [tuple(suite)[:2]]
+    assert [len(each.horizontal) for each in survey.stations] == [2, 1]
+
+
+def test_components_that_names_tell_apart_are_no_copies(tmp_path):
+    samples = 0.1 * np.random.default_rng(2).standard_normal(100)
+    both = "time (s),acc NS (g),acc EW (g)\n" + "".join(f"{0.01 * k:.2f},{a},{a}\n" for k, a in enumerate(samples))
+    for name in ("ABC000.csv", "ABC090.csv"):
+        (tmp_path / name).write_text(table_of(samples, "acc (g)"))
+    assert rf.read_suite(tmp_path).names == ("ABC000", "ABC090")
+    (tmp_path / "both.csv").write_text(both)
+    assert rf.read_suite([tmp_path / "both.csv"]).names == ("both-NS", "both-EW")
+    for name in ("RSN1_A000.AT2", "RSN2_A000.AT2"):
+        (tmp_path / name).write_text(long_at2("000", samples))
+    assert len(rf.read_suite([tmp_path / "RSN1_A000.AT2", tmp_path / "RSN2_A000.AT2"])) == 2
+
+
+@pytest.fixture
+def folder_record_table(tmp_path):
+    folder_record_table = tmp_path / "peer"
+    folder_record_table.mkdir()
+    for name, component in (("ABC180", "180"), ("ABC270", "270"), ("ABC-UP", "UP")):
+        (folder_record_table / f"RSN9001_SOME_{name}.AT2").write_text(at2(component))
+    (folder_record_table / "RSN9002_ELSE_DEF042.AT2").write_text(at2("42"))
+    return folder_record_table
+
+
+def facts(motion):
+    info = motion.metadata
+    return info.rsn, info.magnitude, info.distance_km, info.distance_jb_km, info.vs30
+
+
+def test_search_results_of_peer(folder_record_table):
+    (folder_record_table / "_SearchResults.csv").write_text(SEARCH_RESULTS)
+    with pytest.warns(rf.RecordWarning, match="Without a vertical component: 1 of 3 records, RSN9002_ELSE_DEF042"):
+        suite = rf.read_suite(folder_record_table, vertical="pair")
+    assert [facts(motion) for motion in suite] == [
+        (9001, 6.95, 7.5, 6.09, 213.44),
+        (9001, 6.95, 7.5, 6.09, 213.44),
+        (9002, 7.36, 82.19, 81.3, None),
+    ]
+    # What the header says remains.
+    assert {motion.metadata.event for motion in suite} == {"Some Event"}
+    table = read_table(folder_record_table / "_SearchResults.csv")
+    first = table.by_number[9001]
+    assert (first.event, first.year, first.station) == ("Somewhere, Italy-02", 1940, "Array #9, East")
+    assert table.by_file["rsn9001_some_abc-up.at2"].direction == "vertical"
+    assert "-----" not in table.by_file
+
+
+def test_a_flatfile_elsewhere(folder_record_table, tmp_path):
+    (tmp_path / "flatfile.csv").write_text(FLATFILE)
+    with pytest.warns(rf.RecordWarning, match="1 vertical component"):
+        suite = rf.read_suite(folder_record_table, table=tmp_path / "flatfile.csv")
+    assert [facts(motion) for motion in suite][1:] == [(9001, 6.95, 7.5, 6.09, 213.44), (9002, None, 82.19, 81.3, None)]
+    assert suite[0].metadata.epicentral_km == 12.99
+
+
+def test_a_flatfile_in_a_workbook(folder_record_table, tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    for row in (["RSN", "Magnitude", "Rrup (km)"], [9001, 6.95, 7.5]):
+        book.active.append(row)
+    book.save(folder_record_table / "about.xlsx")
+    suite = rf.read_suite([*folder_record_table.glob("*180.AT2"), folder_record_table / "about.xlsx"])
+    assert facts(suite[0]) == (9001, 6.95, 7.5, None, None)
+
+
+def test_units_and_steps_by_file(tmp_path):
+    for name in ("lab-1", "lab-2", "old"):
+        (tmp_path / f"{name}.txt").write_text("0\n0.5\n0\n")
+    (tmp_path / "units.csv").write_text(
+        "file;units;dt\nlab-*.txt;g;0.005\nOLD.txt;2 cm/s2;0,01\n".replace("0,01", "0.02")
+    )
+    suite = rf.read_suite(tmp_path)
+    assert [(motion.pga, motion.dt) for motion in suite] == [(4.905, 0.005), (4.905, 0.005), (0.01, 0.02)]
+    (tmp_path / "units.csv").unlink()
+    suite = rf.read_suite(tmp_path, units={"lab-1.txt": "m/s2", "*": "mg"}, dt=0.01)
+    assert [motion.pga for motion in suite] == pytest.approx([0.5, 0.004905, 0.004905])
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("file,units\na.txt,furlongs\n", r"t\.csv, line 2: units must be one of .* but 'furlongs' was given"),
+        ("file,units,dt\na.txt,g,-1\n", r"t\.csv, line 2: dt must be a positive"),
+        ("file,notes\na.txt,good\n", r"t\.csv is no table about records: a header line is expected with a column of"),
+        ("time,acc\n0,1\n", "is no table about records"),
+    ],
+)
+def test_refuses(tmp_path, text, message):
+    (tmp_path / "a.txt").write_text("0\n0.5\n0\n")
+    (tmp_path / "t.csv").write_text(text)
+    with pytest.raises(rf.InputError, match=message):
+        rf.read_suite([tmp_path / "a.txt"], units="g", dt=0.01, table=tmp_path / "t.csv")
+
+
+def test_refuses_other_arguments(tmp_path):
+    (tmp_path / "units.csv").write_text("file,units\na.txt,g\n")
+    with pytest.raises(rf.InputError, match=r"units\.csv: only tables about records were given, but no record"):
+        rf.read_suite(tmp_path)
+    (tmp_path / "a.txt").write_text("0\n0.5\n0\n")
+    with pytest.raises(rf.InputError, match="units must be a text such as 'g', or a dictionary of texts by file names"):
+        rf.read_suite(tmp_path, units=["g"])
+    with pytest.raises(rf.InputError, match="units must be one of"):
+        rf.read_suite(tmp_path, units={"a.txt": "counts"})
+    with pytest.raises(rf.InputError, match="table must be a path"):
+        rf.read_suite(tmp_path, table=3)
+    (tmp_path / "binary.bin").write_bytes(b"\0\1" * 20)
+    with pytest.raises(rf.InputError, match="is no table about records"):
+        rf.read_suite(tmp_path, table=tmp_path / "binary.bin")
+    (tmp_path / "units.csv").write_text("file,units\na.txt,furlongs\n")
+    with pytest.raises(rf.InputError, match=r"units must be one of .* 'furlongs'"):
+        rf.read_suite(tmp_path)
+
+
+def test_a_unit_in_the_table_must_fit_the_file(tmp_path):
+    (tmp_path / "units.csv").write_text("file,units\n*.AT2,m/s2\n")
+    (tmp_path / "A090.AT2").write_text(at2("90"))
+    with pytest.raises(rf.InputError, match="is an AT2 file, in g by definition, but units='m/s2' was given"):
+        rf.read_suite(tmp_path)
+
+
+def test_the_flatfile_of_esm(tmp_path):
+    (tmp_path / "records").mkdir()
+    for station in ("NRC", "ACC", "XYZ"):
+        changed = {"MAGNITUDE_W": "", "MAGNITUDE_L": "", "VS30_M_S": "", "STATION_CODE": station}
+        (tmp_path / "records" / f"IT.{station}.ASC").write_text(esm(**changed))
+    (tmp_path / "flatfile.csv").write_text(ESM_FLATFILE)
+    suite = rf.read_suite(tmp_path / "records", table=tmp_path / "flatfile.csv")
+    assert [facts(motion) for motion in suite] == [
+        (None, 6.6, 12.8, 11.2, 712.0),  # what EMEC and the slope give, where the first column is empty
+        (None, 6.5, 5.4, 0.1, 498.0),
+        (None, None, None, None, None),
+    ]
+    assert {motion.metadata.epicentral_km for motion in suite} == {4.6}  # as the header says
+    assert {motion.metadata.event_id for motion in suite} == {"EMSC-20161030_0000029"}

@@ -12,7 +12,7 @@ import pytest
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.motion import GroundMotion, Suite, load_suite, suite_names
-from rockflex.motion._embedded import DATA, decode, encode, read_embedded
+from rockflex.motion._suite import DATA, decode, encode, read_embedded
 
 MOTIONS = [GroundMotion([0, k, 0], 0.1, name=f"m{k}") for k in range(1, 5)]
 SUITE = Suite(MOTIONS, "four")

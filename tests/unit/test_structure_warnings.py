@@ -40,11 +40,9 @@ def test_a_long_period_is_said():
         return make_frame(n_stories=1, period=period)
 
     assert rf.structure_warnings(oscillator(9.999)) == ()
-    text = (
-        "The first period on a fixed base is 10.1 s, longer than those of buildings, towers and bridges, which stay "
-        "below 10 s. Check the units: kg, m, s and N, so EI in N m² and no kN."
-    )
-    assert rf.structure_warnings(oscillator(10.1)) == (text,)
+    (text,) = rf.structure_warnings(oscillator(10.1))
+    assert "10.1 s" in text
+    assert "Check the units" in text
     assert rf.structure_warnings(oscillator(10.1).rocking()) == (text,)
     assert rf.structure_warnings(oscillator(10.1).rocking().truncated(0)) == ()
     assert rf.structure_warnings(rf.rigid_block(0.2, 3.0)) == ()

@@ -1,10 +1,10 @@
 """Fragility and risk: regressions of study results, their confidence bands, and their integrals over hazard."""
 
 from rockflex.fragility._annual_rate import AnnualRate, annual_rate, quadrature, risk_targeted_median
-from rockflex.fragility._bootstrap import BootstrapBand, bootstrap_band
-from rockflex.fragility._capacities import fit_capacities
-from rockflex.fragility._cloud import CloudFit, fit_cloud
+from rockflex.fragility._bootstrap import BootstrapBand, bootstrap_band, resample_weights, resampled_exceedance
+from rockflex.fragility._cloud import CloudFit, compare_measures, fit_cloud
 from rockflex.fragility._clouds import CloudFits, fit_clouds, fit_each_cloud, recordings_of
+from rockflex.fragility._exports import write_nrml, write_pelicun
 from rockflex.fragility._hazard import HazardCurve, damping_of
 from rockflex.fragility._limit_states import (
     LIMIT_STATES,
@@ -18,20 +18,14 @@ from rockflex.fragility._limit_states import (
     LimitState,
     beyond,
     limit_label,
+    observed_fractions,
     residual_beyond,
     rocked,
     symbol_of_nominal,
 )
-from rockflex.fragility._logistic import LogisticFit, fit_logistic
-from rockflex.fragility._lognormal import LognormalFragility
-from rockflex.fragility._measures import compare_measures
-from rockflex.fragility._nrml import write_nrml
-from rockflex.fragility._observed import observed_fractions
+from rockflex.fragility._logistic import LogisticFit, UnanimousOutcome, fit_logistic
+from rockflex.fragility._lognormal import LognormalFragility, fit_capacities, fit_stripes
 from rockflex.fragility._outcomes import OutcomeFragility, OutcomeProbabilities, RotationFragility, fit_outcomes
-from rockflex.fragility._pelicun import write_pelicun
-from rockflex.fragility._resamples import resample_weights, resampled_exceedance
-from rockflex.fragility._stripes import fit_stripes
-from rockflex.fragility._unanimous import UnanimousOutcome
 
 __all__ = [
     "LIMIT_STATES",

@@ -10,15 +10,14 @@ from rockflex._arrays import Array
 from rockflex._checks import in_range, instance, positive
 from rockflex._errors import InputError
 from rockflex._values import Value
-from rockflex.fragility._arguments import checked_confidence
-from rockflex.fragility._curve import Curve, Fragility, checked_curve
+from rockflex.fragility._arguments import Curve, Fragility, checked_confidence, checked_curve
 from rockflex.fragility._hazard import HazardCurve
+from rockflex.fragility._jackknife import sample_limits
+from rockflex.fragility._logistic import UnanimousOutcome
 from rockflex.fragility._lognormal import LognormalFragility
-from rockflex.fragility._recordings import limits
-from rockflex.fragility._unanimous import UnanimousOutcome
 
-NODES = 12  # of Gauss and Legendre in a segment of a hazard curve
-SMALLEST = 60.0  # in ln(IM): the tail below the curve's lower end is integrated this far
+N_NODES = 12  # of Gauss and Legendre in a segment of a hazard curve
+MAX_TAIL = 60.0  # in ln(IM): the tail below the curve's lower end is integrated this far
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,8 +36,8 @@ class AnnualRate(Value):
     low, high : float
         Confidence limits of `rate`, if a confidence was given; NaN otherwise, and where all runs had the same outcome.
     extrapolated : float
-        Part of `rate` in 1/year from measures outside those of the runs, where the fragility is extrapolated; NaN if
-        the measures of the runs are not known.
+        Part of `rate` in 1/year from measures outside the range of the runs, where the fragility is extrapolated; NaN
+        if the measures of the runs are not known.
 
     Examples
     --------
@@ -80,7 +79,7 @@ def annual_rate(hazard: HazardCurve, fragility: Fragility | Curve, *, confidence
     confidence
         Confidence of a band, in [0, 1), for a fit with a covariance: quantiles of the rates for parameters drawn from
         Student's t with G - 1 degrees of freedom, where G is the number of recordings. It is the scatter of the records
-        alone, not that of the hazard. Default: no band.
+        alone, without the hazard's. Default: no band.
 
     Raises
     ------
@@ -106,7 +105,7 @@ def annual_rate(hazard: HazardCurve, fragility: Fragility | Curve, *, confidence
     ends, outside = getattr(fragility, "measured", None), math.nan
     if ends is not None:
         outside = float(np.sum((probability(im) * share)[(im < ends[0]) | (im > ends[1])]))
-    rate, below = _covered(hazard, probability), _below(hazard, probability)
+    rate, below = _rate_within(hazard, probability), _rate_below(hazard, probability)
     return AnnualRate(rate, below, float(hazard.rate[-1]), low, high, outside)
 
 
@@ -115,7 +114,7 @@ def quadrature(hazard: HazardCurve) -> tuple[Array, Array]:
 
     Gauss and Legendre's rule in log IM, in each segment of the curve.
     """
-    points, shares = np.polynomial.legendre.leggauss(NODES)
+    points, shares = np.polynomial.legendre.leggauss(N_NODES)
     step = 0.5 + 0.5 * points
     start, width, k = np.log(hazard.im[:-1]), np.diff(np.log(hazard.im)), hazard.slopes
     im = np.exp(start[:, None] + width[:, None] * step)
@@ -133,7 +132,7 @@ def _band(fragility: Any, im: Array, share: Array, confidence: float) -> tuple[f
             f"{type(fragility).__name__} was given. Leave confidence out for the rate alone.",
             field="confidence",
         )
-    low, high = limits(fragility.drawn(im) @ share, wanted)
+    low, high = sample_limits(fragility.drawn(im) @ share, wanted)
     return float(low), float(high)
 
 
@@ -178,7 +177,7 @@ def risk_targeted_median(
     share = in_range("allowed_beyond", allowed_beyond, 0.0, math.inf)
 
     def rate(log_median: float) -> float:
-        return _covered(hazard, LognormalFragility(math.exp(log_median), beta).probability)
+        return _rate_within(hazard, LognormalFragility(math.exp(log_median), beta).probability)
 
     low, high = math.log(hazard.im[0]), math.log(hazard.im[-1])
     most, least = rate(low), rate(high)
@@ -198,7 +197,7 @@ def risk_targeted_median(
     return median
 
 
-def _covered(hazard: HazardCurve, probability: Curve) -> float:
+def _rate_within(hazard: HazardCurve, probability: Curve) -> float:
     from scipy.integrate import quad_vec
 
     start, width = np.log(hazard.im[:-1]), np.diff(np.log(hazard.im))
@@ -211,12 +210,12 @@ def _covered(hazard: HazardCurve, probability: Curve) -> float:
     return float(np.sum(parts))
 
 
-def _below(hazard: HazardCurve, probability: Curve) -> float:
+def _rate_below(hazard: HazardCurve, probability: Curve) -> float:
     """∫ P |dλ| below the first point, with the slope of the first segment; infinite if it diverges."""
     from scipy.integrate import quad_vec
 
     im, k, rate = float(hazard.im[0]), float(hazard.slopes[0]), float(hazard.rate[0])
-    end = min(SMALLEST, 600.0 / k)  # keeps exp(k s) finite
+    end = min(MAX_TAIL, 600.0 / k)  # keeps exp(k s) finite
 
     def tail(s: float) -> Array:
         return probability(np.array([im * math.exp(-s)])) * k * rate * math.exp(k * s)

@@ -1,23 +1,28 @@
 """Confidence bands from resampled runs or records."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockflex._arrays import Array
+from rockflex._arrays import Array, Bools
 from rockflex._checks import finite_vector, float_array, whole_number
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.fragility._arguments import checked_confidence, same_length
-from rockflex.fragility._resamples import draws
+from rockflex.fragility._jackknife import Recordings
+from rockflex.fragility._limit_states import OVERTURNED, ROCKED
+from rockflex.fragility._outcomes import total_probability
+from rockflex.fragility._regression import Scoring, Standardised, fit_curves, fit_lines
 
-MOST = 1_000_000  # resamples
-NEEDED = 20  # fewest fitted resamples for meaningful quantiles
-MANY = 40  # blocks from which on percentiles are taken as they are
+MAX_RESAMPLES = 1_000_000  # resamples
+MIN_RESAMPLES = 20  # fewest fitted resamples for meaningful quantiles
+MIN_GROUPS = 40  # blocks from which on percentiles are taken as they are
+Integers = NDArray[np.int64]
+RESAMPLE_SCORING = Scoring(1e-8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +38,7 @@ class BootstrapBand(Value):
     n : int
         Number of resamples requested.
     n_failed : int
-        Resamples that could not be fitted, such as those without a single event; the band excludes them.
+        Resamples that could not be fitted, such as resamples without a single event; the band excludes them.
     n_separated : int
         Resamples with separated outcomes, which were fitted with Firth's penalty.
     n_groups : int
@@ -78,11 +83,11 @@ def bootstrap_band(
 ) -> BootstrapBand:
     """Percentile band of any statistic from resamples of the runs, or of the records that they share.
 
-    The fits have bands of their own, which hold the truth as often as they say: prefer those, and `annual_rate` for
+    The fits have bands of their own, which hold the truth as often as they say: prefer them, and `annual_rate` for
     rates. Percentiles of skewed curves do not: with 22 recordings, 90 % bands of logistic ones held it in 77 to 85 %.
     With `groups`, whole groups are drawn. The components and scale factors of one record are not independent, and a
     band that treats them as independent is too narrow (Davison & Hinkley 1997, Bootstrap Methods and their Application,
-    Section 3.8). The percentiles are those that widen the band by Student's t and √(m/(m - 1)) for m blocks (Hesterberg
+    Section 3.8). The percentiles widen the band by Student's t and √(m/(m - 1)) for m blocks (Hesterberg
     2015, Am. Stat. 69(4), 371-386).
 
     Parameters
@@ -121,11 +126,11 @@ def bootstrap_band(
     0.0137 from 0.0118 to 0.0152
     """
     measures, grid = finite_vector("im", im, "one unit"), finite_vector("at", at, "one unit")
-    values = _column("outcome_or_response", outcome_or_response)
-    labels = np.arange(measures.size) if groups is None else _column("groups", groups)
-    same_length(im=measures, outcome_or_response=values, groups=labels)
-    wanted, times = checked_confidence(confidence), whole_number("n", n, NEEDED, MOST)
-    evaluate = _curve if curve is None else curve
+    values = _checked_rows("outcome_or_response", outcome_or_response)
+    recordings = Recordings.of(np.arange(measures.size) if groups is None else groups)
+    same_length(im=measures, outcome_or_response=values, groups=recordings.codes)
+    wanted, times = checked_confidence(confidence), whole_number("n", n, MIN_RESAMPLES, MAX_RESAMPLES)
+    evaluate = _evaluate if curve is None else curve
     for name, function in (("fit_function", fit_function), ("curve", evaluate)):
         if not callable(function):
             raise InputError(f"{name} must be a function, but {type(function).__name__} was given.")
@@ -133,11 +138,11 @@ def bootstrap_band(
     if estimate is None:
         raise InputError("curve must return numbers, one for each of `at`, but it returned something else.")
 
-    blocks = _blocks(labels)
+    blocks = _rows_by_group(recordings)
     curves: list[Array] = []
     failures: list[str] = []
     separated = 0
-    for drawn in draws(len(blocks), times, whole_number("seed", seed, 0)):
+    for drawn in draw_groups(len(blocks), times, whole_number("seed", seed, 0)):
         rows = np.concatenate([blocks[i] for i in drawn])
         try:
             fit = fit_function(measures[rows], values[rows])
@@ -150,17 +155,17 @@ def bootstrap_band(
             continue
         curves.append(found)
         separated += bool(getattr(fit, "separated", False))
-    if len(curves) < NEEDED:
+    if len(curves) < MIN_RESAMPLES:
         raise InputError(
-            f"Only {len(curves)} of {times} resamples could be fitted, {NEEDED} are needed. The first failure: "
+            f"Only {len(curves)} of {times} resamples could be fitted, {MIN_RESAMPLES} are needed. The first failure: "
             f"{failures[0]}"
         )
-    low, high = np.quantile(curves, _shares(wanted, len(blocks)), axis=0)
-    note = _note(times, failures, separated, len(blocks))
+    low, high = np.quantile(curves, _percentiles(wanted, len(blocks)), axis=0)
+    note = _band_note(times, failures, separated, len(blocks))
     return BootstrapBand(grid, estimate, low, high, wanted, times, len(failures), separated, len(blocks), note)
 
 
-def _shares(confidence: float, n_blocks: int) -> tuple[float, float]:
+def _percentiles(confidence: float, n_blocks: int) -> tuple[float, float]:
     """Shares of the resamples below the limits of a band, so that few blocks do not make it too narrow."""
     from scipy.special import ndtr, stdtrit
 
@@ -168,36 +173,31 @@ def _shares(confidence: float, n_blocks: int) -> tuple[float, float]:
     return float(ndtr(-half)), float(ndtr(half))
 
 
-def _curve(fit: Any, grid: Array) -> Any:
+def _evaluate(fit: Any, grid: Array) -> Any:
     return fit.probability(grid) if hasattr(fit, "probability") else fit.median(grid)
 
 
-def _column(name: str, values: ArrayLike) -> NDArray[Any]:
+def _checked_rows(name: str, values: ArrayLike) -> NDArray[Any]:
     try:
-        column = np.asarray(values)
+        rows = np.asarray(values)
     except ValueError:
-        column = np.zeros(())
-    if column.ndim == 0 or (name == "groups" and column.ndim != 1):
-        raise InputError(f"{name} must hold a value for every run, but {shown(values)} was given.")
-    return column
+        rows = np.zeros(())
+    if rows.ndim == 0:
+        raise InputError(f"{name} must hold a value for every run, but {shown(values)} was given.", field=name)
+    return rows
 
 
-def _blocks(labels: NDArray[Any]) -> list[NDArray[np.int64]]:
+def _rows_by_group(recordings: Recordings) -> list[NDArray[np.int64]]:
     """Rows of every group, in the order in which the groups first appear."""
-    import pandas as pd
-
-    try:
-        codes, names = pd.factorize(labels, use_na_sentinel=True)
-    except TypeError as error:
-        raise InputError(f"groups must hold names or numbers, but {shown(labels)} was given.") from error
-    if (codes < 0).any():
-        raise InputError(f"groups must name the record of every run, but {int((codes < 0).sum())} names are missing.")
-    if len(names) < 2:
-        raise InputError(f"groups must hold at least two groups, but all {labels.size} runs belong to {len(names)}.")
+    codes, n_groups = recordings
+    if n_groups < 2:
+        raise InputError(
+            f"groups must hold at least two groups, but all {codes.size} runs belong to {n_groups}.", field="groups"
+        )
     return np.split(np.argsort(codes, kind="stable"), np.cumsum(np.bincount(codes))[:-1])
 
 
-def _note(n: int, failures: list[str], separated: int, groups: int) -> str:
+def _band_note(n: int, failures: list[str], separated: int, groups: int) -> str:
     notes: list[str] = []
     if failures:
         notes.append(
@@ -206,6 +206,98 @@ def _note(n: int, failures: list[str], separated: int, groups: int) -> str:
         )
     if separated:
         notes.append(f"{separated} of {n} resamples were separated and fitted with Firth's penalty.")
-    if groups < MANY:
+    if groups < MIN_GROUPS:
         notes.append(f"Percentile bands from {groups} blocks may be too narrow; take them as a lower bound.")
     return " ".join(notes)
+
+
+def draw_groups(n_groups: int, n: int, seed: int) -> Iterator[Integers]:
+    """Numbers of the groups in each of `n` resamples, drawn with replacement."""
+    generator = np.random.default_rng(seed)
+    return (generator.integers(n_groups, size=n_groups) for _ in range(n))
+
+
+def resample_weights(groups: Integers, n: int, seed: int) -> Array:
+    """How often each run occurs in each resample of its groups, shape (n, n_runs), drawn as in `bootstrap_band`.
+
+    Parameters
+    ----------
+    groups : ndarray, shape (n_runs,)
+        Number of the group of every run, from 0 in the order in which the groups first appear.
+    n, seed
+        As in `bootstrap_band`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from rockflex.fragility import resample_weights
+    >>> weights = resample_weights(np.array([0, 0, 1]), n=20, seed=0)
+    >>> weights.shape
+    (20, 3)
+    >>> bool((weights[:, 0] + weights[:, 2] == 2.0).all())
+    True
+    """
+    count = int(groups.max()) + 1
+    return np.array(
+        [np.bincount(drawn, minlength=count)[groups] for drawn in draw_groups(count, n, seed)], dtype=np.float64
+    )
+
+
+def resampled_exceedance(
+    im: Array, rotation: Array, overturned: Bools, weights: Array, at: Array, limit: float, threshold: float = ROCKED
+) -> Array:
+    """Probability of exceeding a limit at measures `at`, for each row of weights, shape (n, n_at).
+
+    The same as `fit_outcomes` of each resample and its `exceedance`; P(OV) where the limit is π/2. NaN where a factor
+    that matters cannot be fitted.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from rockflex.fragility import fit_outcomes, resampled_exceedance
+    >>> im, overturned = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]), np.array([False] * 6 + [True])
+    >>> rotation = np.array([0.0, 0.0, 0.01, 0.0, 0.02, 0.05, 1.6])
+    >>> found = resampled_exceedance(im, rotation, overturned, np.ones((1, 7)), np.array([0.5]), 0.02)
+    >>> print(f"{found[0, 0]:.3g}, {fit_outcomes(im, rotation, overturned).exceedance(0.5, 0.02):.3g}")
+    0.759, 0.759
+    """
+    scaled = Standardised(np.log(im))
+    nodes, moves = scaled.of(np.log(at)), rotation > threshold
+    falls = _outcome_probability(scaled.x, overturned, weights, nodes)
+    if limit >= OVERTURNED:
+        return falls
+    rocks = _outcome_probability(scaled.x, moves, weights * ~overturned, nodes)
+    rocked = moves & ~overturned
+    beyond = _limit_probability(
+        np.log(im[rocked]), np.log(rotation[rocked]), weights[:, rocked], np.log(at), np.log(limit)
+    )
+    return total_probability(falls, rocks, beyond)
+
+
+def _outcome_probability(x: Array, outcome: Bools, weights: Array, nodes: Array) -> Array:
+    """Logistic curve of each row at `nodes`; 0 or 1 where all outcomes are the same, NaN if all x are."""
+    from scipy.special import expit
+
+    held = weights > 0.0
+    varied = np.where(held, x, -np.inf).max(axis=1) > np.where(held, x, np.inf).min(axis=1)
+    yes, no = (held & outcome).any(axis=1), (held & ~outcome).any(axis=1)
+    found = np.full((weights.shape[0], nodes.size), np.nan)
+    found[~yes & no], found[yes & ~no] = 0.0, 1.0
+    mixed = np.flatnonzero(yes & no & varied)
+    if mixed.size:
+        b = fit_curves(x, outcome, weights[mixed], RESAMPLE_SCORING).parameters
+        found[mixed] = expit(b[:, :1] + b[:, 1:] * nodes)
+    return found
+
+
+def _limit_probability(x: Array, y: Array, weights: Array, at: Array, log_limit: float) -> Array:
+    """P(θ_max > limit | rocking) of each row at `at`; NaN for fewer than three runs or two x or y."""
+    from scipy.special import ndtr
+
+    lines = fit_lines(x, y, weights)
+    with np.errstate(all="ignore"):
+        above = lines.intercept[:, None] + lines.slope[:, None] * at - log_limit
+        found = ndtr(above / lines.dispersion[:, None])
+    fitted = (lines.size >= 3.0) & (lines.sxx > 1e-12 * lines.size) & (lines.syy > 1e-12 * lines.size)
+    found[~fitted] = np.nan
+    return found

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,11 +10,14 @@ from numpy.typing import ArrayLike
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._html import HtmlTable
+from rockflex._shown import shown
 from rockflex._values import Value
-from rockflex.fragility._arguments import checked_confidence, fractions, log_at, log_column, log_measures
-from rockflex.fragility._predictor import standard_error
-from rockflex.fragility._recordings import Recordings, jackknifed, quantile_of_t
-from rockflex.fragility._regression import fit_lines
+from rockflex.fragility._arguments import checked_confidence, fractions, log_at, log_column, log_measures, same_length
+from rockflex.fragility._jackknife import Recordings, jackknife_covariance, quantile_of_t
+from rockflex.fragility._regression import fit_lines, standard_error
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -34,7 +38,7 @@ class CloudFit(HtmlTable, Value):
     n : int
         Number of runs.
     covariance : ndarray, shape (2, 2)
-        Covariance of (c1, c2), read-only: the jackknife over recordings; for independent runs that of least squares.
+        Covariance of (c1, c2), read-only: the jackknife over recordings; for independent runs from least squares.
     n_groups : int
         Number of recordings; 0 if the runs were taken as independent.
 
@@ -142,7 +146,7 @@ def fit_line(x: Array, y: Array, recordings: Recordings | None = None) -> tuple[
         covariance = variance * np.array([[1.0 / n + mean**2 / sxx, -mean / sxx], [-mean / sxx, 1.0 / sxx]])
     else:
         count, replicates = int(recordings.held.sum()), recordings.without_each(lambda some: _parameters(x, y, some))
-        covariance = jackknifed(replicates[recordings.held])[:2, :2]
+        covariance = jackknife_covariance(replicates[recordings.held])[:2, :2]
     fit = CloudFit(c1, c2, math.sqrt(variance), 1.0 - residual / syy, x.size, covariance, count)
     return fit, replicates
 
@@ -151,3 +155,120 @@ def _parameters(x: Array, y: Array, weights: Array) -> Array:
     lines = fit_lines(x, y, weights)
     with np.errstate(all="ignore"):  # NaN where too few runs are left
         return np.column_stack((lines.intercept, lines.slope, np.log(lines.dispersion)))
+
+
+def describe_power_law(fit: CloudFit, unit: str) -> str:
+    """Return a line through logarithms as the text of a power law; `unit` is the unit of the response."""
+    return f"{math.exp(fit.c1):.4g} {unit} · IM^{fit.c2:.4g}, dispersion {fit.dispersion:.4g}, R² {fit.r2:.4g}"
+
+
+def compare_measures(
+    measures: "pd.DataFrame", response: ArrayLike, covariates: "pd.DataFrame | None" = None
+) -> "pd.DataFrame":
+    """Rank intensity measures by how well each explains a response.
+
+    Efficiency (small dispersion), practicality (steep slope c2), proficiency (small dispersion/c2) and sufficiency
+    (residuals that do not depend on magnitude, distance or scale) as in Luco & Cornell 2007, Earthquake Spectra 23(2),
+    357-392, and Padgett, Nielson & DesRoches 2008, Earthquake Eng. Struct. Dyn. 37(5), 711-725.
+
+    Parameters
+    ----------
+    measures : pandas.DataFrame
+        One row per run and one column per intensity measure; positive.
+    response : array_like, shape (n,)
+        Peak response of the same runs, positive.
+    covariates : pandas.DataFrame, optional
+        One row per run and one column per property of the record; take the logarithm of a distance or a scale first.
+        Runs without a value (NaN) are left out of that test only.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per measure, smallest dispersion first: `c2`, `dispersion`, `proficiency` (infinite if c2 <= 0), `r2`,
+        `n`, and for each covariate `p_NAME`, the p-value of the slope of the residuals (Student's t; small values
+        indicate insufficiency; NaN if fewer than three runs or a single value remain), and `left_out_NAME`. The
+        p-values assume independent runs.
+
+    Raises
+    ------
+    InputError
+        If a table is not a DataFrame, has no column or other rows than the response, or a measure cannot be fitted.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> import pandas as pd
+    >>> measures = pd.DataFrame({"pga": [2.0, 3.0, 6.0, 5.0], "pgv": [0.2, 0.4, 0.6, 0.8]})
+    >>> table = rf.compare_measures(measures, [0.004, 0.011, 0.016, 0.026])
+    >>> list(table.index)
+    ['pgv', 'pga']
+    >>> table["dispersion"].round(3).tolist()
+    [0.083, 0.432]
+    """
+    import pandas as pd
+
+    _check_table("measures", measures)
+    if isinstance(response, pd.Series):
+        _check_rows("response", response.index, measures.index)
+    columns: dict[str, Array] = {}
+    if covariates is not None:
+        _check_table("covariates", covariates)
+        _check_rows("covariates", covariates.index, measures.index)
+        columns = {str(name): _numbers(str(name), covariates[name]) for name in covariates.columns}
+    y = log_column("response", response, "Leave those runs out of all tables.")
+
+    rows: dict[str, dict[str, float]] = {}
+    for name in measures.columns:
+        x = log_measures(measures[name].to_numpy(), f"measures[{shown(name)}]")
+        same_length(measures=x, response=y)
+        fit, _ = fit_line(x, y)
+        residuals = y - (fit.c1 + fit.c2 * x)
+        row = {
+            "c2": fit.c2,
+            "dispersion": fit.dispersion,
+            "proficiency": fit.dispersion / fit.c2 if fit.c2 > 0.0 else np.inf,
+            "r2": fit.r2,
+            "n": fit.n,
+        }
+        for other, column in columns.items():
+            kept = np.isfinite(column)
+            row[f"p_{other}"] = _p_value(column[kept], residuals[kept])
+            row[f"left_out_{other}"] = int((~kept).sum())
+        rows[name] = row
+    table = pd.DataFrame.from_dict(rows, orient="index").rename_axis("measure")
+    whole = ["n", *(f"left_out_{other}" for other in columns)]
+    return table.astype(dict.fromkeys(whole, np.int64)).sort_values("dispersion", kind="stable")
+
+
+def _check_table(name: str, table: object) -> None:
+    import pandas as pd
+
+    if not isinstance(table, pd.DataFrame) or table.shape[1] == 0:
+        raise InputError(
+            f"{name} must be a pandas DataFrame with one column or more, but {type(table).__name__} was given."
+        )
+
+
+def _check_rows(name: str, index: "pd.Index[Any]", expected: "pd.Index[Any]") -> None:
+    if not index.equals(expected):
+        raise InputError(
+            f"{name} must have the same row labels as measures, in the same order. Take all from one table, or drop "
+            "the labels of each with reset_index(drop=True)."
+        )
+
+
+def _numbers(name: str, column: "pd.Series[Any]") -> Array:
+    try:
+        return column.to_numpy(dtype=np.float64, na_value=np.nan)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"covariates[{shown(name)}] must hold numbers, but {column.dtype} was given. Leave the column out."
+        ) from error
+
+
+def _p_value(covariate: Array, residuals: Array) -> float:
+    from scipy.stats import linregress
+
+    if covariate.size < 3 or np.ptp(covariate) == 0.0:
+        return float("nan")
+    return float(linregress(covariate, residuals).pvalue)

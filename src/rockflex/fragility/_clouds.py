@@ -10,11 +10,10 @@ from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
 from rockflex._shown import shown
 from rockflex._values import Value
-from rockflex.fragility._cloud import CloudFit, fit_cloud
+from rockflex.fragility._cloud import CloudFit, describe_power_law, fit_cloud
 from rockflex.fragility._hazard import damping_of
 from rockflex.fragility._limit_states import NOMINAL, OVERTURNING, ROCKED, UPLIFT, rocked
 from rockflex.fragility._outcomes import OutcomeFragility, fit_outcomes
-from rockflex.fragility._words import power_law
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -75,7 +74,7 @@ class CloudFits(HtmlTable, Value):
             "model": self.model,
             "measure": self.measure,
             **self.outcomes._shown_as(),  # pyright: ignore[reportPrivateUsage]
-            **{name: None if fit is None else power_law(fit, "m") for name, fit in tops.items()},
+            **{name: None if fit is None else describe_power_law(fit, "m") for name, fit in tops.items()},
             "failed": self.n_failed,
         }
 
@@ -94,7 +93,7 @@ def fit_clouds(
     threshold
         A run counts as rocking if its base uplifted and its rotation in rad is larger.
     nominal
-        Whether runs that exceed 0.7 atan(B/h*_1) count as overturned, as well as those that reach π/2.
+        Whether runs that exceed 0.7 atan(B/h*_1) count as overturned, as well as runs that reach π/2.
 
     Raises
     ------
@@ -112,8 +111,8 @@ def fit_clouds(
     (3, 9, 0)
     """
     return [
-        _fits(structure, model, group, measure, threshold, nominal=nominal)
-        for structure, model, group in _groups(runs, measure)
+        _cloud_fits(structure, model, group, measure, threshold, nominal=nominal)
+        for structure, model, group in _cases(runs, measure)
     ]
 
 
@@ -147,9 +146,9 @@ def fit_each_cloud(
     """
     fits: list[CloudFits] = []
     reasons: dict[tuple[str, str], str] = {}
-    for structure, model, group in _groups(runs, measure):
+    for structure, model, group in _cases(runs, measure):
         try:
-            fits.append(_fits(structure, model, group, measure, threshold, nominal=nominal))
+            fits.append(_cloud_fits(structure, model, group, measure, threshold, nominal=nominal))
         except (InputError, SolverError) as error:
             reasons[structure, model] = str(error)
     return fits, reasons
@@ -163,7 +162,7 @@ def recordings_of(runs: "pd.DataFrame") -> "pd.Series[Any] | None":
     return runs["motion"].astype(str) if repeat else None
 
 
-def _groups(runs: "pd.DataFrame", measure: str) -> "Iterator[tuple[str, str, pd.DataFrame]]":
+def _cases(runs: "pd.DataFrame", measure: str) -> "Iterator[tuple[str, str, pd.DataFrame]]":
     """Runs of each structure with each model."""
     needed = ["structure", "model", "status", "max_rotation", *DISPLACEMENTS, "nominal_overturning", measure]
     lacking = [name for name in needed if name not in runs]
@@ -172,7 +171,7 @@ def _groups(runs: "pd.DataFrame", measure: str) -> "Iterator[tuple[str, str, pd.
     return cases(runs)
 
 
-def _fits(
+def _cloud_fits(
     structure: str, model: str, group: "pd.DataFrame", measure: str, threshold: float, *, nominal: bool
 ) -> CloudFits:
     solved = group[group["status"].notna()]
@@ -185,11 +184,13 @@ def _fits(
     groups = recordings_of(solved)
     damping = damping_of(solved, measure)
     outcomes = fit_outcomes(im, rotation, fallen, groups, uplifted=lifts, threshold=threshold, damping=damping)
-    relative, total = (_line(im, solved[name].to_numpy(dtype=float), rocks, groups) for name in DISPLACEMENTS)
+    relative, total = (
+        _displacement_fit(im, solved[name].to_numpy(dtype=float), rocks, groups) for name in DISPLACEMENTS
+    )
     return CloudFits(structure, model, measure, outcomes, relative, total, len(group) - len(solved))
 
 
-def _line(im: Array, values: Array, rocked: Bools, groups: "pd.Series[Any] | None") -> CloudFit | None:
+def _displacement_fit(im: Array, values: Array, rocked: Bools, groups: "pd.Series[Any] | None") -> CloudFit | None:
     """The fit of the runs that rocked, or None if it fails."""
     try:
         return fit_cloud(im[rocked], values[rocked], None if groups is None else groups[rocked])

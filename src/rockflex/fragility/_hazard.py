@@ -1,24 +1,185 @@
-"""Seismic hazard curves."""
+"""Seismic hazard curves, curves exported by OpenQuake, and the units of its intensity measures."""
 
+import csv
 import math
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
 from rockflex._checks import finite_vector, in_range, positive
+from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._files import check_regular, path_of
+from rockflex._shown import counted, shown
 from rockflex._values import Value
 from rockflex.fragility._arguments import log_at
-from rockflex.fragility._openquake_curve import read_exported_curve
 
 if TYPE_CHECKING:
     import pandas as pd
 
-DAMPING = 0.05  # of the spectra of hazard analyses, and of OpenQuake's and Pelicun's SA
+# Names and units of OpenQuake's intensity measure types, and one of them in SI units.
+_OPENQUAKE_UNITS = {
+    "PGA": ("g", GRAVITY),
+    "PGV": ("cm/s", 0.01),
+    "PGD": ("cm", 0.01),
+    "SA": ("g", GRAVITY),
+    "AvgSA": ("g", GRAVITY),
+    "IA": ("m/s", 1.0),
+    "CAV": ("g s", GRAVITY),
+    "RSD": ("s", 1.0),
+}
+_SPECTRAL_MEASURE = re.compile(r"(?P<kind>SA|AvgSA)\((?P<period>\d+\.?\d*)\)")
+Site = tuple[float, float] | str
+_SITE_TOLERANCE_DEG = 1e-4  # degrees; the files have five decimals
+_LEVEL_PREFIX = "poe-"
+HAZARD_DAMPING = 0.05  # of the spectra of hazard analyses, and of OpenQuake's and Pelicun's SA
+
+
+def unit_of(measure: str) -> tuple[str, float]:
+    """Return OpenQuake's unit of a measure such as "PGV" or "SA(1.0)", and this unit in SI units.
+
+    Raises
+    ------
+    InputError
+        If there is no such measure.
+    """
+    kind, _ = kind_and_period(measure)
+    return _OPENQUAKE_UNITS[kind]
+
+
+def kind_and_period(measure: str) -> tuple[str, str]:
+    """Return the kind of a measure and its period as it is written, which is empty where there is none.
+
+    Raises
+    ------
+    InputError
+        If there is no such measure.
+    """
+    if isinstance(measure, str):  # pyright: ignore[reportUnnecessaryIsInstance]
+        found = _SPECTRAL_MEASURE.fullmatch(measure)
+        if found and math.isfinite(float(found["period"])) and float(found["period"]) > 0.0:
+            return found["kind"], found["period"]
+        if measure in _OPENQUAKE_UNITS and measure != "SA":
+            return measure, ""
+    names = ", ".join(name for name in _OPENQUAKE_UNITS if name != "SA")
+    raise InputError(
+        f"measure must be one of {names}, SA(T) and AvgSA(T) with a period T in s, such as SA(1.0), but "
+        f"{shown(measure)} was given.",
+        field="measure",
+    )
+
+
+class ExportedCurve(NamedTuple):
+    """Levels in SI units, the probabilities of exceeding them, and the years that these refer to."""
+
+    im: list[float]
+    poe: list[float]
+    years: float
+
+
+def read_exported_curve(path: str | Path, site: Site | None) -> ExportedCurve:
+    """Read the curve of one site.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is not such an export, or has no or more than one such site.
+    """
+    file = path_of("path", path)
+    check_regular(file, "path")
+    try:
+        lines = file.read_text("utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{file} cannot be read: {error}.", field="path") from error
+    comments = [line for line in lines if line.startswith("#")]
+    years, measure = _years_and_measure(file, " ".join(comments))
+    rows = list(csv.reader(line for line in lines if line.strip() and not line.startswith("#")))
+    names = rows[0] if rows else []
+    columns = [place for place, name in enumerate(names) if name.startswith(_LEVEL_PREFIX)]
+    if not columns or "lon" not in names or "lat" not in names:
+        raise InputError(
+            f"{file} must be a hazard curve that OpenQuake exported, with the columns lon, lat and poe-..., but its "
+            f"columns are {shown(', '.join(names))}.",
+            field="path",
+        )
+    row = _site_row(file, names, rows[1:], site)
+    _, unit = unit_of(measure)
+    levels = [_number(file, names[place].removeprefix(_LEVEL_PREFIX)) * unit for place in columns]
+    return ExportedCurve(levels, [_number(file, row[place]) for place in columns], years)
+
+
+def _years_and_measure(file: Path, comment: str) -> tuple[float, str]:
+    """The years and the measure in the comment that such a file begins with."""
+    years = re.search(r"investigation_time=([0-9.eE+-]+)", comment)
+    measure = re.search(r"""imt=["']+([^"']+)""", comment)
+    if years is None or measure is None:
+        raise InputError(
+            f"{file} must begin with a comment that states investigation_time and imt, as the hazard curves that "
+            "OpenQuake exports do. Otherwise read its columns, and give them to HazardCurve.from_poe.",
+            field="path",
+        )
+    return _number(file, years[1]), measure[1]
+
+
+def _site_row(file: Path, names: Sequence[str], rows: list[list[str]], site: Site | None) -> list[str]:
+    whole = [row for row in rows if len(row) == len(names)]
+    if len(whole) < len(rows) or not rows:
+        wrong = counted(len(rows) - len(whole), "row differs", "rows differ") if rows else "it has none"
+        raise InputError(f"{file} must have a row of {len(names)} values for each site, but {wrong}.", field="path")
+    if site is None:
+        if len(rows) > 1:
+            raise InputError(f"{file} has {len(rows)} sites. Choose one with site=(longitude, latitude).", field="site")
+        return rows[0]
+    if isinstance(site, str):
+        if "custom_site_id" not in names:
+            raise InputError(f"{file} has no names of sites. Give site=(longitude, latitude).", field="site")
+        place = names.index("custom_site_id")
+        named = [row for row in rows if row[place] == site]
+        if not named:
+            raise InputError(f"{file} has no site {shown(site)}, but {shown(rows[0][place])}, ...", field="site")
+        return named[0]
+    return _nearest_row(file, names, rows, site)
+
+
+def _nearest_row(file: Path, names: Sequence[str], rows: list[list[str]], site: tuple[float, float]) -> list[str]:
+    try:
+        longitude, latitude = (float(value) for value in site)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"site must be (longitude, latitude) in degrees, or a name, but {shown(site)} was given.", field="site"
+        ) from error
+    at = names.index("lon"), names.index("lat")
+    places = [(_number(file, row[at[0]]), _number(file, row[at[1]])) for row in rows]
+    away = [math.hypot(x - longitude, y - latitude) for x, y in places]
+    nearest = min(range(len(rows)), key=away.__getitem__)
+    if not away[nearest] <= _SITE_TOLERANCE_DEG:
+        x, y = places[nearest]
+        raise InputError(
+            f"{file} has no site at {longitude:g}, {latitude:g}. The nearest in degrees is at {x:g}, {y:g}.",
+            field="site",
+        )
+    here = [row for row, distance in zip(rows, away, strict=True) if distance <= away[nearest] + 1e-9]
+    if len(here) > 1:
+        named = "custom_site_id" in names
+        hint = f" Choose one by its name, such as {shown(here[0][names.index('custom_site_id')])}." if named else ""
+        raise InputError(f"{file} has {len(here)} sites at {longitude:g}, {latitude:g}.{hint}", field="site")
+    return rows[nearest]
+
+
+def _number(file: Path, text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise InputError(f"{file}: {shown(text)} stands where a number is expected.", field="path")
+    return number
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -52,7 +213,7 @@ class HazardCurve(Value):
     rate: Array
     damping: float
 
-    def __init__(self, im: ArrayLike, rate: ArrayLike, *, damping: float = DAMPING) -> None:
+    def __init__(self, im: ArrayLike, rate: ArrayLike, *, damping: float = HAZARD_DAMPING) -> None:
         measures, rates = finite_vector("im", im, "one unit"), finite_vector("rate", rate, "1/year")
         if measures.size != rates.size or measures.size < 2:
             raise InputError(
@@ -76,14 +237,14 @@ class HazardCurve(Value):
         """Raise an InputError if a fragility's spectral measure is of another damping; None is not known, or none."""
         if damping is not None and not math.isclose(damping, self.damping, rel_tol=1e-6):
             raise InputError(
-                f"The fragility is in a spectral measure at {damping_words(damping)}, but the hazard curve is at "
-                f"{damping_words(self.damping)}. Take sa_t1_5, Sa(T₁) at 5 %, or a hazard curve of the same damping. "
+                f"The fragility is in a spectral measure at {damping_text(damping)}, but the hazard curve is at "
+                f"{damping_text(self.damping)}. Take sa_t1_5, Sa(T₁) at 5 %, or a hazard curve of the same damping. "
                 "Hazard curves, and fits of single columns, state theirs by damping, 0.02 for 2 %.",
                 field="damping",
             )
 
     @classmethod
-    def from_poe(cls, im: ArrayLike, poe: ArrayLike, years: float, *, damping: float = DAMPING) -> Self:
+    def from_poe(cls, im: ArrayLike, poe: ArrayLike, years: float, *, damping: float = HAZARD_DAMPING) -> Self:
         """Return the curve of a Poisson process whose probabilities of exceedance are known for a number of years.
 
         The annual rate is -ln(1 - poe)/years.
@@ -183,14 +344,14 @@ class HazardCurve(Value):
 
     def rate_at(self, im: ArrayLike) -> Array:
         """Annual rate at which `im` is exceeded, interpolated linearly in logarithms."""
-        return np.exp(_between("im", log_at(im), np.log(self.im), np.log(self.rate)))
+        return np.exp(_interpolated("im", log_at(im), np.log(self.im), np.log(self.rate)))
 
     def im_at(self, rate: ArrayLike) -> Array:
         """Measure that is exceeded at an annual `rate`: the uniform-hazard value (2 % in 50 years is 1/2475)."""
-        return np.exp(_between("rate", log_at(rate, "rate"), np.log(self.rate[::-1]), np.log(self.im[::-1])))
+        return np.exp(_interpolated("rate", log_at(rate, "rate"), np.log(self.rate[::-1]), np.log(self.im[::-1])))
 
 
-def damping_words(damping: float) -> str:
+def damping_text(damping: float) -> str:
     """A damping ratio in words, NaN for one that is not known."""
     return "an unknown damping ratio" if math.isnan(damping) else f"a damping ratio of {damping:.4g}"
 
@@ -209,7 +370,7 @@ def damping_of(runs: "pd.DataFrame", measure: str) -> float | None:
     (None, 0.02, 0.05)
     """
     if measure == "sa_t1_5":
-        return DAMPING
+        return HAZARD_DAMPING
     if measure not in ("sa_t1", "sd_t1"):
         return None
     found = runs["zeta_1"].dropna().unique() if "zeta_1" in runs else []
@@ -221,10 +382,10 @@ def damping_named(im: object, damping: float | None) -> float | None:
     name = getattr(im, "name", None)
     if damping is not None or name not in ("sa_t1", "sd_t1", "sa_t1_5"):
         return damping
-    return DAMPING if name == "sa_t1_5" else math.nan
+    return HAZARD_DAMPING if name == "sa_t1_5" else math.nan
 
 
-def _between(name: str, x: Array, points: Array, values: Array) -> Array:
+def _interpolated(name: str, x: Array, points: Array, values: Array) -> Array:
     margin = 1e-12 * (points[-1] - points[0])
     if (x < points[0] - margin).any() or (x > points[-1] + margin).any():
         raise InputError(

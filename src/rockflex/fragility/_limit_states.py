@@ -1,10 +1,14 @@
-"""Limit states of a run: its largest and its residual rotation in rad, and the yielding of its tendons."""
+"""Limit states of a run, and the observed fractions of runs beyond them."""
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError
 
 OVERTURNED = 0.5 * math.pi  # rad
@@ -117,7 +121,7 @@ UPLIFT = LimitState(
 def rocked(runs: Any, threshold: float = ROCKED) -> Any:
     """Return which runs of a table rocked: the base uplifted, and turned by more than `threshold` in rad.
 
-    A base on springs also turns without uplift, which is no rocking. The threshold is that of Silva & Stojadinović
+    A base on springs also turns without uplift, which is no rocking. The threshold follows Silva & Stojadinović
     2024, Section 3.2, for rotations that matter.
 
     Examples
@@ -163,3 +167,27 @@ def limit_label(limit: float | str) -> str:
     ('0.02 rad', 'overturning')
     """
     return limit if isinstance(limit, str) else beyond(limit).label
+
+
+def observed_fractions(im: Array, exceeded: Bools, groups: int) -> list[tuple[float, float]]:
+    """Return the geometric mean of the measures and the fraction of runs beyond a limit, in groups of neighbours.
+
+    Parameters
+    ----------
+    im : ndarray, shape (n,)
+        Intensity measure of every run, positive.
+    exceeded : ndarray, shape (n,)
+        Whether each run exceeds the limit.
+    groups
+        Number of groups, of equal size as far as possible; groups without a run are left out.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from rockflex.fragility import observed_fractions
+    >>> found = observed_fractions(np.array([0.4, 0.1, 0.1, 0.4]), np.array([True, False, False, False]), 2)
+    >>> [(round(at, 3), share) for at, share in found]
+    [(0.1, 0.0), (0.4, 0.5)]
+    """
+    parts: list[NDArray[np.intp]] = np.array_split(np.argsort(im, kind="stable"), groups)
+    return [(float(np.exp(np.log(im[part]).mean())), float(exceeded[part].mean())) for part in parts if part.size]

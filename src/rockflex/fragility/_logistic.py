@@ -14,19 +14,71 @@ from rockflex._html import HtmlTable
 from rockflex._values import Value
 from rockflex.fragility._arguments import checked_confidence, flags, log_at, log_measures
 from rockflex.fragility._hazard import damping_named
-from rockflex.fragility._predictor import Standardised, standard_error
-from rockflex.fragility._recordings import (
+from rockflex.fragility._jackknife import (
     ONE_RECORDING,
     Recordings,
-    drawn,
-    jackknifed,
+    jackknife_covariance,
     quantile_of_t,
+    sample_parameters,
 )
-from rockflex.fragility._regression import Scoring, fit_curves, information
-from rockflex.fragility._unanimous import UnanimousOutcome
+from rockflex.fragility._regression import Scoring, Standardised, fit_curves, information, standard_error
 
 Method = Literal["maximum likelihood", "Firth"]
-CONVERGED = 1e-4  # score and step of the penalised fit: the defaults of the package firthmodels
+FIRTH_TOLERANCE = 1e-4  # score and step of the penalised fit: the defaults of the package firthmodels
+
+
+@dataclass(frozen=True)
+class UnanimousOutcome:
+    """An outcome that happened in every run, or in none; it replaces a curve that cannot be fitted.
+
+    Attributes
+    ----------
+    outcome : bool
+        Whether it happened in all runs, or in none.
+    n : int
+        Number of runs.
+    n_groups : int
+        Number of recordings, each of which counts once in a bound; 0 if the runs are taken as independent.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> never = rf.UnanimousOutcome(outcome=False, n=44)
+    >>> print(f"{never.bound(0.95):.3g}")
+    0.0658
+    """
+
+    outcome: bool
+    n: int
+    n_groups: int = 0
+
+    @property
+    def note(self) -> str:
+        """The conclusion in words."""
+        side = "above" if self.outcome else "below"
+        return (
+            f"This gives only a bound: with 95 % confidence the probability, averaged over these runs, is {side} "
+            f"{100.0 * self.bound(0.95):.3g} %."
+        )
+
+    def bound(self, confidence: float = 0.95) -> float:
+        """Exact one-sided bound of the probability averaged over the runs, with the given confidence.
+
+        An upper bound, 1 - (1 - confidence)^(1/m), if it never happened; a lower one, (1 - confidence)^(1/m), if it
+        always did (Clopper & Pearson 1934, Biometrika 26(4), 404-413). m is the number of recordings, or of independent
+        runs.
+        """
+        root = (1.0 - checked_confidence(confidence)) ** (1.0 / (self.n_groups or self.n))
+        return root if self.outcome else 1.0 - root
+
+    def probability(self, im: ArrayLike) -> Array:
+        """1 or 0 as observed, of the shape of `im`."""
+        return np.full_like(log_at(im), 1.0 if self.outcome else 0.0)
+
+    def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
+        """Observed value and its one-sided bound with the given confidence, the same at every `im`."""
+        seen, bound = self.probability(im), np.full_like(log_at(im), self.bound(confidence))
+        return (bound, seen) if self.outcome else (seen, bound)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -41,7 +93,7 @@ class LogisticFit(HtmlTable, Value):
         Covariance of (b0, b1), read-only: the jackknife over recordings; for independent runs the inverse of the Fisher
         information at the estimate, without the penalty.
     n, n_events : int
-        Number of runs, and of those in which the outcome happened.
+        Number of runs, and of runs in which the outcome happened.
     method : str
         "maximum likelihood", or "Firth" where that has no finite slope.
     separated : bool
@@ -117,7 +169,7 @@ class LogisticFit(HtmlTable, Value):
         return expit(self.b0 + self.b1 * log_at(im))
 
     def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
-        """Lower and upper confidence limits of the probability, from those of b0 + b1 log IM.
+        """Lower and upper confidence limits of the probability, from the limits of b0 + b1 log IM.
 
         Student's t with `n_groups` - 1 degrees of freedom; the normal distribution for independent runs. NaN if all
         runs belong to one recording.
@@ -133,7 +185,7 @@ class LogisticFit(HtmlTable, Value):
         """Probabilities at `im`, shape (m,), for 2048 parameters drawn from the t distribution of the estimate."""
         from scipy.special import expit
 
-        b = drawn((self.b0, self.b1), self.covariance, self.n_groups)
+        b = sample_parameters((self.b0, self.b1), self.covariance, self.n_groups)
         return expit(b[:, :1] + b[:, 1:] * np.log(im))
 
 
@@ -193,7 +245,7 @@ def fit_curve(
         )
     scaled = Standardised(x)
     unit = np.ones((1, x.size))
-    scoring = Scoring(CONVERGED / y.size, CONVERGED, augmented=True)
+    scoring = Scoring(FIRTH_TOLERANCE / y.size, FIRTH_TOLERANCE, augmented=True)
     curve = fit_curves(scaled.x, y, unit, scoring)
     if not np.isfinite(curve.parameters).all():
         raise SolverError(
@@ -206,14 +258,14 @@ def fit_curve(
     else:
         count = int(recordings.held.sum())
         replicates = recordings.without_each(lambda some: fit_curves(scaled.x, y, some, scoring).parameters)
-        covariance = jackknifed(replicates[recordings.held])
+        covariance = jackknife_covariance(replicates[recordings.held])
         replicates = scaled.back(replicates)
     b0, b1, covariance = scaled.unscaled(curve.parameters[0], covariance)
     separated = bool(curve.separated[0])
     method: Method = "Firth" if curve.penalised[0] else "maximum likelihood"
     notes: list[str] = []
     if separated:
-        low, high = _gap(x, y)
+        low, high = _separation_gap(x, y)
         notes.append(
             f"Separated between im = {low:.4g} and {high:.4g}: maximum likelihood has no finite slope, so "
             "Firth's penalty was used. Median and slope are uncertain by the width of that gap."
@@ -230,6 +282,15 @@ def fit_curve(
     return fit, replicates
 
 
-def _gap(x: Array, y: Bools) -> tuple[float, float]:
+def _separation_gap(x: Array, y: Bools) -> tuple[float, float]:
     below, above = (~y, y) if x[~y].max() <= x[y].min() else (y, ~y)
     return math.exp(x[below].max()), math.exp(x[above].min())
+
+
+def describe_curve(curve: LogisticFit | UnanimousOutcome) -> str:
+    """Return the median and the dispersion of a curve, or why it has none, as text."""
+    if isinstance(curve, UnanimousOutcome):
+        return f"in {'all' if curve.outcome else 'none'} of {curve.n} runs"
+    if curve.b1 <= 0.0:
+        return f"does not rise (b1 = {curve.b1:.4g})"
+    return f"median {curve.median:.4g}, dispersion {curve.dispersion:.4g}"

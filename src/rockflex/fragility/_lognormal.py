@@ -1,18 +1,27 @@
-"""Fragility curves of lognormal shape."""
+"""Fragility curves of lognormal shape, and their fits to the capacities of records and to stripes."""
 
 import math
+import warnings
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._arrays import Array
-from rockflex._checks import finite_matrix, positive
-from rockflex._errors import InputError
+from rockflex._arrays import Array, Bools
+from rockflex._checks import finite_matrix, finite_vector, positive
+from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
 from rockflex._values import Value
-from rockflex.fragility._arguments import checked_confidence, fractions, log_at
-from rockflex.fragility._recordings import ONE_RECORDING, drawn, jackknifed, quantile_of_t
+from rockflex.fragility._arguments import checked_confidence, flags, fractions, log_at, log_column, log_measures
+from rockflex.fragility._jackknife import (
+    ONE_RECORDING,
+    Recordings,
+    jackknife_covariance,
+    quantile_of_t,
+    sample_parameters,
+)
+from rockflex.fragility._regression import Standardised, fit_capacity_lines
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +35,7 @@ class LognormalFragility(HtmlTable, Value):
     beta : float
         Standard deviation of the logarithm of the capacity.
     covariance : ndarray, shape (2, 2), or None
-        Covariance of (ln median, beta), read-only: the jackknife over recordings, or that of independent runs or
+        Covariance of (ln median, beta), read-only: the jackknife over recordings, or for independent runs or
         records; None where it is not known.
     n : int
         Number of runs or records in the fit; 0 for a curve that was given.
@@ -109,7 +118,7 @@ class LognormalFragility(HtmlTable, Value):
 
         away = score_derivatives(self.median, self.beta)
         score = -math.log(self.median) / self.beta, 1.0 / self.beta
-        b = drawn(score, away @ self._known_covariance @ away.T, self.n_groups)
+        b = sample_parameters(score, away @ self._known_covariance @ away.T, self.n_groups)
         return ndtr(b[:, :1] + b[:, 1:] * np.log(im))
 
     def _score(self, im: ArrayLike) -> Array:
@@ -124,8 +133,223 @@ def score_derivatives(median: float, beta: float) -> Array:
 
 def covariance_of_scores(replicates: Array, median: float, beta: float) -> Array | None:
     """Covariance of (ln median, beta) from intercepts and slopes without each recording; None if it is not known."""
-    covariance = jackknifed(replicates)
+    covariance = jackknife_covariance(replicates)
     if not np.isfinite(covariance).all():
         return None
     back = np.linalg.inv(score_derivatives(median, beta))
     return back @ covariance @ back.T
+
+
+def fit_capacities(
+    im: ArrayLike,
+    censored: ArrayLike | None = None,
+    groups: ArrayLike | None = None,
+    *,
+    damping: float | None = None,
+) -> LognormalFragility:
+    """Fit a lognormal fragility to the capacities of records.
+
+    Without censored records: mean and standard deviation (n - 1) of the logarithms, the method of moments of Baker 2015
+    (Earthquake Spectra 31(1), 579-599). With them: maximum likelihood, in which a censored record contributes the
+    probability of a larger capacity; this dispersion is not corrected for small samples.
+
+    Parameters
+    ----------
+    im : array_like, shape (n,)
+        Intensity measure at which each record first reached the limit or overturned, in any one unit; for a censored
+        record the largest measure that was tried.
+    censored : array_like, shape (n,), optional
+        Whether the record never reached the limit.
+    groups : array_like, shape (n,), optional
+        Name or number of the recording of every record, the same for both components. Without it the band assumes
+        independent records, and is too narrow where recordings repeat.
+    damping
+        As in `fit_logistic`.
+
+    Raises
+    ------
+    InputError
+        If a value is not positive, fewer than two different capacities are known, or the name of a recording is
+        missing.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> fit = rf.fit_capacities([0.4, 0.6, 0.9, 1.0], censored=[False, False, False, True])
+    >>> print(f"{fit.median:.3g}, {fit.beta:.3g}")
+    0.73, 0.458
+    """
+    x = log_column("im", im, "Leave those records out.")
+    above = np.zeros(x.size, dtype=np.bool_) if censored is None else flags("censored", censored)
+    recordings = Recordings.beside(groups, im=x, censored=above)
+    known = x[~above]
+    if known.size < 2 or np.ptp(known) == 0.0:
+        raise InputError(
+            f"im must hold at least two different capacities that were reached, but {np.unique(known).size} were given "
+            f"besides {int(above.sum())} censored records. Scale the records further up."
+        )
+    if above.any():
+        mean, beta = _maximum_likelihood(known, x[above])
+        method, covariance = (
+            "censored capacities, maximum likelihood",
+            _censored_covariance(known, x[above], mean, beta),
+        )
+    else:
+        mean, beta, n = float(known.mean()), float(known.std(ddof=1)), known.size
+        method, covariance = "capacities, moments", np.diag([beta**2 / n, beta**2 / (2.0 * (n - 1))])
+    if recordings is None:
+        return LognormalFragility(math.exp(mean), beta, covariance, x.size, method, damping=damping)
+    median, replicates = math.exp(mean), recordings.without_each(lambda some: _score_lines(x, above, some, mean, beta))
+    covariance = covariance_of_scores(replicates, median, beta)
+    return LognormalFragility(median, beta, covariance, x.size, method, recordings.n, damping)
+
+
+def _score_lines(x: Array, above: Bools, weights: Array, mean: float, beta: float) -> Array:
+    """Intercept and slope of the normal score for each row of weights, by the method of the fit of all records."""
+    if above.any():
+        shifted = fit_capacity_lines((x - mean) / beta, -above.astype(float), weights, np.array([0.0, 1.0]))
+        slope = shifted[:, 1] / beta
+        return np.column_stack((shifted[:, 0] - slope * mean, slope))
+    size = weights.sum(axis=1)
+    with np.errstate(all="ignore"):  # NaN where one record is left
+        means = weights @ x / size
+        slope = 1.0 / np.sqrt((weights * (x - means[:, None]) ** 2).sum(axis=1) / (size - 1.0))
+    return np.column_stack((-means * slope, slope))
+
+
+def _maximum_likelihood(known: Array, above: Array) -> tuple[float, float]:
+    from scipy.optimize import fmin
+    from scipy.stats import CensoredData, norm
+
+    def search(function: Any, start: Any, args: Any = (), disp: Any = 0) -> Any:
+        return fmin(function, start, args, xtol=1e-7, ftol=1e-11, maxiter=10_000, maxfun=10_000, disp=disp)
+
+    # Shifted and scaled, so that the tolerances mean the same for every unit and dispersion.
+    shift, scale = float(known.mean()), float(np.ptp(known))
+    data = CensoredData(uncensored=(known - shift) / scale, right=(above - shift) / scale)
+    fit: Any = norm.fit  # its stubs do not accept a function as the optimizer
+    mean, beta = fit(data, loc=0.0, scale=0.5, optimizer=search)
+    return shift + scale * float(mean), scale * float(beta)
+
+
+def _censored_covariance(known: Array, above: Array, mean: float, beta: float) -> Array:
+    """Inverse of the observed information of (mean, beta) of a normal sample with right-censored values."""
+    from scipy.special import log_ndtr
+
+    z, c = (known - mean) / beta, (above - mean) / beta
+    hazard = np.exp(-0.5 * c**2 - 0.5 * math.log(2.0 * math.pi) - log_ndtr(-c))  # φ(c)/(1 - Φ(c))
+    slope = hazard * (hazard - c)  # its derivative
+    mean_mean = z.size + slope.sum()
+    mean_beta = 2.0 * z.sum() + (hazard + c * slope).sum()
+    beta_beta = (3.0 * z**2 - 1.0).sum() + (c**2 * slope + 2.0 * c * hazard).sum()
+    return beta**2 * np.linalg.inv(np.array([[mean_mean, mean_beta], [mean_beta, beta_beta]]))
+
+
+def fit_stripes(
+    im_levels: ArrayLike,
+    n_exceeding: ArrayLike,
+    n_total: ArrayLike,
+    groups: ArrayLike | None = None,
+    *,
+    damping: float | None = None,
+) -> LognormalFragility:
+    """Fit a lognormal fragility to stripes by maximum likelihood of the binomial counts.
+
+    A generalised linear model with probit link on log IM (Baker 2015, Earthquake Spectra 31(1), 579-599). Every stripe
+    runs the same recordings, so its runs and those of the others are not independent: for a band give single runs, or
+    counts by recording, with their `groups`. Without them the covariance assumes independent runs, from the Fisher
+    information by the delta method, and the band is too narrow.
+
+    Parameters
+    ----------
+    im_levels : array_like, shape (k,)
+        Intensity measure of every stripe, in any one unit.
+    n_exceeding, n_total : array_like, shape (k,)
+        Number of runs in each stripe that exceed the limit or overturn, and of all its runs.
+    groups : array_like, shape (k,), optional
+        Name or number of the recording of every row, the same for both components; a level then has several rows, such
+        as one for each run, with the counts 0 or 1, and 1.
+    damping
+        As in `fit_logistic`.
+
+    Raises
+    ------
+    InputError
+        If a level is not positive, a count is not a whole number or exceeds its total, the counts do not determine a
+        dispersion (one level separates the runs that exceed the limit from the others), or the curve does not rise.
+    SolverError
+        If the fit does not converge.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> fit = rf.fit_stripes([0.2, 0.4, 0.8], n_exceeding=[1, 4, 9], n_total=[10, 10, 10])
+    >>> print(f"{fit.median:.3g}, {fit.beta:.3g}")
+    0.427, 0.539
+    """
+    x = log_measures(im_levels, "im_levels")
+    total, events = _counts("n_total", n_total, 1), _counts("n_exceeding", n_exceeding, 0)
+    recordings = Recordings.beside(groups, im_levels=x, n_exceeding=events, n_total=total)
+    if (events > total).any():
+        row = int(np.flatnonzero(events > total)[0])
+        raise InputError(
+            f"n_exceeding must be at most n_total, but stripe {row} has {events[row]:g} of {total[row]:g}. "
+            "Give counts, not fractions, and check their order."
+        )
+    _check_overlap(x, events, total)
+
+    from statsmodels.api import GLM, families
+    from statsmodels.tools.sm_exceptions import PerfectSeparationWarning
+
+    scaled = Standardised(x)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PerfectSeparationWarning)  # stripes with probabilities close to 0 or 1
+        family = families.Binomial(link=families.links.Probit())
+        result = GLM(np.column_stack((events, total - events)), scaled.design, family=family).fit()
+    if not (result.converged and np.isfinite(result.params).all()):
+        raise SolverError(
+            "The fit of the stripes did not converge. Add stripes at which some runs exceed and others do not."
+        )
+    a, b, covariance = scaled.unscaled(np.asarray(result.params), np.asarray(result.cov_params()))
+    if b <= 0.0:
+        raise InputError(
+            f"The fraction of runs that exceed does not rise with im_levels (slope {b:.3g}), so no lognormal capacity "
+            "fits. Check the order of the columns."
+        )
+    median, beta, count = math.exp(-a / b), 1.0 / b, 0
+    if recordings is None:
+        back = np.array([[-1.0 / b, a / b**2], [0.0, -1.0 / b**2]])
+        found = back @ covariance @ back.T
+    else:
+        kind, both = np.repeat((1.0, -1.0), x.size), np.tile(scaled.x, 2)
+        runs = np.concatenate((events, total - events))
+        twice, at = Recordings(np.tile(recordings.codes, 2), recordings.n), np.asarray(result.params)
+        replicates = twice.without_each(lambda some: fit_capacity_lines(both, kind, some * runs, at))
+        found, count = covariance_of_scores(scaled.back(replicates), median, beta), recordings.n
+    method = "binomial counts, maximum likelihood"
+    return LognormalFragility(median, beta, found, int(total.sum()), method, count, damping)
+
+
+def _counts(name: str, values: ArrayLike, least: int) -> Array:
+    numbers = finite_vector(name, values, "runs")
+    bad = np.flatnonzero((numbers != np.rint(numbers)) | (numbers < least))
+    if bad.size:
+        raise InputError(
+            f"{name} must hold whole numbers of at least {least}, but row {bad[0]} holds {numbers[bad[0]]:g}."
+        )
+    return numbers
+
+
+def _check_overlap(x: Array, events: Array, total: Array) -> None:
+    with_events, without = x[events > 0], x[events < total]
+    if with_events.size == 0 or without.size == 0:
+        word, side = ("No run exceeds", "larger") if with_events.size == 0 else ("All runs exceed", "smaller")
+        raise InputError(f"{word} the limit at any level, so no curve can be fitted. Add stripes at {side} levels.")
+    low, high = math.exp(without.max()), math.exp(with_events.min())
+    if low <= high:
+        between = f"at {low:.4g}" if low == high else f"between {low:.4g} and {high:.4g}"
+        raise InputError(
+            f"The stripes are separated {between}: no run exceeds the limit below, all do above, so the maximum-"
+            "likelihood dispersion is zero. Add stripes near that level, or pass the single runs to fit_logistic, "
+            "which uses a penalty for this."
+        )

@@ -15,15 +15,21 @@ from rockflex._html import HtmlTable
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.fragility._arguments import checked_confidence, flags, log_at, log_measures
-from rockflex.fragility._cloud import CloudFit, fit_line
+from rockflex.fragility._cloud import CloudFit, describe_power_law, fit_line
 from rockflex.fragility._hazard import damping_named
+from rockflex.fragility._jackknife import (
+    Recordings,
+    jackknife_covariance,
+    quantile_of_t,
+    sample_limits,
+    sample_parameters,
+)
 from rockflex.fragility._limit_states import ROCKED
-from rockflex.fragility._logistic import LogisticFit, fit_curve
-from rockflex.fragility._recordings import Recordings, drawn, jackknifed, limits, quantile_of_t
-from rockflex.fragility._unanimous import UnanimousOutcome
-from rockflex.fragility._words import curve_words, power_law
+from rockflex.fragility._logistic import LogisticFit, UnanimousOutcome, describe_curve, fit_curve
 
-FEW = 10  # fewer runs give a note
+MIN_RUNS = 10  # fewer runs give a note
+_Part: TypeAlias = tuple[Array, Array | None]
+"""Covariance of the parameters of a part for independent runs, and its parameters without each recording."""
 
 
 class Note(str):
@@ -138,14 +144,14 @@ class OutcomeFragility(HtmlTable, Value):
 
     def __repr__(self) -> str:
         notes = f"; see {len(self.notes)} in notes" if self.notes else ""
-        return f"OutcomeFragility({self.counts}; overturning: {curve_words(self.overturning)}{notes})"
+        return f"OutcomeFragility({self.counts}; overturning: {describe_curve(self.overturning)}{notes})"
 
     def _shown_as(self) -> Mapping[str, Any]:
         curves = {name: getattr(self, name) for name in ("overturning", "rocking", "initiation")}
         return {
             "runs": self.counts,
-            **{name: None if curve is None else curve_words(curve) for name, curve in curves.items()},
-            "rotation": None if self.rotation is None else power_law(self.rotation, "rad"),
+            **{name: None if curve is None else describe_curve(curve) for name, curve in curves.items()},
+            "rotation": None if self.rotation is None else describe_power_law(self.rotation, "rad"),
             "threshold": f"{self.threshold:g} rad",
             "notes": " ".join(self.notes) or None,
         }
@@ -173,10 +179,10 @@ class OutcomeFragility(HtmlTable, Value):
         InputError
             If a measure is not positive, or a limit is below `lowest_limit` or not below `highest_limit`.
         """
-        limits = self._checked(limit)
+        sample_limits = self._checked(limit)
         falls = self.overturning.probability(im)
         rocks = np.full_like(falls, np.nan) if self.rocking is None else self.rocking.probability(im)
-        beyond = np.full_like(limits, np.nan) if self.rotation is None else self.rotation.exceedance(im, limit)
+        beyond = np.full_like(sample_limits, np.nan) if self.rotation is None else self.rotation.exceedance(im, limit)
         return total_probability(falls, rocks, beyond)
 
     def curve(self, limit: float) -> "RotationFragility":
@@ -191,14 +197,14 @@ class OutcomeFragility(HtmlTable, Value):
         return RotationFragility(self, float(limit))
 
     def _checked(self, limit: ArrayLike) -> Array:
-        limits = np.exp(log_at(limit, "limit"))
-        if (limits < self.lowest_limit * (1.0 - 1e-12)).any() or (limits >= self.highest_limit).any():
+        sample_limits = np.exp(log_at(limit, "limit"))
+        if (sample_limits < self.lowest_limit * (1.0 - 1e-12)).any() or (sample_limits >= self.highest_limit).any():
             raise InputError(
                 f"limit must lie in [{self.lowest_limit:.4g}, {self.highest_limit:.4g}) rad, but {shown(limit)} was "
                 "given. Below, a run that does not rock may exceed it, as a base on springs turns without uplift (fit "
                 "the rotations by fit_outcomes without uplifted); above, an overturned run need not exceed it."
             )
-        return limits
+        return sample_limits
 
 
 @dataclass(frozen=True, eq=False)
@@ -250,7 +256,7 @@ class RotationFragility(Value):
 
         wanted, x, without = checked_confidence(confidence), np.exp(log_at(im)), self.outcomes.without
         if without is None:
-            low, high = limits(self.drawn(x.ravel()), wanted)
+            low, high = sample_limits(self.drawn(x.ravel()), wanted)
             return low.reshape(x.shape), high.reshape(x.shape)
         with np.errstate(divide="ignore", invalid="ignore"):  # a probability of 0 or 1
             away = logit(self._at(without, x.ravel())).reshape(-1, *x.shape)
@@ -261,7 +267,7 @@ class RotationFragility(Value):
     def drawn(self, im: Array) -> Array:
         """Probabilities at `im`, shape (m,), for 2048 parameters drawn from the t distribution of the estimate."""
         fit = self.outcomes
-        return self._at(drawn(_parameters(fit), fit.covariance, fit.n_groups), im)
+        return self._at(sample_parameters(_outcome_parameters(fit), fit.covariance, fit.n_groups), im)
 
     def _at(self, parameters: Array, im: Array) -> Array:
         """Probabilities at `im` for each row of parameters."""
@@ -339,7 +345,7 @@ def fit_outcomes(
     lifts = np.ones(falls.size, dtype=bool) if uplifted is None else flags("uplifted", uplifted)
     recordings = Recordings.beside(groups, im=measures, rotation=rotations, overturned=falls, uplifted=lifts)
     limit = positive("threshold", threshold, "rad")
-    _check(rotations, falls, limit)
+    _check_rotations(rotations, falls, limit)
 
     stands, moves = ~falls, (rotations > limit) & (lifts | falls)
     rocked = stands & moves
@@ -347,16 +353,16 @@ def fit_outcomes(
     notes = [
         Note(f"Only {count} of {falls.size} runs {what}: fits of these runs are uncertain.")
         for count, what in zip(counts, ("do not rock", "rock without overturning", "overturn"), strict=True)
-        if 0 < count < FEW
+        if 0 < count < MIN_RUNS
     ]
     damping = damping_named(im, damping)
-    shared = _Shared(measures, recordings, damping, notes)
+    shared = _PartFits(measures, recordings, damping, notes)
     overturning, part = shared.curve("overturning", falls, np.ones_like(falls))
     rocking, other = shared.curve("rocking", moves, stands)
     initiation, _ = shared.curve("initiation", moves, np.ones_like(falls))
     line, last = shared.cloud(rotations, rocked)
     count = 0 if recordings is None else recordings.n
-    without = None if recordings is None else _together((part, other, last), count)
+    without = None if recordings is None else _joined_replicates((part, other, last), count)
     return OutcomeFragility(
         overturning=overturning or UnanimousOutcome(bool(falls[0]), falls.size, count),
         rocking=rocking,
@@ -369,7 +375,7 @@ def fit_outcomes(
         n_rocking=counts[1],
         n_overturned=counts[2],
         notes=tuple(notes),
-        covariance=block_diag(part[0], other[0], last[0]) if without is None else jackknifed(without),
+        covariance=block_diag(part[0], other[0], last[0]) if without is None else jackknife_covariance(without),
         without=without,
         n_groups=count,
         damping=damping,
@@ -377,7 +383,7 @@ def fit_outcomes(
     )
 
 
-def _check(rotations: Array, falls: Bools, threshold: float) -> None:
+def _check_rotations(rotations: Array, falls: Bools, threshold: float) -> None:
     negative = np.flatnonzero(rotations < 0.0)
     if negative.size:
         raise InputError(
@@ -392,12 +398,8 @@ def _check(rotations: Array, falls: Bools, threshold: float) -> None:
         )
 
 
-Part: TypeAlias = tuple[Array, Array | None]
-"""Covariance of the parameters of a part for independent runs, and its parameters without each recording."""
-
-
-class _Shared(NamedTuple):
-    """What the fits of all parts share."""
+class _PartFits(NamedTuple):
+    """Fits of the parts of the total probability, with the data that they share."""
 
     im: Array
     recordings: Recordings | None
@@ -407,7 +409,7 @@ class _Shared(NamedTuple):
     def some(self, chosen: Bools) -> Recordings | None:
         return None if self.recordings is None else self.recordings.some(chosen)
 
-    def curve(self, name: str, happened: Bools, chosen: Bools) -> tuple[LogisticFit | UnanimousOutcome | None, Part]:
+    def curve(self, name: str, happened: Bools, chosen: Bools) -> tuple[LogisticFit | UnanimousOutcome | None, _Part]:
         """The curve of an outcome of some of the runs."""
         outcome, some, none = happened[chosen], self.some(chosen), (np.zeros((2, 2)), None)
         if outcome.size == 0:
@@ -428,7 +430,7 @@ class _Shared(NamedTuple):
             self.notes.append(Note(f"{name}: {fit.note}", name))
         return fit, (fit.covariance, replicates)
 
-    def cloud(self, rotation: Array, rocked: Bools) -> tuple[CloudFit | None, Part]:
+    def cloud(self, rotation: Array, rocked: Bools) -> tuple[CloudFit | None, _Part]:
         """The line through the rotations of the runs that rocked."""
         try:
             x, y = log_measures(self.im[rocked]), np.log(rotation[rocked])
@@ -441,13 +443,13 @@ class _Shared(NamedTuple):
         return fit, (covariance, replicates)
 
 
-def _together(parts: Sequence[Part], count: int) -> Array:
+def _joined_replicates(parts: Sequence[_Part], count: int) -> Array:
     """Parameters of all parts without each recording; zero where there is no curve."""
     zeros = (np.zeros((count, len(covariance))) for covariance, _ in parts)
     return np.column_stack([zero if found is None else found for zero, (_, found) in zip(zeros, parts, strict=True)])
 
 
-def _parameters(fit: OutcomeFragility) -> Array:
+def _outcome_parameters(fit: OutcomeFragility) -> Array:
     """Parameters of the total probability, in the order of their covariance; zero where there is no curve."""
     curves = (
         (curve.b0, curve.b1) if isinstance(curve, LogisticFit) else (0.0, 0.0)

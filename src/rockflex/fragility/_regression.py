@@ -1,4 +1,4 @@
-"""Regressions on x = log(IM) for many resamples at once.
+"""Regressions on x = log(IM) for many resamples at once, and the scaling that keeps solvers well conditioned.
 
 Each row of `weights`, shape (m, n), says how often each of the n runs counts in one of the m fits. A single fit is the
 row of unit weights.
@@ -10,10 +10,10 @@ import numpy as np
 
 from rockflex._arrays import Array, Bools
 
-NEWTON, SCORING, HALVINGS = 100, 1000, 20  # largest numbers of iterations
-STEP = 1e-8  # of the parameters, at which Newton's method has converged
+MAX_NEWTON_STEPS, MAX_SCORING_STEPS, MAX_HALVINGS = 100, 1000, 20  # largest numbers of iterations
+NEWTON_TOLERANCE = 1e-8  # of the parameters, at which Newton's method has converged
 RIDGE = 1e-10  # added to the information, for each run; where the likelihood is flat, Newton then converges too slowly
-LONGEST = 5.0  # step of Fisher scoring
+MAX_SCORING_STEP = 5.0  # step of Fisher scoring
 
 
 class Logistic(NamedTuple):
@@ -103,7 +103,7 @@ def fit_capacity_lines(x: Array, kind: Array, weights: Array, start: Array) -> A
     weights : ndarray, shape (m, n)
         How often each run counts in each fit.
     start : ndarray, shape (2,)
-        a and b near all solutions, such as those of the fit of all runs.
+        a and b near all solutions, such as the fit of all runs.
 
     Returns
     -------
@@ -116,7 +116,7 @@ def fit_capacity_lines(x: Array, kind: Array, weights: Array, start: Array) -> A
     b = np.tile(start, (weights.shape[0], 1))
     first, converged = b, np.zeros(weights.shape[0], dtype=np.bool_)
     with np.errstate(all="ignore"):
-        for number in range(NEWTON):
+        for number in range(MAX_NEWTON_STEPS):
             z = b[:, :1] + b[:, 1:] * x
             side = np.where(known, 1.0, kind)
             ratio = np.exp(-0.5 * z**2 - 0.5 * np.log(2.0 * np.pi) - log_ndtr(side * z))  # φ/Φ
@@ -126,7 +126,7 @@ def fit_capacity_lines(x: Array, kind: Array, weights: Array, start: Array) -> A
             _, step = _step(x, weights * slope, (one, cross, second + n_known / b[:, 1] ** 2), n_known / b[:, 1])
             b = b + step
             first = b if number == 0 else first
-            converged = np.abs(step).max(axis=1) <= STEP * np.abs(start).max()
+            converged = np.abs(step).max(axis=1) <= NEWTON_TOLERANCE * np.abs(start).max()
             if (converged | ~np.isfinite(b).all(axis=1)).all():
                 break
     return np.where(converged[:, None] & np.isfinite(b), b, first)
@@ -189,7 +189,7 @@ def _determinant(moments: tuple[Array, Array, Array]) -> Array:
 def _step(
     x: Array, residual: Array, moments: tuple[Array, Array, Array], more: Array | float = 0.0
 ) -> tuple[Array, Array]:
-    """Score of the residuals, with `more` in that of the slope, and the step of the parameters that it makes."""
+    """Score of the residuals, with `more` added to the component of the slope, and the step of the parameters."""
     one, first, second = moments
     a, b = residual.sum(axis=1), residual @ x + more
     step = np.column_stack((second * a - first * b, one * b - first * a))
@@ -201,12 +201,12 @@ def _newton(x: Array, outcome: Bools, weights: Array) -> Array:
     b, converged = np.zeros((weights.shape[0], 2)), np.zeros(weights.shape[0], dtype=np.bool_)
     ridge = RIDGE * weights.sum(axis=1)
     with np.errstate(all="ignore"):
-        for _ in range(NEWTON):
+        for _ in range(MAX_NEWTON_STEPS):
             at = _Point(x, weights, b)
             one, first, second = at.moments
             _, step = _step(x, weights * (outcome - at.p), (one + ridge, first, second + ridge))
             b += step
-            converged = np.abs(step).max(axis=1) <= STEP
+            converged = np.abs(step).max(axis=1) <= NEWTON_TOLERANCE
             if (converged | ~np.isfinite(b).all(axis=1)).all():
                 break
     return np.where(converged[:, None] & np.isfinite(b), b, np.nan)
@@ -217,7 +217,7 @@ def _firth(x: Array, outcome: Bools, weights: Array, scoring: Scoring) -> Array:
     b, converged = np.zeros((weights.shape[0], 2)), np.zeros(weights.shape[0], dtype=np.bool_)
     bound = scoring.score * weights.sum(axis=1)
     with np.errstate(all="ignore"):
-        for _ in range(SCORING):
+        for _ in range(MAX_SCORING_STEPS):
             at = _Point(x, weights, b)
             one, first, second = (moment[:, None] for moment in at.moments)
             leverage = at.each * (second - 2.0 * first * x + one * x**2) / _determinant(at.moments)[:, None]
@@ -228,9 +228,9 @@ def _firth(x: Array, outcome: Bools, weights: Array, scoring: Scoring) -> Array:
             converged = (np.abs(score).max(axis=1) <= bound) & (length <= scoring.step)
             if converged.all():
                 break
-            step *= np.minimum(1.0, LONGEST / length)[:, None]
+            step *= np.minimum(1.0, MAX_SCORING_STEP / length)[:, None]
             likely = _penalised_likelihood(outcome, weights, at)
-            for _ in range(HALVINGS):
+            for _ in range(MAX_HALVINGS):
                 further = _penalised_likelihood(outcome, weights, _Point(x, weights, b + step))
                 worse = ~(further >= likely - 1e-12 * np.abs(likely))
                 if not worse.any():
@@ -248,3 +248,33 @@ def _penalised_likelihood(outcome: Bools, weights: Array, at: _Point) -> Array:
 def _range(x: Array, held: Bools) -> tuple[Array, Array]:
     """Smallest and largest x of the runs in each row; infinite where there is none."""
     return np.where(held, x, np.inf).min(axis=1), np.where(held, x, -np.inf).max(axis=1)
+
+
+class Standardised:
+    """Logarithms scaled to mean 0 and standard deviation 1, and back."""
+
+    def __init__(self, x: Array) -> None:
+        mean, spread = float(x.mean()), float(x.std())
+        self._mean, self._spread = mean, spread
+        self.x = self.of(x)
+        self.design = np.column_stack((np.ones(x.size), self.x))
+        self._back = np.array([[1.0, -mean / spread], [0.0, 1.0 / spread]])
+
+    def of(self, x: Array) -> Array:
+        """Other logarithms on the same scale."""
+        return (x - self._mean) / self._spread
+
+    def back(self, parameters: Array) -> Array:
+        """Intercepts and slopes for the original logarithms, shape (m, 2)."""
+        return parameters @ self._back.T
+
+    def unscaled(self, parameters: Array, covariance: Array) -> tuple[float, float, Array]:
+        """Intercept, slope and covariance for the original logarithms."""
+        a, b = self._back @ parameters
+        return float(a), float(b), self._back @ covariance @ self._back.T
+
+
+def standard_error(x: Array, covariance: Array) -> Array:
+    """Standard error of a + b x for the covariance of (a, b)."""
+    variance = covariance[0, 0] + 2.0 * covariance[0, 1] * x + covariance[1, 1] * x**2
+    return np.sqrt(np.maximum(variance, 0.0))  # rounding may leave a small negative variance

@@ -1,4 +1,4 @@
-"""The ground under the base: springs that cannot pull, and friction."""
+"""The ground under the base: springs that cannot pull, friction, and beds of springs."""
 
 import math
 from dataclasses import dataclass
@@ -13,16 +13,19 @@ from rockflex._checks import (
     finite,
     finite_vector,
     float_array,
+    in_range,
     instance,
     positive,
     real_or_nan,
+    whole_number,
 )
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
 
-_MOST_SPRINGS = 200
-_MAT = "for a rigid mat of mass m and width 2B it is m (2B)²/12"
+_MAX_SPRINGS = 200
+_MAT_HINT = "for a rigid mat of mass m and width 2B it is m (2B)²/12"
+_END_STIFFNESS, _MIDDLE_STIFFNESS = 6.83, 0.73  # stiffness per unit length over G/(1 - ν)
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,16 +74,16 @@ class Springs(Value):
         area: ArrayLike | None = None,
     ) -> None:
         places = _positions(positions)
-        stiff = _one_a_spring("stiffness", stiffness, "N/m", places.size)
+        stiff = _per_spring("stiffness", stiffness, "N/m", places.size)
         all_positive("stiffness", stiff, "N/m", "A spring without stiffness carries nothing: leave it out.")
-        damped = _one_a_spring("damping", damping, "N s/m", places.size)
+        damped = _per_spring("damping", damping, "N s/m", places.size)
         if damped.min() < 0.0:
             first = int(np.argmin(damped))
             raise InputError(
                 f"damping must be zero or positive, but damping[{first}] = {damped[first]:g} N s/m was given.",
                 field="damping",
             )
-        supported = None if area is None else _one_a_spring("area", area, "m²", places.size)
+        supported = None if area is None else _per_spring("area", area, "m²", places.size)
         if supported is not None:
             all_positive("area", supported, "m²")
         vars(self).update(positions=places, stiffness=stiff, damping=damped, area=supported)
@@ -142,7 +145,7 @@ class Ground(Value):
         of the n springs; a single number applies to all. Default: the base cannot slide.
     springs : Springs or None
         Springs under the base. Default: the ground is rigid. The weight has the moment L_0^r (g + a_v) θ under vertical
-        shaking; that of the heave, L_0^r z'' θ, is not modelled.
+        shaking; the moment of the heave, L_0^r z'' θ, is not modelled.
     base_inertia : float or None
         Rotary inertia I_b of the base and the floors about the axis of the masses in kg m², positive. Given with
         springs, and only then: on rigid ground it is part of I_θ. The inertia Σ m_i h_i² of the structure is added to
@@ -196,9 +199,9 @@ class Ground(Value):
 
 def _positions(given: ArrayLike) -> Array:
     places = finite_vector("positions", given, "m")
-    if not 2 <= places.size <= _MOST_SPRINGS:
+    if not 2 <= places.size <= _MAX_SPRINGS:
         raise InputError(
-            f"positions must have 2 to {_MOST_SPRINGS} springs, but {places.size} were given. A base on one spring "
+            f"positions must have 2 to {_MAX_SPRINGS} springs, but {places.size} were given. A base on one spring "
             "falls over.",
             field="positions",
         )
@@ -219,11 +222,11 @@ def _positions(given: ArrayLike) -> Array:
     return places
 
 
-def _one_a_spring(name: str, given: ArrayLike, unit: str, n: int) -> Array:
+def _per_spring(name: str, given: ArrayLike, unit: str, n: int) -> Array:
     """Return a read-only array of one finite value for each spring, from one or from `n` numbers."""
     if dimensions(given) == 0:
         return _read_only(np.full(n, finite(name, given, unit)))  # pyright: ignore[reportArgumentType]
-    return _counted(name, finite_vector(name, given, unit), n)
+    return _checked_count(name, finite_vector(name, given, unit), n)
 
 
 def _friction(given: ArrayLike, n: int | None) -> float | Array:
@@ -241,10 +244,10 @@ def _friction(given: ArrayLike, n: int | None) -> float | Array:
     values = float_array(given)
     if values is None or values.ndim != 1 or not bool(np.all(values > 0.0)):
         raise InputError(f"{expected}, or one for each spring, but {shown(given)} was given.", field="friction")
-    return _read_only(_counted("friction", values, n))
+    return _read_only(_checked_count("friction", values, n))
 
 
-def _counted(name: str, values: Array, n: int) -> Array:
+def _checked_count(name: str, values: Array, n: int) -> Array:
     if values.size != n:
         raise InputError(
             f"{name} must be one number, or one for each of the {n} springs, but {values.size} were given.", field=name
@@ -269,12 +272,173 @@ def _base_inertia(springs: Springs | None, given: float | None) -> float | None:
     if given is None:
         raise InputError(
             "A base without rotary inertia on springs has no inertia against rotation once all modes are included. "
-            f"Give base_inertia in kg m², the rotary inertia of base and floors; {_MAT}.",
+            f"Give base_inertia in kg m², the rotary inertia of base and floors; {_MAT_HINT}.",
             field="base_inertia",
         )
     if not 0.0 < real_or_nan(given) < math.inf:
         raise InputError(
-            f"base_inertia must be a positive, finite number in kg m², but {shown(given)} was given; {_MAT}.",
+            f"base_inertia must be a positive, finite number in kg m², but {shown(given)} was given; {_MAT_HINT}.",
             field="base_inertia",
         )
     return real_or_nan(given)
+
+
+def winkler_bed(
+    half_width: float,
+    breadth: float,
+    subgrade_modulus: float,
+    *,
+    damping: float = 0.0,
+    n: int = 20,
+    end_zone: float = 0.0,
+    end_ratio: float = 1.0,
+    eccentricity: float = 0.0,
+) -> Springs:
+    """Return equally spaced springs under a rigid base, which represent a Winkler bed.
+
+    Each spring stands in the middle of the strip that it supports, with k = k_s × breadth × width of the strip. The
+    total stiffness equals that of the continuous bed. If the bed is uniform, the rotational stiffness is smaller by the
+    factor 1 - 1/n².
+
+    Parameters
+    ----------
+    half_width
+        Half-width B of the base in m.
+    breadth
+        Dimension of the base perpendicular to the plane of rocking in m.
+    subgrade_modulus
+        Modulus of subgrade reaction k_s in N/m³: pressure over settlement.
+    damping
+        Total vertical damping coefficient Σ c in N s/m, distributed in proportion to the stiffness. For a fraction of
+        critical damping use `Springs.damped`.
+    n
+        Number of springs, 2 to 200. With end zones it includes at least one spring in each of them.
+    end_zone
+        Length of the stiffer zone at either end in m, from 0 to below `half_width`.
+    end_ratio
+        Stiffness of the end zones over the stiffness of the rest, positive.
+    eccentricity
+        Distance of the axis of the masses to the right of the middle of the base in m, as in `Eccentric`.
+
+    Returns
+    -------
+    Springs
+        With positions from the axis of the masses, and the area that each spring supports.
+
+    Raises
+    ------
+    InputError
+        If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> bed = rf.winkler_bed(half_width=2.0, breadth=3.0, subgrade_modulus=40e6, n=40)
+    >>> round(bed.total_stiffness / (40e6 * 4.0 * 3.0), 6), round(bed.rotational_stiffness / (40e6 * 3.0 * 16.0 / 3), 4)
+    (1.0, 0.9994)
+    """
+    B = positive("half_width", half_width, "m")
+    across = positive("breadth", breadth, "m")
+    modulus = positive("subgrade_modulus", subgrade_modulus, "N/m³")
+    total = positive("damping", damping, "N s/m", zero=True)
+    ratio = positive("end_ratio", end_ratio, "times the stiffness of the rest")
+    shift = finite("eccentricity", eccentricity, "m")
+    zone = in_range("end_zone", end_zone, 0.0, B, hint="Its unit is m; the two zones must leave a part between them.")
+    count = whole_number("n", n, 3 if zone > 0.0 else 2, _MAX_SPRINGS)
+    if not abs(shift) < B:
+        raise InputError(
+            f"eccentricity must be less than half_width {B:g} m, but {shift:g} m was given.", field="eccentricity"
+        )
+    edges = _edges(B, zone, count)
+    middles, widths = (edges[1:] + edges[:-1]) / 2.0, np.diff(edges)
+    stiffness = modulus * across * widths * np.where(np.abs(middles) > B - zone, ratio, 1.0)
+    return Springs(middles - shift, stiffness, total * stiffness / stiffness.sum(), across * widths)
+
+
+def asce41_bed(
+    half_width: float,
+    breadth: float,
+    shear_modulus: float,
+    poisson_ratio: float,
+    *,
+    damping: float = 0.0,
+    n: int = 20,
+    eccentricity: float = 0.0,
+) -> Springs:
+    """Return a Winkler bed with the stiffened ends of ASCE/SEI 41-17, Section 8.4.2.3 (FEMA 356, Figure 4-5).
+
+    For a footing that is rigid relative to the soil. The stiffness per unit length is 6.83 G/(1 - ν) in end zones of
+    length breadth/6, and 0.73 G/(1 - ν) between them. The former is the stiffness of a separate footing of the
+    size of the zone, the latter of an endless strip (Gazetas 1991, J. Geotech. Eng. 117(9), 1363-1381), so the bed is
+    stiff enough both in heave and in rotation.
+
+    Parameters
+    ----------
+    half_width
+        Half-width B of the base in m, more than breadth/6.
+    breadth
+        Dimension B_f of the base perpendicular to the plane of rocking in m.
+    shear_modulus
+        Effective shear modulus G of the soil in N/m².
+    poisson_ratio
+        ν of the soil, from 0 to 0.5.
+    damping
+        Total vertical damping coefficient Σ c in N s/m, distributed in proportion to the stiffness. For a fraction of
+        critical damping use `Springs.damped`.
+    n
+        Number of springs, 3 to 200, including at least one in each end zone.
+    eccentricity
+        Distance of the axis of the masses to the right of the middle of the base in m, as in `Eccentric`.
+
+    Returns
+    -------
+    Springs
+        With positions from the axis of the masses, and the area that each spring supports.
+
+    Raises
+    ------
+    InputError
+        If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> bed = rf.asce41_bed(half_width=2.0, breadth=3.0, shear_modulus=20e6, poisson_ratio=0.35)
+    >>> round(bed.total_stiffness / (20e6 / 0.65), 3)  # 6.83 × 1 m + 0.73 × 3 m
+    9.02
+    """
+    B = positive("half_width", half_width, "m")
+    across = positive("breadth", breadth, "m")
+    modulus = positive("shear_modulus", shear_modulus, "N/m²")
+    poisson = real_or_nan(poisson_ratio)
+    if not 0.0 <= poisson <= 0.5:
+        raise InputError(
+            f"poisson_ratio must be from 0 to 0.5, but {shown(poisson_ratio)} was given.", field="poisson_ratio"
+        )
+    zone = across / 6.0
+    if zone >= B:
+        raise InputError(
+            f"The end zones of ASCE 41, breadth/6 = {zone:g} m each, cover the whole base of half_width {B:g} m. Use "
+            "winkler_bed with a subgrade modulus, or check that breadth is perpendicular to the plane of rocking.",
+            field="breadth",
+        )
+    return winkler_bed(
+        B,
+        across,
+        _MIDDLE_STIFFNESS * modulus / (1.0 - poisson) / across,
+        damping=damping,
+        n=n,
+        end_zone=zone,
+        end_ratio=_END_STIFFNESS / _MIDDLE_STIFFNESS,
+        eccentricity=eccentricity,
+    )
+
+
+def _edges(B: float, zone: float, n: int) -> Array:
+    """Return the n + 1 ends of the strips: in each zone they are equal, and about equal everywhere."""
+    if zone == 0.0:
+        return np.linspace(-B, B, n + 1)
+    in_each = min(max(round(n * zone / (2.0 * B)), 1), math.floor((n - 1) / 2))
+    inner = np.linspace(zone - B, B - zone, n - 2 * in_each + 1)
+    end = np.linspace(B - zone, B, in_each + 1)[1:]
+    return np.concatenate([-end[::-1], inner, end])

@@ -8,8 +8,7 @@ from rockflex._checks import real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.modal._devices import BaseElement, locked_force
-from rockflex.modal._tendons import Tendon
+from rockflex.modal._elements import BaseElement, Tendon, locked_force
 
 PIVOT_VALUES = ("half_width", "eccentricity", "i_theta", "translational_inertia", "m_tot", "l0r")
 """Names of the `RockingProperties` that `pivot_of` needs."""

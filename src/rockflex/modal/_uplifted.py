@@ -1,25 +1,64 @@
-"""Vibration of a structure whose base has lifted."""
+"""Vibration of a structure whose base has lifted, its damping, and the pinned beam as a bound."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import SupportsIndex
+from typing import Literal, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import float_array, instance
+from rockflex._checks import MOST_MODES, float_array, instance, one_of, positive, whole_number
 from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.modal._pivot import Pivot
 from rockflex.modal._rocking import RockingProperties
-from rockflex.modal._uplifted_damping import uplifted_damping
 
-HIGHEST = 1e60  # rad/s, whose fourth power still fits in double precision
+MAX_FREQUENCY = 1e60  # rad/s, whose fourth power still fits in double precision
+_ROOT_SHIFTS = (1e-13, 1e-11, 1e-9)  # relative shifts from a root: the first that gives a regular matrix is used
 
-_BESIDE = (1e-13, 1e-11, 1e-9)  # relative shifts from a root: the first that gives a regular matrix is used
+
+def uplifted_damping(squares: Array, damping: Array) -> Array:
+    """Return ζ* (n,) of the vibrations of q'' + C q' + Λ q = 0, without the rotation.
+
+    Parameters
+    ----------
+    squares : ndarray, shape (n + 1,)
+        Λ: the eigenvalues ω² of the undamped system in rad²/s², in ascending order; the first is the rotation.
+    damping : ndarray, shape (n + 1, n + 1)
+        C in 1/s, in the undamped modes with unit modal mass; symmetric, positive semidefinite.
+
+    Notes
+    -----
+    The roots λ come in pairs: two conjugates, or two real roots of an overdamped motion (if there are more, the slowest
+    is paired with the fastest). The pair of the rotation is the growing root and the slowest decaying real root;
+    without a growing root, it is the pair with the smallest product. The other pairs are sorted by √(λ_a λ_b), which is
+    ω* without damping, and have ζ* = -(λ_a + λ_b)/(2 √(λ_a λ_b)).
+    """
+    size = squares.size
+    # Displacements are scaled by ω: without damping the matrix is then skew-symmetric except for the rotation, and so
+    # well conditioned.
+    scale = np.sqrt(np.abs(squares))
+    scale[scale == 0.0] = 1.0
+    matrix = np.zeros((2 * size, 2 * size))
+    matrix[:size, size:] = np.diag(scale)
+    matrix[size:, :size] = np.diag(-squares / scale)
+    matrix[size:, size:] = -damping
+    roots = np.linalg.eigvals(matrix)
+    turning = roots[roots.imag > 0.0]
+    still = roots.real[roots.imag == 0.0]
+    still = still[np.argsort(np.abs(still))]
+    grows = bool(squares[0] < 0.0)
+    if grows:
+        still = np.delete(still, np.argmax(still))[1:]
+    slow, fast = still[: still.size // 2], still[::-1][: still.size // 2]
+    total = np.concatenate([2.0 * turning.real, slow + fast])
+    product = np.concatenate([np.abs(turning) ** 2, np.abs(slow * fast)])
+    order = np.argsort(product)[0 if grows else 1 :]
+    return -total[order] / (2.0 * np.sqrt(product[order]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +112,7 @@ def uplifted_modes(
 ) -> UpliftedModes:
     """Return the modes of Eq. 23 from the first `n_modes` modes of the structure (default: all).
 
-    Frequencies and shapes are undamped; `damping_ratio` is the damping that results from that of the fixed base.
+    Frequencies and shapes are undamped; `damping_ratio` results from the damping ratios on the fixed base.
 
     With the rows of D_n multiplied by m*_n, the matrices are symmetric, and the mass matrix is positive definite
     because I_θ > Σ m*_n h*_n². The lowest root ω² belongs to the rotation; it is negative if gravity outweighs the
@@ -176,7 +215,7 @@ def _modal_damping(p: RockingProperties, pivot: Pivot, motions: Array) -> Array:
 def _polished(stiffness: Array, mass: Array, squares: Array, motions: Array) -> tuple[Array, Array]:
     """Restore the digits that small roots lost to rounding of the largest, by one step of inverse iteration each."""
     moved = motions
-    for shift in _BESIDE:
+    for shift in _ROOT_SHIFTS:
         near = np.diag(stiffness) - (squares * (1.0 + shift))[:, None, None] * mass
         try:
             moved = np.linalg.solve(near, (mass @ motions).T[:, :, None])[:, :, 0].T
@@ -230,12 +269,132 @@ def frequency_equation(properties: RockingProperties, omega: ArrayLike, *, side:
     """
     pivot = _pivot(instance("properties", properties, RockingProperties), side)
     frequencies = float_array(omega)
-    if frequencies is None or not (np.abs(frequencies) < HIGHEST).all():
+    if frequencies is None or not (np.abs(frequencies) < MAX_FREQUENCY).all():
         raise InputError(
-            f"omega must contain frequencies in rad/s below {HIGHEST:g}, but {shown(omega)} was given.", field="omega"
+            f"omega must contain frequencies in rad/s below {MAX_FREQUENCY:g}, but {shown(omega)} was given.",
+            field="omega",
         )
     square = frequencies[..., None] ** 2
     inertia = properties.effective_mass * properties.effective_height**2
     gap = properties.omega**2 - square
     terms = np.divide(square**2 * inertia, gap, out=np.full(gap.shape, np.nan), where=gap != 0.0)
     return pivot.rocking_stiffness - square[..., 0] * pivot.i_theta - terms.sum(axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class PinnedBeam(Value):
+    """Frequencies of a pinned beam relative to the clamped beam.
+
+    Attributes
+    ----------
+    rotation_ratio : float
+        Frequency of the rotation on the spring divided by the first frequency of the clamped beam; 0 without a spring,
+        1 if clamped. An uplifted structure has no corresponding frequency.
+    ratio : ndarray, shape (n,)
+        ω*_n/ω_n of the higher vibrations, relative to mode n of the clamped beam. Without a spring these are bounds for
+        an uplifted structure.
+    roots : ndarray, shape (n + 1,)
+        λ of the rotation and of the vibrations: ω = λ² √(EI/(m L⁴)) in flexure, λ √(GA/(m L²)) in shear.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> beam = rf.pinned_beam("shear", spring=1.0)
+    >>> round(beam.rotation_ratio, 3), beam.ratio.round(3)
+    (0.742, array([2.931, 1.653]))
+    """
+
+    rotation_ratio: float
+    ratio: Array
+    roots: Array
+
+
+def pinned_beam(behaviour: Literal["flexure", "shear"], spring: float = 0.0, n_modes: SupportsIndex = 2) -> PinnedBeam:
+    """Return the frequencies of a uniform cantilever on a rotational spring.
+
+    Parameters
+    ----------
+    behaviour : {"flexure", "shear"}
+        Kind of deformation.
+    spring : float
+        k_r L/EI in flexure, k_r/(GA L) in shear, zero (pinned) or positive.
+    n_modes : int
+        Number of vibrations, at most 200.
+
+    Returns
+    -------
+    PinnedBeam
+
+    Raises
+    ------
+    InputError
+        If the behaviour is unknown, the spring negative or not finite, or `n_modes` not positive.
+
+    References
+    ----------
+    The limit k_r → 0 is due to Wiebe & Christopoulos, cited in Silva & Stojadinović 2024, Section 3.4 (Fig. 10).
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> beam = rf.pinned_beam("flexure")
+    >>> beam.ratio.round(3)
+    array([4.385, 2.268])
+    """
+    if not one_of(behaviour, ("flexure", "shear")):
+        raise InputError(
+            f'behaviour must be "flexure" or "shear", but {shown(behaviour)} was given.', field="behaviour"
+        )
+    k = positive("spring", spring, "k_r L/EI (flexure) or k_r/(GA L) (shear)", zero=True)
+    n = whole_number("n_modes", n_modes, 1, MOST_MODES)
+    flexure = behaviour == "flexure"
+    clamp, pin = (_clamped_flexure, _pinned_flexure) if flexure else (math.cos, _pinned_shear)
+    pinned, clamped = [0.0], [_bisected(clamp, 0.0, math.pi)]
+    for i in range(1, n + 1):
+        pinned.append(_bisected(pin, i * math.pi, (i + 1) * math.pi if flexure else (i + 0.5) * math.pi))
+        clamped.append(_bisected(clamp, i * math.pi, (i + 1) * math.pi))
+    # The roots with a spring lie between the roots of the pinned and of the clamped beam.
+    spring_of = _flexure_spring if flexure else _shear_spring
+    roots = [
+        _bisected(lambda x: spring_of(x, k), low, high) if k else low
+        for low, high in zip(pinned, clamped, strict=True)
+    ]  # fmt: skip
+    found = np.array(roots)
+    power = 2 if flexure else 1
+    against = np.array(clamped)
+    return PinnedBeam(
+        rotation_ratio=float((found[0] / against[0]) ** power),
+        ratio=(found[1:] / against[:-1]) ** power,
+        roots=found,
+    )
+
+
+def _clamped_flexure(x: float) -> float:
+    return math.cos(x) + 1.0 / math.cosh(x)
+
+
+def _pinned_flexure(x: float) -> float:
+    return math.sin(x) - math.cos(x) * math.tanh(x)
+
+
+def _pinned_shear(x: float) -> float:
+    return math.sin(x) - x * math.cos(x)
+
+
+def _flexure_spring(x: float, k: float) -> float:
+    return k * _clamped_flexure(x) - x * _pinned_flexure(x)
+
+
+def _shear_spring(x: float, k: float) -> float:
+    return k * x * math.cos(x) - _pinned_shear(x)
+
+
+def _bisected(function: Callable[[float], float], low: float, high: float) -> float:
+    """Return the place of the sign change, to the last bit."""
+    above = function(high) > 0.0
+    while low < (middle := 0.5 * (low + high)) < high:
+        if (function(middle) > 0.0) == above:
+            high = middle
+        else:
+            low = middle
+    return middle

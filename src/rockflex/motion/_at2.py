@@ -7,19 +7,16 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex._files import path_of
-from rockflex._shown import counted
-from rockflex.motion._direction import azimuth_of, direction_of
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._text import DECIMAL, build_motion, number, read_lines
-from rockflex.motion._units import Unit
+from rockflex.motion._record_info import RecordInfo, azimuth_of, direction_of
+from rockflex.motion._text import DECIMAL, Unit, build_motion, number, read_lines, wrong_count
 
 HEADER_LINES = 12
-_DIGITS = 18  # of NPTS that are read; no file has more samples
+_MAX_NPTS_DIGITS = 18  # of NPTS that are read; no file has more samples
 _COUNT, _NUMBER, _APART = r"(\d++)", rf"({DECIMAL.pattern})", r"(?:\s*+,\s++|\s++)"
 NPTS = re.compile(rf"\bNPTS\s*+[=:]\s*+{_COUNT}", re.IGNORECASE)
 DT = re.compile(rf"\bDT\s*+[=:]\s*+{_NUMBER}", re.IGNORECASE)
-BARE = re.compile(rf"\s*+{_COUNT}{_APART}{_NUMBER}{_APART}NPTS\s*+,?+\s*+DT\b", re.IGNORECASE)
+NUMBERS_FIRST = re.compile(rf"\s*+{_COUNT}{_APART}{_NUMBER}{_APART}NPTS\s*+,?+\s*+DT\b", re.IGNORECASE)
 DATE = re.compile(r"(\d{1,2})/(\d{1,2})/(\d{4}|\d{2})\b(?:\s++\d{1,2}:?\d{2}(?::\d{2})?(?=\s*+,))?")
 # Numbers may be adjacent if the next one begins with a sign; an exponent must then end before the sign.
 TOKEN = re.compile(r"[+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[EeDd][+-]?\d{1,3}+)?(?=[\s,+-]|$)")
@@ -72,12 +69,12 @@ def find_header(lines: list[str]) -> tuple[int, int, str] | None:
     for i, line in enumerate(lines[:HEADER_LINES]):
         if line.lstrip().startswith(("#", "%", "!")):
             continue  # a comment in a plain text file, which says nothing about units
-        if bare := BARE.match(line):
-            return i + 1, int(bare[1][:_DIGITS]), bare[2]
+        if bare := NUMBERS_FIRST.match(line):
+            return i + 1, int(bare[1][:_MAX_NPTS_DIGITS]), bare[2]
         npts = NPTS.search(line) or npts
         dt = DT.search(line) or dt
         if npts and dt:
-            return i + 1, int(npts[1][:_DIGITS]), dt[1]
+            return i + 1, int(npts[1][:_MAX_NPTS_DIGITS]), dt[1]
     return None
 
 
@@ -101,11 +98,7 @@ def parse_at2(file: Path, lines: list[str]) -> GroundMotion:
         raise InputError(f"{file}, line {start}: DT must be positive, but it is {step}.")
     values = _values(file, lines, start)
     if values.size != npts:
-        what = "is truncated" if values.size < npts else "contains too many values"
-        found = counted(values.size, "value follows", "values follow")
-        raise InputError(
-            f"{file} {what}: its header says NPTS = {npts}, but {found}. Download the record again, or correct NPTS."
-        )
+        raise wrong_count(file, values.size, npts, f"NPTS = {npts}")
     remedy = (
         "AT2 files are in g by definition: save only the values as a text file and declare their unit, "
         f'read_motion(path, units="m/s2", dt={dt:g}).'

@@ -1,88 +1,122 @@
-"""Records as columns of numbers: which is the time, which are accelerations, and in what unit."""
+"""Records as columns of numbers in text files and Excel workbooks."""
 
+import io
 import re
-from dataclasses import dataclass
+import warnings
+import zipfile
+from dataclasses import dataclass, fields
+from itertools import chain, pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import counted, shown
-from rockflex.motion._direction import HORIZONTAL, VERTICAL, azimuth_of, direction_of, is_horizontal_name, told_apart
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_file import stated_facts
-from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._table import BRACKET, TIME, Table, after_brackets
-from rockflex.motion._text import DECIMAL, acceleration_of, build_motion, number
-from rockflex.motion._units import Unit, spelled
+from rockflex.motion._record_info import (
+    HORIZONTAL_NAME,
+    VERTICAL_NAME,
+    RecordInfo,
+    azimuth_of,
+    direction_of,
+    is_horizontal_name,
+    unique_names,
+)
+from rockflex.motion._text import (
+    BRACKET,
+    DECIMAL,
+    SECONDS,
+    TIME_LABEL,
+    Table,
+    Unit,
+    acceleration_of,
+    after_brackets,
+    build_motion,
+    is_number,
+    number,
+    optional_number,
+    unit_name,
+)
 
-SECONDS = ("s", "sec", "secs", "second", "seconds")
 PREFIX = r"(?:acc[a-z]*+|a)[\s_.-]++"
-UPWARDS = re.compile(
+VERTICAL_LABEL = re.compile(
     rf"(?:{PREFIX})?+(?:ver|vert|vertical|up|ud|u-d)(?![a-z])|(?:{PREFIX}|a)[vz](?![a-z])", re.IGNORECASE
 )
 # The letter a alone needs the name of a component: a_x, ax, a NS.
-ACCELERATION = re.compile(
+ACCELERATION_LABEL = re.compile(
     r"(?:acc|acel|beschl)[^\W\d_]*+\.?|"
-    rf"a(?=(?:[xyz]|[\s_.-]++(?:[xyz]|{HORIZONTAL.pattern}|{VERTICAL.pattern}))(?!\w))",
+    rf"a(?=(?:[xyz]|[\s_.-]++(?:[xyz]|{HORIZONTAL_NAME.pattern}|{VERTICAL_NAME.pattern}))(?!\w))",
     re.IGNORECASE,
 )
-STATED = re.compile(r"\bunits?\s*+[:=]\s*+\(?([^\s,;()]++)", re.IGNORECASE)
-STEP = re.compile(rf"\bdt\s*+[:=]\s*+({DECIMAL.pattern})\s*+(?:s|sec|seconds)?+\s*+$", re.IGNORECASE)
+STATED_UNIT = re.compile(r"\bunits?\s*+[:=]\s*+\(?([^\s,;()]++)", re.IGNORECASE)
+STATED_STEP = re.compile(rf"\bdt\s*+[:=]\s*+({DECIMAL.pattern})\s*+(?:s|sec|seconds)?+\s*+$", re.IGNORECASE)
 REMEDY = 'Declare the unit of the file: units="m/s2" or units="cm/s2".'
+ZIP_MAGIC, OLD_EXCEL_MAGIC = b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
+MAX_UNPACKED_BYTES = 100_000_000  # bytes of a workbook when unpacked
+MAX_ROW_BYTES = 2_000_000  # bytes of a row, all of whose cells openpyxl makes before it gives the first
+MAX_CELLS = 5_000_000  # cells of a workbook, also empty ones; every 20 characters in a cell count as one
+ROW_EDGES = re.compile(rb"<(?:\w+:)?row\b|</(?:\w+:)?sheetData>")
+INSTALL = "Install it: pip install 'rockflex[excel]', or save the sheet as CSV."
+RECORD_MARK = "Record of rockflex"
+NOT_WRITTEN = ("source_format", "stated_pga")  # they are about the file that was read
+FIELD_TYPES: dict[Any, type[int | float]] = {int | None: int, float | None: float}
+RECORD_FIELDS = {
+    each.name: FIELD_TYPES.get(each.type, str) for each in fields(RecordInfo) if each.name not in NOT_WRITTEN
+}
 
 
 @dataclass(frozen=True)
-class Chosen:
-    """The columns of a table: of times (None if there is none), of accelerations, of the vertical one beside them."""
+class ColumnRoles:
+    """Indices of the columns of time (None if there is none), horizontal accelerations, and the vertical one."""
 
     time: int | None
-    along: tuple[int, ...]
-    upwards: int | None
+    horizontal: tuple[int, ...]
+    vertical: int | None
 
 
 def parse_columns(file: Path, table: Table, units: Unit | None, dt: float | None, name: str) -> list[GroundMotion]:
     """Build the motions from rows of numbers; of several accelerations, each is a motion, the vertical one too."""
-    chosen = _choose(file, table.labels, len(table.rows[0][1]))
-    places = [*chosen.along, *([] if chosen.upwards is None else [chosen.upwards])]
+    roles = _column_roles(file, table.labels, len(table.rows[0][1]))
+    places = [*roles.horizontal, *([] if roles.vertical is None else [roles.vertical])]
     stated = {k: _stated_unit(file, table, k, units) for k in places}
     values = {k: _column(file, table, k) for k in places}
-    step = _time_step(file, table, chosen.time, dt)
-    if len(chosen.along) == 1:
-        return [_single(file, table, chosen, stated, values, step, name)]
+    step = _time_step(file, table, roles.time, dt)
+    if len(roles.horizontal) == 1:
+        return [_single_motion(file, table, roles, stated, values, step, name)]
     names = [_component(table.labels[k]) or str(k + 1) for k in places]
     motions: list[GroundMotion] = []
-    for k, component, apart in zip(places, names, told_apart(names), strict=True):
+    for k, component, apart in zip(places, names, unique_names(names), strict=True):
         info = RecordInfo(
             source=file.name,
             component=component,
-            direction="vertical" if k == chosen.upwards else "horizontal",
-            azimuth=None if k == chosen.upwards else azimuth_of(component),
+            direction="vertical" if k == roles.vertical else "horizontal",
+            azimuth=None if k == roles.vertical else azimuth_of(component),
             source_format="columns",
         )
         motions.append(build_motion(file, values[k], stated[k], step, info, REMEDY, f"{name}-{apart}"))
     return motions
 
 
-def _single(
+def _single_motion(
     file: Path,
     table: Table,
-    chosen: Chosen,
+    roles: ColumnRoles,
     stated: dict[int, Unit],
     values: dict[int, Array],
     step: float,
     name: str,
 ) -> GroundMotion:
     """Build the motion from the only horizontal column, with the vertical one."""
-    column, upwards = chosen.along[0], chosen.upwards
-    alone = bool(table.labels) and UPWARDS.match(table.labels[column])
+    column, vertical = roles.horizontal[0], roles.vertical
+    alone = bool(table.labels) and VERTICAL_LABEL.match(table.labels[column])
     info = RecordInfo(source=file.name, direction="vertical" if alone else direction_of(file), source_format="columns")
-    info = stated_facts(file, table.heads).completed(info)
+    info = stated_record_info(file, table.heads).completed(info)
     motion = build_motion(file, values[column], stated[column], step, info, REMEDY, name)
-    if upwards is None:
+    if vertical is None:
         return motion
-    return motion.with_vertical(acceleration_of(file, values[upwards], stated[upwards], REMEDY, info.scale))
+    return motion.with_vertical(acceleration_of(file, values[vertical], stated[vertical], REMEDY, info.scale))
 
 
 def _column(file: Path, table: Table, k: int) -> Array:
@@ -90,29 +124,29 @@ def _column(file: Path, table: Table, k: int) -> Array:
 
 
 def _component(label: str) -> str:
-    """Return what a label says besides acceleration and unit."""
-    return ACCELERATION.sub(
+    """Return the label without the words for acceleration and the unit: the name of the component."""
+    return ACCELERATION_LABEL.sub(
         "", BRACKET.sub("", label[: after_brackets(label)]) + label[after_brackets(label) :], 1
     ).strip(" _-.")
 
 
-def _choose(file: Path, labels: list[str], n_columns: int) -> Chosen:
+def _column_roles(file: Path, labels: list[str], n_columns: int) -> ColumnRoles:
     """Return which columns are which."""
-    times = [i for i, label in enumerate(labels) if TIME.match(label)]
-    # Of two columns one is the time, unless the labels are those of two components.
+    times = [i for i, label in enumerate(labels) if TIME_LABEL.match(label)]
+    # Of two columns one is the time, unless the labels name two components.
     beside = len(labels) > 2 or (len(labels) == 2 and not times)
-    upwards = [i for i, label in enumerate(labels) if UPWARDS.match(label)] if beside else []
+    upwards = [i for i, label in enumerate(labels) if VERTICAL_LABEL.match(label)] if beside else []
     others = [i for i in range(len(labels)) if i not in (*times, *upwards)]
-    along = [i for i in others if ACCELERATION.match(labels[i])]
+    along = [i for i in others if ACCELERATION_LABEL.match(labels[i])]
     if not along and beside and (len(labels) > 2 or not {"X", "Y"}.intersection(labels)):  # X and Y may be a curve
         along, alone = _by_names(labels, others)
         upwards = [*upwards, *alone]
     vertical = _vertical_column(file, labels, upwards)
     if len(along) == 1 and (len(times) == 1 or (n_columns == 2 and vertical is not None)):
-        return Chosen(times[0] if times else None, (along[0],), vertical)
+        return ColumnRoles(times[0] if times else None, (along[0],), vertical)
     names = {_component(labels[i]) for i in along} - {""}
     if len(along) > 1 and len(times) <= 1 and len(names) == len(along):
-        return Chosen(times[0] if times else None, tuple(along), vertical)
+        return ColumnRoles(times[0] if times else None, tuple(along), vertical)
     if n_columns <= 2:
         time = None if n_columns == 1 else 1 if times == [1] else 0
         column = 1 if time == 0 else 0
@@ -120,7 +154,7 @@ def _choose(file: Path, labels: list[str], n_columns: int) -> Chosen:
             raise InputError(
                 f"{file}: an acceleration is expected, but the column is labelled {shown(labels[column])}."
             )
-        return Chosen(time, (column,), None)
+        return ColumnRoles(time, (column,), None)
     raise InputError(
         f"{file} has {n_columns} columns, and its header does not name one as time and at least one as "
         'acceleration ("time (s), acc (g), ..."). Keep the columns time and acceleration; a vertical one may be '
@@ -149,9 +183,9 @@ def _stated_unit(file: Path, table: Table, k: int, units: Unit | None) -> Unit:
     written = bracket[1] if bracket else ""
     where = "column header"
     if not written:
-        found = next((each for head in table.heads if (each := STATED.search(head[:500]))), None)
+        found = next((each for head in table.heads if (each := STATED_UNIT.search(head[:500]))), None)
         written, where = (found[1] if found else ""), "header"
-    stated = spelled(written)
+    stated = unit_name(written)
     if written and stated is None:
         raise InputError(
             f"{file}: the {where} gives the unit {shown(written)}, which is not known. "
@@ -176,7 +210,7 @@ def _stated_unit(file: Path, table: Table, k: int, units: Unit | None) -> Unit:
 def _time_step(file: Path, table: Table, column: int | None, dt: float | None) -> float:
     """Return the time step in s, from the column of times, the caller or the header."""
     if column is None:
-        found = next((each for head in table.heads if (each := STEP.search(head[:500]))), None)
+        found = next((each for head in table.heads if (each := STATED_STEP.search(head[:500]))), None)
         stated = None if found is None else number(found[1], file, 1)
         if stated and stated > 0.0 and dt in (None, stated):
             return stated
@@ -192,7 +226,7 @@ def _time_step(file: Path, table: Table, column: int | None, dt: float | None) -
         return dt
     if table.labels:
         _check_seconds(file, table.labels[column])
-    return _step(file, _column(file, table, column), [line for line, _ in table.rows], dt)
+    return _common_step(file, _column(file, table, column), [line for line, _ in table.rows], dt)
 
 
 def _check_seconds(file: Path, label: str) -> None:
@@ -203,7 +237,7 @@ def _check_seconds(file: Path, label: str) -> None:
         )
 
 
-def _step(file: Path, times: Array, lines: list[int], dt: float | None) -> float:
+def _common_step(file: Path, times: Array, lines: list[int], dt: float | None) -> float:
     """Return the common time step in s."""
     if times.size < 3:
         raise InputError(f"{file} has {counted(times.size, 'sample')}, but a record needs at least 3.")
@@ -235,3 +269,170 @@ def _step(file: Path, times: Array, lines: list[int], dt: float | None) -> float
         )
     # The mean is better than one printed difference; twelve digits remove the rounding of the subtraction.
     return float(f"{(times[-1] - times[0]) / (times.size - 1):.12g}")
+
+
+def is_excel(content: bytes) -> bool:
+    """Return whether the bytes begin as an Excel workbook, or as another file in the same container (ZIP, OLE)."""
+    return content.startswith((ZIP_MAGIC, OLD_EXCEL_MAGIC))
+
+
+def parse_excel(file: Path, content: bytes, units: Unit | None, dt: float | None) -> list[GroundMotion]:
+    """Build the motions from all sheets of a workbook that hold rows of numbers, read as columns of text are."""
+    tables = {name: table for name, cells in sheets_of(file, content).items() if (table := _sheet_table(cells))}
+    if not tables:
+        raise InputError(f"{file} holds no numbers: a sheet is expected with columns of time and acceleration.")
+    motions: list[GroundMotion] = []
+    for sheet, table in tables.items():
+        name = file.stem if len(tables) == 1 else f"{file.stem}-{sheet}"
+        try:
+            motions += parse_columns(file, table, units, dt, name)
+        except InputError as error:
+            if len(tables) == 1:
+                raise
+            text = f"Sheet {sheet[:40]!r}: {error}"
+            raise InputError(text, field=error.field) from error
+    names = unique_names([motion.name for motion in motions])
+    return [
+        GroundMotion(each.acceleration, each.dt, name, each.metadata, each.vertical)
+        for each, name in zip(motions, names, strict=True)
+    ]
+
+
+def sheets_of(file: Path, content: bytes) -> dict[str, list[list[str]]]:
+    """Return the cells of every sheet of a workbook as text, by its name.
+
+    Raises
+    ------
+    InputError
+        If it is none, or one of the old format, it is too large or cannot be read, or openpyxl is not installed.
+    """
+    if content.startswith(OLD_EXCEL_MAGIC):
+        raise InputError(f"{file} is a workbook of the old format. Save it as .xlsx or CSV.")
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            size = sum(each.file_size for each in archive.infolist())
+            workbook = "xl/workbook.xml" in archive.namelist()
+    except (zipfile.BadZipFile, ValueError, NotImplementedError) as error:
+        raise InputError(f"{file} is a damaged archive or workbook. Download it again.") from error
+    if not workbook:
+        raise InputError(f"{file} is an archive, but no workbook. Unpack it, and give the files in it.")
+    if size > MAX_UNPACKED_BYTES:
+        raise InputError(
+            f"{file} has {size / 1e6:.0f} MB when unpacked, above {MAX_UNPACKED_BYTES / 1e6:g} MB. Save it as CSV."
+        )
+    try:
+        import openpyxl
+    except ImportError as error:
+        raise InputError(f"{file} is an Excel workbook, which needs openpyxl to be read. {INSTALL}") from error
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            if any(_longest_row(archive.read(part)) > MAX_ROW_BYTES for part in archive.namelist()):
+                raise InputError(
+                    f"{file} has a row of more than {MAX_ROW_BYTES / 1e6:g} MB. Delete the cells beside the record."
+                )
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about styles and other extensions that do not matter here
+            book: Any = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True)
+            return _sheet_cells(file, book)
+    except InputError:
+        raise
+    except Exception as error:  # damaged workbooks raise many kinds of errors
+        raise InputError(f"{file} cannot be read as an Excel workbook: {str(error)[:200]}.") from error
+
+
+def _longest_row(part: bytes) -> int:
+    """Return the bytes of the longest row in a part of a workbook; 0 if it is no sheet."""
+    ends = (each.start() for each in ROW_EDGES.finditer(part)) if b"sheetData" in part else ()
+    return max((after - before for before, after in pairwise(chain(ends, [len(part)]))), default=0)
+
+
+def _sheet_cells(file: Path, book: Any) -> dict[str, list[list[str]]]:
+    """Return the cells of the sheets of an open workbook; sheets whose few cells lie far apart are refused."""
+    sheets: dict[str, list[list[str]]] = {}
+    count, empty = 0, list[str]()
+    for sheet in book.worksheets:
+        sheet.reset_dimensions()  # a file may claim any, and each row would be filled up to them
+        rows = sheets[str(sheet.title)] = list[list[str]]()
+        for row in sheet.iter_rows(values_only=True):
+            cells = [""] * len(row)
+            for k, cell in enumerate(row):
+                cells[k] = _cell_text(cell)
+                count += 1 + len(cells[k]) // 20
+                if count > MAX_CELLS:
+                    break
+            count += not cells
+            if count > MAX_CELLS:
+                raise InputError(
+                    f"{file}: more than {MAX_CELLS / 1e6:g} million cells lie before its last filled ones, with the "
+                    "empty ones between them. Delete the cells far from the record, or save the sheet as CSV."
+                )
+            rows.append(cells if any(cells) else empty)
+    return sheets
+
+
+def _cell_text(cell: object) -> str:
+    if isinstance(cell, float | int) and not isinstance(cell, bool):
+        return repr(float(cell))
+    return "" if cell is None else str(cell).strip()
+
+
+def _sheet_table(cells: list[list[str]]) -> Table | None:
+    """Return the rows of numbers in a sheet, without columns that are empty; None if there are none."""
+    numbered = [(i, row) for i, row in enumerate(cells, 1)]
+    begin = next((k for k, (_, row) in enumerate(numbered) if _is_numeric_row(row)), None)
+    if begin is None:
+        return None
+    rows = [(i, row) for i, row in numbered[begin:] if any(row)]
+    heads = [row for _, row in numbered[:begin] if any(row)]
+    used = sorted({k for _, row in rows for k, cell in enumerate(row) if cell})
+
+    def kept(row: list[str]) -> list[str]:
+        return [row[k] if k < len(row) else "" for k in used]
+
+    found = next((kept(row) for row in reversed(heads) if all(kept(row))), [])
+    labels = found if any(not DECIMAL.fullmatch(label) for label in found) else []
+    return Table(labels, [(i, kept(row)) for i, row in rows], [" ".join(filter(None, row)) for row in heads])
+
+
+def _is_numeric_row(row: list[str]) -> bool:
+    """Return whether a row begins the numbers: its filled cells are all numbers."""
+    filled = [cell for cell in row if cell]
+    return bool(filled) and all(map(is_number, filled))
+
+
+def record_csv(motion: GroundMotion) -> str:
+    """Return a motion as the text of a CSV file, to the last bit, that `read_motion` reads with all that is known."""
+    info = motion.metadata or RecordInfo()
+    known = {name: value for name in RECORD_FIELDS if (value := getattr(info, name)) is not None}
+    heads = [f"# {RECORD_MARK}", *(f"# {name}: {' '.join(str(value).split())}" for name, value in known.items())]
+    columns = {"time (s)": motion.time, "acceleration (m/s2)": motion.acceleration}
+    if motion.vertical is not None:
+        columns["vertical (m/s2)"] = motion.vertical
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    return "\n".join([*(heads if known else []), ",".join(columns), *(",".join(map(repr, row)) for row in rows), ""])
+
+
+def stated_record_info(file: Path, heads: list[str]) -> RecordInfo:
+    """Return the metadata in the first lines of a file that `record_csv` wrote; empty for other files.
+
+    Raises
+    ------
+    InputError
+        If a number in them is none.
+    """
+    found: dict[str, str | int | float] = {}
+    lines = [head.strip("# ,;\t") for head in heads]  # as spreadsheets leave them
+    for line, head in enumerate(lines if lines[:1] == [RECORD_MARK] else [], 1):
+        name, _, text = (part.strip() for part in head.partition(":"))
+        if name not in RECORD_FIELDS or not text:
+            continue
+        kind = RECORD_FIELDS[name]
+        value = text if kind is str else optional_number(text)
+        if value is None or value != kind(value):
+            raise InputError(f"{file}, line {line}: {name} must be a number, but {shown(text)} was given.")
+        found[name] = kind(value)
+    if found.get("direction", "horizontal") not in ("horizontal", "vertical", "down"):
+        raise InputError(
+            f'{file}: direction must be "horizontal", "vertical" or "down", but {shown(found["direction"])} was given.'
+        )
+    return RecordInfo(**found)  # pyright: ignore[reportArgumentType]

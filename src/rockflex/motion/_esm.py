@@ -11,22 +11,19 @@ from pathlib import Path
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex._shown import counted
-from rockflex.motion._direction import azimuth_of, direction_of
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._text import build_motion, known, number, real
-from rockflex.motion._units import Unit, spelled
+from rockflex.motion._record_info import RecordInfo, azimuth_of, direction_of
+from rockflex.motion._text import Unit, build_motion, non_negative, number, optional_number, unit_name, wrong_count
 
 ENTRY = re.compile(r"([A-Z][A-Z0-9_/^ -]*+):(.*)")
-BEGINNINGS = ("EVENT_NAME:", "EVENT_ID:")
-WHEN = re.compile(r"(\d{4})(\d{2})(\d{2})(\d{2})(\d{2})\d{2}")
-STAMP = re.compile(r"(\d{4})(\d{2})(\d{2})_(\d{2})(\d{2})(\d{2}(?:\.\d{1,6})?)")
+FIRST_KEYS = ("EVENT_NAME:", "EVENT_ID:")
+EVENT_TIME = re.compile(r"(\d{4})(\d{2})(\d{2})(\d{2})(\d{2})\d{2}")
+START_TIME = re.compile(r"(\d{4})(\d{2})(\d{2})_(\d{2})(\d{2})(\d{2}(?:\.\d{1,6})?)")
 
 
 def is_esm(lines: list[str]) -> bool:
-    """Return whether the lines begin as those of an ESM file."""
-    return lines[0].lstrip().startswith(BEGINNINGS)
+    """Return whether the lines begin as an ESM file does."""
+    return lines[0].lstrip().startswith(FIRST_KEYS)
 
 
 def parse_esm(file: Path, lines: list[str]) -> list[GroundMotion]:
@@ -34,8 +31,8 @@ def parse_esm(file: Path, lines: list[str]) -> list[GroundMotion]:
     entries = [ENTRY.fullmatch(line.strip()) for line in lines]
     start = next((i for i, entry in enumerate(entries) if entry is None and lines[i].strip()), len(lines))
     header = {entry[1].strip(): entry[2].strip() for entry in entries[:start] if entry}
-    dt = real(header.get("SAMPLING_INTERVAL_S", ""))
-    n_samples = real(header.get("NDATA", ""))
+    dt = optional_number(header.get("SAMPLING_INTERVAL_S", ""))
+    n_samples = optional_number(header.get("NDATA", ""))
     if not dt or dt <= 0.0 or n_samples is None:
         raise InputError(
             f"{file}: a positive SAMPLING_INTERVAL_S and NDATA are expected in the header of an ESM file, but they are "
@@ -48,7 +45,7 @@ def parse_esm(file: Path, lines: list[str]) -> list[GroundMotion]:
             f"{file}: an acceleration is expected, but DATA_TYPE is {kind[:40]!r}. Use the file of the acceleration, "
             "whose name contains ACC."
         )
-    unit = spelled(header.get("UNITS", ""))
+    unit = unit_name(header.get("UNITS", ""))
     if unit is None:
         raise InputError(
             f"{file}: UNITS is {header.get('UNITS', '')[:40]!r}, but an acceleration is expected, such as cm/s^2. "
@@ -58,31 +55,27 @@ def parse_esm(file: Path, lines: list[str]) -> list[GroundMotion]:
         [number(line.strip(), file, i) for i, line in enumerate(lines[start:], start + 1) if line.strip()]
     )
     if values.size != n_samples:
-        what = "is truncated" if values.size < n_samples else "contains too many values"
-        found = counted(values.size, "value follows", "values follow")
-        raise InputError(
-            f"{file} {what}: its header says NDATA = {n_samples:g}, but {found}. Download the record again."
-        )
+        raise wrong_count(file, values.size, n_samples, f"NDATA = {n_samples:g}")
     return [build_motion(file, values, Unit(unit), dt, _info(file, header), "Check UNITS in the header.")]
 
 
 def _info(file: Path, header: dict[str, str]) -> RecordInfo:
     component = header.get("STREAM") or None
-    moment, local = (known(real(header.get(f"MAGNITUDE_{scale}", ""))) for scale in "WL")
+    moment, local = (non_negative(optional_number(header.get(f"MAGNITUDE_{scale}", ""))) for scale in "WL")
     year = header.get("EVENT_DATE_YYYYMMDD", "")[:4]
-    stamp = STAMP.match(header.get("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS", ""))
-    peak = real(header.get("PGA_CM/S^2", ""))
+    stamp = START_TIME.match(header.get("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS", ""))
+    peak = optional_number(header.get("PGA_CM/S^2", ""))
     event = [header.get("EVENT_NAME", ""), header.get("EVENT_ID", "")]
     name = next((each for each in event if each not in ("", "None")), None)
-    when = WHEN.fullmatch(header.get("EVENT_DATE_YYYYMMDD", "") + header.get("EVENT_TIME_HHMMSS", ""))
+    when = EVENT_TIME.fullmatch(header.get("EVENT_DATE_YYYYMMDD", "") + header.get("EVENT_TIME_HHMMSS", ""))
     return RecordInfo(
-        # Many earthquakes have the same name, that of their region.
+        # Many earthquakes are named after their region, so the time of origin is added.
         event=name if name is None or when is None else "{} {}-{}-{} {}:{}".format(name, *when.groups()),
         year=int(year) if year.isdecimal() and year.isascii() else None,
         magnitude=local if moment is None else moment,
         magnitude_type=None if moment is None and local is None else "ML" if moment is None else "Mw",
-        epicentral_km=known(real(header.get("EPICENTRAL_DISTANCE_KM", ""))),
-        vs30=known(real(header.get("VS30_M/S", ""))) or None,
+        epicentral_km=non_negative(optional_number(header.get("EPICENTRAL_DISTANCE_KM", ""))),
+        vs30=non_negative(optional_number(header.get("VS30_M/S", ""))) or None,
         component=component,
         direction=direction_of(file, component),
         azimuth=azimuth_of(component),

@@ -1,36 +1,48 @@
-"""Ground acceleration, linear between its samples."""
+"""Ground acceleration, linear between its samples: its integrals, peaks, spectra, changes and vertical component."""
 
 import math
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite, finite_vector, positive
-from rockflex._errors import InputError
-from rockflex._shown import shown
-from rockflex.motion import _processing, _vertical
+from rockflex._checks import finite, finite_vector, instance, positive
+from rockflex._errors import InputError, RecordWarning
+from rockflex._html import HtmlTable
+from rockflex._shown import listed, shown
+from rockflex._values import Value
+from rockflex.motion import _signal
 from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._samples import Samples
-from rockflex.motion._scaling import factor_to
-from rockflex.motion._shown_motion import ShownMotion
-from rockflex.motion._target import TargetSpectrum
+from rockflex.motion._spectra import (
+    ResponseSpectrum,
+    TargetSpectrum,
+    comparison_periods,
+    fitting_factor,
+    largest_displacement,
+    response_spectrum,
+    scalable_ordinate,
+)
+
+SHOWN_METADATA = ("event", "year", "magnitude", "distance_km", "vs30", "station", "component", "source", "scale")
+MAX_LENGTH_DIFFERENCE = 1.0  # s by which the lengths of two components may differ without a warning
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class GroundMotion(ShownMotion, Samples):
+class GroundMotion(HtmlTable, Value):
     """A ground acceleration sampled at equal steps and linear between samples.
 
     The ground is at rest before t = 0, the time of the first sample; after the last sample the
     acceleration is zero. Every measure is exact for this piecewise linear function, including peaks between
     samples, and covers the time from the first sample to the last.
 
-    The ground may also move vertically. All measures are those of the horizontal component, unless their name says
-    otherwise; those of the vertical one are those of `vertical_motion`. What changes a motion, such as `scaled`,
-    changes both components.
+    The ground may also move vertically. Measures refer to the horizontal component, unless their name says otherwise;
+    `vertical_motion` gives the measures of the vertical one. Methods that change a motion, such as `scaled`, change
+    both components.
 
     Parameters
     ----------
@@ -93,7 +105,7 @@ class GroundMotion(ShownMotion, Samples):
                 f"metadata must be a RecordInfo or None, but {type(metadata).__name__} was given. "
                 "Write metadata=RecordInfo(event=..., year=...)."
             )
-        upwards = None if vertical is None else _vertical.checked(vertical, samples.size)
+        upwards = None if vertical is None else _checked_vertical(vertical, samples.size)
         step = positive("dt", dt, "s")
         vars(self).update(acceleration=samples, dt=step, name=name, metadata=metadata, vertical=upwards)
 
@@ -103,6 +115,123 @@ class GroundMotion(ShownMotion, Samples):
             f"GroundMotion({self.name!r}, {self.acceleration.size} samples, dt={self.dt:g} s, "
             f"duration={self.duration:g} s, pga={self.pga:.4g} m/s²{upwards})"
         )
+
+    def _shown_as(self) -> Mapping[str, Any]:
+        return {
+            "name": self.name or None,
+            "samples": f"{self.acceleration.size}, every {self.dt:g} s",
+            "duration": f"{self.duration:g} s",
+            "pga": f"{self.pga:.4g} m/s²",
+            "pgv": f"{self.pgv:.4g} m/s",
+            "pgd": f"{self.pgd:.4g} m",
+            "pva": None if self.vertical is None else f"{self.pva:.4g} m/s²",
+            **{name: getattr(self.metadata, name, None) for name in SHOWN_METADATA},
+        }
+
+    @property
+    def time(self) -> Array:
+        """Time of the samples in s, shape (n,)."""
+        return self.dt * np.arange(self.acceleration.size, dtype=np.float64)
+
+    @property
+    def duration(self) -> float:
+        """Time from the first sample to the last, (n - 1) dt, in s."""
+        return (self.acceleration.size - 1) * self.dt
+
+    @property
+    def velocity(self) -> Array:
+        """Ground velocity at the samples in m/s, shape (n,): the exact integral, starting from rest."""
+        return _signal.velocity(self.acceleration, self.dt)
+
+    @property
+    def displacement(self) -> Array:
+        """Ground displacement at the samples in m, shape (n,): the exact second integral, starting from rest."""
+        return _signal.displacement(self.acceleration, self.dt)
+
+    @cached_property
+    def pga(self) -> float:
+        """Peak ground acceleration in m/s²."""
+        return float(np.max(np.abs(self.acceleration)))
+
+    @cached_property
+    def pgv(self) -> float:
+        """Peak ground velocity in m/s, including peaks between samples."""
+        return _signal.peak_velocity(self.acceleration, self.dt)
+
+    @cached_property
+    def pgd(self) -> float:
+        """Peak ground displacement in m up to the last sample, including peaks between samples."""
+        return _signal.peak_displacement(self.acceleration, self.dt)
+
+    @cached_property
+    def arias(self) -> float:
+        """Arias intensity π/(2g) ∫a² dt in m/s (Arias 1970).
+
+        The integral is exact. Databases often sum a² dt over the samples instead, which gives a larger value,
+        especially if the frequency content of the record is close to its Nyquist frequency.
+        """
+        return _signal.arias_intensity(self.acceleration, self.dt)
+
+    @cached_property
+    def cav(self) -> float:
+        """Cumulative absolute velocity ∫|a| dt in m/s (EPRI 1988, without a threshold)."""
+        return _signal.cumulative_absolute_velocity(self.acceleration, self.dt)
+
+    @cached_property
+    def d5_95(self) -> float:
+        """Significant duration between 5 % and 95 % of the Arias intensity, in s."""
+        return self.significant_duration()
+
+    def significant_duration(self, low: float = 0.05, high: float = 0.95) -> float:
+        """Time between two fractions of the Arias intensity (Trifunac & Brady 1975).
+
+        Parameters
+        ----------
+        low, high : float
+            Fractions of the Arias intensity, 0 <= low < high <= 1.
+
+        Returns
+        -------
+        float
+            Duration in s between the instants at which the fractions are first reached, found on the exact
+            cubic growth between samples; zero for a record without motion.
+
+        Raises
+        ------
+        InputError
+            If the fractions are out of order or out of range.
+        """
+        return _signal.significant_duration(self.acceleration, self.dt, low, high)
+
+    def spectrum(self, periods: ArrayLike, damping_ratio: float = 0.05) -> ResponseSpectrum:
+        """Elastic response spectrum; see `ResponseSpectrum`.
+
+        Parameters
+        ----------
+        periods : array_like, shape (m,)
+            Natural periods in s: zero, or at least 1e-6 s.
+        damping_ratio : float
+            Fraction of critical damping, 0 <= ζ < 1.
+
+        Returns
+        -------
+        ResponseSpectrum
+            Peaks of relative displacement and velocity, and the pseudo-acceleration.
+
+        Raises
+        ------
+        InputError
+            If a period is negative or not finite, or the damping ratio is out of range.
+        """
+        return response_spectrum(self.acceleration, self.dt, periods, damping_ratio)
+
+    def sd(self, period: float, damping_ratio: float = 0.05) -> float:
+        """Spectral displacement in m at one period (s); see `spectrum`."""
+        return largest_displacement(self.acceleration, self.dt, period, damping_ratio)
+
+    def sa(self, period: float, damping_ratio: float = 0.05) -> float:
+        """Spectral pseudo-acceleration in m/s² at one period (s); see `spectrum`."""
+        return float(self.spectrum([period], damping_ratio).sa[0])
 
     @cached_property
     def pva(self) -> float:
@@ -120,9 +249,7 @@ class GroundMotion(ShownMotion, Samples):
         InputError
             If there is no vertical component.
         """
-        return GroundMotion(
-            _vertical.known(self.name, self.vertical), self.dt, self.name, _vertical.info_alone(self.metadata)
-        )
+        return GroundMotion(_vertical_samples(self), self.dt, self.name, _vertical_info(self.metadata))
 
     def vertical_ratio(self, periods: ArrayLike, damping_ratio: float = 0.05) -> Array:
         """Vertical over horizontal pseudo-acceleration, V/H, at periods (s) as in `spectrum`.
@@ -184,8 +311,8 @@ class GroundMotion(ShownMotion, Samples):
                 f"{shown(vertical.name)} has a vertical component of its own. Give one of both: "
                 "with_vertical(other.vertical_motion) or with_vertical(other.without_vertical())."
             )
-        sign, info = _vertical.info_of_both(vertical.name, vertical.metadata, self.metadata)
-        along, upwards = _vertical.aligned(self.name, self, vertical)
+        sign, info = _sign_and_info(vertical, self.metadata)
+        along, upwards = _aligned(self, vertical)
         return GroundMotion(along, self.dt, self.name, info, sign * upwards)
 
     def without_vertical(self) -> "GroundMotion":
@@ -205,7 +332,7 @@ class GroundMotion(ShownMotion, Samples):
         """
         factor = finite("factor", factor, "")
         with np.errstate(over="ignore"):
-            return self._changed(lambda samples: samples * factor, metadata=_scaled_info(self.metadata, factor))
+            return self._changed(lambda samples: samples * factor, metadata=_info_of_scaled(self.metadata, factor))
 
     def scaled_to(
         self,
@@ -221,7 +348,20 @@ class GroundMotion(ShownMotion, Samples):
         ``scaled_to(target, (0.2, 2.0))`` fits a `TargetSpectrum` with the least mean square of ln(S_a/target) over
         `periods`, as in `Suite.select`. `InputError` where neither, or both, are given, or the motion does not move.
         """
-        return self.scaled(factor_to(self, self.name, target, periods, sa, period, damping_ratio))
+        if target is not None and periods is not None and sa is None and period is None and damping_ratio is None:
+            fitted = instance("target", target, TargetSpectrum)
+            compared = comparison_periods(periods)
+            spectrum = self.spectrum(compared, fitted.damping_ratio).sa
+            return self.scaled(fitting_factor(spectrum, fitted.at(compared), self.name))
+        if sa is None or period is None or target is not None or periods is not None:
+            raise InputError(
+                "scaled_to needs either a target and periods, or sa and period, with damping_ratio if it is not 0.05: "
+                "motion.scaled_to(target, (0.2, 2.0)) or motion.scaled_to(sa=5.0, period=1.0). A target has its own "
+                "damping ratio."
+            )
+        ordinate, at = positive("sa", sa, "m/s²"), positive("period", period, "s", zero=True)
+        own = self.sa(at, 0.05 if damping_ratio is None else damping_ratio)
+        return self.scaled(ordinate / scalable_ordinate(own, self.name, at))
 
     def refined(self, k: int) -> "GroundMotion":
         """Return the same piecewise linear function with every interval split into `k` equal ones.
@@ -231,7 +371,7 @@ class GroundMotion(ShownMotion, Samples):
         InputError
             If `k` is not a whole number of at least 1.
         """
-        return self._changed(lambda samples: _processing.refine(samples, k), k)
+        return self._changed(lambda samples: _signal.refine(samples, k), k)
 
     def resampled(self, dt: float) -> "GroundMotion":
         """Return the same piecewise linear function sampled at the finer step `dt` (s).
@@ -244,7 +384,7 @@ class GroundMotion(ShownMotion, Samples):
         InputError
             If the present step is not a whole multiple of `dt`; the error suggests the nearest valid steps.
         """
-        return self.refined(_processing.refinement_of(self.dt, dt))
+        return self.refined(_signal.refinement_of(self.dt, dt))
 
     def baseline_corrected(self, degree: int = 1) -> "GroundMotion":
         """Return the motion without the polynomial drift of its velocity.
@@ -269,7 +409,7 @@ class GroundMotion(ShownMotion, Samples):
         InputError
             If `degree` is negative, not whole, or too high for the number of samples.
         """
-        return self._changed(lambda samples: _processing.baseline_correct(samples, self.dt, degree))
+        return self._changed(lambda samples: _signal.baseline_correct(samples, self.dt, degree))
 
     def band_passed(self, low: float, high: float, order: int = 4) -> "GroundMotion":
         """Return the motion filtered by a Butterworth band-pass, forwards and backwards.
@@ -294,7 +434,7 @@ class GroundMotion(ShownMotion, Samples):
             If the corners are not in order below the Nyquist frequency, the order is not a whole positive
             number, or the record is too short for the filter.
         """
-        return self._changed(lambda samples: _processing.band_pass(samples, self.dt, low, high, order))
+        return self._changed(lambda samples: _signal.band_pass(samples, self.dt, low, high, order))
 
     def _changed(
         self, change: Callable[[Array], Array], k: int = 1, metadata: RecordInfo | None = None
@@ -304,10 +444,108 @@ class GroundMotion(ShownMotion, Samples):
         return GroundMotion(change(self.acceleration), self.dt / k, self.name, metadata or self.metadata, upwards)
 
 
-def _scaled_info(info: RecordInfo | None, factor: float) -> RecordInfo | None:
+def _info_of_scaled(info: RecordInfo | None, factor: float) -> RecordInfo | None:
     """Return the metadata of a motion multiplied by a factor; None if they stay as they are."""
     if factor == 1.0:
         return None
     before = info or RecordInfo()
     scale = factor if before.scale is None else factor * before.scale
     return replace(before, scale=None if scale == 1.0 else scale)
+
+
+def _checked_vertical(vertical: ArrayLike, n_samples: int) -> Array:
+    """Return the vertical samples, as many as the horizontal ones."""
+    samples = finite_vector("vertical", vertical, "m/s²")
+    if samples.size != n_samples:
+        raise InputError(
+            f"vertical must have as many samples as acceleration, {n_samples}, but {samples.size} were given. Append "
+            "zeros to the shorter one; motion.with_vertical(GroundMotion(vertical, dt)) does this.",
+            field="vertical",
+        )
+    return samples
+
+
+def _vertical_samples(motion: GroundMotion) -> Array:
+    """Return the vertical samples, or raise an InputError if there are none."""
+    if motion.vertical is None:
+        raise InputError(
+            f"The motion {shown(motion.name)} has no vertical component. Give one: read_motion(path, vertical=...), or "
+            "motion.with_vertical(...)."
+        )
+    return motion.vertical
+
+
+def _vertical_info(info: RecordInfo | None) -> RecordInfo:
+    """Return the metadata of the vertical component as a motion of its own."""
+    info = info or RecordInfo()
+    return replace(info, component=None, direction="vertical", source=info.vertical_source, vertical_source=None)
+
+
+def _sign_and_info(vertical: GroundMotion, info: RecordInfo | None) -> tuple[int, RecordInfo | None]:
+    """Return the sign that makes a vertical record positive upwards, and the metadata with its source.
+
+    Raises
+    ------
+    InputError
+        If the record is known to be horizontal.
+    """
+    given = vertical.metadata or RecordInfo()
+    if given.direction == "horizontal":
+        raise InputError(
+            f"A vertical ground motion is expected, but {shown(vertical.name)} is a horizontal component according to "
+            "the header of the file. Give the vertical component (UP, V, UD or DWN). If it is one, declare it: "
+            'dataclasses.replace(motion, metadata=RecordInfo(direction="vertical")).',
+            field="vertical",
+        )
+    down = given.direction == "down"
+    source = vertical.name or given.source
+    if source is None:
+        return -1 if down else 1, info
+    note = " (reversed: it is positive downwards)" if down else ""
+    return -1 if down else 1, replace(info or RecordInfo(), vertical_source=f"{source}{note}")
+
+
+def _aligned(along: GroundMotion, upwards: GroundMotion) -> tuple[Array, Array]:
+    """Return the samples of both components of a motion, with zeros after the end of the shorter one.
+
+    Raises
+    ------
+    InputError
+        If the steps differ.
+    """
+    if abs(along.dt - upwards.dt) > 1e-9 * along.dt:
+        finer = min(along.dt, upwards.dt)
+        raise InputError(
+            f"Both components need the same time step, but the horizontal one has dt = {along.dt:g} s and the vertical "
+            f"one {upwards.dt:g} s. Resample the coarser one, for example with motion.resampled({finer:g}), before "
+            "horizontal.with_vertical(vertical).",
+            field="vertical",
+        )
+    longest = max(along.acceleration.size, upwards.acceleration.size)
+    if abs(along.duration - upwards.duration) > MAX_LENGTH_DIFFERENCE:
+        warnings.warn(
+            f"The motion {shown(along.name)} lasts {along.duration:g} s, and its vertical component "
+            f"{upwards.duration:g} s; zeros were appended to the shorter one. Make sure that both start at the same "
+            "instant.",
+            RecordWarning,
+            stacklevel=3,
+        )
+    first, second = (np.pad(each.acceleration, (0, longest - each.acceleration.size)) for each in (along, upwards))
+    return first, second
+
+
+def is_vertical(motion: GroundMotion) -> bool:
+    """Return whether a motion is known to be a vertical component."""
+    return motion.metadata is not None and motion.metadata.is_vertical
+
+
+def check_horizontal(*motions: GroundMotion) -> None:
+    """Raise an InputError if a vertical component would be applied horizontally."""
+    vertical = [repr(motion.name) for motion in motions if is_vertical(motion)]
+    if vertical:
+        raise InputError(
+            f"A horizontal ground motion is expected, but {listed(vertical, 3)} "
+            f"{'is a vertical component' if len(vertical) == 1 else 'are vertical components'} according to the header "
+            "or name of the file. Give a horizontal component. If it is one, declare it: dataclasses.replace(motion, "
+            'metadata=RecordInfo(direction="horizontal")), or rename the file.'
+        )

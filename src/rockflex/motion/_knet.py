@@ -11,25 +11,22 @@ from pathlib import Path
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex._shown import counted
-from rockflex.motion._direction import AZIMUTHS, Direction
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._text import build_motion, known, number, real
-from rockflex.motion._units import Unit
+from rockflex.motion._record_info import AZIMUTHS, Direction, RecordInfo
+from rockflex.motion._text import Unit, build_motion, non_negative, number, optional_number, wrong_count
 
 HEADER_LINES = 17  # the last one is "Memo."
-DELAY = timedelta(seconds=15)  # of the trigger, in the recording time of the header
-JAPAN = "+09:00"
-EARTH = 6371.0  # km, mean radius
-SCALE = re.compile(r"([\d.]+)\s*\(\s*gal\s*\)\s*/\s*([\d.]+)", re.IGNORECASE)
-SUFFIX = re.compile(r"\.(?:NS|EW|UD)[12]?", re.IGNORECASE)
+TRIGGER_DELAY = timedelta(seconds=15)  # of the trigger, in the recording time of the header
+JAPAN_OFFSET = "+09:00"
+EARTH_RADIUS_KM = 6371.0  # km, mean radius
+SCALE_FACTOR = re.compile(r"([\d.]+)\s*\(\s*gal\s*\)\s*/\s*([\d.]+)", re.IGNORECASE)
+COMPONENT_SUFFIX = re.compile(r"\.(?:NS|EW|UD)[12]?", re.IGNORECASE)
 # Channels of KiK-net: three in the borehole, three at the surface.
 CHANNELS = {"1": "N-S", "2": "E-W", "3": "U-D", "4": "N-S", "5": "E-W", "6": "U-D"}
 
 
 def is_knet(lines: list[str]) -> bool:
-    """Return whether the lines begin as those of a K-NET file."""
+    """Return whether the lines begin as a K-NET file does."""
     return lines[0].lstrip().startswith("Origin Time")
 
 
@@ -39,15 +36,15 @@ def parse_knet(file: Path, lines: list[str]) -> list[GroundMotion]:
     The mean of the record is subtracted, as for the peak in the header.
     """
     header = _header(file, lines)
-    scale = SCALE.search(header["Scale Factor"])
-    if scale is None or not all(real(part) for part in scale.groups()):
+    scale = SCALE_FACTOR.search(header["Scale Factor"])
+    if scale is None or not all(optional_number(part) for part in scale.groups()):
         raise InputError(
             f'{file}: the scale factor is expected as "3920(gal)/6182761", but it is '
             f"{header['Scale Factor'][:40]!r}. Download the record again."
         )
     frequency = re.match(r"[\d.]+", header["Sampling Freq(Hz)"])
-    rate = real(frequency[0]) if frequency else None
-    duration = real(header["Duration Time(s)"])
+    rate = optional_number(frequency[0]) if frequency else None
+    duration = optional_number(header["Duration Time(s)"])
     if not rate or not duration:
         raise InputError(
             f"{file}: a sampling frequency and a duration are expected in lines 11 and 12, but they are "
@@ -57,15 +54,11 @@ def parse_knet(file: Path, lines: list[str]) -> list[GroundMotion]:
         [number(word, file, i) for i, line in enumerate(lines[HEADER_LINES:], 18) for word in line.split()]
     )
     if not counts.size or abs(counts.size - duration * rate) > rate:
-        what = "is truncated" if counts.size < duration * rate else "contains too many values"
-        found = counted(counts.size, "value follows", "values follow")
-        raise InputError(
-            f"{file} {what}: its header says {duration:g} s at {rate:g} Hz, but {found}. Download the record again."
-        )
+        raise wrong_count(file, counts.size, duration * rate, f"{duration:g} s at {rate:g} Hz")
     gal = float(scale[1]) / float(scale[2])
     info = _info(file, header)
     remedy = "Check the scale factor in line 14."
-    name = file.stem + file.suffix.replace(".", "-") if SUFFIX.fullmatch(file.suffix) else file.stem
+    name = file.stem + file.suffix.replace(".", "-") if COMPONENT_SUFFIX.fullmatch(file.suffix) else file.stem
     return [build_motion(file, counts - counts.mean(), Unit("cm/s2", gal), 1.0 / rate, info, remedy, name)]
 
 
@@ -94,11 +87,11 @@ def _info(file: Path, header: dict[str, str]) -> RecordInfo:
         location = "borehole" if direction in "123" else "surface"
     origin = _time(header.get("Origin Time", ""))
     started = _time(header["Record Time"])
-    peak = real(header.get("Max Acc. (gal)", ""))
+    peak = optional_number(header.get("Max Acc. (gal)", ""))
     return RecordInfo(
         event=None if origin is None else f"{origin:%Y-%m-%d %H:%M}",
         year=None if origin is None else origin.year,
-        magnitude=known(real(header.get("Mag.", ""))),
+        magnitude=non_negative(optional_number(header.get("Mag.", ""))),
         magnitude_type="MJMA",
         epicentral_km=_epicentral(header),
         component=component,
@@ -107,7 +100,7 @@ def _info(file: Path, header: dict[str, str]) -> RecordInfo:
         station=header["Station Code"] or None,
         network="NIED",
         location=location,
-        start_time=None if started is None else f"{started - DELAY:%Y-%m-%dT%H:%M:%S}{JAPAN}",
+        start_time=None if started is None else f"{started - TRIGGER_DELAY:%Y-%m-%dT%H:%M:%S}{JAPAN_OFFSET}",
         source=file.name,
         source_format="KiK-net" if location else "K-NET",
         stated_pga=None if peak is None else 0.01 * abs(peak),
@@ -124,13 +117,13 @@ def _time(text: str) -> datetime | None:
 
 def _epicentral(header: dict[str, str]) -> float | None:
     """Return the distance along the surface of a sphere, in km, to a metre."""
-    degrees = [real(header.get(name, "")) for name in ("Lat.", "Lon.", "Station Lat.", "Station Long.")]
+    degrees = [optional_number(header.get(name, "")) for name in ("Lat.", "Lon.", "Station Lat.", "Station Long.")]
     if None in degrees:
-        degrees[3] = degrees[3] if degrees[3] is not None else real(header.get("Station Lon.", ""))
+        degrees[3] = degrees[3] if degrees[3] is not None else optional_number(header.get("Station Lon.", ""))
     places = [math.radians(each) for each in degrees if each is not None]
     if len(places) < 4:
         return None
     north, east, other_north, other_east = places
     square = math.sin((other_north - north) / 2) ** 2
     square += math.cos(north) * math.cos(other_north) * math.sin((other_east - east) / 2) ** 2
-    return round(2.0 * EARTH * math.asin(min(1.0, math.sqrt(square))), 3)
+    return round(2.0 * EARTH_RADIUS_KM * math.asin(min(1.0, math.sqrt(square))), 3)

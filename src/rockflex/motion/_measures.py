@@ -1,11 +1,128 @@
-"""The intensity measures. A measure added here is available everywhere: in files, commands, figures and the page."""
+"""Intensity measures. A measure added here is available in files, commands, figures and the page."""
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
 
 from rockflex._checks import one_of
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.motion._measure import Measure
+from rockflex.motion._ground_motion import GroundMotion
+
+MIN_PERIOD = 1e-6  # s
+
+
+@dataclass(frozen=True)
+class Shaking:
+    """The input of an intensity measure: a motion and properties of the structure; unknown properties are NaN.
+
+    Attributes
+    ----------
+    motion : GroundMotion
+        The motion.
+    omega, damping_ratio : float
+        Circular frequency in rad/s and damping ratio of the first mode on a fixed base.
+    lifting : float
+        Acceleration in m/s² that lifts the base of the structure if it were rigid, g tan α = M_r/L_0^r.
+    rate : float
+        Frequency parameter p of the rocking structure in rad/s, p² = L_0^r g/I_θ.
+    """
+
+    motion: GroundMotion
+    omega: float = math.nan
+    damping_ratio: float = math.nan
+    lifting: float = math.nan
+    rate: float = math.nan
+
+    @cached_property
+    def sd(self) -> float:
+        """Spectral displacement in m of the first mode; NaN if there is no mode."""
+        return self.sd_at(self.damping_ratio)
+
+    def sd_at(self, damping_ratio: float) -> float:
+        """Spectral displacement in m at the period of the first mode and another damping; NaN if there is no mode."""
+        if math.isnan(self.omega):
+            return math.nan
+        period = 2.0 * math.pi / self.omega
+        # Such a stiff structure moves with the ground; spectra have no shorter periods.
+        return self.motion.sd(period, damping_ratio) if period >= MIN_PERIOD else self.motion.pga / self.omega**2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measure:
+    """An intensity measure: its names, its unit, and the function that computes it.
+
+    Attributes
+    ----------
+    name : str
+        Name in files, on the command line and in table columns.
+    label : str
+        Name shown to readers, such as ``"PGV"``.
+    unit : str
+        SI unit; empty if it has none.
+    words : str
+        Description, such as ``"peak ground velocity"``; empty if the label is clear enough.
+    of : callable
+        Computes it from a `Shaking`.
+    of_what : {"motion", "vertical", "mode", "base"}
+        What it depends on: only the horizontal motion, also the vertical one, also the first mode, or also the base.
+        Measures of the vertical motion are NaN without one.
+    power : {0, 1, 2}
+        The measure is proportional to this power of the acceleration. Motions cannot be scaled to a measure of power 0.
+    short : str
+        Name for the headers of narrow columns, if shorter than the label.
+    symbol : str
+        Name in figures, as Matplotlib mathtext, if different from the label.
+    """
+
+    name: str
+    label: str
+    unit: str
+    words: str = ""
+    of: Callable[[Shaking], float]
+    of_what: Literal["motion", "vertical", "mode", "base"] = "motion"
+    power: Literal[0, 1, 2] = 1
+    short: str = ""
+    symbol: str = ""
+
+    @property
+    def title(self) -> str:
+        """Label and description, for a selection list."""
+        return f"{self.label}, {self.words}" if self.words not in ("", self.label) else self.label
+
+    @property
+    def head(self) -> str:
+        """Header of a narrow column."""
+        return self.short or self.label
+
+    @property
+    def sign(self) -> str:
+        """Symbol in a figure."""
+        return self.symbol or self.label
+
+    @property
+    def axis(self) -> str:
+        """Name and unit for the axis of a figure; if the label is the description, the label rather than the symbol."""
+        return self.with_unit(self.label if self.words == self.label else self.sign)
+
+    def with_unit(self, name: str) -> str:
+        """Return a name with the unit in brackets, if there is one."""
+        return f"{name} [{self.unit}]" if self.unit else name
+
+    def scaled(self, value: float, factor: float) -> float:
+        """Return the value after multiplying the acceleration by a factor of either sign."""
+        for _ in range(self.power):
+            value *= abs(factor)
+        return value
+
+    def factor(self, value: float, level: float) -> float:
+        """Return the factor on the acceleration that scales a value to a level; infinite or NaN if there is none."""
+        if not value > 0.0 or not self.power:
+            return math.inf
+        return math.sqrt(level / value) if self.power == 2 else level / value
+
 
 _ALL = (
     Measure(name="pga", label="PGA", unit="m/s²", words="peak ground acceleration", of=lambda s: s.motion.pga),

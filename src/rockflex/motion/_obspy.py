@@ -9,20 +9,18 @@ from typing import Any
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex.motion._direction import azimuth_of, direction_of, told_apart
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._text import build_motion
-from rockflex.motion._units import Unit
+from rockflex.motion._record_info import RecordInfo, azimuth_of, direction_of, unique_names
+from rockflex.motion._text import Unit, build_motion
 
 INSTALL = "For MiniSEED, SAC, GSE2 and other formats of seismology, install ObsPy: pip install 'rockflex[obspy]'."
-LEFT_OUT = ("PICKLE",)  # reading it would run code that the file contains
-# Formats whose calibration is that of an acceleration, in m/s² a count.
+UNSAFE_FORMATS = ("PICKLE",)  # reading it would run code that the file contains
+# Formats that state the acceleration of one count, in m/s².
 CALIBRATED = ("KINEMETRICS_EVT", "KNET")
-VELOCITY = "HMP"  # the second letter of a channel of a velocity sensor
+VELOCITY_CODES = "HMP"  # the second letter of a channel of a velocity sensor
 
 
-class ForeignError(InputError):
+class ObsPyError(InputError):
     """ObsPy takes a file for one of its formats, but cannot read it."""
 
 
@@ -36,14 +34,14 @@ def format_of(content: bytes) -> str | None:
         from obspy.core.util.misc import buffered_load_entry_point
 
         for name, entry in ENTRY_POINTS["waveform"].items():
-            if name in LEFT_OUT:
+            if name in UNSAFE_FORMATS:
                 continue
             try:
                 group = f"obspy.plugin.waveform.{entry.name}"
                 is_format: Any = buffered_load_entry_point("obspy", group, "isFormat")
                 if is_format(io.BytesIO(content)):
                     return str(name)
-            except Exception:  # a foreign reader that stumbles over a file does not know it
+            except Exception:  # a reader that fails does not know the file
                 continue
     return None
 
@@ -54,7 +52,7 @@ def is_installed() -> bool:
 
 
 def parse_obspy(file: Path, content: bytes, form: str, units: Unit | None) -> list[GroundMotion]:
-    """Build the motions of all traces of a file; from those of recorders, the mean is subtracted."""
+    """Build the motions of all traces of a file; the mean of calibrated recorders is subtracted."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -63,9 +61,9 @@ def parse_obspy(file: Path, content: bytes, form: str, units: Unit | None) -> li
             stream: Any = obspy.read(io.BytesIO(content), format=form)
             stream.merge(method=0)
     except Exception as error:  # damaged files raise many kinds of errors
-        raise ForeignError(f"{file} cannot be read by ObsPy as {form}: {str(error)[:200]}.") from error
+        raise ObsPyError(f"{file} cannot be read by ObsPy as {form}: {str(error)[:200]}.") from error
     traces = list(stream)
-    names = told_apart([str(trace.stats.channel).strip() or "channel" for trace in traces])
+    names = unique_names([str(trace.stats.channel).strip() or "channel" for trace in traces])
     motions: list[GroundMotion] = []
     for trace, name in zip(traces, names, strict=True):
         motions.append(_motion(file, trace, form, units, file.stem if len(traces) == 1 else f"{file.stem}-{name}"))
@@ -76,9 +74,9 @@ def parse_obspy(file: Path, content: bytes, form: str, units: Unit | None) -> li
 
 def _motion(file: Path, trace: Any, form: str, units: Unit | None, name: str) -> GroundMotion:
     channel = str(trace.stats.channel).strip().upper()
-    if len(channel) == 3 and channel[1] in VELOCITY:
+    if len(channel) == 3 and channel[1] in VELOCITY_CODES:
         raise InputError(
-            f"{file}: channel {channel} is that of a velocity sensor, but an acceleration is expected. Give the "
+            f"{file}: channel {channel} belongs to a velocity sensor, but an acceleration is expected. Give the "
             f"channel of the accelerometer, such as {channel[0]}N{channel[2]}."
         )
     if np.ma.isMaskedArray(trace.data):
@@ -104,7 +102,7 @@ def _motion(file: Path, trace: Any, form: str, units: Unit | None, name: str) ->
     if form in CALIBRATED:
         values = values - values.mean()
     dt = float(f"{float(trace.stats.delta):.12g}")
-    return build_motion(file, values, unit, dt, info, "Check what one count is.", name)
+    return build_motion(file, values, unit, dt, info, "Check the value of one count.", name)
 
 
 def _unit(file: Path, trace: Any, form: str, units: Unit | None) -> Unit:

@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import finite, one_of, positive
+from rockflex._checks import finite, one_of, positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
@@ -21,7 +21,7 @@ Float = NDArray[np.floating[Any]]
 # Peak of |x (x² - 3)| exp(-x²/2), at x² = 3 - √6: the published β = 1.3801, to all digits.
 _BETA = math.sqrt(6 * (3 - math.sqrt(6))) * math.exp(-(3 - math.sqrt(6)) / 2)
 
-LONGEST = 100_000_000  # samples
+MAX_SAMPLES = 100_000_000  # samples
 
 
 def ricker_pulse(
@@ -256,7 +256,7 @@ def intervals(name: str, length: float, dt: float) -> tuple[int, float]:
     """Return the number of intervals of a pulse and the sampling step in s."""
     length, dt = positive(name, length, "s"), positive("dt", dt, "s")
     # Two intervals at least: a motion has three samples or more.
-    if length / dt > LONGEST:
+    if length / dt > MAX_SAMPLES:
         raise InputError(
             f"{name} = {length:g} s with dt = {dt:g} s requires {length / dt:.3g} samples; use a larger dt."
         )
@@ -276,3 +276,60 @@ def named_pulse(kind: str, amplitude: float, shape: Float, dt: float, detail: st
     with np.errstate(over="ignore"):  # samples that are not finite are rejected later
         samples = amplitude * shape
     return GroundMotion(samples, dt, name=f"{kind} {amplitude:g} {unit}, {detail}")
+
+
+def mavroeidis_papageorgiou_pulse(
+    amplitude: float, period: float, gamma: float, nu: float, dt: float = 0.005
+) -> GroundMotion:
+    """Near-fault velocity pulse: a cosine under a raised-cosine envelope, differentiated in closed form.
+
+    With τ from the centre, |τ| <= γ T_p/2, and w = 2π τ/T_p, the velocity is
+    v = (A/2) [1 + cos(w/γ)] cos(w + ν) and the acceleration
+    a = -(π A/(γ T_p)) {sin(w/γ) cos(w + ν) + γ [1 + cos(w/γ)] sin(w + ν)}.
+
+    Parameters
+    ----------
+    amplitude : float
+        Amplitude A of the velocity in m/s.
+    period : float
+        Prevailing period T_p = 1/f_p in s.
+    gamma : float
+        Oscillatory character γ > 1: the length of the pulse in periods.
+    nu : float
+        Phase ν in rad: 0 for a velocity symmetric about the centre, ±π/2 for an antisymmetric one.
+    dt : float
+        Largest allowed sampling step in s.
+
+    Returns
+    -------
+    GroundMotion
+        The sampled acceleration, γ T_p long.
+
+    Raises
+    ------
+    InputError
+        If `period` or `dt` is not positive, `gamma` not above 1, or `amplitude` or `nu` not finite.
+
+    References
+    ----------
+    Mavroeidis & Papageorgiou (2003), Bull. Seism. Soc. Am. 93(3), 1099-1131, Eqs. 3 and 4.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> pulse = rf.mavroeidis_papageorgiou_pulse(amplitude=1.0, period=2.0, gamma=1.5, nu=0.0)
+    >>> round(pulse.pgv, 3)
+    1.0
+    """
+    positive("period", period, "s")
+    if not 1 < real_or_nan(gamma) < math.inf:
+        raise InputError(f"gamma must be finite and above 1, but {shown(gamma)} was given. Usual values are 1 to 3.")
+    finite("nu", nu, "rad")
+    n, step = intervals("period", gamma * period, dt)
+    envelope = np.pi * np.linspace(-1, 1, n + 1)
+    phase = gamma * envelope + nu
+    rate = np.sin(envelope) * np.cos(phase) + gamma * (1 + np.cos(envelope)) * np.sin(phase)
+    with np.errstate(over="ignore", invalid="ignore"):  # samples that are not finite are rejected later
+        shape = -np.pi / (gamma * period) * rate
+    detail = f"T={period:g} s, gamma={gamma:g}, nu={nu:g}"
+    return named_pulse("Mavroeidis-Papageorgiou", amplitude, shape, step, detail, unit="m/s")

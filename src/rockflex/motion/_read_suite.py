@@ -1,24 +1,281 @@
-"""Reading many record files into a suite."""
+"""Reading many record files into a suite: which files are records, and which components are taken."""
 
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, get_args
 
-from rockflex._errors import InputError, RecordWarning
-from rockflex._shown import counted, shown
-from rockflex.motion._collect import Units, collect
-from rockflex.motion._folder import files_of
-from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._pairs import named
-from rockflex.motion._sorting import Sorted, sort_out
-from rockflex.motion._suite import Suite
+import numpy as np
 
+from rockflex._arrays import Array
+from rockflex._checks import positive
+from rockflex._errors import InputError, RecordWarning
+from rockflex._files import path_of
+from rockflex._shown import counted, listed, shown
+from rockflex.motion._cosmos import is_cosmos
+from rockflex.motion._esm import is_esm
+from rockflex.motion._ground_motion import GroundMotion, is_vertical
+from rockflex.motion._knet import is_knet
+from rockflex.motion._readers import components_in, peak_mismatch
+from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._record_table import RecordTable, read_table, table_in
+from rockflex.motion._recordings import are_different_components, file_names, pair_vertical
+from rockflex.motion._suite import Suite
+from rockflex.motion._text import Unit, declared_unit, decoded, read_content
+
+RECORD_SUFFIXES = (
+    *(".at2", ".csv", ".dat", ".tsv", ".txt"),
+    *(".xlsx", ".xlsm", ".xls"),
+    *(".mseed", ".miniseed", ".msd", ".sac", ".gse", ".gse2", ".evt"),
+)
+HEAD_BYTES = 4096  # bytes of a file that tell its format
+UnitsArgument = str | Mapping[str, str]
+TABLE_SUFFIXES = (".csv", ".txt", ".tsv", ".xlsx", ".xlsm")
+BOREHOLE = "borehole"
+MIN_COPY_SAMPLES = 50  # samples; fewer may be the same by chance
+COPY_TOLERANCE = 1e-3  # of the peak: two formats of one record round, or take another value of g
 OnError = Literal["raise", "skip"]
 Vertical = Literal["pair"]
+MAX_REPORTED = 10  # files whose errors are reported in full; beyond these only the names are listed
+MAX_MESSAGE_LENGTH = 50_000  # most characters of a message that lists every file
 
-REPORTED = 10  # files whose errors are reported in full; beyond these only the names are listed
-NAMES = 50_000  # most characters of a message that lists every file
+
+def files_of(paths: str | Path | Iterable[str | Path]) -> tuple[str, list[Path]]:
+    """Return the name of a directory and its record files, or no name and the files given; sorted by name.
+
+    Raises
+    ------
+    InputError
+        If there is no such directory, it holds no record, or something else is given.
+    """
+    if isinstance(paths, str | Path):
+        folder = path_of("paths", paths)
+        if not folder.is_dir():
+            raise InputError(
+                f"{folder} is not a directory. Give a directory or a list of files; use read_motion for a single file."
+            )
+        name, files = folder.resolve().name, folder_files(folder)
+    elif isinstance(paths, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
+        name, files = "", [path_of("paths", path) for path in paths]
+    else:
+        raise InputError(f"paths must be a directory or a sequence of files, but {type(paths).__name__} was given.")
+    return name, sorted(files, key=lambda file: (file.name, str(file)))
+
+
+def folder_files(folder: Path) -> list[Path]:
+    """Return the record files of a directory, by suffix or by their first lines, sorted by name.
+
+    Raises
+    ------
+    InputError
+        If there are none.
+    """
+    files = [file for file in folder.iterdir() if file.is_file() and is_record(file)]
+    if not files:
+        raise InputError(
+            f"{folder} holds no record: no file ends in {', '.join(RECORD_SUFFIXES)}, or begins as a K-NET, ESM or "
+            "COSMOS file."
+        )
+    return sorted(files)
+
+
+def is_record(file: Path) -> bool:
+    """Return whether a file is read as a record when its folder is."""
+    if file.name.startswith("."):
+        return False
+    if file.suffix.lower() in RECORD_SUFFIXES:
+        return True
+    try:
+        with file.open("rb") as stream:
+            text = decoded(stream.read(HEAD_BYTES))
+    except OSError:
+        return False
+    lines = (text or "").splitlines()
+    return bool(lines) and (is_knet(lines) or is_esm(lines) or is_cosmos(lines))
+
+
+@dataclass(frozen=True)
+class FileRead:
+    """The content of a file: motions by paths named after them, or a table about records, or the error."""
+
+    file: Path
+    motions: Mapping[Path, GroundMotion] = field(default_factory=dict[Path, GroundMotion])
+    fault: InputError | None = None
+    table: RecordTable | None = None
+    notes: Mapping[Path, str] = field(default_factory=dict[Path, str])
+
+
+def read_many(
+    files: Iterable[Path],
+    units: UnitsArgument | None,
+    dt: float | None,
+    table: str | Path | None = None,
+    *,
+    use_obspy: bool = True,
+) -> list[FileRead]:
+    """Read files, in their order; files that cannot be read have a fault. `use_obspy` as in `components_in`.
+
+    Raises
+    ------
+    InputError
+        If units or dt are not valid, or `table` is no table about records.
+    """
+    given = _units_by_name(units)
+    step = None if dt is None else positive("dt", dt, "s")
+    if table is not None:
+        given = given.joined(read_table(path_of("table", table)))
+    found: list[FileRead] = []
+    for file in files:
+        try:
+            own = table_in(file, read_content(file)) if file.suffix.lower() in TABLE_SUFFIXES else None
+            found.append(FileRead(file, table=own))
+        except InputError as error:
+            found.append(FileRead(file, fault=error))
+    for each in found:
+        if each.table is not None:
+            given = given.joined(each.table)
+    common = declared_unit(units) if isinstance(units, str) else None
+    return [
+        each if each.table or each.fault else _read_file(each.file, given, common, step, use_obspy=use_obspy)
+        for each in found
+    ]
+
+
+def _units_by_name(units: UnitsArgument | None) -> RecordTable:
+    """Return the units of files that a caller gives by their names."""
+    if units is None or isinstance(units, str):
+        return RecordTable()
+    if not isinstance(units, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise InputError(
+            "units must be a text such as 'g', or a dictionary of texts by file names, such as {'a*.txt': 'g'}, but "
+            f"{shown(units)} was given.",
+            field="units",
+        )
+    return RecordTable(units={str(name).casefold(): declared_unit(unit) for name, unit in units.items()})
+
+
+def _read_file(file: Path, given: RecordTable, common: Unit | None, dt: float | None, *, use_obspy: bool) -> FileRead:
+    own = given.unit_of(file)
+    step = given.step_of(file)
+    try:
+        found = components_in(
+            file, own or common, dt if step is None else step, use_obspy=use_obspy, common=own is None and step is None
+        )
+    except InputError as error:
+        return FileRead(file, fault=error)
+    motions: dict[Path, GroundMotion] = {}
+    notes: dict[Path, str] = {}
+    for motion in found:
+        info = given.completed(file, motion.metadata or RecordInfo())
+        whole = GroundMotion(motion.acceleration, motion.dt, motion.name, info, motion.vertical)
+        key = file if motion.name == file.stem else file.parent / (motion.name.replace("/", "_") + file.suffix)
+        motions[key] = whole
+        notes[key] = peak_mismatch(whole)[1]
+    return FileRead(file, motions, notes=notes)
+
+
+@dataclass(frozen=True)
+class ChosenComponents:
+    """Components by their paths: the horizontal ones that are taken, and the ones left out.
+
+    Attributes
+    ----------
+    taken
+        Horizontal components.
+    vertical
+        Vertical components that belong to no horizontal one.
+    boreholes
+        Components in boreholes beneath a station at the surface.
+    unpaired
+        Why a record that is to be paired has no vertical component; empty if none was found.
+    paired
+        Vertical components that were paired.
+    copies
+        The component that each copy repeats.
+    """
+
+    taken: Mapping[Path, GroundMotion]
+    vertical: Sequence[Path]
+    boreholes: Sequence[Path]
+    unpaired: Mapping[Path, str]
+    paired: Sequence[Path]
+    copies: Mapping[Path, Path]
+
+
+def choose_components(found: Sequence[FileRead], *, pair: bool) -> ChosenComponents:
+    """Take the horizontal components, with the vertical ones if `pair`.
+
+    Copies of other components are left out, and boreholes beneath surface records.
+    """
+    motions = {path: motion for each in found for path, motion in each.motions.items()}
+    copies = _copies(motions, {path: each.file for each in found for path in each.motions})
+    motions = {path: motion for path, motion in motions.items() if path not in copies}
+    surface = {_site_key(motion) for motion in motions.values() if _location(motion) == "surface"}
+    boreholes = [path for path, each in motions.items() if _location(each) == BOREHOLE and _site_key(each) in surface]
+    motions = {path: motion for path, motion in motions.items() if path not in set(boreholes)}
+    vertical = {path: motion for path, motion in motions.items() if is_vertical(motion)}
+    taken = {path: motion for path, motion in motions.items() if path not in vertical}
+    if not pair or not taken:
+        return ChosenComponents(taken, list(vertical), boreholes, {}, [], copies)
+    both, unpaired, left = pair_vertical(taken, vertical)
+    return ChosenComponents(both, left, boreholes, unpaired, [path for path in vertical if path not in left], copies)
+
+
+def _copies(motions: Mapping[Path, GroundMotion], files: Mapping[Path, Path]) -> dict[Path, Path]:
+    """Return the components that another file holds too, and which of both is kept: the one of which more is known.
+
+    Components that their record sequence numbers, azimuths or names tell apart are no copies, whatever their samples.
+    """
+    found: dict[Path, Path] = {}
+    kept: dict[int, list[tuple[float, Path]]] = {}
+    for path in sorted(motions, key=lambda path: _rank(path, motions[path])):
+        motion = motions[path]
+        if motion.acceleration.size < MIN_COPY_SAMPLES:
+            continue
+        others = kept.setdefault(motion.acceleration.size, [])
+        for pga, other in others:
+            if (
+                files[path] != files[other]
+                and abs(pga - motion.pga) <= COPY_TOLERANCE * pga
+                and _are_copies(path, motion, other, motions[other])
+            ):
+                found[path] = other
+                break
+        else:
+            others.append((motion.pga, path))
+    return {path: found[path] for path in motions if path in found}
+
+
+def _rank(path: Path, motion: GroundMotion) -> tuple[object, ...]:
+    """Return a key by which the first of some copies is the one to keep."""
+    known = sum(value is not None for value in vars(motion.metadata or RecordInfo()).values())
+    return motion.vertical is None, -known, len(path.name), path.name, str(path)
+
+
+def _are_copies(path: Path, motion: GroundMotion, other: Path, kept: GroundMotion) -> bool:
+    if abs(motion.dt - kept.dt) > COPY_TOLERANCE * kept.dt or is_vertical(motion) != is_vertical(kept):
+        return False
+    if are_different_components(path, motion.metadata, other, kept.metadata):
+        return False
+    if not _equal_samples(motion.acceleration, kept.acceleration):
+        return False
+    return motion.vertical is None or kept.vertical is None or _equal_samples(motion.vertical, kept.vertical)
+
+
+def _equal_samples(one: Array, other: Array) -> bool:
+    """Return whether samples are the same but for rounding; two records at rest do not count as the same."""
+    peak = float(np.max(np.abs(other)))
+    return peak > 0.0 and bool(np.max(np.abs(one - other)) <= COPY_TOLERANCE * peak)
+
+
+def _location(motion: GroundMotion) -> str | None:
+    return None if motion.metadata is None else motion.metadata.location
+
+
+def _site_key(motion: GroundMotion) -> tuple[object, ...]:
+    info = motion.metadata
+    return () if info is None else (info.event, info.network, info.station)
 
 
 def read_suite(
@@ -32,7 +289,7 @@ def read_suite(
     """Read the horizontal components among record files into a suite, sorted by file name.
 
     The formats are those of `read_motion`. Of a file with several horizontal components, each becomes a motion. For a
-    report of what is taken, and what is not, see `survey_records`.
+    report of the files taken and left out, see `survey_records`.
 
     Tables about the records among the files fill in what headers do not say: PEER's ``_SearchResults.csv``, a flatfile
     of NGA, or a CSV file or workbook of one's own with a column ``file`` or ``RSN`` and any of ``units``, ``dt``,
@@ -103,7 +360,7 @@ def read_suite(
 
 def read_files(
     files: Sequence[Path],
-    units: Units | None,
+    units: UnitsArgument | None,
     dt: float | None,
     on_error: OnError,
     vertical: Vertical | None = None,
@@ -117,24 +374,26 @@ def read_files(
     if on_error not in get_args(OnError):
         raise InputError(f'on_error must be "raise" or "skip", but {shown(on_error)} was given.')
     check_vertical(vertical)
-    found = collect(files, units, dt, table)
+    found = read_many(files, units, dt, table)
     records = [each for each in found if each.table is None]
     if not records and found:
-        raise InputError(f"{named(files)}: only tables about records were given, but no record. Give the records too.")
+        raise InputError(
+            f"{file_names(files)}: only tables about records were given, but no record. Give the records too."
+        )
     faults = {each.file: each.fault for each in records if each.fault is not None}
     if faults:
         message = _fault_message({file: str(error) for file, error in faults.items()}, len(records))
         if on_error == "raise" or len(faults) == len(records):
             message += f" {skip} continues with the other files." if len(faults) < len(records) else ""
             fields = [error.field for error in faults.values()]
-            field = next((name for name in fields[:REPORTED] if name in ("units", "dt")), None)
-            raise InputError(message, longest=NAMES, field=field)
+            field = next((name for name in fields[:MAX_REPORTED] if name in ("units", "dt")), None)
+            raise InputError(message, longest=MAX_MESSAGE_LENGTH, field=field)
         warnings.warn(f"Left out: {message}", RecordWarning, stacklevel=3)
     for note in (f"{path}: {note}." for each in records for path, note in each.notes.items() if note):
         warnings.warn(note, RecordWarning, stacklevel=3)
-    result = sort_out(records, pair=vertical is not None)
-    _tell_pairs(result, on_error, skip)
-    _tell_left_out(result)
+    result = choose_components(records, pair=vertical is not None)
+    _warn_unpaired(result, on_error, skip)
+    _warn_left_out(result)
     taken: dict[Path, list[GroundMotion]] = {}
     for each in records:
         chosen = [result.taken[path] for path in each.motions if path in result.taken]
@@ -144,7 +403,7 @@ def read_files(
 
 
 def check_vertical(vertical: object) -> None:
-    """Raise an InputError if `vertical` is not what `read_suite` takes."""
+    """Raise an InputError unless `vertical` is "pair" or None."""
     if vertical not in (None, *get_args(Vertical)):
         raise InputError(
             f'vertical must be "pair" or None, but {shown(vertical)} was given. A file of its own is for one record: '
@@ -153,7 +412,7 @@ def check_vertical(vertical: object) -> None:
         )
 
 
-def _tell_left_out(result: Sorted) -> None:
+def _warn_left_out(result: ChosenComponents) -> None:
     """Warn of components that are left out.
 
     Raises
@@ -161,18 +420,17 @@ def _tell_left_out(result: Sorted) -> None:
     InputError
         If none is left.
     """
-    if result.below:
-        count = counted(len(result.below), "borehole component")
+    if result.boreholes:
+        count = counted(len(result.boreholes), "borehole component")
         warnings.warn(
-            f"Left out: {count} beneath records at the surface, {named(result.below)}.", RecordWarning, stacklevel=4
+            f"Left out: {count} beneath records at the surface, {file_names(result.boreholes)}.",
+            RecordWarning,
+            stacklevel=4,
         )
     if result.copies:
-        first = [f"{path.name} (of {kept.name})" for path, kept in list(result.copies.items())[:REPORTED]]
-        more = f" and {len(result.copies) - REPORTED} more" if len(result.copies) > REPORTED else ""
+        names = listed([f"{path.name} (of {kept.name})" for path, kept in result.copies.items()])
         count = counted(len(result.copies), "copy", "copies")
-        warnings.warn(
-            f"Left out: {count} of records in other files, {', '.join(first)}{more}.", RecordWarning, stacklevel=4
-        )
+        warnings.warn(f"Left out: {count} of records in other files, {names}.", RecordWarning, stacklevel=4)
     if not result.vertical:
         return
     names = ", ".join(path.name for path in result.vertical)
@@ -185,7 +443,7 @@ def _tell_left_out(result: Sorted) -> None:
     warnings.warn(f"Left out: {components}, {names}.", RecordWarning, stacklevel=4)
 
 
-def _tell_pairs(result: Sorted, on_error: OnError, skip: str) -> None:
+def _warn_unpaired(result: ChosenComponents, on_error: OnError, skip: str) -> None:
     """Warn of records without a vertical component.
 
     Raises
@@ -193,13 +451,13 @@ def _tell_pairs(result: Sorted, on_error: OnError, skip: str) -> None:
     InputError
         If a vertical component does not fit and `on_error` is "raise", or there is none for any record.
     """
-    both, without = result.taken, result.without
+    both, without = result.taken, result.unpaired
     faults = {file: reason for file, reason in without.items() if reason}
     if faults:
-        reasons = " ".join(f"{file.name}: {reason}" for file, reason in list(faults.items())[:REPORTED])
+        reasons = " ".join(f"{file.name}: {reason}" for file, reason in list(faults.items())[:MAX_REPORTED])
         message = f"{len(faults)} of {len(both)} records cannot be paired with a vertical component. {reasons}"
         if on_error == "raise":
-            raise InputError(f"{message} {skip} keeps them without it.", longest=NAMES, field="vertical")
+            raise InputError(f"{message} {skip} keeps them without it.", longest=MAX_MESSAGE_LENGTH, field="vertical")
         warnings.warn(message, RecordWarning, stacklevel=4)
     if without and len(without) == len(both) and not faults:
         first = next(iter(both)).name
@@ -213,11 +471,11 @@ def _tell_pairs(result: Sorted, on_error: OnError, skip: str) -> None:
     missing = [file for file, reason in without.items() if not reason]
     if missing:
         count = f"{len(missing)} of {len(both)} records"
-        warnings.warn(f"Without a vertical component: {count}, {named(missing)}.", RecordWarning, stacklevel=4)
+        warnings.warn(f"Without a vertical component: {count}, {file_names(missing)}.", RecordWarning, stacklevel=4)
 
 
 def _fault_message(faults: dict[Path, str], n_files: int) -> str:
     """List every file that cannot be read, with the errors of the first few."""
-    shown, others = list(faults.values())[:REPORTED], [str(file) for file in list(faults)[REPORTED:]]
+    shown, others = list(faults.values())[:MAX_REPORTED], [str(file) for file in list(faults)[MAX_REPORTED:]]
     message = " ".join(shown) if n_files == 1 else f"{len(faults)} of {n_files} files cannot be read. {' '.join(shown)}"
     return f"{message} The others: {', '.join(others)}." if others else message

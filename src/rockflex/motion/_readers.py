@@ -1,7 +1,9 @@
-"""Choice of the reader by the content of a file."""
+"""Reading a record file: the content decides on the format."""
 
 import warnings
 from pathlib import Path
+
+import numpy as np
 
 from rockflex._checks import instance, positive
 from rockflex._errors import InputError, RecordWarning
@@ -9,20 +11,18 @@ from rockflex._files import path_of
 from rockflex._shown import shown
 from rockflex.motion import _obspy
 from rockflex.motion._at2 import find_header, parse_at2
-from rockflex.motion._columns import parse_columns
-from rockflex.motion._components import chosen
+from rockflex.motion._columns import is_excel, parse_columns, parse_excel
 from rockflex.motion._cosmos import is_cosmos, parse_cosmos
 from rockflex.motion._esm import is_esm, parse_esm
-from rockflex.motion._excel import is_excel, parse_excel
-from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._ground_motion import GroundMotion, is_vertical
 from rockflex.motion._knet import is_knet, parse_knet
-from rockflex.motion._peak import FAR, disagreement
-from rockflex.motion._table import table_of
-from rockflex.motion._text import decoded, lines_of, read_content
-from rockflex.motion._units import Unit, declared
+from rockflex.motion._text import Unit, declared_unit, decoded, lines_of, read_content, table_of
 
 # Formats that state unit and step.
-STATED = (("K-NET", is_knet, parse_knet), ("ESM", is_esm, parse_esm), ("COSMOS", is_cosmos, parse_cosmos))
+FORMATS = (("K-NET", is_knet, parse_knet), ("ESM", is_esm, parse_esm), ("COSMOS", is_cosmos, parse_cosmos))
+PEAK_TOLERANCE = 0.01  # relative difference that the printing of a header explains
+PRINTED_DIGIT = 1e-5  # m/s², the last digit of peaks in K-NET headers, 0.001 gal
+MAX_PEAK_MISMATCH = 0.2  # relative difference that only a wrong scale or another record explains
 
 
 def read_motion(
@@ -38,7 +38,7 @@ def read_motion(
     - K-NET and KiK-net ASCII: counts times the scale factor of the header. The mean of the record is subtracted, as
       for the peak that the header states.
     - ESM and ITACA ASCII (DYNA 1.2), in the unit that the header states.
-    - COSMOS (V1, V2; V0 if the header says what a count is), with one or more channels.
+    - COSMOS (V1, V2; V0 if the header states the value of a count), with one or more channels.
     - CSV, and text in columns. Columns are separated by commas, semicolons, tabs or blanks; decimals may be marked by
       commas where something else separates; ``#``, ``%`` and ``!`` begin comments. A single column is the
       acceleration, two columns are time (s) and acceleration, unless a header line names them as two components. With
@@ -47,7 +47,7 @@ def read_motion(
       horizontal acceleration needs names, as in "acc NS (g), acc EW (g)", "a_x (g), a_y (g), a_z (g)" or "NS (gal),
       EW (gal), UD (gal)"; z, v and UD are vertical.
     - Excel workbooks (.xlsx), with the same columns in one or more sheets; needs openpyxl, ``rockflex[excel]``.
-    - What ObsPy reads, such as MiniSEED, SAC, GSE2 and Kinemetrics EVT; needs ObsPy, ``rockflex[obspy]``.
+    - Formats that ObsPy reads, such as MiniSEED, SAC, GSE2 and Kinemetrics EVT; needs ObsPy, ``rockflex[obspy]``.
 
     The motion starts at the first sample, whatever its time.
 
@@ -57,7 +57,7 @@ def read_motion(
         The file.
     units : str, optional
         Unit of the acceleration: "g", "m/s2", "cm/s2", "mm/s2", "mg", "in/s2", or a number and one of these, such as
-        "2.4e-4 cm/s2" for what one count is. Needed unless a column header states it in brackets, as "acc (g)",
+        "2.4e-4 cm/s2" for the value of one count. Needed unless a column header states it in brackets, as "acc (g)",
         "a [m/s^2]" or "acceleration (gal)", or a line above the numbers says "units: g", or the format does.
     dt : float, optional
         Sampling step in s; needed if the file has no times, and no line above the numbers says "dt = 0.01 s". For a
@@ -74,8 +74,8 @@ def read_motion(
     Returns
     -------
     GroundMotion
-        The record in m/s², named after the file without its suffix; that of a file with several components also after
-        the component. `GroundMotion.metadata` contains what the header says.
+        The record in m/s², named after the file without its suffix, and after the component if the file has several.
+        `GroundMotion.metadata` contains the information in the header.
 
     Raises
     ------
@@ -104,13 +104,13 @@ def read_motion(
     if component is not None:
         instance("component", component, str)
     file = path_of("path", path)
-    motion = chosen(file, parts_of(file, unit, step), component, upright=False)
-    _warn(file, motion)
+    motion = select_component(file, components_in(file, unit, step), component, vertical=False)
+    _warn_of_peak(file, motion)
     if vertical is None:
         return motion
     other = path_of("vertical", vertical)
-    upwards = chosen(other, parts_of(other, unit, step), None, upright=True)
-    _warn(other, upwards)
+    upwards = select_component(other, components_in(other, unit, step), None, vertical=True)
+    _warn_of_peak(other, upwards)
     return motion.with_vertical(upwards)
 
 
@@ -150,9 +150,9 @@ def read_components(path: str | Path, units: str | None = None, dt: float | None
     """
     unit, step = _options(units, dt)
     file = path_of("path", path)
-    found = parts_of(file, unit, step)
+    found = components_in(file, unit, step)
     for motion in found:
-        _warn(file, motion)
+        _warn_of_peak(file, motion)
     return tuple(found)
 
 
@@ -165,11 +165,11 @@ def read_plain(path: str | Path, units: str | None = None, dt: float | None = No
         As for `read_motion`.
     """
     file = path_of("path", path)
-    return chosen(file, parts_of(file, *_options(units, dt), foreign=False), None, upright=False)
+    return select_component(file, components_in(file, *_options(units, dt), use_obspy=False), None, vertical=False)
 
 
-def parts_of(
-    file: Path, units: Unit | None, dt: float | None, *, foreign: bool = True, common: bool = False
+def components_in(
+    file: Path, units: Unit | None, dt: float | None, *, use_obspy: bool = True, common: bool = False
 ) -> list[GroundMotion]:
     """Return all components in a file.
 
@@ -177,20 +177,20 @@ def parts_of(
     ----------
     file, units, dt
         As in `read_components`.
-    foreign
+    use_obspy
         Whether the readers of ObsPy may be used.
     common
-        Whether `units` and `dt` are for many files, so that those of a format that states them need not agree.
+        Whether `units` and `dt` are for many files, so that a format that states its own need not agree.
 
     Raises
     ------
     InputError
         As for `read_components`.
     """
-    found = _parts(file, units, dt, foreign=foreign, common=common)
+    found = _read_components(file, units, dt, use_obspy=use_obspy, common=common)
     for motion in found:
-        difference, text = disagreement(motion)
-        if difference > FAR:
+        difference, text = peak_mismatch(motion)
+        if difference > MAX_PEAK_MISMATCH:
             raise InputError(
                 f"{file}: {text}. A wrong scale or a changed file explains this: download the record again; or correct "
                 "the peak in the header, if the samples are right."
@@ -198,35 +198,37 @@ def parts_of(
     return found
 
 
-def _parts(file: Path, units: Unit | None, dt: float | None, *, foreign: bool, common: bool) -> list[GroundMotion]:
+def _read_components(
+    file: Path, units: Unit | None, dt: float | None, *, use_obspy: bool, common: bool
+) -> list[GroundMotion]:
     content = read_content(file)
     if is_excel(content):
         return parse_excel(file, content, units, dt)
     text = decoded(content)
-    if text is None and foreign:
+    if text is None and use_obspy:
         form = _obspy.format_of(content)
         if form is not None:
-            return _foreign(file, content, form, units, dt)
+            return _read_with_obspy(file, content, form, units, dt)
         if not _obspy.is_installed():
             raise InputError(f"{file} is a binary file, but a record is expected as text or .xlsx. {_obspy.INSTALL}")
     lines = lines_of(file, content)
-    for form, known, parse in STATED:
+    for form, known, parse in FORMATS:
         if known(lines):
             found = parse(file, lines)
             if not common:
-                _check_free(file, form, units)
+                _check_no_units(file, form, units)
                 _check_step(file, found[0], dt)
             return found
     if find_header(lines) is None and file.suffix.lower() != ".at2":
         try:
             return parse_columns(file, table_of(file, lines), units, dt, file.stem)
         except InputError as error:
-            form = _obspy.format_of(content) if foreign and error.field is None else None
+            form = _obspy.format_of(content) if use_obspy and error.field is None else None
             if form is None:
                 raise
             try:
-                return _foreign(file, content, form, units, dt)
-            except _obspy.ForeignError:
+                return _read_with_obspy(file, content, form, units, dt)
+            except _obspy.ObsPyError:
                 raise error from None
     motion = parse_at2(file, lines)
     if units not in (None, Unit("g")):
@@ -238,13 +240,13 @@ def _parts(file: Path, units: Unit | None, dt: float | None, *, foreign: bool, c
     return [motion]
 
 
-def _foreign(file: Path, content: bytes, form: str, units: Unit | None, dt: float | None) -> list[GroundMotion]:
+def _read_with_obspy(file: Path, content: bytes, form: str, units: Unit | None, dt: float | None) -> list[GroundMotion]:
     found = _obspy.parse_obspy(file, content, form, units)
     _check_step(file, found[0], dt)
     return found
 
 
-def _check_free(file: Path, form: str, units: Unit | None) -> None:
+def _check_no_units(file: Path, form: str, units: Unit | None) -> None:
     if units is not None:
         raise InputError(
             f"{file} is a file in the {form} format, which states its unit, but units={shown(str(units))} was given. "
@@ -259,10 +261,83 @@ def _check_step(file: Path, motion: GroundMotion, dt: float | None) -> None:
 
 
 def _options(units: str | None, dt: float | None) -> tuple[Unit | None, float | None]:
-    return None if units is None else declared(units), None if dt is None else positive("dt", dt, "s")
+    return None if units is None else declared_unit(units), None if dt is None else positive("dt", dt, "s")
 
 
-def _warn(file: Path, motion: GroundMotion) -> None:
-    _, text = disagreement(motion)
+def _warn_of_peak(file: Path, motion: GroundMotion) -> None:
+    _, text = peak_mismatch(motion)
     if text:
         warnings.warn(f"{file}: {text}.", RecordWarning, stacklevel=3)
+
+
+def peak_mismatch(motion: GroundMotion) -> tuple[float, str]:
+    """Return by how much the peak of a motion differs from that stated in its header, relative to the larger one.
+
+    The text says both peaks, and whether they agree when the mean is subtracted; it is empty if they agree, or none is
+    stated. For a mean that explains the difference, the first value is at most `MAX_PEAK_MISMATCH`.
+    """
+    stated = None if motion.metadata is None else motion.metadata.stated_pga
+    if not stated:
+        return 0.0, ""
+    difference = _relative_difference(motion.pga, stated)
+    if difference <= PEAK_TOLERANCE:
+        return difference, ""
+    without = float(np.max(np.abs(motion.acceleration - motion.acceleration.mean())))
+    done = motion.metadata is not None and motion.metadata.processing
+    text = f"the header states a PGA of {stated:.6g} m/s², but the samples reach {motion.pga:.6g} m/s²"
+    if done:
+        return difference, f"{text} ({done})"
+    if _relative_difference(without, stated) <= PEAK_TOLERANCE:
+        return min(difference, MAX_PEAK_MISMATCH), (
+            f"{text}, and {without:.6g} m/s² when their mean is subtracted, which was not done: "
+            "motion.baseline_corrected(0) is close to it"
+        )
+    return difference, f"{text}, and {without:.6g} m/s² when their mean is subtracted"
+
+
+def _relative_difference(one: float, other: float) -> float:
+    return 0.0 if abs(one - other) <= PRINTED_DIGIT else abs(one - other) / max(one, other)
+
+
+def select_component(file: Path, found: list[GroundMotion], component: str | None, *, vertical: bool) -> GroundMotion:
+    """Return the component with a name; without one, the only horizontal or, if `vertical`, the only vertical one.
+
+    Raises
+    ------
+    InputError
+        If there is no such component, or more than one.
+    """
+    if component is not None:
+        named = [motion for motion in found if _is_named(motion, component)]
+        if len(named) == 1:
+            return named[0]
+        raise InputError(
+            f"{file} holds {len(named) or 'no'} components named {shown(component)}. "
+            f"It holds {_component_names(found)}.",
+            field="component",
+        )
+    fitting = [motion for motion in found if is_vertical(motion) == vertical] or found
+    if len(fitting) == 1:
+        return fitting[0]
+    raise InputError(
+        f"{file} holds {len(found)} components: {_component_names(found)}. Name one: "
+        f"read_motion(path, component={_component_name(fitting[0])!r}); read_components and read_suite read all.",
+        field="component",
+    )
+
+
+def _is_named(motion: GroundMotion, component: str) -> bool:
+    azimuth = None if motion.metadata is None else motion.metadata.azimuth
+    wanted = component.strip().casefold()
+    if azimuth is not None and wanted.isdecimal() and wanted.isascii() and len(wanted) <= 3:
+        return float(wanted) % 360.0 == azimuth % 360.0
+    return wanted in (_component_name(motion).casefold(), motion.name.casefold())
+
+
+def _component_name(motion: GroundMotion) -> str:
+    stated = None if motion.metadata is None else motion.metadata.component
+    return stated or motion.name
+
+
+def _component_names(found: list[GroundMotion]) -> str:
+    return ", ".join(f"{shown(_component_name(motion))}{' (vertical)' * is_vertical(motion)}" for motion in found)

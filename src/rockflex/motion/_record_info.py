@@ -1,7 +1,32 @@
-"""Information about a record besides its samples."""
+"""Information about a record besides its samples, and directions of components by their names."""
 
+import re
 from dataclasses import dataclass, fields, replace
+from pathlib import Path
 from typing import Literal
+
+Direction = Literal["horizontal", "vertical", "down"]
+CHANNEL = "[A-Z][HLNG]"  # band and instrument codes of a seismological channel; the third letter is the direction
+SEPARATORS = "-_. "  # between the station and the component in the name of a file
+DOWN_NAMES = "DN|DWN|DOWN"  # positive downwards
+UP_NAMES = f"UP|UD|U-D|VER|VRT|VERT|VERTICAL|{CHANNEL}Z|{DOWN_NAMES}"
+COMPASS = "[NSEW]|NS|EW|N-S|E-W|NORTH|SOUTH|EAST|WEST|SOU|EAS"
+# Directions in which a component is positive, in degrees from north.
+AZIMUTHS = {
+    **dict.fromkeys(("N", "NS", "N-S", "NORTH"), 0.0),
+    **dict.fromkeys(("E", "EW", "E-W", "EAST"), 90.0),
+    **dict.fromkeys(("S", "SOUTH"), 180.0),
+    **dict.fromkeys(("W", "WEST"), 270.0),
+}
+BEARING = re.compile(r"([NS])\s*(\d{1,2}(?:\.\d+)?)\s*([EW])", re.IGNORECASE)
+VERTICAL_NAME = re.compile(rf"{UP_NAMES}|U|V|Z|V[12]", re.IGNORECASE)
+HORIZONTAL_NAME = re.compile(
+    rf"[NS]?\s*\d+(?:\.\d+)?\s*[EW]?|{COMPASS}|[LTH][12]?|LONG?|TRAN?S?|{CHANNEL}[NE12]", re.IGNORECASE
+)
+SEPARATED_SUFFIX = re.compile(rf"(.*)(?:[-_. ](?:{UP_NAMES})|[-_.][VZ])", re.IGNORECASE)
+DOWN_SUFFIX = re.compile(rf".*(?:{DOWN_NAMES})", re.IGNORECASE)
+COPY_SUFFIX = re.compile(r"(?: \(\d+\)| - copy)+$", re.IGNORECASE)  # added to a name by browsers and desktops
+JOINED_SUFFIX = re.compile(rf"(.*?)(?:{UP_NAMES}|(?<=\d)V|-V[12])", re.IGNORECASE)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +77,7 @@ class RecordInfo:
     stated_pga : float, optional
         Peak ground acceleration that the header of the file states, in m/s².
     processing : str, optional
-        What was done to the samples when they were read, such as "mean subtracted".
+        Change made to the samples when they were read, such as "mean subtracted".
     event_id : str, optional
         Identifier of the earthquake in the catalogue of the source, such as "EMSC-20161030_0000029".
     scale : float, optional
@@ -97,7 +122,7 @@ class RecordInfo:
         return self.direction in ("vertical", "down")
 
     def completed(self, other: "RecordInfo") -> "RecordInfo":
-        """Return this information, with what is unknown taken from another source.
+        """Return this information, with unknown fields taken from another source.
 
         Examples
         --------
@@ -109,3 +134,65 @@ class RecordInfo:
         names = [field.name for field in fields(self)]
         found = {name: getattr(other, name) for name in names if getattr(self, name) is None}
         return replace(self, **found)
+
+
+def direction_of(file: Path, component: str | None = None) -> Direction | None:
+    """Return the direction of a component, or None if it is not stated; "down" is vertical, but positive downwards.
+
+    A component is vertical if the header calls it UP, DWN, V, UD and the like, or if the file name ends in such a word
+    after a hyphen or an underscore. PEER files may also join station and component, as in TCU078V.AT2; this is accepted
+    unless the header names a horizontal component, for example an azimuth.
+
+    Parameters
+    ----------
+    file
+        The file; only its name is used.
+    component
+        Name of the component in the header.
+    """
+    stated = (component or "").strip()
+    if VERTICAL_NAME.fullmatch(stated):
+        return _vertical_direction(stated)
+    stem = COPY_SUFFIX.sub("", file.stem)
+    if SEPARATED_SUFFIX.fullmatch(stem):
+        return _vertical_direction(stem)
+    if HORIZONTAL_NAME.fullmatch(stated):
+        return "horizontal"
+    from_peer = file.suffix.lower() == ".at2" or re.match(r"RSN\d", file.name, re.IGNORECASE)
+    return _vertical_direction(stem) if from_peer and JOINED_SUFFIX.fullmatch(stem) else None
+
+
+def azimuth_of(component: str | None) -> float | None:
+    """Return the direction, in degrees clockwise from north, that the name of a component states, or None.
+
+    Such names are 90, N38E, NS, and the codes of seismological channels that end in N or E, such as HNE.
+    """
+    name = (component or "").strip().upper()
+    if re.fullmatch(r"\d{1,3}(?:\.\d{1,3})?", name):
+        return float(name) if float(name) <= 360.0 else None
+    bearing = BEARING.fullmatch(name)
+    if bearing:
+        angle = float(bearing[2]) if bearing[3] == "E" else -float(bearing[2])
+        return (angle if bearing[1] == "N" else 180.0 - angle) % 360.0
+    return AZIMUTHS.get(name[2:] if re.fullmatch(f"{CHANNEL}[NE]", name) else name)
+
+
+def _vertical_direction(text: str) -> Direction:
+    return "down" if DOWN_SUFFIX.fullmatch(text) else "vertical"
+
+
+def station_of_vertical(file: Path) -> str | None:
+    """Return the name of a file without the word that makes it vertical, or None if there is no such word."""
+    stem = COPY_SUFFIX.sub("", file.stem)
+    named = SEPARATED_SUFFIX.fullmatch(stem) or JOINED_SUFFIX.fullmatch(stem)
+    return named and named[1].rstrip(SEPARATORS)
+
+
+def is_horizontal_name(component: str) -> bool:
+    """Return whether a word, such as 090, NS or H1, names a horizontal component."""
+    return bool(HORIZONTAL_NAME.fullmatch(component)) or component in ("X", "Y")
+
+
+def unique_names(names: list[str]) -> list[str]:
+    """Return the names, with a number added to those that occur more than once."""
+    return [name if names.count(name) == 1 else f"{name}-{names[: i + 1].count(name)}" for i, name in enumerate(names)]

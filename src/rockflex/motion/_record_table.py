@@ -15,16 +15,15 @@ from typing import TypeAlias, TypeVar
 
 from rockflex._checks import positive
 from rockflex._errors import InputError
-from rockflex.motion._excel import is_excel, sheets_of
+from rockflex.motion._columns import is_excel, sheets_of
 from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._text import decoded, known, read_content, real
-from rockflex.motion._units import Unit, declared
+from rockflex.motion._text import Unit, declared_unit, decoded, non_negative, optional_number, read_content
 
 V = TypeVar("V")
 Recording: TypeAlias = tuple[str, str | None, str]  # event, network and station
 
-DEEPEST = 80  # lines before the header of the table; PEER's search results state their criteria first
-# Labels, reduced to letters and digits, of what a table says.
+MAX_HEADER_LINE = 80  # lines before the header of the table; PEER's search results state their criteria first
+# Labels of columns, reduced to letters and digits, by the field that they give.
 LABELS = {
     "rsn": ("recordsequencenumber", "rsn"),
     "event": ("earthquakename", "eventname", "event"),
@@ -40,7 +39,7 @@ LABELS = {
     "units": ("units", "unit"),
     "dt": ("dt", "dts"),
 }
-FILES = {
+FILE_LABELS = {
     "file": None,
     "filename": None,
     "horizontal1accfilename": "horizontal",
@@ -51,14 +50,14 @@ FILES = {
     "filenamevertical": "vertical",
 }
 # Where the first column has no value: the moment magnitude of EMEC, and Vs30 after Wald and Allen from the slope.
-SECOND = {"magnitude": "emecmw", "vs30": "vs30msecwa"}
-NUMBERS = ("magnitude", "distance_km", "distance_jb_km", "epicentral_km", "vs30")
-WORDS = ("event", "station", "network", "event_id")
+FALLBACK_LABELS = {"magnitude": "emecmw", "vs30": "vs30msecwa"}
+NUMBER_FIELDS = ("magnitude", "distance_km", "distance_jb_km", "epicentral_km", "vs30")
+TEXT_FIELDS = ("event", "station", "network", "event_id")
 
 
 @dataclass(frozen=True)
 class RecordTable:
-    """What tables say of records: by record sequence number, by file, and by event, network and station."""
+    """Information about records from tables: by record sequence number, by file, and by event, network and station."""
 
     by_number: Mapping[int, RecordInfo] = field(default_factory=lambda: MappingProxyType({}))
     by_file: Mapping[str, RecordInfo] = field(default_factory=lambda: MappingProxyType({}))
@@ -77,7 +76,7 @@ class RecordTable:
         )
 
     def completed(self, file: Path, info: RecordInfo) -> RecordInfo:
-        """Return what a header says of a record, with what it leaves open from the tables."""
+        """Return the metadata of a record, with unknown fields taken from the tables."""
         rsn = info.rsn
         if rsn is None and (named := re.match(r"RSN(\d{1,9})(?!\d)", file.name, re.IGNORECASE)):
             rsn = int(named[1])
@@ -145,7 +144,9 @@ def table_in(file: Path, content: bytes) -> RecordTable | None:
     if text is None:
         return None
     lines = text.splitlines()
-    head = next((line for line in lines[:DEEPEST] if _columns(_cells(line, _separator(line))) is not None), None)
+    head = next(
+        (line for line in lines[:MAX_HEADER_LINE] if _columns(_cells(line, _separator(line))) is not None), None
+    )
     if head is None:
         return None
     separator = _separator(head)
@@ -165,7 +166,7 @@ def _cells(line: str, separator: str) -> list[str]:
 
 
 def _columns(cells: list[str]) -> dict[int, str] | None:
-    """Return what the columns under a header hold, by their places; None if it is not the header of such a table."""
+    """Return the field that each column gives, by its index; None if the cells are no header of such a table."""
     plain = [re.sub(r"[^a-z0-9]", "", cell.casefold()) for cell in cells]
     found: dict[int, str] = {}
     for name, labels in LABELS.items():
@@ -173,12 +174,12 @@ def _columns(cells: list[str]) -> dict[int, str] | None:
             if label in plain:
                 found[plain.index(label)] = name
                 break
-    files = {k: label for k, label in enumerate(plain) if label in FILES}
+    files = {k: label for k, label in enumerate(plain) if label in FILE_LABELS}
     names = set(found.values())
     keyed = bool(files) or "rsn" in names or {"event_id", "station"} <= names
     if not keyed or not names - {"rsn", "event", "event_id", "network", "station", "year"}:
         return None
-    return found | files | {plain.index(label): label for label in SECOND.values() if label in plain}
+    return found | files | {plain.index(label): label for label in FALLBACK_LABELS.values() if label in plain}
 
 
 def _table(file: Path, rows: Iterable[list[str]]) -> RecordTable | None:
@@ -191,7 +192,7 @@ def _table(file: Path, rows: Iterable[list[str]]) -> RecordTable | None:
     by_recording: dict[Recording, RecordInfo] = {}
     for line, cells in enumerate(rows, 1):
         if columns is None:
-            columns = _columns(cells) if line <= DEEPEST else None
+            columns = _columns(cells) if line <= MAX_HEADER_LINE else None
             continue
         if not any(cells):
             break
@@ -201,7 +202,7 @@ def _table(file: Path, rows: Iterable[list[str]]) -> RecordTable | None:
             by_number.setdefault(info.rsn, info)
         if recording := _recording(info):
             by_recording.setdefault(recording, info)
-        for label, direction in FILES.items():
+        for label, direction in FILE_LABELS.items():
             # Flatfiles give folders too, with either slash; search results write ----- for no file.
             whole = re.split(r"[\\/]", stated.get(label, ""))[-1]
             name = whole.casefold()
@@ -210,7 +211,7 @@ def _table(file: Path, rows: Iterable[list[str]]) -> RecordTable | None:
             by_file.setdefault(name, replace(info, direction=direction, source=whole))  # pyright: ignore[reportArgumentType]
             try:
                 if "units" in stated:
-                    units.setdefault(name, declared(stated["units"]))
+                    units.setdefault(name, declared_unit(stated["units"]))
                 if "dt" in stated and "units" in columns.values():
                     steps.setdefault(name, positive("dt", _number(stated["dt"]) or 0.0, "s"))
             except InputError as error:
@@ -223,14 +224,19 @@ def _recording(info: RecordInfo) -> Recording | None:
 
 
 def _number(text: str) -> float | None:
-    return real(text.replace(",", "."))
+    return optional_number(text.replace(",", "."))
 
 
 def _info(stated: Mapping[str, str]) -> RecordInfo:
-    numbers = {name: known(_number(stated.get(name) or stated.get(SECOND.get(name, ""), ""))) for name in NUMBERS}
-    whole = {name: known(_number(stated.get(name, ""))) for name in ("rsn", "year")}
+    numbers = {
+        name: non_negative(_number(stated.get(name) or stated.get(FALLBACK_LABELS.get(name, ""), "")))
+        for name in NUMBER_FIELDS
+    }
+    whole = {name: non_negative(_number(stated.get(name, ""))) for name in ("rsn", "year")}
     # PEER writes underscores for commas.
-    words = {name: stated[name].replace("_ ", ", ") for name in WORDS if stated.get(name, "-") not in ("-", "-999")}
+    words = {
+        name: stated[name].replace("_ ", ", ") for name in TEXT_FIELDS if stated.get(name, "-") not in ("-", "-999")
+    }
     return RecordInfo(
         **numbers,  # pyright: ignore[reportArgumentType]
         **{name: None if value is None else int(value) for name, value in whole.items()},  # pyright: ignore[reportArgumentType]

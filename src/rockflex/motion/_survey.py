@@ -1,4 +1,4 @@
-"""A report of what is taken from a folder of records, and what is not, and why."""
+"""A report of the records in a folder: which components are taken, which are not, and why."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
@@ -7,14 +7,19 @@ from typing import TYPE_CHECKING
 
 from rockflex._shown import counted
 from rockflex._values import Value
-from rockflex.motion._collect import FileRead, collect
-from rockflex.motion._folder import files_of, is_record
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._pairs import named
-from rockflex.motion._read_suite import Vertical, check_vertical
+from rockflex.motion._read_suite import (
+    ChosenComponents,
+    FileRead,
+    Vertical,
+    check_vertical,
+    choose_components,
+    files_of,
+    is_record,
+    read_many,
+)
 from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._sorting import Sorted, sort_out
-from rockflex.motion._stations import StationRecord, group_stations
+from rockflex.motion._recordings import StationRecord, file_names, group_stations
 from rockflex.motion._suite import Suite
 
 if TYPE_CHECKING:
@@ -32,7 +37,7 @@ class SurveyEntry:
     taken : bool
         Whether `read_suite` takes the component as a horizontal motion, or as the vertical one of such a motion.
     reason : str
-        Why it is not taken, or what is to be known of one that is; empty if there is nothing to say.
+        Why it is not taken, or a remark on one that is; may be empty.
     name : str, optional
         Name of the motion.
     format : str, optional
@@ -77,7 +82,7 @@ class SurveyEntry:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RecordSurvey(Value):
-    r"""What is taken from a folder of records, and what is not; the result of `survey_records`.
+    r"""The components taken from a folder of records, and the ones left out; the result of `survey_records`.
 
     Parameters
     ----------
@@ -144,7 +149,7 @@ def survey_records(
     vertical: Vertical | None = None,
     table: str | Path | None = None,
 ) -> RecordSurvey:
-    r"""Say of each file in a folder what it holds, whether `read_suite` takes it, and why not.
+    r"""Report the content of each file in a folder, whether `read_suite` takes it, and why not.
 
     No file is an error: one that cannot be read has an entry with the reason. Files that are no records by their suffix
     and their beginning have entries too, but not the folders within a folder.
@@ -181,7 +186,7 @@ def survey_records(
     """
     check_vertical(vertical)
     name, files = files_of(paths)
-    return _survey(paths, name, collect(files, units, dt, table), pair=vertical is not None)
+    return _survey(paths, name, read_many(files, units, dt, table), pair=vertical is not None)
 
 
 def survey_plain(folder: Path, units: str | None = None, dt: float | None = None) -> tuple[RecordSurvey, RecordSurvey]:
@@ -190,7 +195,7 @@ def survey_plain(folder: Path, units: str | None = None, dt: float | None = None
     Returns
     -------
     tuple of RecordSurvey
-        That of the horizontal components, and that with the vertical ones of their stations.
+        With the horizontal components alone, and with the vertical ones of their stations.
 
     Raises
     ------
@@ -198,14 +203,14 @@ def survey_plain(folder: Path, units: str | None = None, dt: float | None = None
         As for `survey_records`.
     """
     name, files = files_of(folder)
-    found = collect(files, units, dt, foreign=False)
+    found = read_many(files, units, dt, use_obspy=False)
     return _survey(folder, name, found, pair=False), _survey(folder, name, found, pair=True)
 
 
 def _survey(
     paths: str | Path | Iterable[str | Path], name: str, found: Sequence[FileRead], *, pair: bool
 ) -> RecordSurvey:
-    result = sort_out(found, pair=pair)
+    result = choose_components(found, pair=pair)
     names = [each.file.name for each in found]
     entries = [entry for each in found for entry in _entries(each, result, names)]
     if isinstance(paths, str | Path):
@@ -222,11 +227,11 @@ def _survey(
     )
 
 
-def _entries(each: FileRead, result: Sorted, names: list[str]) -> list[SurveyEntry]:
+def _entries(each: FileRead, result: ChosenComponents, names: list[str]) -> list[SurveyEntry]:
     if each.table is not None:
         missing = [Path(name) for name in each.table.missing(names)]
         count = counted(len(missing), "file that is", "files that are")
-        told = f"; it lists {count} not there: {named(missing)}" if missing else ""
+        told = f"; it lists {count} not there: {file_names(missing)}" if missing else ""
         reason = f"a table about the records{told}"
         return [SurveyEntry(file=each.file.name, taken=False, reason=reason, format="table")]
     if each.fault is not None:
@@ -235,11 +240,11 @@ def _entries(each: FileRead, result: Sorted, names: list[str]) -> list[SurveyEnt
     return [_entry(each, path, motion, result) for path, motion in each.motions.items()]
 
 
-def _entry(each: FileRead, path: Path, motion: GroundMotion, result: Sorted) -> SurveyEntry:
+def _entry(each: FileRead, path: Path, motion: GroundMotion, result: ChosenComponents) -> SurveyEntry:
     info = motion.metadata or RecordInfo()
     return SurveyEntry(
         file=each.file.name,
-        taken=path in result.taken or path in result.upwards,
+        taken=path in result.taken or path in result.paired,
         reason=_reason(each, path, result),
         name=motion.name,
         format=info.source_format,
@@ -256,16 +261,16 @@ def _entry(each: FileRead, path: Path, motion: GroundMotion, result: Sorted) -> 
     )
 
 
-def _reason(each: FileRead, path: Path, result: Sorted) -> str:
+def _reason(each: FileRead, path: Path, result: ChosenComponents) -> str:
     parts: list[str] = []
     if path in result.copies:
         parts.append(f"a copy of {result.copies[path].name}")
-    elif path in result.below:
+    elif path in result.boreholes:
         parts.append("borehole component beneath a record at the surface")
     elif path in result.vertical:
         parts.append("vertical component")
-    elif path in result.without:
-        parts.append(result.without[path] or "without a vertical component")
+    elif path in result.unpaired:
+        parts.append(result.unpaired[path] or "without a vertical component")
     if each.notes.get(path):
         parts.append(each.notes[path])
     return "; ".join(parts)

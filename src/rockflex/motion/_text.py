@@ -1,6 +1,8 @@
-"""Reading the text of a record file, and the checks common to all formats."""
+"""Text of record files: encodings, numbers, units of acceleration, and tables of numbers."""
 
 import re
+from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -9,14 +11,89 @@ from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._files import check_regular
-from rockflex._shown import shown
+from rockflex._shown import counted, shown
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._units import Unit
 
-LIMIT = 5.0  # in g; no recorded ground acceleration comes near it
+UNITS = {"g": GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 1e-3, "mg": 1e-3 * GRAVITY, "in/s2": 0.0254}
+LENGTH_UNIT = re.compile(r"(c|m)?m(?:s-2|/(s|sec)(?:2|/\2))|in(?:s-2|/(s|sec)(?:2|/\3))")
+MAX_UNIT_LENGTH = 100  # characters of a unit
+FACTOR = re.compile(
+    r"\s*+([+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[Ee][+-]?+\d++)?+)\s*+\*?+(?=[\s*a-zA-Z])\s*+(.*)", re.DOTALL
+)
+MAX_PEAK_G = 5.0  # in g; no recorded ground acceleration comes near it
 # Possessive, like all of these patterns: a match is never retried in part, so no text takes long.
 DECIMAL = re.compile(r"[+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[EeDd][+-]?+\d++)?+")
+COMMA = re.compile(r"([+-]?+\d*+),\d++(?:[EeDd][+-]?+\d++)?+")  # a number with a decimal comma
+SECONDS = ("s", "sec", "secs", "second", "seconds")
+TIME_LABEL = re.compile(r"(?:t|time|zeit|temps|tempo|tiempo)\b", re.IGNORECASE)
+BRACKET = re.compile(r"[(\[]([^)\]]*+)[)\]]")
+EXPECTED_RECORD = "a record is expected as AT2, CSV or columns of text"
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit of acceleration, or a multiple of one, such as one count of a recorder.
+
+    Parameters
+    ----------
+    name
+        A key of `UNITS`.
+    factor
+        How many of it the number 1 in the file means.
+    """
+
+    name: str
+    factor: float = 1.0
+
+    def __str__(self) -> str:
+        return self.name if self.factor == 1.0 else f"{self.factor:.12g} {self.name}"
+
+    @property
+    def si(self) -> float:
+        """The unit in m/s²."""
+        return self.factor * UNITS[self.name]
+
+
+def unit_name(text: str) -> str | None:
+    """Return the key of `UNITS` for a unit as headers write it, such as cm/sec^2 or gal; None if it is none."""
+    plain = re.sub(r"[\s^*·.]", "", text.lower().replace("²", "2").replace("−", "-"))
+    if plain in ("g", "mg"):
+        return plain
+    if plain in ("gal", "gals"):
+        return "cm/s2"
+    found = LENGTH_UNIT.fullmatch(plain)
+    if found is None:
+        return None
+    return "in/s2" if plain.startswith("in") else f"{found[1] or ''}m/s2"
+
+
+def acceleration_in(text: str) -> float | None:
+    """Return an acceleration in m/s² that is written with its unit, such as 0.25g or 2.45 m/s2; None without one."""
+    found = FACTOR.fullmatch(text) if len(text) < MAX_UNIT_LENGTH else None
+    name = found and unit_name(found[2])
+    return None if not found or name is None else float(found[1]) * UNITS[name]
+
+
+def declared_unit(units: object) -> Unit:
+    """Return the unit that a caller names, with a number before it for a multiple, such as "2.4e-4 cm/s2".
+
+    Raises
+    ------
+    InputError
+        If it is not such a text, or the number is not positive and finite.
+    """
+    if isinstance(units, str) and len(units) < MAX_UNIT_LENGTH:
+        found = FACTOR.fullmatch(units)
+        name = unit_name(found[2] if found else units)
+        factor = float(found[1]) if found else 1.0
+        if name is not None and np.isfinite(factor) and factor > 0.0:
+            return Unit(name, factor)
+    raise InputError(
+        f"units must be one of {', '.join(map(repr, UNITS))}, but {shown(units)} was given. If the file holds counts, "
+        'write the value of one count: units="2.4e-4 cm/s2".',
+        field="units",
+    )
 
 
 def read_content(path: str | Path) -> bytes:
@@ -78,7 +155,7 @@ def number(token: str, file: str | Path, line: int) -> float:
     raise InputError(f"{file}, line {line}: expected a finite number, but found {token[:40]!r}.{hint}")
 
 
-def real(text: str) -> float | None:
+def optional_number(text: str) -> float | None:
     """Return the number in a field of a header, or None if there is none."""
     if not DECIMAL.fullmatch(text.strip()):
         return None
@@ -86,9 +163,16 @@ def real(text: str) -> float | None:
     return value if np.isfinite(value) else None
 
 
-def known(value: float | None) -> float | None:
+def non_negative(value: float | None) -> float | None:
     """Return a value that a header or table gives; -999 and other negative numbers stand for an unknown one."""
     return None if value is None or not value >= 0.0 else value
+
+
+def wrong_count(file: Path, n_found: int, n_stated: float, stated: str) -> InputError:
+    """Return the error of a file with fewer or more values than its header states."""
+    fault = "is truncated" if n_found < n_stated else "contains too many values"
+    found = counted(n_found, "value follows", "values follow")
+    return InputError(f"{file} {fault}: its header says {stated}, but {found}. Download the record again.")
 
 
 def build_motion(
@@ -107,12 +191,135 @@ def acceleration_of(file: Path, values: Array, unit: Unit, remedy: str, scale: f
     with np.errstate(over="ignore"):
         acceleration = values * unit.si
     peak = float(np.max(np.abs(values), initial=0.0))
-    if peak * unit.si > LIMIT * GRAVITY * max(abs(scale or 1.0), 1.0):
+    if peak * unit.si > MAX_PEAK_G * GRAVITY * max(abs(scale or 1.0), 1.0):
         smaller = {"g": "m/s² or cm/s²", "m/s2": "cm/s²"}.get(str(unit), "a smaller unit")
         raise InputError(
-            f"{file}: the peak acceleration is {peak:g} {unit}, above {LIMIT:g} g. "
+            f"{file}: the peak acceleration is {peak:g} {unit}, above {MAX_PEAK_G:g} g. "
             f"It looks like {smaller}, although {unit} was declared. {remedy} If the values are correct, "
             "build GroundMotion(acceleration, dt) from the array; motions can be scaled without limit.",
             field="units",
         )
     return acceleration
+
+
+@dataclass
+class Table:
+    """Rows of cells, each with its line, under labels; and the lines before them."""
+
+    labels: list[str]  # empty if there are none
+    rows: list[tuple[int, list[str]]]
+    heads: list[str]
+
+
+def table_of(file: Path, lines: list[str], expected: str = EXPECTED_RECORD) -> Table:
+    """Return the rows of numbers in the lines of a text file.
+
+    Cells are separated by semicolons, commas, tabs or blanks; ``#``, ``%`` and ``!`` begin comments. A comma is a
+    decimal one where something else separates the cells; and in a single column, unless the numbers before it increase
+    like times. `expected` describes the expected content in the message for a file without numbers.
+    """
+    heads: list[str] = []
+    plain: list[tuple[int, str]] = []  # header lines that are not comments
+    body: list[tuple[int, str]] = []
+    for i, line in enumerate(lines, 1):
+        content = re.split("[#%!]", line, maxsplit=1)[0].strip()
+        if not body and (not content or not is_number(re.split(r"[;,\s]", content, maxsplit=1)[0] or content)):
+            heads.append(line.strip().lstrip("#%! \t"))
+            plain.append((i, content))
+        elif content:
+            body.append((i, content))
+    if not body:
+        raise InputError(f"{file} holds no numbers: {expected}.")
+    separator, commas = _separator(body)
+    rows: list[tuple[int, list[str]]] = []
+    for i, content in body:
+        cells = [cell.strip() for cell in content.split(separator)]
+        if separator and cells[-1] == "":
+            cells.pop()
+        if rows and len(cells) != len(rows[0][1]):
+            raise InputError(
+                f"{file}, line {i}: expected {len(rows[0][1])} columns as in line {rows[0][0]}, but found {len(cells)}."
+            )
+        rows.append((i, [_with_point(file, i, cell) for cell in cells] if commas else cells))
+    return Table(_found_labels(file, heads, plain, separator, len(rows[0][1])), rows, heads)
+
+
+def _separator(body: list[tuple[int, str]]) -> tuple[str | None, bool]:
+    """Return the character between cells (None for blanks), and whether decimals are marked by commas."""
+    first = body[0][1]
+    if ";" in first:
+        return ";", any("," in content for _, content in body)
+    if "," not in first:
+        # A column of decimals may begin with whole numbers: 0, 0,01, 0,02.
+        some = next((content for _, content in body if "," in content), None)
+        return None, some is not None and all(_is_decimal(word) for word in some.split())
+    words = first.split()
+    if len(words) > 1 and all(map(_is_decimal, words)):
+        return None, True
+    if len(words) == 1 and _is_single_column(body):
+        return None, True
+    return ",", False
+
+
+def _is_decimal(word: str) -> bool:
+    return bool(COMMA.fullmatch(word) or DECIMAL.fullmatch(word))
+
+
+def _is_single_column(body: list[tuple[int, str]]) -> bool:
+    """Return whether the lines are one column with decimal commas, and not times and whole numbers apart by commas."""
+    found = [COMMA.fullmatch(content) or DECIMAL.fullmatch(content) for _, content in body]
+    if not all(found):
+        return False
+    times = [float(content.partition(",")[0] + ".0") if "," in content else float("nan") for _, content in body]
+    return not all(later > earlier for earlier, later in pairwise(times))
+
+
+def _with_point(file: Path, line: int, cell: str) -> str:
+    if "," in cell and not COMMA.fullmatch(cell):
+        number(cell, file, line)
+    if "." in cell:
+        raise InputError(
+            f"{file}, line {line}: {cell[:40]!r} has a decimal point, but other numbers have decimal commas. Write all "
+            "of them in one way."
+        )
+    return cell.replace(",", ".")
+
+
+def _found_labels(
+    file: Path, heads: list[str], plain: list[tuple[int, str]], separator: str | None, n_columns: int
+) -> list[str]:
+    """Return the labels in the last header line that has as many as there are columns."""
+    for i, content in plain:
+        cells = _labels(content, separator)
+        # A row of numbers with a typing error is not a header, and must not be skipped.
+        if len(cells) == n_columns and any(re.match(r"[+-]?\.?\d", cell) for cell in cells):
+            wrong = next((cell for cell in cells if not is_number(cell) and not COMMA.fullmatch(cell)), None)
+            if wrong is not None and not TIME_LABEL.match(wrong):
+                number(wrong, file, i)
+    for head in reversed(heads):
+        apart = [cell.strip().strip('"') for cell in head.split("\t")] if separator is None and "\t" in head else []
+        labels = apart if len(apart) == n_columns else _labels(head, separator)
+        if len(labels) == n_columns and any(re.search("[a-zA-Z]", label) for label in labels):
+            return labels
+    return []
+
+
+def _labels(head: str, separator: str | None) -> list[str]:
+    if separator is None:
+        # There may be a blank between a label and its unit in brackets, and inside the unit.
+        end = after_brackets(head)
+        head = BRACKET.sub(lambda unit: unit[0].replace(" ", ""), head[:end]) + head[end:]
+        head = re.sub(r"(?<!\s)\s++(?=[(\[])", "", head)
+        return re.split(r"[;,\s]\s*", head)
+    cells = [cell.strip().strip('"') for cell in head.split(separator)]
+    return cells[:-1] if cells[-1] == "" else cells
+
+
+def after_brackets(text: str) -> int:
+    """Return the end of the last closing bracket, so that no regular expression searches beyond it in vain."""
+    return max(text.rfind(")"), text.rfind("]")) + 1
+
+
+def is_number(token: str) -> bool:
+    """Return whether a cell is a number, or a word for none such as nan."""
+    return bool(DECIMAL.fullmatch(token)) or token.lower() in ("nan", "inf", "-inf")

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-    from rockflex.motion._spectrum import ResponseSpectrum
+    from rockflex.motion import ResponseSpectrum
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -13,26 +13,23 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes
-from rockflex.structure._based import Assembled
-from rockflex.structure._beam_fe import finite_element_modes
-from rockflex.structure._cross_section import Section, checked_section, of_section
-from rockflex.structure._modal_structure import ModalStructure
-from rockflex.structure._profile import Along, Profile, profile
-from rockflex.structure._ritz import RitzShapes, cosine_shapes, ritz_modes
-from rockflex.structure._sections import LumpedMasses, Sections, on_beam
+from rockflex.structure._beam_modes import RitzShapes, cosine_shapes, finite_element_modes, ritz_modes
+from rockflex.structure._beam_sections import Along, LumpedMasses, Profile, Sections, on_beam, profile
+from rockflex.structure._cross_section import Section, checked_section, section_value
+from rockflex.structure._structure import AssembledStructure, ModalStructure
 
 _N_ELEMENTS = 1000
-_MOST_ELEMENTS = 10_000
-_RITZ_SHAPES = 5  # at least: the number in Eq. 36
+_MAX_ELEMENTS = 10_000
+_MIN_RITZ_SHAPES = 5  # at least: the number in Eq. 36
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Beam(Assembled, Value):
+class Beam(AssembledStructure, Value):
     """A cantilever with distributed mass on a rigid base that can rock.
 
     A property that varies along the height is given as a number, as a function of heights (n,) in m that returns values
     (n,), or as a table ``(heights, values)`` from the base to the top, linear between its rows; two rows at the same
-    height are a jump. The formulas are those of Silva & Stojadinović 2024, Table 2, with integrals in place of sums,
+    height are a jump. The formulas follow Silva & Stojadinović 2024, Table 2, with integrals in place of sums,
     and Eq. 33 for I_θ.
 
     Attributes
@@ -114,7 +111,7 @@ class Beam(Assembled, Value):
             )
         n_modes = whole_number("n_modes", self.n_modes, 1, MOST_MODES)
         section = checked_section(self.section)
-        mass, stiffness = (of_section(section, name, getattr(self, name)) for name in ("mass", "bending_stiffness"))
+        mass, stiffness = (section_value(section, name, getattr(self, name)) for name in ("mass", "bending_stiffness"))
         vars(self).update(
             height=height,
             half_width=positive("half_width", self.half_width, "m"),
@@ -125,8 +122,8 @@ class Beam(Assembled, Value):
                 height,
                 profile("mass", mass, height, "kg/m"),
                 profile("bending_stiffness", stiffness, height, "N m²"),
-                _optional("shear_stiffness", self.shear_stiffness, height, "N"),
-                _optional("rotary_inertia", self.rotary_inertia, height, "kg m", zero=True),
+                _optional_profile("shear_stiffness", self.shear_stiffness, height, "N"),
+                _optional_profile("rotary_inertia", self.rotary_inertia, height, "kg m", zero=True),
                 on_beam(self.lumped_masses, height),
                 bool(self.rotary_in_modes),
             ),
@@ -149,7 +146,7 @@ class Beam(Assembled, Value):
                 return finite_element_modes(self.sections, self._elements, self.n_modes)
             shapes = self.shapes
             if shapes is None:
-                shapes = cosine_shapes(self.height, max(self.n_modes, _RITZ_SHAPES))
+                shapes = cosine_shapes(self.height, max(self.n_modes, _MIN_RITZ_SHAPES))
             return ritz_modes(self.sections, shapes, self.n_modes)
 
     @property
@@ -167,7 +164,7 @@ class Beam(Assembled, Value):
                     field=name,
                 )
         if self.n_elements is not None:
-            vars(self).update(n_elements=whole_number("n_elements", self.n_elements, self.n_modes, _MOST_ELEMENTS))
+            vars(self).update(n_elements=whole_number("n_elements", self.n_elements, self.n_modes, _MAX_ELEMENTS))
         if self.shapes is not None:
             found = instance("shapes", self.shapes, RitzShapes).check(self.height)
             if found < self.n_modes:
@@ -177,5 +174,7 @@ class Beam(Assembled, Value):
                 )
 
 
-def _optional(name: str, given: Along | None, height: float, unit: str, *, zero: bool = False) -> Profile | None:
+def _optional_profile(
+    name: str, given: Along | None, height: float, unit: str, *, zero: bool = False
+) -> Profile | None:
     return None if given is None else profile(name, given, height, unit, zero=zero)

@@ -28,7 +28,7 @@ class Section(Value):
         Second moment of area I in m⁴ of the uncracked section about the bending axis through its centroid, of a
         composite section transformed too.
     elastic_modulus : float
-        Young's modulus E in N/m², of a composite section that of its first part.
+        Young's modulus E in N/m²; of a composite section, the modulus of its first part.
     density : float
         Density in kg/m³, of a composite section its mass per length over `area`.
     stiffness_factor : float
@@ -68,7 +68,7 @@ class Section(Value):
             "second_moment": positive("second_moment", self.second_moment, "m⁴"),
             "elastic_modulus": positive("elastic_modulus", self.elastic_modulus, "N/m²"),
             "density": positive("density", self.density, "kg/m³"),
-            "stiffness_factor": _factor(self.stiffness_factor),
+            "stiffness_factor": _checked_factor(self.stiffness_factor),
         }
         vars(self).update(values)
         given = self.density * self.second_moment if self.rotary_inertia is None else self.rotary_inertia
@@ -131,7 +131,7 @@ class Section(Value):
         (5.0, 2.416667)
         """
         b, d, t = positive("width", width, "m"), positive("depth", depth, "m"), positive("wall", wall, "m")
-        _hollow(t, min(b, d), "a rectangle")
+        _check_hollow(t, min(b, d), "a rectangle")
         inner_b, inner_d = b - 2.0 * t, d - 2.0 * t
         area = 2.0 * t * (b + inner_d)
         return cls(area, (b * d**3 - inner_b * inner_d**3) / 12.0, elastic_modulus, density, stiffness_factor)
@@ -171,7 +171,7 @@ class Section(Value):
         (0.124407, 0.060972)
         """
         d, t = positive("diameter", diameter, "m"), positive("wall", wall, "m")
-        _hollow(t, d, "a circle")
+        _check_hollow(t, d, "a circle")
         inner, area = d - 2.0 * t, math.pi * t * (d - t)
         return cls(area, area * (d**2 + inner**2) / 16.0, elastic_modulus, density, stiffness_factor)
 
@@ -188,7 +188,7 @@ class Section(Value):
         parts : iterable of (Section, float)
             The sections, and the distance of each one's centroid from any common axis, in m along the depth.
         stiffness_factor
-            For the whole, besides those of the parts.
+            For the whole, besides the factors of the parts.
 
         Raises
         ------
@@ -204,7 +204,7 @@ class Section(Value):
         >>> print(f"{filled.bending_stiffness:.4g} N m², {filled.mass_per_length:.4g} kg/m")
         2.804e+09 N m², 2293 kg/m
         """
-        found = _parts(parts)
+        found = _checked_parts(parts)
         first = found[0][0].elastic_modulus
         ratios = [each.stiffness_factor * each.elastic_modulus / first for each, _ in found]
         areas = [ratio * each.area for ratio, (each, _) in zip(ratios, found, strict=True)]
@@ -219,8 +219,8 @@ class Section(Value):
         return cls(area, second, first, mass / area, stiffness_factor, rotary)
 
 
-def of_section(section: Section | None, name: str, given: Any, absent: float | None = None) -> Any:
-    """Return the `given` quantity, or that of the section where it is None or `absent`.
+def section_value(section: Section | None, name: str, given: Any, absent: float | None = None) -> Any:
+    """Return the `given` quantity, or the value of the section where it is None or `absent`.
 
     Raises
     ------
@@ -257,7 +257,7 @@ def checked_section(given: Any) -> Section | None:
     return given
 
 
-def _factor(given: float) -> float:
+def _checked_factor(given: float) -> float:
     factor = positive("stiffness_factor", given, "fractions of the uncracked stiffness")
     if factor > 1.0:
         raise InputError(
@@ -267,7 +267,7 @@ def _factor(given: float) -> float:
     return factor
 
 
-def _hollow(wall: float, least: float, what: str) -> None:
+def _check_hollow(wall: float, least: float, what: str) -> None:
     if not 2.0 * wall < least:
         raise InputError(
             f"wall must be less than half of {least:g} m, but {wall:g} m was given. Without a hollow it is {what}.",
@@ -275,7 +275,7 @@ def _hollow(wall: float, least: float, what: str) -> None:
         )
 
 
-def _parts(given: Any) -> list[tuple[Section, float]]:
+def _checked_parts(given: Any) -> list[tuple[Section, float]]:
     try:
         pairs = [(section, offset) for section, offset in given]
     except (TypeError, ValueError) as error:

@@ -1,28 +1,298 @@
-"""Structures from the matrices or the modes of any finite element program."""
+"""Structures from the matrices or the modes of any finite element program, also in its files."""
 
-from collections.abc import Sequence
-from dataclasses import replace
-from typing import SupportsIndex
+import hashlib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, SupportsIndex, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from rockflex._arrays import Array
-from rockflex._checks import damping_ratios, dimensions, finite_matrix, finite_vector, positive
+from rockflex._arrays import Array, Bools
+from rockflex._checks import (
+    damping_ratios,
+    dimensions,
+    finite_matrix,
+    finite_vector,
+    float_array,
+    positive,
+    whole_number,
+)
 from rockflex._computable import computable
 from rockflex._errors import InputError
+from rockflex._files import check_regular, path_of
 from rockflex._matrices import checked_mass, checked_stiffness
 from rockflex.modal import MassNormalisedModes, modes_that_take_part
-from rockflex.structure._freedoms import Freedoms, Heights
-from rockflex.structure._matrix_files import Given, numbers
-from rockflex.structure._modal_structure import ModalStructure
+from rockflex.structure._structure import ModalStructure
 
-_ORTHOGONAL = 1e-5  # tolerance for values with few printed digits
+if TYPE_CHECKING:
+    from scipy.sparse import coo_array
+NumbersOrPath: TypeAlias = ArrayLike | str | Path
+"""Numbers, or the path of a file that contains them."""
+MAX_FREEDOMS = 20_000  # degrees of freedom of a sparse matrix: 3 GB as a dense one
+_MATRIX_SUFFIXES = (".npz", ".mtx", ".csv")
+Heights = NumbersOrPath | Mapping[int, float]
+"""Height of every degree of freedom in m, NaN for none, or a map {index: height} of those that translate."""
+_MAX_COSINE = 1e-5  # tolerance for values with few printed digits
+
+
+def read_matrix_market(path: Path) -> "coo_array":
+    """Return the matrix of a file, coordinate or array, real or integer, general or symmetric.
+
+    Raises
+    ------
+    ValueError
+        If the file contains another kind of matrix, or other entries than its header announces.
+    """
+    from scipy.sparse import coo_array
+
+    banner, *lines = path.read_text(encoding="utf-8").splitlines() or [""]
+    mark, *kinds = banner.split() or [""]
+    form, field, symmetry = ([word.lower() for word in kinds] + [""] * 4)[1:4]
+    if (
+        mark != "%%MatrixMarket"
+        or form not in ("coordinate", "array")
+        or field not in ("real", "integer", "double")
+        or symmetry not in ("general", "symmetric")
+    ):
+        raise ValueError(
+            "its first line must declare a matrix, coordinate or array, real or integer, general or symmetric"
+        )
+    head, *body = [line for line in lines if line.strip() and not line.startswith("%")] or [""]
+    numbers = [int(word) for word in head.split()]
+    if len(numbers) != (3 if form == "coordinate" else 2) or min(numbers) < 0:
+        raise ValueError("its size line must give the numbers of rows and columns, and in coordinate format of entries")
+    rows, columns = numbers[:2]
+    if form == "coordinate":
+        entries = np.loadtxt(body, dtype=np.float64, ndmin=2) if body else np.zeros((0, 3))
+        if entries.shape != (numbers[2], 3):
+            raise ValueError(f"it must contain {numbers[2]} entries of three numbers, but it contains {entries.shape}")
+        row, column, value = entries.T
+    else:
+        value = np.loadtxt(body, dtype=np.float64, ndmin=1) if body else np.zeros(0)
+        count = rows * columns if symmetry == "general" else rows * (rows + 1) // 2
+        if value.size != count or (symmetry == "symmetric" and rows != columns):
+            raise ValueError(
+                f"it must contain {count} numbers for a matrix of {rows} by {columns}, but it contains {value.size}"
+            )
+        whole = np.ones((columns, rows), dtype=np.bool_)  # the file lists it column by column
+        column, row = np.nonzero(whole if symmetry == "general" else np.triu(whole))
+        row, column = row + 1.0, column + 1.0
+    places = np.stack((row, column)) - 1.0
+    inside = (places >= 0.0).all() and (places < [[rows], [columns]]).all()
+    if not inside or (places != np.floor(places)).any():
+        raise ValueError(f"its entries must lie in {rows} rows and {columns} columns, counted from 1")
+    i, j = places.astype(np.int64)
+    if symmetry == "symmetric":
+        mirrored = i != j
+        i, j, value = np.append(i, j[mirrored]), np.append(j, i[mirrored]), np.append(value, value[mirrored])
+    return coo_array((value, (i, j)), shape=(rows, columns))
+
+
+def numbers(name: str, given: NumbersOrPath) -> ArrayLike:
+    """Return the given numbers, read from a file if a path was given.
+
+    The suffix decides the format: ``.npz`` (the array of that name, the only array, or a sparse matrix as saved by
+    SciPy), ``.mtx`` (Matrix Market) or ``.csv`` (rows of comma-separated numbers; a single row or column is a vector).
+
+    Raises
+    ------
+    InputError
+        If the file is missing, has another format, or does not contain such numbers.
+    """
+    if not isinstance(given, str | Path):
+        return given
+    path = path_of(name, given)
+    if path.suffix.lower() not in _MATRIX_SUFFIXES:
+        raise InputError(f"{name}: the suffix of {path} must be one of {', '.join(_MATRIX_SUFFIXES)}.", field=name)
+    check_regular(path, name)
+    if not path.exists():
+        raise InputError(f"{name}: the file {path} does not exist (working directory: {Path.cwd()}).", field=name)
+    try:
+        array = _READERS[path.suffix.lower()](name, path)
+    except InputError:
+        raise
+    except Exception as error:  # readers of damaged files raise many types of exception
+        raise InputError(f"{name}: no matrix of numbers can be read from {path}: {error}.", field=name) from error
+    return array.ravel() if 1 in array.shape and array.shape != (1, 1) else array
+
+
+def checksum(name: str, path: Path) -> str:
+    """Return the SHA-256 of the shape and the numbers (little-endian doubles) of a file; errors as in `numbers`."""
+    array = np.asarray(numbers(name, path), dtype="<f8")
+    digest = hashlib.sha256(repr(array.shape).encode())
+    digest.update(array.tobytes())
+    return digest.hexdigest()
+
+
+def _from_npz(name: str, path: Path) -> Array:
+    with np.load(path, allow_pickle=False) as content:
+        keys = content.files
+        if "format" in keys and "data" in keys:
+            from scipy.sparse import load_npz
+
+            return _dense(name, path, load_npz(path))
+        if name not in keys and len(keys) != 1:
+            raise InputError(
+                f'{name}: {path} must contain an array "{name}" or a single array, but it contains {keys}.', field=name
+            )
+        return np.asarray(content[name if name in keys else keys[0]], dtype=np.float64)
+
+
+def _from_mtx(name: str, path: Path) -> Array:
+    return _dense(name, path, read_matrix_market(path))
+
+
+def _dense(name: str, path: Path, matrix: Any) -> Array:
+    if max(matrix.shape) > MAX_FREEDOMS:
+        raise InputError(
+            f"{name}: {path} contains a sparse matrix of shape {matrix.shape}, but matrices are treated as dense, with "
+            f"at most {MAX_FREEDOMS} degrees of freedom. Condense it to the degrees of freedom with mass, or give its "
+            "modes to from_modes.",
+            field=name,
+        )
+    return np.asarray(matrix.toarray(), dtype=np.float64)
+
+
+def _from_csv(_: str, path: Path) -> Array:
+    return np.loadtxt(path, delimiter=",", ndmin=2)
+
+
+_READERS = {".npz": _from_npz, ".mtx": _from_mtx, ".csv": _from_csv}
+
+
+@dataclass(frozen=True, eq=False)
+class DegreesOfFreedom:
+    """The degrees of freedom that translate horizontally or rotate in the plane; the base does not move the others.
+
+    Attributes
+    ----------
+    translates : ndarray of int, shape (T,)
+        Indices of the horizontal translations, in order of height.
+    heights : ndarray, shape (T,)
+        Their heights above the base in m.
+    rotates : ndarray of int, shape (R,)
+        Indices of the rotations in the plane.
+    size : int
+        Number N of degrees of freedom.
+    """
+
+    translates: NDArray[np.intp]
+    heights: Array
+    rotates: NDArray[np.intp]
+    size: int
+
+    @classmethod
+    def of(cls, heights: Heights, rotations: Sequence[SupportsIndex], size: int) -> "DegreesOfFreedom":
+        """Return the degrees of freedom of a structure that has `size` of them.
+
+        Raises
+        ------
+        InputError
+            If a height is missing or not positive, or an index is out of range or named twice.
+        """
+        if not isinstance(rotations, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise InputError(
+                f"rotations must be a sequence of indices of degrees of freedom, but {type(rotations).__name__} was "
+                "given.",
+                field="rotations",
+            )
+        turning = [whole_number("rotations, index", i, 0, size - 1, field="rotations") for i in rotations]
+        where, values = _translations(heights, turning, size)
+        twice = sorted({i for i in turning if turning.count(i) > 1 or i in where})
+        if twice:
+            raise InputError(
+                f"rotations must list each degree of freedom once, and none that has a height, but {twice[0]} is "
+                "listed twice.",
+                field="rotations",
+            )
+        if values.min(initial=np.inf) <= 0.0 or values.size == 0:
+            lowest = f"{values.min():g} m" if values.size else "none"
+            raise InputError(
+                f"heights must contain at least one height in m above the base, all positive, but {lowest} was given. "
+                "A mass at the base belongs to base_mass; freedoms that do not translate horizontally have no height.",
+                field="heights",
+            )
+        order = np.argsort(values, kind="stable")
+        return cls(np.array(where, dtype=np.intp)[order], values[order], np.array(turning, dtype=np.intp), size)
+
+    def kept(self, keep: Bools) -> "DegreesOfFreedom":
+        """Return the degrees of freedom of the structure reduced to some of them.
+
+        Raises
+        ------
+        InputError
+            If none of the remaining ones translates.
+        """
+        number = np.cumsum(keep) - 1
+        moves, turns = keep[self.translates], keep[self.rotates]
+        if not moves.any():
+            raise InputError(
+                "mass must be assigned to at least one degree of freedom that translates horizontally, but it is zero "
+                "for all of them.",
+                field="mass",
+            )
+        return DegreesOfFreedom(
+            number[self.translates[moves]], self.heights[moves], number[self.rotates[turns]], int(keep.sum())
+        )
+
+    def modes(self, omega: Array, shapes: Array, mass: Array) -> MassNormalisedModes:
+        """Return the modes, with φ^T M φ = 1, and their participation; `mass` is (N, N).
+
+        Degrees of freedom at the same height form one station, with their mean ordinate and the sum of their forces. If
+        a rotation has mass, its moment acts at an unknown height, so there are no forces at stations.
+        """
+        translation, rotation = np.zeros(self.size), np.zeros(self.size)
+        translation[self.translates] = 1.0
+        rotation[self.translates] = self.heights
+        rotation[self.rotates] = 1.0
+        moved = mass @ shapes
+        stations, at, count = np.unique(self.heights, return_inverse=True, return_counts=True)
+        ordinates, forces = np.zeros((2, stations.size, omega.size))
+        np.add.at(ordinates, at, shapes[self.translates])
+        np.add.at(forces, at, moved[self.translates])
+        carried = bool(np.any(mass[self.rotates]))
+        return MassNormalisedModes(
+            omega=omega,
+            shear=translation @ moved,
+            moment=rotation @ moved,
+            heights=stations,
+            ordinates=ordinates / count[:, None],
+            forces=None if carried else forces,
+            mass=float(translation @ mass @ translation),
+            first_moment=float(translation @ mass @ rotation),
+            inertia=float(rotation @ mass @ rotation),
+        )
+
+
+def _translations(heights: Heights, turning: Sequence[int], size: int) -> tuple[list[int], Array]:
+    """Return the degrees of freedom that translate horizontally, and their heights."""
+    if isinstance(heights, Mapping):
+        where = [whole_number("heights, index", i, 0, size - 1, field="heights") for i in heights]
+        return where, finite_vector("heights", list(heights.values()), "m")
+    given = numbers("heights", heights)
+    values = float_array(given)
+    if values is None or values.ndim != 1:
+        finite_vector("heights", given, "m")  # raises an error
+        raise AssertionError
+    others = [i for i in range(size) if i not in turning]
+    if values.size == size:
+        values = values[others]  # the height of a rotation, at its node, does not matter
+    elif values.size != len(others):
+        raise InputError(
+            f"heights must contain one height for each of the {size} degrees of freedom, but {values.size} were given. "
+            "List those that rotate in rotations; if others do not translate horizontally, give the heights of those "
+            "that do with their indices, such as {0: 3.0, 2: 6.0}.",
+            field="heights",
+        )
+    moves = ~np.isnan(values)
+    return [i for i, each in zip(others, moves, strict=True) if each], finite_vector("heights", values[moves], "m")
 
 
 def from_matrices(
-    mass: Given,
-    stiffness: Given,
+    mass: NumbersOrPath,
+    stiffness: NumbersOrPath,
     heights: Heights,
     *,
     rotations: Sequence[SupportsIndex] = (),
@@ -88,7 +358,7 @@ def from_matrices(
     k = checked_stiffness(k_given, size)
     m_given = numbers("mass", mass)
     m = _mass_matrix(m_given, size)
-    freedoms = Freedoms.of(heights, rotations, size)
+    freedoms = DegreesOfFreedom.of(heights, rotations, size)
     keep = np.asarray(m.any(axis=1))
     freedoms = freedoms.kept(keep)
     m = checked_mass(m[np.ix_(keep, keep)], freedoms.size)
@@ -98,13 +368,13 @@ def from_matrices(
             k = k[np.ix_(keep, keep)] - tie @ np.linalg.solve(k[np.ix_(~keep, ~keep)], tie.T)
             k = 0.5 * (k + k.T)
         modes = freedoms.modes(*_modes(k, m), m)
-    return _structure(modes, base_mass, half_width, damping_ratio, n_modes)
+    return _modal_structure(modes, base_mass, half_width, damping_ratio, n_modes)
 
 
 def from_modes(
-    omega: Given,
-    shapes: Given,
-    mass: Given,
+    omega: NumbersOrPath,
+    shapes: NumbersOrPath,
+    mass: NumbersOrPath,
     heights: Heights,
     *,
     rotations: Sequence[SupportsIndex] = (),
@@ -156,7 +426,7 @@ def from_modes(
     size = np.shape(columns)[0] if dimensions(columns) == 2 else 1
     phi = finite_matrix("shapes", columns, "any unit", (size, w.size))
     m = _mass_matrix(numbers("mass", mass), size)
-    freedoms = Freedoms.of(heights, rotations, size)
+    freedoms = DegreesOfFreedom.of(heights, rotations, size)
     products = phi.T @ m @ phi
     own = np.diag(products)
     if not (own > 0.0).all():
@@ -167,7 +437,7 @@ def from_modes(
             field="mass",
         )
     cosines = products / np.sqrt(np.outer(own, own)) - np.eye(w.size)
-    if np.abs(cosines).max() > _ORTHOGONAL:
+    if np.abs(cosines).max() > _MAX_COSINE:
         i, j = sorted(int(each) for each in np.unravel_index(np.argmax(np.abs(cosines)), cosines.shape))
         raise InputError(
             f"The mode shapes must be orthogonal with respect to the mass, but φ_{i + 1}^T M φ_{j + 1} is "
@@ -175,10 +445,10 @@ def from_modes(
             "the degrees of freedom in the same order, and shapes with enough digits.",
             field="shapes",
         )
-    return _structure(freedoms.modes(w, phi / np.sqrt(own), m), base_mass, half_width, damping_ratio, n_modes)
+    return _modal_structure(freedoms.modes(w, phi / np.sqrt(own), m), base_mass, half_width, damping_ratio, n_modes)
 
 
-def _structure(
+def _modal_structure(
     modes: MassNormalisedModes,
     base_mass: float,
     half_width: float,

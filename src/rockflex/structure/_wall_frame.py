@@ -13,16 +13,15 @@ from rockflex._checks import MOST_MODES, damping_ratios, positive, whole_number
 from rockflex._computable import computable
 from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes
-from rockflex.structure._based import Assembled
-from rockflex.structure._distributed import N_STATIONS, gathered, gauss, mesh
-from rockflex.structure._modal_structure import ModalStructure
+from rockflex.structure._beam_modes import N_STATIONS, forces_at_stations, gauss_points, mesh_nodes
+from rockflex.structure._structure import AssembledStructure, ModalStructure
 
-_PANELS, _POINTS = 64, 8
-_LAYER = np.array([0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
+_N_PANELS, _N_POINTS = 64, 8
+_BOUNDARY_LAYER = np.array([0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
 
 
 @dataclass(frozen=True, eq=False)
-class WallFrame(Assembled, Value):
+class WallFrame(AssembledStructure, Value):
     """A uniform flexural wall coupled to a uniform shear frame over the full height.
 
     EI u'''' - GA u'' = m ω² u: the coupled beam of Miranda & Taghavi (2005, Journal of Structural Engineering 131(2),
@@ -107,8 +106,8 @@ class WallFrame(Assembled, Value):
         alpha = self.stiffness_parameter
         roots = np.array([_root(n, alpha) for n in range(1, self.n_modes + 1)])
         partners = np.sqrt(alpha**2 + roots**2)  # β of the hyperbolic functions, steepest in the highest mode
-        layer = _LAYER / partners[-1] if math.isfinite(alpha) else np.zeros(0)
-        points, weights = gauss(mesh(1.0, max(_PANELS, 4 * self.n_modes), layer, 1.0 - layer), _POINTS)
+        layer = _BOUNDARY_LAYER / partners[-1] if math.isfinite(alpha) else np.zeros(0)
+        points, weights = gauss_points(mesh_nodes(1.0, max(_N_PANELS, 4 * self.n_modes), layer, 1.0 - layer), _N_POINTS)
         x, mass = points.ravel(), self.mass * weights.ravel()
         stations = np.linspace(0.0, 1.0, N_STATIONS)
         shapes, ordinates = (np.column_stack([_shape(z, g, alpha) for g in roots]) for z in (x, stations))
@@ -122,7 +121,7 @@ class WallFrame(Assembled, Value):
             moment=h * (x @ forces),
             heights=h * stations,
             ordinates=ordinates / size,
-            forces=gathered(stations, x, forces, np.zeros_like(forces)),
+            forces=forces_at_stations(stations, x, forces, np.zeros_like(forces)),
             mass=self.mass,
             first_moment=self.mass * h / 2.0,
             inertia=self.mass * h**2 / 3.0,

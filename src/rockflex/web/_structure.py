@@ -14,9 +14,9 @@ from rockflex._errors import InputError
 from rockflex._json import plain
 from rockflex.modal import Ground, ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
 from rockflex.structure import structure_warnings
-from rockflex.structure._freedoms import Freedoms
+from rockflex.structure._from_matrices import DegreesOfFreedom
 from rockflex.structure.file import Structure, StructureEntry, StructureTable, Table
-from rockflex.structure.file._matrix_tables import MatricesTable, ModesTable
+from rockflex.structure.file._tables import MatricesTable, ModesTable
 from rockflex.study._option_tables import GroundTable
 from rockflex.web._refusal import Refusal, refusing
 
@@ -205,7 +205,7 @@ def _freedoms(table: StructureTable) -> str:
     given = table.arguments(Path())
     mass = np.asarray(given["mass"])
     size = len(mass)
-    found = Freedoms.of(given["heights"], given.get("rotations", ()), size)
+    found = DegreesOfFreedom.of(given["heights"], given.get("rotations", ()), size)
     others = size - found.translates.size - found.rotates.size
     kinds = ((found.translates.size, "sideways"), (found.rotates.size, "rotational"), (others, "other"))
     counted = ", ".join(f"{count} {kind}" for count, kind in kinds if count)

@@ -1,9 +1,15 @@
 """Structures in TOML files."""
 
-from rockflex.structure.file._element_tables import ELEMENTS, ElementTable, TendonTable
-from rockflex.structure.file._entry import KINDS, StructureEntry
-from rockflex.structure.file._read import build_in, read_structure, read_toml
-from rockflex.structure.file._section_table import PartTable
+from rockflex.structure.file._entry import (
+    ELEMENTS,
+    KINDS,
+    ElementTable,
+    StructureEntry,
+    TendonTable,
+    build_in,
+    read_structure,
+    read_toml,
+)
 from rockflex.structure.file._table import (
     Table,
     checked,
@@ -15,7 +21,7 @@ from rockflex.structure.file._table import (
     problems,
     spot_of,
 )
-from rockflex.structure.file._tables import Built, Structure, StructureTable
+from rockflex.structure.file._tables import Built, PartTable, Structure, StructureTable
 
 __all__ = [
     "ELEMENTS",

@@ -1,34 +1,137 @@
-"""A structure as an entry of a file."""
+"""A structure in a TOML file, with its place on the base and the elements between base and ground."""
 
+import tomllib
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
 from rockflex._errors import InputError
+from rockflex._files import check_regular, path_of
 from rockflex._schema import PLAIN, Eccentricity, Key
-from rockflex.modal import BaseElement, RockingProperties
+from rockflex._shown import shortened
+from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.structure import Eccentric, Restrained
-from rockflex.structure._matrix_files import checksum
-from rockflex.structure.file._beam_table import BeamTable
-from rockflex.structure.file._element_tables import AnyElementTable, TendonTable
-from rockflex.structure.file._matrix_tables import MatricesTable, ModesTable
-from rockflex.structure.file._table import Table, inner_table
+from rockflex.structure._from_matrices import checksum
+from rockflex.structure.file._table import Table, checked, inner_table
 from rockflex.structure.file._tables import (
+    BeamTable,
     BlockTable,
     Built,
     CantileverTable,
     FishBoneTable,
     FrameTable,
     LumpedTable,
+    MatricesTable,
+    ModesTable,
     PropertiesTable,
     StructureTable,
     TaperedTowerTable,
     WallFrameTable,
 )
 
-_KIND = Key("a table", form=PLAIN)
+_POST_YIELD_RATIO = "the stiffness after yielding over the elastic one"
+_POSITION = Key("the distance to the right of the axis of the masses", "m")
+_ELEMENT_KIND = Key('"tendon", "yielding_dissipator", "viscous_damper" or "friction_damper"', form=PLAIN)
+_TABLE_KEY = Key("a table", form=PLAIN)
+_RUN_KEYS = ("impact", "restitution", "bouc_wen", "ground")  # only for `rockflex run`
+
+
+class ElementTable(Table):
+    """A table that is an element; `title` is its name in a list, and a key `kind` is no argument."""
+
+    makes: ClassVar[Callable[..., BaseElement]]
+    title: ClassVar[str]
+
+    def element(self) -> BaseElement:
+        """Return the element.
+
+        Raises
+        ------
+        InputError
+            If a value is outside its range, or the values contradict each other.
+        """
+        return type(self).makes(**self.model_dump(exclude={"kind"}))
+
+    def describe(self) -> dict[str, Any]:
+        """Return the given values, and the defaults of the others."""
+        return self.model_dump(exclude_none=True)
+
+
+class TendonTable(ElementTable):
+    """The arguments of `Tendon`."""
+
+    makes = Tendon
+    title = "Tendon"
+
+    position: Annotated[float, _POSITION] = 0.0
+    initial_force: Annotated[float, Key("the force while the base stands on the ground", "N")]
+    stiffness: Annotated[float, Key("EA/L over the unbonded length", "N/m")]
+    yield_force: Annotated[float | None, Key("the force at which the tendon yields", "N")] = None
+    post_yield_ratio: Annotated[float | None, Key(f"{_POST_YIELD_RATIO} (default: the tendon stays elastic)")] = None
+    rupture_elongation: Annotated[float | None, Key("the elongation at which a tendon that yields breaks", "m")] = None
+
+
+class _TendonKind(Table):
+    kind: Annotated[Literal["tendon"], _ELEMENT_KIND]
+
+
+class TendonElementTable(TendonTable, _TendonKind):
+    """A tendon among the elements."""
+
+
+class YieldingDissipatorTable(ElementTable):
+    """The arguments of `YieldingDissipator`."""
+
+    makes = YieldingDissipator
+    title = "Yielding dissipator"
+
+    kind: Annotated[Literal["yielding_dissipator"], _ELEMENT_KIND]
+    position: Annotated[float, _POSITION] = 0.0
+    stiffness: Annotated[float, Key("the elastic stiffness", "N/m")]
+    yield_force: Annotated[float, Key("the force at which the fuse yields", "N")]
+    post_yield_ratio: Annotated[float, Key(_POST_YIELD_RATIO)] = 0.0
+    tension_only: Annotated[bool, Key("whether the fuse cannot push", form="true or false: {}")] = False
+    rupture_elongation: Annotated[float | None, Key("the elongation at which the fuse breaks", "m")] = None
+
+
+class ViscousDamperTable(ElementTable):
+    """The arguments of `ViscousDamper`."""
+
+    makes = ViscousDamper
+    title = "Viscous damper"
+
+    kind: Annotated[Literal["viscous_damper"], _ELEMENT_KIND]
+    position: Annotated[float, _POSITION] = 0.0
+    coefficient: Annotated[float, Key("the force over the velocity", "N s/m")]
+
+
+class FrictionDamperTable(ElementTable):
+    """The arguments of `FrictionDamper`."""
+
+    makes = FrictionDamper
+    title = "Friction damper"
+
+    kind: Annotated[Literal["friction_damper"], _ELEMENT_KIND]
+    position: Annotated[float, _POSITION] = 0.0
+    force: Annotated[float, Key("the force at which the damper slides", "N")]
+
+
+AnyElementTable: TypeAlias = Annotated[
+    TendonElementTable | YieldingDissipatorTable | ViscousDamperTable | FrictionDamperTable,
+    Field(discriminator="kind"),
+]
+"""The table of any element, chosen by its `kind`."""
+
+ELEMENTS: dict[str, type[ElementTable]] = {
+    "tendon": TendonElementTable,
+    "yielding_dissipator": YieldingDissipatorTable,
+    "viscous_damper": ViscousDamperTable,
+    "friction_damper": FrictionDamperTable,
+}
+"""The table of each kind of element by its name in a file."""
 
 
 class StructureEntry(Table):
@@ -49,17 +152,17 @@ class StructureEntry(Table):
     """
 
     name: Annotated[str, Key("a name, in quotes", form=PLAIN)] = ""
-    frame: Annotated[FrameTable | None, _KIND] = None
-    fish_bone: Annotated[FishBoneTable | None, _KIND] = None
-    wall_frame: Annotated[WallFrameTable | None, _KIND] = None
-    tapered_tower: Annotated[TaperedTowerTable | None, _KIND] = None
-    cantilever: Annotated[CantileverTable | None, _KIND] = None
-    beam: Annotated[BeamTable | None, _KIND] = None
-    lumped: Annotated[LumpedTable | None, _KIND] = None
-    matrices: Annotated[MatricesTable | None, _KIND] = None
-    modes: Annotated[ModesTable | None, _KIND] = None
-    properties: Annotated[PropertiesTable | None, _KIND] = None
-    block: Annotated[BlockTable | None, _KIND] = None
+    frame: Annotated[FrameTable | None, _TABLE_KEY] = None
+    fish_bone: Annotated[FishBoneTable | None, _TABLE_KEY] = None
+    wall_frame: Annotated[WallFrameTable | None, _TABLE_KEY] = None
+    tapered_tower: Annotated[TaperedTowerTable | None, _TABLE_KEY] = None
+    cantilever: Annotated[CantileverTable | None, _TABLE_KEY] = None
+    beam: Annotated[BeamTable | None, _TABLE_KEY] = None
+    lumped: Annotated[LumpedTable | None, _TABLE_KEY] = None
+    matrices: Annotated[MatricesTable | None, _TABLE_KEY] = None
+    modes: Annotated[ModesTable | None, _TABLE_KEY] = None
+    properties: Annotated[PropertiesTable | None, _TABLE_KEY] = None
+    block: Annotated[BlockTable | None, _TABLE_KEY] = None
     eccentricity: Eccentricity = None
     tendons: Annotated[list[TendonTable], Key("a list of tables, each under a heading [[tendons]]", form=PLAIN)] = (
         Field(default_factory=list[TendonTable])
@@ -171,3 +274,84 @@ KINDS: dict[str, type[StructureTable]] = {
     if issubclass(table := inner_table(field.annotation) or Table, StructureTable)
 }
 """The table of each kind of structure by its name in a file."""
+
+
+def read_structure(path: str | Path) -> Built:
+    """Return the structure of a TOML file, the same file that the command line reads.
+
+    The file holds one table, whose keys are the arguments of the class: ``[frame]`` (`Frame`), ``[fish_bone]``
+    (`FishBone`), ``[wall_frame]`` (`WallFrame`), ``[tapered_tower]`` (`TaperedTower`), ``[cantilever]``
+    (`CantileverWithTipMass`), ``[beam]`` (`Beam`, with lists of values at the heights ``z``), ``[lumped]``
+    (`LumpedStructure`), ``[matrices]`` (`from_matrices`), ``[modes]`` (`from_modes`), ``[properties]``
+    (`RockingProperties`) or ``[block]`` (`rigid_block`). Tables ``[[elements]]`` restrain it; their key ``kind`` is
+    "tendon" (`Tendon`), "yielding_dissipator" (`YieldingDissipator`), "viscous_damper" (`ViscousDamper`) or
+    "friction_damper" (`FrictionDamper`). Tables ``[[tendons]]`` are tendons without that key. A number ``eccentricity``
+    above all tables moves the structure from the middle of its base (`Eccentric`). Units are kg, m, s, N and rad; paths
+    of matrices are relative to the folder of the file.
+
+    Parameters
+    ----------
+    path
+        The file. The keys ``impact``, ``restitution``, ``[bouc_wen]`` and ``[ground]`` are for ``rockflex run`` and are
+        ignored; in Python they are arguments of `simulate`.
+
+    Returns
+    -------
+    Frame, Beam, ..., Eccentric, Restrained or RockingProperties
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, a key is unknown or missing, or a value is wrong; the message names file, table
+        and key.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> from pathlib import Path
+    >>> length = Path("block.toml").write_text("block = { slenderness = 0.2, half_diagonal = 2.5, mass = 5e3 }")
+    >>> round(rf.read_structure("block.toml").resisting_moment)  # m g b in N m
+    24362
+    """
+    file = path_of("path", path)
+    content = {key: value for key, value in read_toml(file, "structure").items() if key not in _RUN_KEYS}
+    if "study" in content:
+        raise InputError(f"{file} is the file of a study, but one of a structure is expected. Use load_study(path).")
+    return build_in(file, checked(StructureEntry, content, str(path)))
+
+
+def read_toml(file: Path, kind: str) -> dict[str, Any]:
+    """Return the content of a TOML file; `kind` names its expected content in messages.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is not a regular file, or is not TOML.
+    """
+    check_regular(file)
+    try:
+        return tomllib.loads(file.read_text("utf-8"))
+    except FileNotFoundError as error:
+        raise InputError(f"The {kind} file {file} does not exist (working directory: {Path.cwd()}).") from error
+    except OSError as error:
+        raise InputError(f"The {kind} file {file} cannot be read: {error.strerror}.") from error
+    except ValueError as error:  # not TOML, or not UTF-8
+        raise InputError(f"{file} is not a valid TOML file: {shortened(str(error))}.") from error
+    except RecursionError as error:
+        raise InputError(
+            f"{file} is nested too deep to be read: brackets within brackets, more than any {kind} has."
+        ) from error
+
+
+def build_in(file: Path, entry: StructureEntry) -> Built:
+    """Build the structure of a file, which messages name.
+
+    Raises
+    ------
+    InputError
+        As `StructureEntry.build`.
+    """
+    try:
+        return entry.build(file.parent)
+    except InputError as error:
+        raise InputError(f"{file}, {error}") from error

@@ -31,7 +31,7 @@ def key_of(field: FieldInfo) -> Key:
 
 
 def expected(field: FieldInfo) -> str:
-    """Say what a field must be, and how it is written."""
+    """Return the description of a valid value, and how it is written."""
     return key_of(field).expected
 
 
@@ -61,7 +61,7 @@ def inner_table(annotation: Any) -> type["Table"] | None:
 
 
 def checked(model: type[AnyTable], content: Mapping[str, Any], place: str = "") -> AnyTable:
-    """Return what was read as a table; `place` names the file in messages.
+    """Return the content of a file as a table; `place` names the file in messages.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def checked(model: type[AnyTable], content: Mapping[str, Any], place: str = "") 
 
 
 def problems(error: ValidationError, content: Mapping[str, Any], model: type[Table]) -> list[str]:
-    """Return one sentence for each key at fault, with what is expected; the branches of a union count once.
+    """Return a sentence for each wrong key, with a description of valid values; the branches of a union count once.
 
     All unknown keys of a table are in one sentence.
     """
@@ -126,7 +126,7 @@ class Spot:
     field
         The field of the last key; None if it is not known.
     value
-        What the content holds there.
+        The content at this place.
     """
 
     path: tuple[str | int, ...]

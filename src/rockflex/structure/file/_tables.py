@@ -1,42 +1,144 @@
-"""Tables of structures that need only a few numbers each."""
+"""Tables of the kinds of structures: their keys, and how each is built."""
 
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Protocol, SupportsIndex, TypeAlias
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias, get_args
 
+from pydantic import Field, StringConstraints
+
+from rockflex._errors import InputError
 from rockflex._schema import PLAIN, WHOLE, AspectRatio, BaseMass, FrameKeys, Key, Period, each
-from rockflex.modal import ModalProperties, RockingProperties
+from rockflex.modal import RockingProperties
 from rockflex.structure import (
+    Beam,
     CantileverWithTipMass,
     FishBone,
     Frame,
+    LumpedMasses,
     LumpedStructure,
+    Section,
     TaperedTower,
     WallFrame,
+    from_matrices,
+    from_modes,
     rigid_block,
 )
-from rockflex.structure.file._section_table import SectionKey, section_of
+from rockflex.structure._structure import Structure
 from rockflex.structure.file._table import Table
 
+Shape = Literal["rectangle", "box", "circle", "tube"]
+_SIZES: dict[str, tuple[Callable[..., Section], tuple[str, ...]]] = {
+    "rectangle": (Section.rectangle, ("width", "depth")),
+    "box": (Section.box, ("width", "depth", "wall")),
+    "circle": (Section.circle, ("diameter",)),
+    "tube": (Section.tube, ("diameter", "wall")),
+}
+_SHAPES = ", ".join(f'"{shape}"' for shape in get_args(Shape))
+_WIDTH = Key("the width perpendicular to the plane of rocking", "m", low=1e-3, high=500.0)
+_DEPTH = Key("the depth in the plane of rocking", "m", low=1e-3, high=500.0)
+_DIAMETER = Key("the outer diameter", "m", low=1e-3, high=500.0)
+_WALL = Key("the thickness of the wall", "m", low=1e-4, high=100.0)
+_MODULUS = Key("Young's modulus of the material", "N/m²")
+_DENSITY = Key("the density of the material", "kg/m³", low=1.0, high=1e5)
+_FACTOR = Key("the effective over the uncracked bending stiffness", low=1e-3, high=1.0)
 Vector = list[float]
 Matrix = list[list[float]]
 HalfWidth = Annotated[float, Key("half the width of the base", "m", low=1e-3, high=1000.0)]
 Damping = Annotated[float | Vector, Key("the fraction of critical damping", form=each("mode"), low=0.0, high=0.99)]
 Height = Annotated[float, Key("the height above the base", "m", low=0.01, high=2000.0)]
 Modes = Annotated[int, Key("how many modes to take", form=WHOLE, low=1, high=100, label="Modes")]
+_PROFILES = ("mass", "bending_stiffness", "shear_stiffness", "rotary_inertia")
+_EACH_HEIGHT = each("height in z")
+Index = Annotated[str, StringConstraints(pattern=r"^[0-9]+$")]
+_OR_FILE = "{}, or the path of a .npz, .mtx or .csv file"
 
 
-class Structure(Protocol):
-    """Anything with modes on a fixed base that can rock, such as a `Frame`."""
+class PartTable(Table):
+    """A part of a composite section, and the place of its centroid."""
 
-    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
-        """Modes on a fixed base."""
-        ...
+    shape: Annotated[Shape, Key(f"one of {_SHAPES}", form=PLAIN)]
+    width: Annotated[float | None, _WIDTH] = None
+    depth: Annotated[float | None, _DEPTH] = None
+    diameter: Annotated[float | None, _DIAMETER] = None
+    wall: Annotated[float | None, _WALL] = None
+    elastic_modulus: Annotated[float, _MODULUS]
+    density: Annotated[float, _DENSITY]
+    stiffness_factor: Annotated[float, _FACTOR] = 1.0
+    offset: Annotated[
+        float, Key("the distance of its centroid from any axis common to all parts, along the depth", "m")
+    ] = 0.0
 
-    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
-        """Parameters of the rocking structure."""
-        ...
+
+class SectionTable(Table):
+    """The arguments of one of the constructors of `Section`."""
+
+    shape: Annotated[
+        Literal[Shape, "composite"], Key(f'one of {_SHAPES} and "composite" (of several parts)', form=PLAIN)
+    ]
+    width: Annotated[float | None, _WIDTH] = None
+    depth: Annotated[float | None, _DEPTH] = None
+    diameter: Annotated[float | None, _DIAMETER] = None
+    wall: Annotated[float | None, _WALL] = None
+    elastic_modulus: Annotated[float | None, _MODULUS] = None
+    density: Annotated[float | None, _DENSITY] = None
+    stiffness_factor: Annotated[float, _FACTOR] = 1.0
+    parts: Annotated[
+        list[PartTable] | None, Key("a list of tables, one of each part of a composite section", form=PLAIN)
+    ] = None
+
+    def build(self) -> Section:
+        """Return the section.
+
+        Raises
+        ------
+        InputError
+            If a size is missing, does not belong to the shape, or is outside its range.
+        """
+        if self.shape != "composite":
+            return _section_of_shape(self.shape, self.model_dump(exclude={"shape"}, exclude_none=True))
+        given = self.model_dump(exclude={"shape", "parts", "stiffness_factor"}, exclude_none=True)
+        if given:
+            raise InputError(f"section: {next(iter(given))} belongs to each part of a composite one.", field="section")
+        found: list[tuple[Section, float]] = []
+        for place, part in enumerate(self.parts or [], start=1):
+            values = part.model_dump(exclude={"shape", "offset"}, exclude_none=True)
+            try:
+                found.append((_section_of_shape(part.shape, values), part.offset))
+            except InputError as error:
+                raise InputError(f"part no. {place} of the {error}", field="section") from error
+        return _with_section_in_errors(lambda: Section.composite(found, stiffness_factor=self.stiffness_factor))
+
+
+SectionKey = Annotated[
+    SectionTable | None, Key("the cross-section in place of bending stiffness and mass", form="a table of {}")
+]
+
+
+def section_of(table: SectionTable | None) -> dict[str, Any]:
+    """Return the argument `section` of a structure; none without a table."""
+    return {} if table is None else {"section": table.build()}
+
+
+def _section_of_shape(shape: str, given: dict[str, Any]) -> Section:
+    make, sizes = _SIZES[shape]
+    needed = (*sizes, "elastic_modulus", "density")
+    lacking = [name for name in needed if name not in given]
+    other = [name for name in given if name not in (*needed, "stiffness_factor")]
+    if lacking or other:
+        wrong = f"but it lacks {', '.join(lacking)}" if lacking else f"not {', '.join(other)}"
+        raise InputError(
+            f"section: a {shape} takes {', '.join(needed)} and stiffness_factor, {wrong}.", field="section"
+        )
+    return _with_section_in_errors(lambda: make(**given))
+
+
+def _with_section_in_errors(make: Callable[[], Section]) -> Section:
+    """A message about an argument of a section says that it is one."""
+    try:
+        return make()
+    except InputError as error:
+        raise InputError(f"section: {error}", field="section") from error
 
 
 Built: TypeAlias = Structure | RockingProperties
@@ -230,3 +332,170 @@ class BlockTable(StructureTable):
     slenderness: Annotated[float, Key("atan(b/h) of the half sides", "rad", low=1e-4, high=1.5)]
     half_diagonal: Annotated[float, Key("the distance from the corner to the centre", "m", low=1e-3, high=1000.0)]
     mass: Annotated[float, Key("the mass, which rotations do not depend on", "kg")] = 1.0
+
+
+class LumpedMassesTable(Table):
+    """The arguments of `LumpedMasses`."""
+
+    heights: Annotated[Vector, Key("a list of the heights of the bodies above the base in m", "m", form=PLAIN)]
+    masses: Annotated[Vector, Key("a list of the masses of the bodies in kg", "kg", form=PLAIN)]
+    rotary: Annotated[
+        Vector | None,
+        Key("a list of the rotary inertias of the bodies about their own axes in kg m²", "kg m²", form=PLAIN),
+    ] = None
+
+
+class BeamTable(StructureTable):
+    """The arguments of `Beam`; a quantity that varies along the height has a value for each height in `z`."""
+
+    makes = Beam
+    title = "Beam, perhaps tapered"
+
+    height: Annotated[float, Key("the height of the beam above the base", "m", low=0.01, high=2000.0)]
+    z: Annotated[
+        Vector | None,
+        Key(
+            "a list of heights in m from 0 to the top, for the lists of values (the same twice: a jump)",
+            "m",
+            form=PLAIN,
+            label="Heights z",
+        ),
+    ] = None
+    mass: Annotated[
+        float | Vector | None, Key("the mass per metre in kg/m (unless a section gives it)", "kg/m", form=_EACH_HEIGHT)
+    ] = None
+    bending_stiffness: Annotated[
+        float | Vector | None, Key("EI in N m² (unless a section gives it)", "N m²", form=_EACH_HEIGHT)
+    ] = None
+    section: SectionKey = None
+    shear_stiffness: Annotated[
+        float | Vector | None, Key("GA_s in N (default: no deformation in shear)", "N", form=_EACH_HEIGHT)
+    ] = None
+    rotary_inertia: Annotated[float | Vector | None, Key("ρI in kg m (default: none)", "kg m", form=_EACH_HEIGHT)] = (
+        None
+    )
+    lumped_masses: Annotated[LumpedMassesTable | None, Key("bodies", form="a table of {}")] = None
+    half_width: HalfWidth
+    damping_ratio: Damping
+    base_mass: BaseMass = 0.0
+    rotary_in_modes: Annotated[
+        bool, Key("whether the rotary inertia takes part in the modes, or in I_θ only", form="true or false: {}")
+    ] = True
+    method: Annotated[
+        Literal["fe", "ritz"], Key('"fe" (finite elements) or "ritz" (shapes over the whole height)', form=PLAIN)
+    ] = "fe"
+    n_modes: Modes = 5
+    n_elements: Annotated[
+        int | None,
+        Key("how many finite elements to take (default: 1000)", form=WHOLE, low=2, high=2000, label="Elements"),
+    ] = None
+
+    def arguments(self, folder: Path) -> dict[str, Any]:
+        """Return the arguments with a table for each list."""
+        given = super().arguments(folder)
+        z = given.pop("z", None)
+        lists = [name for name in _PROFILES if isinstance(given.get(name), list)]
+        if z is None and lists:
+            raise InputError(
+                f"{lists[0]} is a list, but its heights are not known. Add z, a list of as many heights in m.",
+                field=lists[0],
+            )
+        if z is not None and not lists:
+            raise InputError(
+                "z holds heights, but nothing varies along them. Give a list of as many values, or leave z out.",
+                field="z",
+            )
+        given |= {name: (z, given[name]) for name in lists}
+        if self.lumped_masses is not None:
+            given["lumped_masses"] = LumpedMasses(**given["lumped_masses"])
+        return given | section_of(self.section)
+
+
+class _FromFiles(StructureTable):
+    """The keys that both kinds share: degrees of freedom above a base."""
+
+    mass: Annotated[
+        Vector | Matrix | str,
+        Key(
+            "a list of masses in kg, or the mass matrix",
+            "kg",
+            form=_OR_FILE,
+            page="the masses in kg, 0 for freedoms without mass, or the rows of the mass matrix",
+        ),
+    ]
+    heights: Annotated[
+        Vector | dict[Index, float] | str,
+        Key(
+            "a list of the heights of all freedoms in m (nan: does not move sideways), or a table { index = height } "
+            "of those that move sideways, counted from 0",
+            "m",
+            form=_OR_FILE,
+            page="the heights in m of the freedoms that move sideways: of all freedoms but the rotations in their "
+            "order, or each after its index, counted from 0 (0: 3, 2: 6)",
+        ),
+    ]
+    rotations: Annotated[
+        list[int], Key("a list of the indices of rotations in the plane, counted from 0", form=PLAIN)
+    ] = Field(default_factory=list[int])
+    base_mass: BaseMass
+    half_width: HalfWidth
+    damping_ratio: Damping
+    n_modes: Annotated[
+        int | None, Key("how many modes to take (default: all)", form=WHOLE, low=1, high=100, label="Modes")
+    ] = None
+
+    def arguments(self, folder: Path) -> dict[str, Any]:
+        """Return the arguments with paths relative to `folder`, and indices as numbers."""
+        given = super().arguments(folder)
+        if isinstance(self.heights, dict):
+            given["heights"] = {int(index): height for index, height in self.heights.items()}
+        return given
+
+    def files(self, folder: Path) -> dict[str, Path]:
+        """Return the path, relative to `folder`, of each value that is stored in a file."""
+        return {name: folder / value for name, value in self.values().items() if isinstance(value, str)}
+
+
+class MatricesTable(_FromFiles):
+    """The arguments of `from_matrices`."""
+
+    makes = from_matrices
+    title = "Mass and stiffness matrices"
+
+    stiffness: Annotated[
+        Matrix | str,
+        Key(
+            "the stiffness matrix in N/m, a list of rows",
+            "N/m",
+            form=_OR_FILE,
+            page="the stiffness matrix in N/m, a line for each row",
+        ),
+    ]
+
+
+class ModesTable(_FromFiles):
+    """The arguments of `from_modes`."""
+
+    makes = from_modes
+    title = "Modes of a finite element model"
+
+    omega: Annotated[
+        Vector | str,
+        Key(
+            "a list of circular frequencies in rad/s, one a mode",
+            "rad/s",
+            form=_OR_FILE,
+            low=1e-3,
+            high=1e6,
+            label="ω",
+            page="the circular frequencies in rad/s, one a mode",
+        ),
+    ]
+    shapes: Annotated[
+        Matrix | str,
+        Key(
+            "the mode shapes, a list of rows, one a freedom with a column for each mode",
+            form=_OR_FILE,
+            page="the mode shapes, a line for each freedom with a column for each mode",
+        ),
+    ]

@@ -1,0 +1,328 @@
+"""Elements between base and ground: tendons, yielding dissipators, viscous dampers and friction dampers."""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rockflex._checks import finite, instance, positive, real_or_nan
+from rockflex._errors import InputError
+from rockflex._shown import shown
+
+
+@dataclass(frozen=True)
+class Tendon:
+    """An unbonded, elastic, vertical tendon from the structure through the base into the ground.
+
+    While the base rocks about a pivot at the distance r, the tendon is stretched by the gap that opens at its place,
+    2 r sin(|θ|/2), to first order r |θ|, as it is guided without friction on both sides of the joint. Its force
+    increases linearly from the initial force (Vassiliou & Makris 2015, doi 10.1061/(ASCE)EM.1943-7889.0000953). It
+    pulls and never pushes: it goes slack at zero force. On rigid ground no rotation makes an elastic tendon between the
+    edges of the base slack; on springs the base can sink and shorten it.
+
+    Attributes
+    ----------
+    initial_force : float
+        Force in N while the base is in contact with the ground; zero or positive.
+    stiffness : float
+        Axial stiffness EA/L over the unbonded length in N/m; zero or positive.
+    position : float
+        Distance in m from the axis of the masses, positive to the right. Unless the base is eccentric, this axis passes
+        through its middle.
+    yield_force : float or None
+        In N, positive. Without `post_yield_ratio` the tendon stays elastic, and its largest force is compared with it.
+    post_yield_ratio : float or None
+        α in [0, 1): the tendon yields at `yield_force`, with the stiffness α k from there on. It keeps its plastic
+        stretch, loses prestress and becomes slack at zero force. Default: it stays elastic.
+    rupture_elongation : float or None
+        Elongation in m, from the base in contact, at which a yielding tendon breaks for good. Default: it never does.
+
+    Raises
+    ------
+    InputError
+        If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> tendon = rf.Tendon(initial_force=500e3, stiffness=20e6, yield_force=900e3)
+    >>> round(tendon.initial_force / tendon.yield_force, 3)
+    0.556
+    """
+
+    initial_force: float
+    stiffness: float
+    position: float = 0.0
+    yield_force: float | None = None
+    post_yield_ratio: float | None = None
+    rupture_elongation: float | None = None
+
+    def __post_init__(self) -> None:
+        vars(self).update(
+            initial_force=positive("initial_force", self.initial_force, "N", zero=True),
+            stiffness=positive("stiffness", self.stiffness, "N/m", zero=True),
+            position=finite("position", self.position, "m"),
+        )
+        if self.yield_force is not None:
+            limit = positive("yield_force", self.yield_force, "N")
+            vars(self).update(yield_force=limit)
+            if self.initial_force > limit:
+                raise InputError(
+                    f"initial_force must not exceed yield_force, {limit:g} N, but {self.initial_force:g} N was given. "
+                    "A tendon that has yielded is not elastic; check the units too.",
+                    field="initial_force",
+                )
+        if self.post_yield_ratio is not None:
+            vars(self).update(post_yield_ratio=checked_ratio(self.post_yield_ratio))
+            if self.yield_force is None or self.stiffness == 0.0:
+                raise InputError(
+                    "post_yield_ratio needs the yield_force in N of a tendon with stiffness, but "
+                    f"yield_force = {shown(self.yield_force)} and stiffness = {self.stiffness:g} N/m were given.",
+                    field="yield_force" if self.yield_force is None else "stiffness",
+                )
+        if self.rupture_elongation is not None:
+            if self.yield_force is None or self.post_yield_ratio is None:
+                raise InputError(
+                    "rupture_elongation is for a tendon that yields. Give yield_force and post_yield_ratio as well.",
+                    field="rupture_elongation",
+                )
+            yields_at = (self.yield_force - self.initial_force) / self.stiffness
+            vars(self).update(rupture_elongation=checked_rupture(self.rupture_elongation, yields_at))
+
+
+def checked_ratio(value: float) -> float:
+    """Return a post-yield stiffness ratio.
+
+    Raises
+    ------
+    InputError
+        If it is not in [0, 1).
+    """
+    ratio = real_or_nan(value)
+    if not 0.0 <= ratio < 1.0:
+        raise InputError(
+            f"post_yield_ratio must be from 0 to below 1, but {shown(value)} was given. It is the stiffness after "
+            "yielding over the elastic stiffness: 2 % is 0.02.",
+            field="post_yield_ratio",
+        )
+    return ratio
+
+
+def checked_rupture(value: float | None, yields_at: float) -> float | None:
+    """Return the elongation at rupture in m.
+
+    Raises
+    ------
+    InputError
+        If it is not beyond the elongation `yields_at`, in m, at which yielding starts.
+    """
+    if value is None:
+        return None
+    limit = positive("rupture_elongation", value, "m")
+    if limit <= yields_at:
+        raise InputError(
+            f"rupture_elongation must be beyond the elongation at yield, {yields_at:.4g} m, but {limit:g} m was given. "
+            "Check the units: stiffness is in N/m, forces are in N and elongations in m.",
+            field="rupture_elongation",
+        )
+    return limit
+
+
+@dataclass(frozen=True)
+class YieldingDissipator:
+    """A fuse between the base and the ground that yields in tension and compression, with kinematic hardening.
+
+    At a distance r from the pivot it is stretched by the gap that opens there, δ = 2 r sin(|θ|/2), to first order
+    r |θ|, as it is held on both sides of the joint and bends freely. Its force is F = α k δ + (1 - α) z, where z
+    follows k δ and is limited to ± F_y. The first yield is therefore at F = F_y. A fuse that has yielded keeps a force
+    while the base is closed, which shifts the moment at which the base lifts.
+
+    Attributes
+    ----------
+    stiffness : float
+        Elastic stiffness k in N/m, positive.
+    yield_force : float
+        F_y in N, positive.
+    post_yield_ratio : float
+        α, the stiffness after yielding over the elastic one, in [0, 1).
+    position : float
+        Distance in m from the axis of the masses, positive to the right.
+    tension_only : bool
+        Whether the fuse buckles or is unhooked, so that it cannot push: F = max(0, ·).
+    rupture_elongation : float or None
+        Elongation in m at which the fuse breaks, for good. Larger than F_y/k. Default: it never does.
+
+    Raises
+    ------
+    InputError
+        If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> fused = rf.Restrained(frame, rf.YieldingDissipator(stiffness=2e7, yield_force=200e3))
+    >>> fused.rocking().self_centring, round(fused.rocking().recentring_ratio, 2)
+    (True, 5.89)
+    """
+
+    stiffness: float
+    yield_force: float
+    post_yield_ratio: float = 0.0
+    position: float = 0.0
+    tension_only: bool = False
+    rupture_elongation: float | None = None
+
+    def __post_init__(self) -> None:
+        vars(self).update(
+            stiffness=positive("stiffness", self.stiffness, "N/m"),
+            yield_force=positive("yield_force", self.yield_force, "N"),
+            post_yield_ratio=checked_ratio(self.post_yield_ratio),
+            position=finite("position", self.position, "m"),
+            tension_only=instance("tension_only", self.tension_only, bool),
+            rupture_elongation=checked_rupture(self.rupture_elongation, self.yield_force / self.stiffness),
+        )
+
+
+@dataclass(frozen=True)
+class ViscousDamper:
+    """A linear viscous damper between the base and the ground: F = c δ'.
+
+    Attributes
+    ----------
+    coefficient : float
+        c in N s/m, zero or positive.
+    position : float
+        Distance in m from the axis of the masses, positive to the right.
+
+    Raises
+    ------
+    InputError
+        If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> damped = rf.Restrained(frame, rf.ViscousDamper(coefficient=500e3))
+    >>> [round(rf.simulate(each, pulse, free_vibration=2.0).max_rotation, 4) for each in (frame, damped)]
+    [0.056, 0.0529]
+    """
+
+    coefficient: float
+    position: float = 0.0
+
+    def __post_init__(self) -> None:
+        vars(self).update(
+            coefficient=positive("coefficient", self.coefficient, "N s/m", zero=True),
+            position=finite("position", self.position, "m"),
+        )
+
+
+@dataclass(frozen=True)
+class FrictionDamper:
+    """A friction damper between the base and the ground: F = ± F_0 while it slides; it sticks in between.
+
+    Attributes
+    ----------
+    force : float
+        F_0 in N, zero or positive.
+    position : float
+        Distance in m from the axis of the masses, positive to the right.
+
+    Raises
+    ------
+    InputError
+        If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> damped = rf.Restrained(frame, rf.FrictionDamper(force=200e3))
+    >>> damped.rocking().self_centring, round(damped.rocking().recentring_ratio, 2)
+    (True, 5.89)
+    """
+
+    force: float
+    position: float = 0.0
+
+    def __post_init__(self) -> None:
+        vars(self).update(
+            force=positive("force", self.force, "N", zero=True),
+            position=finite("position", self.position, "m"),
+        )
+
+
+BaseElement = Tendon | YieldingDissipator | ViscousDamper | FrictionDamper
+"""Any element between a base and the ground."""
+
+
+def element_set(given: Any) -> tuple[BaseElement, ...]:
+    """Return one or several elements as a tuple.
+
+    Raises
+    ------
+    InputError
+        If something is not an element.
+    """
+    items: tuple[Any, ...] = tuple(given) if isinstance(given, Iterable) else (given,)
+    for item in items:
+        if not isinstance(item, BaseElement):
+            raise InputError(
+                "elements must be Tendon, YieldingDissipator, ViscousDamper or FrictionDamper objects, but "
+                f"{shown(item)} was given. Write Tendon(initial_force, stiffness), for example.",
+                field="elements",
+            )
+    return items
+
+
+def locked_force(element: BaseElement) -> float:
+    """Return the largest force in N with which an element can keep a base from closing.
+
+    A fuse that has yielded returns to δ = 0 with z = - F_y, so its force there is -(1 - α) F_y. One that cannot push, a
+    tendon or a viscous damper locks nothing in.
+    """
+    if isinstance(element, YieldingDissipator) and not element.tension_only:
+        return (1.0 - element.post_yield_ratio) * element.yield_force
+    return element.force if isinstance(element, FrictionDamper) else 0.0
+
+
+def pushed_force(element: BaseElement, elongation: float) -> float:
+    """Return the force in N of an element as built that is stretched slowly by an elongation in m, or shortened."""
+    if isinstance(element, FrictionDamper):
+        return math.copysign(element.force, elongation)
+    if isinstance(element, ViscousDamper) or elongation >= (element.rupture_elongation or math.inf):
+        return 0.0
+    pull = element.stiffness * elongation + (element.initial_force if isinstance(element, Tendon) else 0.0)
+    if element.post_yield_ratio is not None and element.yield_force is not None and abs(pull) > element.yield_force:
+        beyond = element.post_yield_ratio * (abs(pull) - element.yield_force)
+        pull = math.copysign(element.yield_force + beyond, pull)
+    pushes = isinstance(element, YieldingDissipator) and not element.tension_only
+    return pull if pushes else max(pull, 0.0)
+
+
+def mirrored(elements: Sequence[BaseElement]) -> bool:
+    """Return whether every off-centre element has a mirror image: the same at the same distance on the other side."""
+    left = sorted(_values(each, -each.position) for each in elements if each.position < 0.0)
+    right = sorted(_values(each, each.position) for each in elements if each.position > 0.0)
+    return len(left) == len(right) and all(
+        one[0] == other[0] and all(math.isclose(a, b, rel_tol=1e-9) for a, b in zip(one[1], other[1], strict=True))
+        for one, other in zip(left, right, strict=True)
+    )
+
+
+def _values(element: BaseElement, distance: float) -> tuple[str, tuple[float, ...]]:
+    if isinstance(element, Tendon):  # its yield force is only compared with, unless it yields
+        yields = element.post_yield_ratio is not None
+        beyond = (element.yield_force or 0.0, element.post_yield_ratio or 0.0) if yields else (0.0, 0.0)
+        return "Tendon", (
+            distance,
+            element.initial_force,
+            element.stiffness,
+            *beyond,
+            element.rupture_elongation or 0.0,
+        )
+    rest = {**vars(element), "position": distance}
+    return type(element).__name__, tuple(float(value or 0.0) for value in rest.values())

@@ -1,0 +1,493 @@
+"""Frames with lumped masses: given by matrices, story by story, or regular."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rockflex._arrays import Array
+from rockflex._checks import (
+    MOST_STORIES,
+    all_positive,
+    damping_ratios,
+    dimensions,
+    finite_vector,
+    float_array,
+    in_range,
+    mode_count,
+    positive,
+    real_or_nan,
+    whole_number,
+)
+from rockflex._computable import computable
+from rockflex._errors import InputError
+from rockflex._matrices import checked_heights, checked_mass, checked_stiffness
+from rockflex._shown import shown
+from rockflex._values import Value, changed
+from rockflex.modal import ModalProperties, RockingProperties, modal_properties, rocking_properties
+from rockflex.structure._structure import AssembledStructure
+
+MIN_SAFE, MAX_SAFE = 1e-20, 1e20  # of numbers in SI units whose products certainly do not overflow
+MAX_ASPECT_RATIO = 1e4  # h*_1/B from which the base hardly adds to the inertia, which must be checked
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class LumpedStructure(Value):
+    """Any linear structure with N masses above a rigid base that can rock.
+
+    Its degrees of freedom are the horizontal displacements of the masses relative to the base (Silva & Stojadinović
+    2024, Fig. 1 and Eq. 1); all others must be condensed out. Sequences become read-only arrays. The modes are
+    computed once, when they are first needed.
+
+    Attributes
+    ----------
+    masses : ndarray, shape (N,) or (N, N)
+        Masses, or symmetric positive definite mass matrix, in kg, excluding the base.
+    stiffness : ndarray, shape (N, N)
+        Symmetric positive definite stiffness in N/m on a fixed base.
+    heights : ndarray, shape (N,)
+        Heights of the masses above the base in m, positive and strictly increasing.
+    base_mass : float
+        Mass m_0 of the base in kg, zero or positive.
+    half_width : float
+        Half-width B of the base in m.
+    damping_ratio : ndarray, shape (N,)
+        Damping ratio of each mode in [0, 1); a single number applies to all modes.
+
+    Raises
+    ------
+    InputError
+        If the shapes do not match, a value is not finite or outside its range, the heights do not increase, or a
+        matrix is not symmetric positive definite.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.LumpedStructure(
+    ...     masses=[20e3, 20e3], stiffness=[[8e6, -4e6], [-4e6, 4e6]], heights=[3.0, 6.0],
+    ...     base_mass=20e3, half_width=0.6, damping_ratio=0.02,
+    ... )
+    >>> structure.modal().period.round(3)
+    array([0.719, 0.275])
+    >>> structure.rocking(1).effective_height.round(3)
+    array([4.854])
+    """
+
+    masses: Array
+    stiffness: Array
+    heights: Array
+    base_mass: float
+    half_width: float
+    damping_ratio: Array
+
+    def __init__(
+        self,
+        masses: ArrayLike,
+        stiffness: ArrayLike,
+        heights: ArrayLike,
+        *,
+        base_mass: float,
+        half_width: float,
+        damping_ratio: ArrayLike,
+    ) -> None:
+        h = checked_heights(heights)
+        vars(self).update(
+            masses=checked_mass(masses, h.size, field="masses"),
+            stiffness=checked_stiffness(stiffness, h.size),
+            heights=h,
+            base_mass=positive("base_mass", base_mass, "kg", zero=True),
+            half_width=positive("half_width", half_width, "m"),
+            damping_ratio=damping_ratios("damping_ratio", damping_ratio, h.size),
+        )
+
+    @property
+    def height(self) -> float:
+        """Height of the top mass above the base in m."""
+        return float(self.heights[-1])
+
+    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
+        """Return the first `n_modes` modes on a fixed base (default: all N).
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to N.
+        """
+        return self._modes if n_modes is None else self._modes.truncated(n_modes)
+
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
+        """Return the parameters of the rocking structure with its first `n_modes` modes (default: all).
+
+        Modes that contribute neither to the base shear nor to the base moment are left out and not counted.
+
+        Raises
+        ------
+        InputError
+            If the structure has fewer modes than `n_modes`, or one of them contributes only to the base moment.
+        """
+        return self._rocking if n_modes is None else self._with_modes(n_modes)
+
+    @cached_property
+    def _modes(self) -> ModalProperties:
+        return modal_properties(self.masses, self.stiffness, self.heights)
+
+    @cached_property
+    def _rocking(self) -> RockingProperties:
+        return self._with_modes(None)
+
+    def _with_modes(self, n_modes: SupportsIndex | None) -> RockingProperties:
+        return rocking_properties(
+            self._modes,
+            self.masses,
+            self.heights,
+            self.base_mass,
+            self.half_width,
+            self.damping_ratio,
+            n_modes,
+        )
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class FishBone(AssembledStructure, Value):
+    """A fish-bone frame: one column with half beams at each floor, clamped to a base that can rock.
+
+    The column represents all columns of a story and the half beams all beams of a floor. Members are
+    inextensible, masses are lumped at the floors, and the rotations of the floors are condensed out.
+
+    Attributes
+    ----------
+    story_heights : ndarray, shape (N,)
+        Height L_i of each story in m, from the base up.
+    masses : ndarray, shape (N,)
+        Mass of each floor in kg.
+    column_stiffness : ndarray, shape (N,)
+        EI_i of each story in N m²: the sum over its columns.
+    beam_stiffness : ndarray, shape (N,)
+        Rotational stiffness of the beams of each floor in N m/rad, from zero to infinity, both included. It is
+        12 EI_b/L_b for a bay in antisymmetric bending; half beams on rollers give the same.
+    base_mass : float
+        Mass m_0 of the base in kg, zero or positive.
+    half_width : float
+        Half-width B of the base in m.
+    damping_ratio : float or ndarray, shape (N,)
+        Damping ratio in [0, 1): one number for all modes, or one per mode.
+
+    Raises
+    ------
+    InputError
+        If the lengths differ, or a value is outside its range.
+
+    Notes
+    -----
+    A number in place of an array applies to all stories. With equal stories, EI_i = 2 EI_c and
+    beam_stiffness = 12 ρ EI_i/L_i it is the same as `Frame`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.FishBone(
+    ...     story_heights=[4.0, 3.0], masses=[50e3, 40e3], column_stiffness=[2e8, 1.5e8], beam_stiffness=5e8,
+    ...     base_mass=50e3, half_width=1.5, damping_ratio=0.02,
+    ... )
+    >>> frame.height
+    7.0
+    >>> frame.modal().period.round(3)
+    array([0.398, 0.122])
+    """
+
+    story_heights: Array
+    masses: Array
+    column_stiffness: Array
+    beam_stiffness: Array
+    base_mass: float
+    half_width: float
+    damping_ratio: ArrayLike
+
+    def __init__(
+        self,
+        story_heights: ArrayLike,
+        masses: ArrayLike,
+        column_stiffness: ArrayLike,
+        beam_stiffness: ArrayLike,
+        *,
+        base_mass: float,
+        half_width: float,
+        damping_ratio: ArrayLike,
+    ) -> None:
+        lengths = finite_vector("story_heights", story_heights, "m")
+        n = lengths.size
+        all_positive("story_heights", lengths, "m")
+        if n == 0:
+            raise InputError(
+                "story_heights must contain at least one height in m, but none was given.", field="story_heights"
+            )
+        vars(self).update(
+            story_heights=lengths,
+            masses=_per_story("masses", masses, n, "kg"),
+            column_stiffness=_per_story("column_stiffness", column_stiffness, n, "N m²"),
+            beam_stiffness=_beam_stiffnesses(beam_stiffness, n),
+            base_mass=positive("base_mass", base_mass, "kg", zero=True),
+            half_width=positive("half_width", half_width, "m"),
+            damping_ratio=damping_ratio,
+        )
+        vars(self).update(damping_ratio=self.lumped.damping_ratio)
+
+    @property
+    def height(self) -> float:
+        """Height of the top floor above the base in m."""
+        return float(self.story_heights.sum())
+
+    @cached_property
+    def lumped(self) -> LumpedStructure:
+        """The assembled structure: floor masses, condensed stiffness, floor heights."""
+        return LumpedStructure(
+            self.masses,
+            condensed_stiffness(self.story_heights, self.column_stiffness, self.beam_stiffness),
+            np.cumsum(self.story_heights),
+            base_mass=self.base_mass,
+            half_width=self.half_width,
+            damping_ratio=self.damping_ratio,
+        )
+
+    @property
+    def assembled(self) -> LumpedStructure:
+        """The lumped masses: `lumped`."""
+        return self.lumped
+
+
+@computable("The stiffness of a frame with these story heights, column and beam stiffnesses")
+def condensed_stiffness(story_heights: Array, column_stiffness: Array, beam_stiffness: Array) -> Array:
+    """Return the condensed lateral stiffness of the floors in N/m, shape (N, N); arguments as in `FishBone`."""
+    n = story_heights.size
+    sway, coupling, bending = (np.zeros((n + 1, n + 1)) for _ in range(3))
+    for i, (length, stiffness) in enumerate(zip(story_heights, column_stiffness, strict=True)):
+        ends = np.ix_([i, i + 1], [i, i + 1])
+        sway[ends] += 12.0 * stiffness / length**3 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        coupling[ends] += 6.0 * stiffness / length**2 * np.array([[1.0, 1.0], [-1.0, -1.0]])
+        bending[ends] += 2.0 * stiffness / length * np.array([[2.0, 1.0], [1.0, 2.0]])
+    turning = np.flatnonzero(np.isfinite(beam_stiffness)) + 1  # rigid beams prevent the floor from rotating
+    rotational = bending[np.ix_(turning, turning)] + np.diag(beam_stiffness[turning - 1])
+    tied = coupling[1:, turning]
+    stiffness = sway[1:, 1:] - tied @ np.linalg.solve(rotational, tied.T)
+    return 0.5 * (stiffness + stiffness.T)
+
+
+def _per_story(name: str, values: ArrayLike, n: int, unit: str) -> Array:
+    if dimensions(values) == 0:
+        filled = np.full(n, positive(name, values, unit))  # pyright: ignore[reportArgumentType]
+        filled.setflags(write=False)
+        return filled
+    array = finite_vector(name, values, unit)
+    if array.size != n:
+        raise InputError(
+            f"{name} must be one number, or one for each of the {n} stories, but {array.size} were given.", field=name
+        )
+    all_positive(name, array, unit)
+    return array
+
+
+def _beam_stiffnesses(values: ArrayLike, n: int) -> Array:
+    given = float_array(values)
+    array = np.full(n, np.nan) if given is None else given
+    if array.ndim == 0:
+        array = np.full(n, float(array))
+    if array.shape != (n,) or not (array >= 0.0).all():
+        raise InputError(
+            f"beam_stiffness must be one number, or one for each of the {n} stories, from 0 (no beams) to float('inf') "
+            f"(rigid beams) in N m/rad, but {shown(values)} was given.",
+            field="beam_stiffness",
+        )
+    array.setflags(write=False)
+    return array
+
+
+@dataclass(frozen=True)
+class Frame(AssembledStructure):
+    """A frame of one bay and N equal stories, with columns clamped to a base that can rock.
+
+    Columns and beams are inextensible, of uniform stiffness, and the same in all stories; the masses are
+    lumped at the floors. The stiffness is scaled to give the specified period, and the base width follows from the
+    aspect ratio (Silva & Stojadinović 2024, Section 3.2 and Table 1).
+
+    Attributes
+    ----------
+    n_stories : int
+        Number of stories N, at most 1000.
+    story_height : float
+        Column length L_c in m; floor i is at i L_c.
+    story_mass : float
+        Mass of each floor in kg.
+    base_mass : float
+        Mass m_0 of the base in kg, zero or positive.
+    stiffness_ratio : float
+        ρ = (EI_b/L_b)/(2 EI_c/L_c), from 0 (two cantilevers) to infinity (shear building), both included.
+    period : float
+        First natural period T_1 on a fixed base in s.
+    aspect_ratio : float
+        h*_1/B.
+    damping_ratio : float
+        Damping ratio of every mode in [0, 1).
+
+    Raises
+    ------
+    InputError
+        If a value is outside its range.
+
+    Notes
+    -----
+    Sway is antisymmetric, so the two joints of a floor rotate by the same angle φ and a beam of stiffness
+    EI_b/L_b bends in double curvature with end moments 6 (EI_b/L_b) φ. It adds the rotational stiffness
+    12 EI_b/L_b = 12 ρ (2 EI_c/L_c). The two columns contribute 2 EI_c/L_c times the usual terms of a clamped bar. In
+    units of 2 EI_c/L_c³, with φ L_c for the rotations, the beam enters only through ρ: neither the width of
+    the bay nor EI_b matters by itself.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
+    ... )
+    >>> round(frame.half_width, 3)
+    1.318
+    >>> frame.modal(3).period.round(3)
+    array([1.   , 0.343, 0.217])
+    """
+
+    n_stories: int
+    story_height: float
+    story_mass: float
+    base_mass: float
+    stiffness_ratio: float
+    period: float
+    aspect_ratio: float
+    damping_ratio: float
+
+    def __post_init__(self) -> None:
+        vars(self).update(
+            n_stories=whole_number("n_stories", self.n_stories, 1, MOST_STORIES),
+            story_height=positive("story_height", self.story_height, "m"),
+            story_mass=positive("story_mass", self.story_mass, "kg"),
+            base_mass=positive("base_mass", self.base_mass, "kg", zero=True),
+            stiffness_ratio=_checked_stiffness_ratio(self.stiffness_ratio),
+            period=positive("period", self.period, "s"),
+            aspect_ratio=positive("aspect_ratio", self.aspect_ratio, "m of h*_1 a m of B"),
+            damping_ratio=in_range(
+                "damping_ratio",
+                self.damping_ratio,
+                0.0,
+                1.0,
+                hint="Give the fraction of critical damping: 2 % is 0.02.",
+            ),
+        )
+
+    @property
+    def height(self) -> float:
+        """Height N L_c of the top floor above the base in m."""
+        return self.n_stories * self.story_height
+
+    @property
+    def half_width(self) -> float:
+        """Half-width B = h*_1/aspect_ratio of the base in m."""
+        _, unit_modes = _unit_frame(self.n_stories, self.stiffness_ratio)
+        return float(unit_modes.effective_height[0]) * self.story_height / self.aspect_ratio
+
+    @cached_property
+    def lumped(self) -> LumpedStructure:
+        """The assembled structure: floor masses, condensed stiffness, floor heights."""
+        unit_stiffness, unit_modes = _unit_frame(self.n_stories, self.stiffness_ratio)
+        given = f"story_mass = {self.story_mass:g} kg and period = {self.period:g} s"
+        with computable(f"The stiffness of a frame with {given}"):
+            column_stiffness = self.story_mass * (2.0 * math.pi / (self.period * float(unit_modes.omega[0]))) ** 2
+            stiffness = column_stiffness * unit_stiffness
+        with computable(f"The heights of {self.n_stories} stories of {self.story_height:g} m"):
+            heights = self.story_height * np.arange(1.0, self.n_stories + 1.0)
+        return LumpedStructure(
+            np.full(self.n_stories, self.story_mass),
+            stiffness,
+            heights,
+            base_mass=self.base_mass,
+            half_width=self.half_width,
+            damping_ratio=self.damping_ratio,
+        )
+
+    @property
+    def assembled(self) -> LumpedStructure:
+        """The lumped masses: `lumped`."""
+        return self.lumped
+
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
+        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
+
+        They are scaled from a frame with unit masses and stories.
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to the number that the structure has.
+        """
+        whole = self._rocking
+        return whole if n_modes is None else whole.truncated(mode_count(n_modes, whole.n_modes))
+
+    @cached_property
+    def _rocking(self) -> RockingProperties:
+        given = (self.story_height, self.story_mass, self.period, self.half_width)
+        if not (
+            min(given) > MIN_SAFE and max(given) < MAX_SAFE > self.base_mass and self.aspect_ratio < MAX_ASPECT_RATIO
+        ):
+            return self.lumped.rocking()  # raises an error about the overflow
+        _, unit_modes = _unit_frame(self.n_stories, self.stiffness_ratio)
+        unit, m, length = _unit_rocking(self.n_stories, self.stiffness_ratio), self.story_mass, self.story_height
+        rate = 2.0 * math.pi / (self.period * float(unit_modes.omega[0]))
+        mass, height = m * unit.effective_mass, length * unit.effective_height
+        n, m_tot = self.n_stories, self.n_stories * m + self.base_mass
+        inertia = m * length**2 * (n * (n + 1) * (2 * n + 1) // 6)
+        floors = unit.floors
+        assert floors is not None
+        heights = length * floors.heights
+        return changed(
+            unit,
+            omega=rate * unit.omega,
+            effective_mass=mass,
+            effective_height=height,
+            i_theta=inertia + m_tot * self.half_width**2,
+            l0r=m * length * unit.l0r,
+            m_tot=m_tot,
+            half_width=self.half_width,
+            zeta=np.full(unit.n_modes, self.damping_ratio),
+            translational_inertia=max(inertia, float(mass @ height**2)),
+            floors=changed(floors, heights=heights, force=(m * rate**2) * floors.force),
+            top_height=float(heights[-1]),
+            base_mass=self.base_mass,
+        )
+
+
+@lru_cache(maxsize=128)
+@computable("The modes of the frame with this stiffness_ratio", field="stiffness_ratio")
+def _unit_frame(n_stories: int, stiffness_ratio: float) -> tuple[Array, ModalProperties]:
+    """Return the condensed stiffness in units of 2 EI_c/L_c³, and the modes for unit masses and stories."""
+    one = np.ones(n_stories)
+    stiffness = condensed_stiffness(one, one, 12.0 * stiffness_ratio * one)
+    stiffness.setflags(write=False)
+    return stiffness, modal_properties(one, stiffness, np.cumsum(one))
+
+
+@lru_cache(maxsize=128)
+def _unit_rocking(n_stories: int, stiffness_ratio: float) -> RockingProperties:
+    """Return the parameters for unit masses and stories, on a base of unit half-width without mass."""
+    _, modes = _unit_frame(n_stories, stiffness_ratio)
+    return rocking_properties(modes, np.ones(n_stories), modes.heights, 0.0, 1.0, 0.0)
+
+
+def _checked_stiffness_ratio(value: float) -> float:
+    ratio = real_or_nan(value)
+    if not ratio >= 0.0:
+        raise InputError(
+            f"stiffness_ratio must be from 0 (two cantilever columns) to float('inf') (shear building), "
+            f"but {shown(value)} was given.",
+            field="stiffness_ratio",
+        )
+    return ratio

@@ -1,0 +1,301 @@
+"""The interface of every structure, structures known by their modes, and changes of the base of a structure."""
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any, Protocol, SupportsIndex
+
+from rockflex._arrays import Array
+from rockflex._checks import finite
+from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex._values import Value
+from rockflex.modal import BaseElement, MassNormalisedModes, ModalProperties, RockingProperties, Tendon, element_set
+
+MAX_PERIOD = 10.0  # s
+
+
+class Structure(Protocol):
+    """Any structure on a base that can rock."""
+
+    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties: ...
+
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties: ...
+
+
+class AssembledStructure(ABC):
+    """A structure whose description is turned into another one, which has its modes and rocking properties."""
+
+    @property
+    @abstractmethod
+    def assembled(self) -> Structure:
+        """The structure that this one assembles."""
+
+    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
+        """Return the first `n_modes` modes on a fixed base, or all that the structure has.
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to the number that the structure has.
+        """
+        return self.assembled.modal(n_modes)
+
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
+        """Return the parameters of the rocking structure with its first `n_modes` modes, or with all.
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to the number that the structure has.
+        """
+        return self.assembled.rocking(n_modes)
+
+    def unit_warnings(self) -> tuple[str, ...]:
+        """Return texts about arguments that look like another unit; see `structure_warnings`."""
+        return ()
+
+
+class ModifiedStructure:
+    """A structure that has the modes of another one, and some other properties."""
+
+    structure: Structure
+
+    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
+        """Return the first `n_modes` modes on a fixed base (default: all)."""
+        return self.structure.modal(n_modes)
+
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
+        """Return the parameters of the rocking structure with its first `n_modes` modes (default: all)."""
+        base = self.structure.rocking(n_modes)
+        if n_modes is not None:
+            return replace(base, **self._changes())
+        known = vars(self).get("_known")
+        if known is None or known[0] is not base:  # the same object each time, so that runs can share prepared matrices
+            known = vars(self)["_known"] = base, replace(base, **self._changes())
+        return known[1]
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if name != "_known"}
+
+    def _changes(self) -> dict[str, Any]:
+        """Return the properties that differ."""
+        raise NotImplementedError
+
+
+def is_structure(given: object) -> bool:
+    """Tell whether something has modes and can rock; a class of structures does not."""
+    return not isinstance(given, type) and hasattr(given, "rocking") and hasattr(given, "modal")
+
+
+@dataclass(frozen=True, eq=False)
+class ModalStructure(Value):
+    """A structure given by its modes, as returned by `from_matrices` and `from_modes`.
+
+    Attributes
+    ----------
+    modes : MassNormalisedModes
+        Its modes, except those excited neither by the ground nor by the rotation of the base.
+    base_mass : float
+        Mass m_0 of the base in kg.
+    half_width : float
+        Half-width B of the base in m.
+    damping_ratio : ndarray, shape (n,)
+        Damping ratio of each mode.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.from_matrices(
+    ...     mass=[20e3], stiffness=[[4e6]], heights=[3.0], base_mass=20e3, half_width=0.6, damping_ratio=0.02
+    ... )
+    >>> isinstance(structure, rf.ModalStructure)
+    True
+    >>> structure.modes.omega.round(3)
+    array([14.142])
+    """
+
+    modes: MassNormalisedModes
+    base_mass: float
+    half_width: float
+    damping_ratio: Array
+
+    def modal(self, n_modes: SupportsIndex | None = None) -> ModalProperties:
+        """Return the first `n_modes` modes on a fixed base (default: all).
+
+        Raises
+        ------
+        InputError
+            If `n_modes` is not from 1 to the structure's number of modes.
+        """
+        modes = self.modes.modal()
+        return modes if n_modes is None else modes.truncated(n_modes)
+
+    def rocking(self, n_modes: SupportsIndex | None = None) -> RockingProperties:
+        """Return the parameters of the rocking structure with its first `n_modes` modes (default: all).
+
+        Raises
+        ------
+        InputError
+            If the structure has fewer modes than `n_modes`.
+        """
+        return self.modes.rocking(self.base_mass, self.half_width, self.damping_ratio, n_modes)
+
+
+@dataclass(frozen=True, init=False)
+class Eccentric(ModifiedStructure):
+    """A structure whose masses lie on a vertical axis off the middle of its base.
+
+    It rotates about the right edge of the base, at a distance B - e from the axis, or about the left edge, at B + e.
+    Inertia and resisting moment differ between the two sides, and the base lifts sooner about the nearer edge. The
+    modes on a fixed base do not change. For a structure given only by its `RockingProperties`, set `eccentricity`
+    there.
+
+    Attributes
+    ----------
+    structure
+        Any structure: a `Frame`, a `TaperedTower`, a `Restrained` one ...
+    eccentricity : float
+        Distance e of the axis to the right of the middle of the base in m; negative to the left. Its magnitude is
+        smaller than B.
+
+    Raises
+    ------
+    InputError
+        If the eccentricity is not a number or not within the base, or `structure` is not a structure.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
+    ... )
+    >>> props = rf.Eccentric(frame, eccentricity=0.2).rocking()
+    >>> round(props.pivot(1).arm, 3), round(props.pivot(-1).arm, 3)
+    (1.118, 1.518)
+    """
+
+    structure: Structure
+    eccentricity: float
+
+    def __init__(self, structure: Structure, eccentricity: float) -> None:
+        if not is_structure(structure):
+            raise InputError(
+                f"structure must be a structure such as a Frame, but {shown(structure)} was given. RockingProperties "
+                "have an eccentricity of their own: RockingProperties(..., eccentricity=...).",
+                field="structure",
+            )
+        vars(self).update(structure=structure, eccentricity=finite("eccentricity", eccentricity, "m"))
+        self.rocking(1)  # checks that the axis and the tendons are within the base
+
+    def _changes(self) -> dict[str, Any]:
+        return {"eccentricity": self.eccentricity}
+
+
+@dataclass(frozen=True, init=False)
+class Restrained(ModifiedStructure):
+    """A structure with elements between its base and the ground: tendons, dissipators, viscous and friction dampers.
+
+    Unbonded post-tensioned tendons increase the resisting moment and add a restoring rotational stiffness (Silva &
+    Stojadinović 2024, Section 4.1); the other elements take energy out of the rocking. The modes on a fixed base do
+    not change. For a structure given only by its `RockingProperties`, set `elements` there.
+
+    Attributes
+    ----------
+    structure
+        Any structure: a `Frame`, a `TaperedTower`, an `Eccentric` one ...
+    elements : tuple of Tendon, YieldingDissipator, ViscousDamper or FrictionDamper
+        Any number of them, at any positions within the base.
+
+    Raises
+    ------
+    InputError
+        If an element is outside the base, or `structure` is not a structure.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(
+    ...     n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     period=1.0, aspect_ratio=8.0, damping_ratio=0.02,
+    ... )
+    >>> restrained = rf.Restrained(frame, rf.Tendon(initial_force=500e3, stiffness=20e6))
+    >>> ratio = restrained.rocking().resisting_moment / frame.rocking().resisting_moment
+    >>> round(ratio, 3)
+    1.212
+    """
+
+    structure: Structure
+    elements: tuple[BaseElement, ...]
+
+    def __init__(self, structure: Structure, elements: BaseElement | Iterable[BaseElement]) -> None:
+        if not is_structure(structure):
+            raise InputError(
+                f"structure must be a structure such as a Frame, but {shown(structure)} was given. RockingProperties "
+                "have elements of their own: RockingProperties(..., elements=...).",
+                field="structure",
+            )
+        vars(self).update(structure=structure, elements=element_set(elements))
+        self.rocking(1)  # checks that they are within the base
+
+    @property
+    def tendons(self) -> tuple[Tendon, ...]:
+        """The tendons among the elements."""
+        return tuple(each for each in self.elements if isinstance(each, Tendon))
+
+    def _changes(self) -> dict[str, Any]:
+        return {"elements": self.elements}
+
+
+def structure_warnings(structure: Any) -> tuple[str, ...]:
+    """Return a text about each value of a structure that looks like a wrong unit; nothing is refused.
+
+    A first period on a fixed base beyond 10 s, and a mass at the tip of less than a tenth of its column's,
+    such as one given in tonnes. `rockflex modes` and `rockflex run` print these texts.
+
+    Parameters
+    ----------
+    structure
+        Any structure, such as a `Frame`, or a `RockingProperties`.
+
+    Raises
+    ------
+    InputError
+        If it is neither.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> column = rf.CantileverWithTipMass(
+    ...     height=12.0, tip_mass=60.0, mass_per_length=4e3, bending_stiffness=2e9, base_mass=50e3, half_width=1.5,
+    ...     damping_ratio=0.02,
+    ... )
+    >>> for warning in rf.structure_warnings(column):
+    ...     print(warning)
+    The tip has a mass of 60 kg, less than a tenth of the 48000 kg of its column. Masses are in kg: a tonne is 1000 kg.
+    """
+    if isinstance(structure, RockingProperties):
+        return _period_warnings(structure)
+    if not is_structure(structure):
+        raise InputError(
+            f"structure must be a structure, such as a Frame, or RockingProperties, but {shown(structure)} was given.",
+            field="structure",
+        )
+    found = _period_warnings(structure.rocking())
+    while isinstance(structure, ModifiedStructure):
+        structure = structure.structure
+    return found + (structure.unit_warnings() if isinstance(structure, AssembledStructure) else ())
+
+
+def _period_warnings(properties: RockingProperties) -> tuple[str, ...]:
+    if properties.n_modes == 0:
+        return ()
+    period = 2.0 * math.pi / float(properties.omega[0])
+    if period <= MAX_PERIOD:
+        return ()
+    return (
+        f"The first period on a fixed base is {period:.4g} s, longer than usual for buildings, towers and bridges, "
+        f"which stay below {MAX_PERIOD:g} s. Check the units: kg, m, s and N, so EI in N m² and no kN.",
+    )
