@@ -7,11 +7,8 @@ from PIL import Image
 import rockflex as rf
 from builders import PROPERTIES, make_frame
 from rockflex.plot._curves import curves_of
-from rockflex.plot.animation._amplification import ROUND, VISIBLE, usual_amplification
-from rockflex.plot.animation._clock import clock_of
-from rockflex.plot.animation._outline import outline_of
-from rockflex.plot.animation._poses import poses_of
-from rockflex.plot.animation._words import state_of
+from rockflex.plot.animation._poses import ROUND, VISIBLE, clock_of, outline_of, poses_of, usual_amplification
+from rockflex.plot.animation._scene import state_of
 
 FRAME = make_frame()
 RECORD = rf.load_suite("el-centro-1940")[0]

@@ -6,8 +6,8 @@ from scipy.integrate import cumulative_trapezoid
 
 import rockflex as rf
 from drawing import drawn
+from rockflex._numbers import prefixed, short
 from rockflex.plot import plot_motion
-from rockflex.plot._units import readable, short
 
 RECORD = rf.load_suite("el-centro-1940")[0]
 
@@ -90,7 +90,7 @@ def test_motion_refuses_what_is_none():
     [(2.5e9, (1e9, "GN m")), (1e6, (1e6, "MN m")), (-3e4, (1e3, "kN m")), (999.0, (1.0, "N m")), (0.0, (1.0, "N m"))],
 )
 def test_units_suit_the_largest_value(largest, expected):
-    assert readable(largest, "N m") == expected
+    assert prefixed(largest, "N m") == expected
 
 
 @pytest.mark.parametrize(

@@ -3,10 +3,9 @@
 import pandas as pd
 import pytest
 
-from rockflex.papers.silva_stojadinovic_2024._slices import first_frequency, ritz_of_slices
-from rockflex.papers.silva_stojadinovic_2024._structures import TOWER
-from rockflex.papers.silva_stojadinovic_2024.sliding import _intervals
-from rockflex.papers.silva_stojadinovic_2024.table_3 import RITZ
+from rockflex.papers.silva_stojadinovic_2024._inputs import TOWER
+from rockflex.papers.silva_stojadinovic_2024._section_3_2 import friction_intervals
+from rockflex.papers.silva_stojadinovic_2024._section_4 import RITZ, first_frequency, ritz_of_slices
 
 
 def test_sliding_by_both_signs():
@@ -17,7 +16,7 @@ def test_sliding_by_both_signs():
         for name, value in medians.items() for group in range(4)
     ]  # fmt: skip
     runs = pd.DataFrame(rows)
-    printed, mended = (_intervals(runs, "2DOF-C", sign) for sign in ("printed", "mended"))
+    printed, mended = (friction_intervals(runs, "2DOF-C", sign) for sign in ("printed", "mended"))
     assert printed["shear over flexure"].estimate == pytest.approx(0.5 / 1.5)
     assert printed["h*_1/B = 5 over 10"].estimate == pytest.approx(2.5)
     assert printed["T_1 = 0.5 s over 1 s"].estimate == pytest.approx(1.5)

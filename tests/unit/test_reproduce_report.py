@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 
 from page import Page, check_page
 from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
-from rockflex.papers.silva_stojadinovic_2024._number import Interval, check, compared, count_of, stated, statistic
+from rockflex.papers.silva_stojadinovic_2024._comparison import Interval, check, compared, count_of, stated, statistic
 from rockflex.report import Document, Remark, Result, to_csv, to_html, to_markdown, write_document
-from rockflex.report._svg import inline
+from rockflex.report._write import inline
 
 MEANINGS = {str(verdict): verdict.meaning for verdict in Verdict}
 KINDS = {str(kind): kind.meaning for kind in Kind}

@@ -9,17 +9,17 @@ from hypothesis import strategies as st
 
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
-from rockflex.papers.silva_stojadinovic_2024._number import (
+from rockflex.papers.silva_stojadinovic_2024._comparison import (
+    WIDEST,
     Interval,
     check,
     compared,
     count_of,
+    range_of,
     stated,
     statistic,
     tendency,
 )
-from rockflex.papers.silva_stojadinovic_2024._printed import range_of
-from rockflex.papers.silva_stojadinovic_2024._verdict import WIDEST
 
 
 @pytest.mark.parametrize(

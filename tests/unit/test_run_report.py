@@ -11,8 +11,8 @@ import pytest
 import rockflex as rf
 from report_case import FRAME, HELD, PIER, PULSE, SPRINGS, runs
 from report_page import number, read
+from rockflex._numbers import rounded
 from rockflex.report.run import _checks
-from rockflex.report.run._numbers import rounded
 
 MODELS = ("2DOF-S", "MDOF-S", "fixed")
 SIZES = {

@@ -4,7 +4,7 @@ import pytest
 
 import rockflex as rf
 from report_case import FRAME, PULSE, runs
-from rockflex.report.run import _write
+from rockflex.report.run import _page
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +79,7 @@ def test_an_earlier_page_survives_an_error(one, tmp_path, monkeypatch):
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(_write, "write_whole", full)
+    monkeypatch.setattr(_page, "write_whole", full)
     with pytest.raises(rf.InputError, match=r"Cannot write to .*: No space left on device"):
         rf.write_report(one, path)
     assert path.read_bytes() == before

@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
+from rockflex._numbers import prefixed
 from rockflex.modal import Tendon
 from rockflex.plot._curves import curves_of
 from rockflex.plot._style import (
@@ -22,7 +23,6 @@ from rockflex.plot._style import (
     new_figure,
     styled,
 )
-from rockflex.plot._units import readable
 from rockflex.response import History, Response
 
 BROWN, SAND, CLAY = "#7d5a30", "#d8c9a3", "#b8926a"  # of the ground
@@ -75,7 +75,7 @@ def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
     layers = [layer for layer in layers if np.any(layer[2] != 0.0)]
     start = float(ledger.stored[0]) + held + sunk
     supply = ledger.input[drawn] + start
-    factor, unit = readable(float(np.max(np.abs(supply))), "J")
+    factor, unit = prefixed(float(np.max(np.abs(supply))), "J")
     time = history.time[drawn]
     with styled(size=size):
         figure = new_figure(6.3, 3.4)

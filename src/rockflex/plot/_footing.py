@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
+from rockflex._numbers import prefixed
 from rockflex.plot._curves import Curve, curves_of, title_of
 from rockflex.plot._style import BLACK, BLUE, GRAY, RED, Size, letter, literal, new_figure, styled
-from rockflex.plot._units import readable
 from rockflex.response import History, Response
 
 FEW = 4  # springs: their forces are drawn as lines, those of more as a map
@@ -105,7 +105,7 @@ def _draw_soil(figure: Figure, axes: Axes, history: History) -> None:
     model: Any = history.model
     area = model.springs.area
     name, pushes = ("force", history.spring_force) if area is None else ("pressure", history.soil_pressure)
-    factor, unit = readable(float(pushes.max()), "N" if area is None else "Pa")
+    factor, unit = prefixed(float(pushes.max()), "N" if area is None else "Pa")
     places = positions_of(history)
     if places.size <= FEW:
         for place, force, color in zip(places, pushes.T / factor, _COLORS, strict=False):

@@ -10,12 +10,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from rockflex._arrays import Array
+from rockflex._numbers import prefixed
 from rockflex.plot._curves import Curve, curves_of, rotation_limit
-from rockflex.plot._history import shade_uplifts
+from rockflex.plot._history import draw_curves, quantities_of, scale_of, shade_uplifts
 from rockflex.plot._moment_rotation import largest_moment, resistance_line, whole_line
-from rockflex.plot._panel import draw_curves, quantities_of, scale_of
 from rockflex.plot._style import BLACK, GRAY, SHADE, SMALL, columns, new_figure, points, styled
-from rockflex.plot._units import readable
 from rockflex.response import Response
 
 _MM = 1.0 / 25.4  # inches
@@ -128,7 +127,7 @@ def _draw_loops(axes: Axes, curves: list[Curve], mark: str) -> None:
     rotation = _ROOM * (rotation_limit(curves) or max(map(whole_line, curves)))
     (moment,) = quantities_of(["base_moment"])
     largest = max(largest_moment(curves[0]), scale_of(moment, curves)[2] * scale_of(moment, curves)[0] / _ROOM)
-    factor, unit = readable(largest, "N m")
+    factor, unit = prefixed(largest, "N m")
     for curve in curves:
         kept = curve.before_fall
         axes.plot(

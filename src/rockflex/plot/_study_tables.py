@@ -1,4 +1,4 @@
-"""Shared by figures of studies: the columns they need, names of axes, and one panel per structure."""
+"""Shared by figures of studies: columns of tables, names of axes, styles of models, and a panel for each structure."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -11,17 +11,33 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rockflex._errors import InputError
+from rockflex._numbers import short
 from rockflex.motion import MEASURES
-from rockflex.plot._style import Look, literal, narrow, new_figure
-from rockflex.plot._surrogates import surrogate_looks
-from rockflex.plot._units import short
+from rockflex.plot._style import BLACK, GREEN, LOOKS, RED, Look, literal, narrow, new_figure, recoloured
 
 if TYPE_CHECKING:
     import pandas as pd
 
+_OWN = {"2DOF-S": Look(RED, "-."), "3DOF-S": Look(GREEN, "--"), "MDOF-S": Look(BLACK, "-", 2.0)}
 MARKERS = ("o", "^", "s", "D", "v", "P", "X", "<", ">", "h", "p", "*", "d", "8", "H")
 
 _MOST = 12  # panels in one figure
+
+
+def surrogate_looks(models: Iterable[str]) -> dict[str, Look]:
+    """Give each model its own look, in order of appearance; fewer modes are drawn over more.
+
+    Raises
+    ------
+    InputError
+        If there are too many models to distinguish.
+    """
+    names = list(dict.fromkeys(models))
+    others = [name for name in names if name not in _OWN]
+    if len(others) > len(LOOKS):
+        raise InputError(f"{len(names)} models are too many to distinguish in one figure. Plot fewer at a time.")
+    looks = _OWN | dict(zip(others, LOOKS, strict=False))
+    return dict(zip(names, recoloured(looks[name] for name in names), strict=True))
 
 
 def check_columns(table: object, columns: Iterable[str], source: str) -> None:

@@ -7,8 +7,8 @@ from matplotlib.patches import Circle, Wedge
 
 from rockflex._checks import positive
 from rockflex._errors import InputError
+from rockflex._numbers import short
 from rockflex.plot._style import BLUE, GRAY, RED, SHADE, SMALL, Size, letter, narrow, new_figure, styled
-from rockflex.plot._units import short
 from rockflex.structure import TaperedTower
 
 _EDGE = "#404040"

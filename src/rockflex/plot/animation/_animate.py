@@ -8,15 +8,10 @@ from rockflex._checks import positive, whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.plot._curves import Curve, curves_of
-from rockflex.plot._panel import quantities_of, usual_panels
-from rockflex.plot.animation._amplification import usual_amplification
-from rockflex.plot.animation._clock import clock_of
-from rockflex.plot.animation._file import GIF, MP4, file_of
-from rockflex.plot.animation._gif import write_gif
-from rockflex.plot.animation._outline import outline_of
-from rockflex.plot.animation._poses import poses_of
+from rockflex.plot._history import quantities_of, usual_panels
+from rockflex.plot.animation._files import GIF, MP4, file_of, write_gif, write_video
+from rockflex.plot.animation._poses import clock_of, outline_of, poses_of, usual_amplification
 from rockflex.plot.animation._scene import Scene
-from rockflex.plot.animation._video import write_video
 from rockflex.progress import ProgressChoice, telling
 from rockflex.response import Response
 

@@ -1,28 +1,418 @@
-"""The picture of an animation: drawn once where nothing moves, and frame by frame where something does."""
+"""The picture of an animation: still parts drawn once, structures and histories drawn frame by frame."""
 
 from collections.abc import Generator, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Polygon, Rectangle
 from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex.plot._curves import Curve
-from rockflex.plot._panel import Quantity, add_key
-from rockflex.plot._style import new_figure, styled
-from rockflex.plot.animation._chart import Chart
-from rockflex.plot.animation._clock import Clock
-from rockflex.plot.animation._poses import Poses
-from rockflex.plot.animation._stage import Stage
+from rockflex.plot._history import Quantity, add_key, draw_curves, scale_of, shade_uplifts
+from rockflex.plot._style import BLUE, GRAY, RED, SHADE, SMALL, new_figure, styled
+from rockflex.plot.animation._poses import Clock, Poses
 
+Polyline = Sequence[tuple[float, float]]
+
+COLORS = {"Tendon": "#b5558a", "YieldingDissipator": "#6b7a00", "ViscousDamper": "#0f7f8c", "FrictionDamper": "#7d5a30"}
+SPRING, SPRING_FREE = "#64748b", "#a9b1bb"
+BLOW = "#b3261e"
+COLUMNS = 0.82  # of the distance from the axis to the nearer edge, at which columns are drawn
+TENDON = 0.6  # of the height to which tendons reach
+BRACKET = 26.0  # points above the base to which other elements reach
+_FEW, _MANY = 4, 25  # springs that are drawn wide; stories with thick floors
+_GHOST = "#c9ced6"
+HEAD, FOOT, EDGE = 34.0, 40.0, 8.0  # points above, below and beside the structures
+LEAST, MOST = 14.0, 60.0  # points of a spring that is unloaded
+_FRAMES = 200  # that are looked at for the room a structure needs
+_ASIDE = 1.8  # reach to one side over that to the other, beyond which a structure is not drawn in the middle
+_INK = "#404040"
+_FADED = 0.62  # of white over what is still to come
 Picture = NDArray[np.uint8]
 """Red, green and blue of every pixel, shape (height, width, 3)."""
 
 INCHES = 9.6  # width of the figure: letters grow with the number of pixels
 BESIDE = 2  # structures that are drawn to the left of the histories; more are drawn above them
 _LETTERS = 110  # in a row of the legend
+
+
+def coil(length: float, half: float) -> list[Polyline]:
+    """Return a coil spring of a length, `half` wide to either side, as lines of (across, along)."""
+    turns = [(0.0 if i in (0, 5) else half * (-1.0) ** i, share * length)
+             for i, share in enumerate((0.12, 0.24, 0.4, 0.56, 0.72, 0.88))]  # fmt: skip
+    return [[(0.0, 0.0), *turns, (0.0, length)]]
+
+
+def strokes(kind: str, length: float) -> list[Polyline]:
+    """Return the lines of an element of a class and a length, as lines of (across, along) in points."""
+    if kind == "YieldingDissipator":  # a bar, thick where it is held and narrow where it yields
+        side = [(3.0, 0.0), (3.0, 0.26), (1.0, 0.36), (1.0, 0.64), (3.0, 0.74), (3.0, 1.0)]
+        outline = [(-x, y) for x, y in side] + side[::-1]
+        return [[(x, y * length) for x, y in outline]]
+    if kind == "ViscousDamper":  # a piston in a cylinder
+        cylinder = [(-4.0, 0.75), (-4.0, 0.2), (4.0, 0.2), (4.0, 0.75)]
+        parts = [[(0.0, 0.0), (0.0, 0.2)], cylinder, [(-2.6, 0.5), (2.6, 0.5)], [(0.0, 0.5), (0.0, 1.0)]]
+        return [[(x, y * length) for x, y in part] for part in parts]
+    if kind == "FrictionDamper":  # two plates with the bolt that clamps them
+        plates = [[(-1.4, 0.0), (-1.4, 0.68)], [(1.4, 0.32), (1.4, 1.0)], [(-5.0, 0.5), (5.0, 0.5)]]
+        return [[(x, y * length) for x, y in plate] for plate in plates]
+    return [[(0.0, 0.0), (0.0, length)]]
+
+
+def between(lines: Sequence[Polyline], start: Array, end: Array) -> tuple[Array, Array]:
+    """Return x and y of lines of (across, along) laid from one point to another, with gaps between them."""
+    direction = end - start
+    along = direction / (float(np.hypot(*direction)) or 1.0)
+    across = np.array([along[1], -along[0]])
+    return joined([start + np.outer([u for u, _ in line], across) + np.outer([v for _, v in line], along)
+                   for line in lines])  # fmt: skip
+
+
+def joined(lines: Sequence[Array]) -> tuple[Array, Array]:
+    """Return x and y of several lines, each of shape (k, 2), with gaps between them."""
+    if not lines:
+        return np.empty(0), np.empty(0)
+    gap = np.full((1, 2), np.nan)
+    points = np.concatenate([part for line in lines for part in (line, gap)])
+    return points[:, 0], points[:, 1]
+
+
+def state_of(curve: Curve, poses: Poses, frame: int, time: float) -> tuple[str, str]:
+    """Return the state of a structure in a frame, such as "uplifted", and the colour of the words."""
+    end = float(curve.history.time[-1])
+    if curve.overturned and time >= end:
+        return f"overturned at {end:.2f} s", BLOW
+    if curve.falls and time >= float(curve.history.time[curve.before_fall][-1]):
+        return "falling", BLOW
+    if time > end:
+        return f"ends at {end:.2f} s", GRAY
+    if not poses.lifts:
+        return "fixed base", GRAY
+    if poses.sprung and poses.rise[frame].min() > 0.0:
+        return "off the ground", BLUE
+    if poses.impact[frame] and not poses.uplifted[frame]:
+        return "impact", RED
+    words = [word for word, holds in (("uplifted", poses.uplifted[frame]), ("sliding", poses.sliding[frame])) if holds]
+    return (", ".join(words), BLUE) if words else ("in contact", GRAY)
+
+
+class Map(NamedTuple):
+    """From metres to the points of the stage: middle of the cell, level of the base at rest, ground, points per m."""
+
+    middle: float
+    level: float
+    ground: float
+    zoom: float
+
+    def __call__(self, points: tuple[Array, Array]) -> tuple[Array, Array]:
+        """Return x and y in points."""
+        return self.middle + self.zoom * points[0], self.level + self.zoom * points[1]
+
+
+class Body:
+    """The artists of one structure; `show` moves them to a frame."""
+
+    def __init__(self, axes: Axes, poses: Poses, curve: Curve, here: Map, amplification: float) -> None:
+        self._poses, self._here, self._by = poses, here, amplification
+        self._elements = curve.history.model.properties.elements if poses.lifts else ()
+        color = curve.look.color
+        block = poses.outline.kind == "block"
+        self._draw_ghost(axes)
+        self._gap = _area(axes, facecolor=RED, alpha=0.25, linewidth=0.0)
+        self._free = _line(axes, SPRING_FREE, 1.0)
+        self._pressed = _line(axes, SPRING, 1.2)
+        self._block = _area(axes, facecolor=SHADE, edgecolor=color, linewidth=2.0, visible=block)
+        thick = 3.6 if poses.outline.kind == "column" else 2.0
+        self._columns = _line(axes, color, thick)
+        self._floors = _line(axes, color, 1.0 if poses.outline.heights.size > _MANY else 2.6)
+        self._base = _line(axes, color, 4.0, capstyle="butt")
+        self._mass = _line(axes, color, 0.0, marker="s", markersize=11.0)
+        kinds = sorted({type(each).__name__ for each in self._elements})
+        self._held = {kind: _line(axes, COLORS[kind], 1.3) for kind in kinds}
+        self._blows = _line(axes, RED, 0.0, marker="o", markersize=11.0, markerfacecolor="none", markeredgewidth=1.8)
+
+    @property
+    def moving(self) -> list[Artist]:
+        """What is drawn anew in each frame, from the back to the front."""
+        parts = (self._gap, self._free, self._pressed, self._block, self._columns, self._floors, self._mass, self._base)
+        return [*parts, *self._held.values(), self._blows]
+
+    def show(self, frame: int) -> None:
+        """Move the lines to where they are in a frame."""
+        poses, by = self._poses, self._by
+        base = poses.base(frame, by)
+        self._base.set_data(*self._here(base))
+        self._show_body(frame)
+        if poses.sprung:
+            self._show_springs(frame)
+        else:
+            gap = self._here((np.append(base[0], base[0][::-1]), np.append(base[1], [0.0, 0.0])))
+            self._gap.set_xy(np.column_stack(gap))
+        self._show_elements(frame)
+        edges = self._here((np.array([poses.outline.left, poses.outline.right]) + by * poses.slip[frame], np.zeros(2)))
+        self._blows.set_data(*(edges if poses.impact[frame] else ([], [])))
+
+    def _lines(self, frame: int | None) -> tuple[list[Array], list[Array], Array]:
+        """Return the columns, the floors and the top in points, in a frame or at rest."""
+        poses = self._poses
+        o = poses.outline
+
+        def bent(x: float) -> Array:
+            if frame is None:
+                return np.column_stack(self._here((np.full(o.heights.size, x), o.heights)))
+            return np.column_stack(self._here(poses.bent(frame, x, self._by)))
+
+        if o.kind == "block":
+            low, high = bent(o.left), bent(o.right)
+            return [np.concatenate((low, high[::-1]))], [], high[-1]
+        if o.kind == "frame":
+            half = COLUMNS * min(-o.left, o.right)
+            low, high = bent(-half), bent(half)
+            return [low, high], [np.array(pair) for pair in zip(low[1:], high[1:], strict=True)], high[-1]
+        axis = bent(0.0)
+        return [axis], [], axis[-1]
+
+    def _show_body(self, frame: int) -> None:
+        columns, floors, top = self._lines(frame)
+        if self._poses.outline.kind == "block":
+            self._block.set_xy(columns[0])
+            return
+        self._columns.set_data(*joined(columns))
+        self._floors.set_data(*joined(floors))
+        if self._poses.outline.kind == "mast":
+            self._mass.set_data(top[:1], top[1:])
+
+    def _draw_ghost(self, axes: Axes) -> None:
+        """Draw the structure at rest, faintly."""
+        columns, floors, _ = self._lines(None)
+        closed = [np.vstack((line, line[:1])) for line in columns] if self._poses.outline.kind == "block" else columns
+        axes.plot(*joined([*closed, *floors]), color=_GHOST, linewidth=0.8)
+
+    def _show_springs(self, frame: int) -> None:
+        """Draw the springs from the ground to the base, those that it left at their full length and lighter."""
+        poses, (middle, rest, ground, zoom) = self._poses, self._here
+        half = 2.2 if poses.springs.size > _FEW else 4.0
+        ends = poses.place(frame, poses.springs, np.zeros(poses.springs.size), self._by)
+        across, up = middle + zoom * ends[0], rest + zoom * ends[1]
+        lines: dict[bool, list[Array]] = {False: [], True: []}
+        for x, y in zip(across, up, strict=True):
+            free = bool(y > rest)
+            (turns,) = coil(max((rest if free else y) - ground, 1.0), half)
+            lines[free].append(np.array(turns) + np.array([x, ground]))
+        self._pressed.set_data(*joined(lines[False]))
+        self._free.set_data(*joined(lines[True]))
+
+    def _show_elements(self, frame: int) -> None:
+        """Draw tendons from below the ground into the structure, and the others up to a bracket on the base."""
+        poses, here = self._poses, self._here
+        top, sunk = poses.outline.top, (here.level - here.ground) / here.zoom
+        parts: dict[str, list[Array]] = {kind: [] for kind in self._held}
+        for element in self._elements:
+            kind, x = type(element).__name__, np.array([element.position])
+            reach = TENDON * top if kind == "Tendon" else min(BRACKET / here.zoom, 0.4 * top)
+            below = sunk + (0.02 * top if kind == "Tendon" else 0.0)
+            start = np.concatenate(here((x, np.array([-below]))))
+            end = np.concatenate(here(poses.place(frame, x, np.array([reach]), self._by)))
+            length = float(np.hypot(*(end - start)))
+            parts[kind].append(np.column_stack(between(strokes(kind, length), start, end)))
+        for kind, lines in parts.items():
+            self._held[kind].set_data(*joined(lines))
+
+
+def _line(axes: Axes, color: str, width: float, *, capstyle: Any = "round", **more: Any) -> Line2D:
+    """Return an empty line that is drawn anew in each frame."""
+    look: dict[str, Any] = {
+        "solid_capstyle": capstyle,
+        "solid_joinstyle": "round",
+        "linestyle": "-" if width else "none",
+    }
+    (line,) = axes.plot([], [], color=color, linewidth=width or 1.0, animated=True, **(look | more))
+    return line
+
+
+def _area(axes: Axes, **look: Any) -> Polygon:
+    """Return an area that is drawn anew in each frame."""
+    area = Polygon(np.zeros((4, 2)), animated=True, **look)
+    axes.add_patch(area)
+    return area
+
+
+class Stage:
+    """One cell for each response over a common ground; the axes' coordinates are points of 1/72 inch."""
+
+    def __init__(
+        self, axes: Axes, curves: Sequence[Curve], poses: Sequence[Poses], clock: Clock, amplification: float
+    ) -> None:
+        self._clock, self._curves, self._poses = clock, curves, poses
+        width, height = np.asarray(axes.get_window_extent().size) * (72.0 / axes.figure.dpi)
+        axes.set(xlim=(0.0, width), ylim=(0.0, height))
+        cell = width / len(curves)
+        rooms = [_room(each, amplification) for each in poses]
+        sprung = any(each.sprung for each in poses)
+        zoom, depth = _zoom(rooms, cell - 2.0 * EDGE, height - HEAD - FOOT, sprung=sprung)
+        self._bodies: list[Body] = []
+        self._words: list[tuple[Artist, Artist]] = []
+        for place, (curve, each, room) in enumerate(zip(curves, poses, rooms, strict=True)):
+            middle = cell * (place + 0.5)
+            _draw_ground(axes, middle - 0.5 * cell + EDGE, middle + 0.5 * cell - EDGE)
+            here = Map(middle - zoom * room.middle, FOOT + (depth if each.sprung else 0.0), FOOT, zoom)
+            self._bodies.append(Body(axes, each, curve, here, amplification))
+            axes.text(
+                middle, height - HEAD + 8.0, curve.label, color=curve.look.color, ha="center", weight="bold",
+                fontsize=9.0, wrap=False,
+            )  # fmt: skip
+            state = axes.text(middle, 17.0, "", ha="center", fontsize=8.0, animated=True)
+            number = axes.text(middle, 5.0, "", ha="center", fontsize=SMALL, color=_INK, animated=True)
+            self._words.append((state, number))
+        self._time = axes.text(EDGE, height - 10.0, "", fontsize=9.0, color="black", animated=True)
+        axes.text(
+            width - EDGE, height - 10.0, _scales(amplification, clock.speed), ha="right", fontsize=8.0, color=_INK
+        )
+
+    @property
+    def moving(self) -> list[Artist]:
+        """What is drawn anew in each frame, from the back to the front."""
+        words = [each for pair in self._words for each in pair]
+        return [part for body in self._bodies for part in body.moving] + words + [self._time]
+
+    def show(self, frame: int) -> None:
+        """Move everything to where it is in a frame."""
+        time = float(self._clock.times[frame])
+        self._time.set(text=f"t = {time:.2f} s")
+        for body, curve, poses, (state, number) in zip(
+            self._bodies, self._curves, self._poses, self._words, strict=True
+        ):
+            body.show(frame)
+            text, color = state_of(curve, poses, frame, time)
+            state.set(text=text, color=color)
+            rotation = f"{1e3 * poses.rotation[frame]:.2f}".replace("-", "−")
+            number.set(text=f"θ = {rotation} mrad" if poses.lifts else "")
+
+
+def _scales(amplification: float, speed: float) -> str:
+    """Say how displacements and time are enlarged."""
+    size = "true displacements" if amplification == 1.0 else f"displacements × {amplification:g}"
+    return size if speed == 1.0 else f"{size}, speed × {speed:g}"
+
+
+class _Room(NamedTuple):
+    """What a structure needs in m: to the left and the right of its axis, upwards, and below its unloaded springs."""
+
+    left: float
+    right: float
+    up: float
+    sunk: float
+
+    @property
+    def middle(self) -> float:
+        """What stands in the middle of the cell: the axis of the masses, unless the structure falls to one side."""
+        aside = max(self.left, self.right) > _ASIDE * min(self.left, self.right)
+        return 0.5 * (self.right - self.left) if aside else 0.0
+
+    @property
+    def width(self) -> float:
+        """Width about the middle."""
+        return 2.0 * max(self.right - self.middle, self.left + self.middle)
+
+
+def _zoom(rooms: Sequence[_Room], width: float, height: float, *, sprung: bool) -> tuple[float, float]:
+    """Return the points per metre with which everything stays in its cell, and those below the unloaded springs."""
+    up = max(room.up for room in rooms)
+    zoom = min(width / max(room.width for room in rooms), height / up)
+    if not sprung:
+        return zoom, 0.0
+    depth = min(MOST, LEAST + zoom * max(room.sunk for room in rooms))
+    return min(zoom, (height - depth) / up), depth
+
+
+def _room(poses: Poses, amplification: float) -> _Room:
+    """Return the room that a structure needs in all frames."""
+    o, frames = poses.outline, np.unique(np.linspace(0, poses.rotation.size - 1, _FRAMES).astype(int))
+    extreme = [int(each) for each in (poses.rotation.argmax(), poses.rotation.argmin())]
+    extreme += [int(each) for each in (poses.slip.argmax(), poses.slip.argmin())]
+    across, up = [1.4 * o.right, 1.4 * o.left, 0.12 * o.top, -0.12 * o.top], [1.03 * o.top]
+    for frame in [*frames, *extreme]:
+        for x in (o.left, o.right):
+            there, above = poses.bent(frame, x if o.kind in ("block", "frame") else 0.3 * x, amplification)
+            beside, _ = poses.base(frame, amplification)
+            across += [*there, *beside]
+            up.append(float(above.max()))
+    sunk = float(np.maximum(-poses.rise, 0.0).max()) * amplification
+    return _Room(-1.05 * float(min(across)), 1.05 * float(max(across)), 1.03 * float(max(up)), sunk)
+
+
+def _draw_ground(axes: Axes, left: float, right: float) -> None:
+    axes.plot([left, right], [FOOT - 1.5] * 2, color=GRAY, linewidth=1.0)
+    for x in np.arange(left + 6.0, right, 7.0):
+        axes.plot([x, x - 4.0], [FOOT - 2.0, FOOT - 6.5], color=GRAY, linewidth=0.7)
+
+
+class Chart:
+    """One panel for each quantity; what is still to come is faded, and dots mark the present values."""
+
+    def __init__(self, grid: list[Axes], quantities: Sequence[Quantity], curves: list[Curve], clock: Clock) -> None:
+        self._clock = clock
+        self.handles: list[Artist] = []
+        self.names = [curve.label for curve in curves]
+        for axes, quantity in zip(grid, quantities, strict=True):
+            self.handles, _ = draw_curves(axes, quantity, curves)
+        main = shade_uplifts(grid, curves)
+        if main is not None:
+            self.handles = [*self.handles, Patch(facecolor=SHADE, edgecolor=GRAY, linewidth=0.4)]
+            self.names.append(f"uplifted: {main.label}" if len(curves) > 1 else "uplifted")
+        grid[-1].set_xlabel("time [s]")
+        self._end = float(clock.times[-1])
+        grid[-1].set_xlim(float(clock.times[0]), self._end)
+        self._later = [_cover(axes) for axes in grid]
+        self._cursors = [axes.axvline(0.0, color="black", linewidth=0.9, animated=True) for axes in grid]
+        self._dots: list[tuple[Line2D, Array]] = []
+        for axes, quantity in zip(grid, quantities, strict=True):
+            factor, _, _ = scale_of(quantity, curves)
+            for curve in curves:
+                self._dots.append(_dot(axes, curve, _values(quantity, curve, clock) / factor))
+
+    @property
+    def moving(self) -> list[Artist]:
+        """What is drawn anew in each frame, from the back to the front."""
+        return [*self._later, *self._cursors, *(dot for dot, _ in self._dots)]
+
+    def show(self, frame: int) -> None:
+        """Move the cursor to the time of a frame."""
+        time = float(self._clock.times[frame])
+        for cover in self._later:
+            cover.set(x=time, width=max(self._end - time, 0.0))
+        for cursor in self._cursors:
+            cursor.set_xdata([time, time])
+        for dot, values in self._dots:
+            dot.set_data(np.full(values.shape[1], time), values[frame])
+
+
+def _values(quantity: Quantity, curve: Curve, clock: Clock) -> Array:
+    """Return a quantity at the frames, shape (k, n); after the end of the response it has no value."""
+    known = curve.history.time
+    values = quantity.of(curve.history.at(np.clip(clock.times, known[0], known[-1])))
+    return np.where((clock.times <= known[-1])[:, None], values.reshape(clock.times.size, -1), np.nan)
+
+
+def _cover(axes: Axes) -> Rectangle:
+    shape = Rectangle(
+        (0.0, 0.0), 1.0, 1.0, transform=axes.get_xaxis_transform(), facecolor="white", alpha=_FADED, linewidth=0.0,
+        animated=True,
+    )  # fmt: skip
+    axes.add_patch(shape)
+    return shape
+
+
+def _dot(axes: Axes, curve: Curve, values: Array) -> tuple[Line2D, Array]:
+    (dot,) = axes.plot([], [], "o", color=curve.look.color, markersize=4.5, markeredgecolor="white",
+                       markeredgewidth=0.6, animated=True)  # fmt: skip
+    return dot, values
 
 
 class Scene:

@@ -6,13 +6,10 @@ from dataclasses import dataclass
 from functools import partial
 
 from rockflex._errors import InputError, SolverError
+from rockflex._numbers import rounded
 from rockflex.models import SpringModel
-from rockflex.report.run._base import ground_friction
-from rockflex.report.run._given import Given
-from rockflex.report.run._numbers import rounded
-from rockflex.report.run._sides import overturning_margin
-from rockflex.report.run._start import starts_uplifted
-from rockflex.report.run._table import Cell, Table, shows
+from rockflex.report.run._runs import Given
+from rockflex.report.run._tables import Cell, Table, ground_friction, overturning_margin, shows, starts_uplifted
 from rockflex.response import BALANCED, IMPACT_WINDOW, History, Response
 
 OMITTED = "not computed"

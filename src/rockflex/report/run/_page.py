@@ -1,48 +1,120 @@
-"""The page: everything that a report shows, put together and written as HTML."""
+"""The page of a run: its contents put together, laid out on one sheet, and written as HTML."""
 
+import dataclasses
+import hashlib
 import math
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
+from datetime import date as Date  # noqa: N812
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from rockflex._shown import counted, shortened
+import numpy as np
+
+from rockflex._errors import InputError
+from rockflex._files import path_of, write_whole
+from rockflex._shown import counted, shortened, shown
 from rockflex._versions import versions_of
-from rockflex.report._svg import inline
-from rockflex.report.run._base import assumption_lines, element_table, follows_law
+from rockflex.models import SpringModel
+from rockflex.motion import GroundMotion
+from rockflex.report._write import inline
 from rockflex.report.run._checks import check_table, ground_friction, is_bedded, legend, long_runs
-from rockflex.report.run._given import Given
-from rockflex.report.run._inputs import fingerprint
-from rockflex.report.run._peaks import FELL, peak_table
-from rockflex.report.run._record import Record, record_of
-from rockflex.report.run._room import (
-    FIGURE,
-    HEIGHT,
-    LINE,
-    SMALL,
-    SMALLEST,
-    WIDTH,
-    height_above,
-    height_beside,
-    height_of_table,
-    lines_of,
-    part,
+from rockflex.report.run._runs import Given, given
+from rockflex.report.run._tables import (
+    FELL,
+    Fact,
+    Record,
+    Table,
+    assumption_lines,
+    element_table,
+    follows_law,
+    kind_of,
+    mode_table,
+    peak_table,
+    record_of,
+    structure_facts,
 )
-from rockflex.report.run._structure import kind_of, mode_table, structure_facts
-from rockflex.report.run._table import Fact, Table
-from rockflex.response import warnings_of
+from rockflex.response import Response, friction_coefficient, warnings_of
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
+WIDTH, HEIGHT = 186.0, 272.0  # of a sheet of A4 within its margins, in mm
+FIGURE = (58.0, 160.0)  # least and largest height of the figure in mm
+SMALLEST = 0.75  # of the usual size of the type, on a sheet that is full
+LINE = 3.4  # height of a line of text in mm
+SMALL = 0.9  # size of small text over that of text
+_EM = 2.61  # mm
+_ROW, _HEAD = 0.7, 4.4  # what a row of a table has above its lines, and the heading of a part, in mm
+_LEFT, _RIGHT = 116.0, 65.0  # columns at the top in mm
+_NARROW, _WIDE = frozenset(" .,:;!|'’ijltfrI()[]/-"), frozenset("MWmw@%—…")
 TEMPLATES = Path(__file__).parent / "templates"
 LONGEST = {"title": 110, "name": 70, "source": 110, "warning": 400}  # letters
 WARNINGS = 4  # texts
 _NOTES = 6  # of more, each does not have a line of its own
 _STRIP = (65.0, 22.0)  # mm
 _DOWN, _UP = re.compile(r"([^\W\d_]\*?)_([\w*–]+)"), re.compile(r"\^(−?\d+)")
+SUFFIXES = (".html", ".htm")
+MAX_NOTES = 800  # letters of all notes
+
+
+def lines_of(text: str, width: float = WIDTH, size: float = 1.0) -> int:
+    """Return how many lines of `width` mm a text takes in type of a relative size."""
+    return max(1, math.ceil(1.04 * _length(text) * size / (width - 2.0)))
+
+
+def _length(text: str) -> float:
+    """Return the length of a text in one line in mm, in a font without serifs."""
+    return _EM * sum(_share(letter) for letter in text)
+
+
+def _share(letter: str) -> float:
+    if letter in _WIDE or ord(letter) >= 0x2E80:  # ideographs and symbols
+        return 1.0
+    if letter in _NARROW:
+        return 0.34
+    return 0.72 if letter.isupper() else 0.57
+
+
+def height_of_facts(facts: Sequence[Fact], width: float, columns: int) -> float:
+    """Return the height in mm of facts in some columns."""
+    share = width / columns - 4.0
+    lines = [lines_of(f"{fact.name}  {fact.cell.text} {fact.unit:6}", share) for fact in facts]
+    rows = [max(lines[place : place + columns]) for place in range(0, len(lines), columns)]
+    return sum(LINE * row + 0.2 for row in rows)
+
+
+def height_of_table(table: Table | None, *, units: bool = False) -> float:
+    """Return the height in mm of a table, whose `units` may be below its headings."""
+    if table is None:
+        return 0.0
+    rows = [[name for name, _ in table.heads], *([cell.text for cell in row] for row in table.rows)]
+    widths = [max(_length(row[place]) for row in rows) + 1.7 for place in range(len(table.heads))]
+    if units:  # numbers do not wrap, their headings may
+        return 3.0 * LINE + _ROW + len(table.rows) * (LINE + _ROW)
+    lines = math.ceil(1.04 * sum(widths) / WIDTH)
+    return LINE + _ROW + len(table.rows) * (lines * LINE + _ROW)
+
+
+def height_above(facts: Sequence[Fact], modes: Table | None, kind: str) -> float:
+    """Return the height in mm of the structure."""
+    table = 0.0 if modes is None else 1.2 + 2.0 * LINE + _ROW + len(modes.rows) * (LINE + _ROW)
+    return _HEAD + LINE * (lines_of(f"Structure {kind}", _LEFT, 1.2) - 1) + height_of_facts(facts, _LEFT, 2) + table
+
+
+def height_beside(facts: Sequence[Fact], name: str, source: str) -> float:
+    """Return the height in mm of the record with its strip."""
+    told = LINE * lines_of(source, _RIGHT, SMALL) if source else 0.0
+    return (
+        _HEAD + LINE * (lines_of(f"Record {name}", _RIGHT, 1.2) - 1) + told + 23.0 + height_of_facts(facts, _RIGHT, 1)
+    )
+
+
+def part(*heights: float) -> float:
+    """Return the height in mm of a part with its heading and the gap below it."""
+    return _HEAD + sum(heights) + 1.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,3 +289,203 @@ def _symbols(text: str) -> str:
 
     lowered = _DOWN.sub(r"\1<sub>\2</sub>", str(escape(text)))
     return Markup(_UP.sub(r"<sup>\1</sup>", lowered))
+
+
+def write_report(
+    responses: Response | Iterable[Response],
+    path: str | Path,
+    *,
+    structure: Any = None,
+    motion: GroundMotion | None = None,
+    title: str | None = None,
+    date: str | Date | None = None,
+    friction: float | None = None,
+    notes: str | Iterable[str] = (),
+) -> Path:
+    """Write what a structure did under one record on one sheet of A4, as HTML that needs nothing else.
+
+    The page has the parameters of the structure and its modes, the record, what is assumed, the histories and the loop
+    of base moment and rotation of every model, their largest values, checks with their warnings, and the versions
+    that computed them. Any browser prints it on exactly one sheet.
+
+    The checks compare the rotation with the nominal limit of overturning, 0.7 atan(B/h*_1) (Section 3.3), the vertical
+    reaction with zero, the friction that each run requires (Eqs. 20-22) with `friction`, the forces of tendons with
+    those at which they yield, and the balance of the energies with zero. Friction and energies of a run on many stiff
+    springs would take minutes; they are left out, and the page says so.
+
+    Parameters
+    ----------
+    responses
+        Up to six responses of one structure to one record at one scale, each with its history.
+    path
+        The file to write, which ends in .html; an existing file is replaced. Missing folders are created.
+    structure
+        The structure, or its `RockingProperties`: it gives the page its kind, and all of its modes. Default: the
+        properties of the response with the most modes.
+    motion
+        The record, scaled or not: the page then has its origin, its measures and its scale, relative to the
+        record as `RecordInfo.scale` knows it. Default: the ground acceleration of the responses.
+    title
+        Heading. Default: the kind of the structure, and the record.
+    date
+        Date on the page. Default: today.
+    friction
+        Coefficient of friction between base and ground, to compare with the one that each run requires.
+    notes
+        A text, or several, to add to the page; up to 800 letters together.
+
+    Returns
+    -------
+    Path
+        The file written. It is written completely or not at all.
+
+    Raises
+    ------
+    InputError
+        If there are no responses or more than six, one has no history, they are not of one structure and one record, or
+        `structure` or `motion` are not theirs; if the path is a folder or has another suffix, or cannot be written to;
+        if the friction is not positive, or the notes are too long.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> pulse = rf.ricker_pulse(4.0, 0.6)
+    >>> runs = [rf.simulate(frame, pulse, model, output="history") for model in ("2DOF-S", "MDOF-S", "fixed")]
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> rf.write_report(runs, folder / "report.html", structure=frame, motion=pulse, friction=0.5).name
+    'report.html'
+    """
+    target = checked_path("path", path)
+    text = report_html(
+        responses, structure=structure, motion=motion, title=title, date=date, friction=friction, notes=notes
+    )
+    try:
+        return write_whole(target, text.encode())
+    except OSError as error:
+        raise InputError(
+            f"Cannot write to {target}: {error.strerror or error}. Give a path that can be written to.", field="path"
+        ) from error
+
+
+def report_html(
+    responses: Response | Iterable[Response],
+    *,
+    structure: Any = None,
+    motion: GroundMotion | None = None,
+    title: str | None = None,
+    date: str | Date | None = None,
+    friction: float | None = None,
+    notes: str | Iterable[str] = (),
+    omitted: Collection[str] = (),
+) -> str:
+    """Return the page of `write_report` as text; no energies and no friction of the models in `omitted`."""
+    heading, day = _heading(title), _day(date)
+    coefficient = None if friction is None else _coefficient(friction)
+    told = _notes(notes)
+    about = given(responses, structure, motion)
+    page = page_of(
+        about,
+        title=heading,
+        date=day,
+        friction=coefficient,
+        warnings=_structure_warnings(about.properties if structure is None else structure),
+        notes=told,
+        omitted=omitted,
+    )
+    return html_of(page, about)
+
+
+def checked_path(name: str, path: str | Path) -> Path:
+    """Return the path of a report.
+
+    Raises
+    ------
+    InputError
+        If it is a folder, or has another suffix than .html.
+    """
+    target = path_of(name, path)
+    if target.is_dir():
+        raise InputError(
+            f"{name} {target} is a folder. Give a file in it, such as {target / 'report.html'}.", field="path"
+        )
+    if target.suffix.lower() not in SUFFIXES:
+        raise InputError(
+            f"A report is a page of HTML, but the {name} {shown(str(target))} ends in {shown(target.suffix)}. Let it "
+            "end in .html; a browser prints the page, also as PDF.",
+            field="path",
+        )
+    return target
+
+
+def _heading(title: Any) -> str | None:
+    if title is None or isinstance(title, str):
+        return title
+    raise InputError(f"title must be a text, but {shown(title)} was given.", field="title")
+
+
+def _day(date: Any) -> str:
+    if isinstance(date, str):
+        return date
+    if date is None or isinstance(date, Date):
+        return (date or Date.today()).strftime("%Y-%m-%d")
+    raise InputError(f"date must be a text or a datetime.date, but {shown(date)} was given.", field="date")
+
+
+def _coefficient(friction: float) -> float:
+    try:
+        return friction_coefficient(friction)
+    except InputError as error:
+        raise InputError(str(error).replace("mu must", "friction must"), field="friction") from None
+
+
+def _notes(notes: Any) -> list[str]:
+    texts: list[Any] = [notes] if isinstance(notes, str) else list(notes) if isinstance(notes, Iterable) else [notes]
+    for text in texts:
+        if not isinstance(text, str):
+            raise InputError(f"notes must be texts, but {shown(text)} was given.", field="notes")
+    size = sum(map(len, texts))
+    if size > MAX_NOTES:
+        raise InputError(
+            f"The page has room for notes of {MAX_NOTES} letters, but {size} were given. Shorten them.", field="notes"
+        )
+    return texts
+
+
+def _structure_warnings(structure: Any) -> tuple[str, ...]:
+    from rockflex.structure import structure_warnings
+
+    return structure_warnings(structure)
+
+
+def fingerprint(about: Given, record: Record) -> str:
+    """Return the hash of structure, ground, record, and what each run assumed and started from."""
+    p = about.properties
+    numbers: list[Any] = [record.time, record.acceleration, record.vertical]
+    numbers += [p.omega, p.effective_mass, p.effective_height, p.zeta, p.top_ordinate]
+    numbers.append([p.i_theta, p.l0r, p.m_tot, p.half_width, p.translational_inertia, p.eccentricity])
+    texts = [repr((p.elements, about.labels))]
+    for history in about.histories:
+        model = history.model
+        # What follows from the inputs, as rest on springs does, has errors of rounding.
+        numbers += [[float(f"{value:.6g}") for value in history.states[0].tolist()], *_ground_numbers(model)]
+        texts += [_law_text(model), repr(model.bouc_wen), f"{float(history.time[-1]):.6g}"]
+    content = b"".join(np.asarray(each, dtype=np.float64).tobytes() for each in numbers)
+    return hashlib.sha256(content + "\n".join(texts).encode()).hexdigest()[:12]
+
+
+def _ground_numbers(model: Any) -> list[Any]:
+    friction = getattr(model, "friction", None)
+    known = [] if friction is None else [friction]
+    if not isinstance(model, SpringModel):
+        return known
+    return [*known, model.springs.positions, model.springs.stiffness, model.springs.damping, model.inertia]
+
+
+def _law_text(model: Any) -> str:
+    # An object that is no dataclass is written with its address, which no two sessions share.
+    law = model.law
+    return repr(law) if dataclasses.is_dataclass(law) else type(law).__name__
