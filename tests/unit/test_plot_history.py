@@ -177,8 +177,8 @@ def test_takes_one_response_any_iterable_and_the_column_of_a_table(four):
 
 
 def test_sixteen_responses_are_told_apart_and_no_more(four):
-    looks = [c.look for c in curves_of([*four, *[four[0]] * 12])]
-    assert len({(look.color, look.dashes) for look in looks}) == 16
+    looks = [c.style for c in curves_of([*four, *[four[0]] * 12])]
+    assert len({(style.color, style.dashes) for style in looks}) == 16
     with pytest.raises(rf.InputError, match=r"^17 responses are too many to distinguish in one figure\. Plot fewer"):
         plot_history([*four, *[four[0]] * 13])
 
@@ -186,8 +186,8 @@ def test_sixteen_responses_are_told_apart_and_no_more(four):
 def test_black_is_for_the_model_with_the_most_modes(four):
     five = rf.simulate(FRAME, RECORD, "5DOF-S")
     four_modes = rf.simulate(FRAME, RECORD, "4DOF-S")
-    assert [c.look.color for c in curves_of([four_modes, five])][1] == "#000000"
-    assert [c.look.color for c in curves_of([five, four[2]])][1] == "#000000"
+    assert [c.style.color for c in curves_of([four_modes, five])][1] == "#000000"
+    assert [c.style.color for c in curves_of([five, four[2]])][1] == "#000000"
 
 
 def test_what_cannot_be_drawn_is_named(four):
@@ -279,10 +279,10 @@ def test_complete_and_yielding_models_have_looks_of_their_own(four):
     models = [rf.simulate(FRAME, RECORD, label) for label in labels]
     models.append(rf.simulate(FRAME, RECORD, "2DOF-S", bouc_wen=rf.BoucWen(0.02)))
     curves = curves_of([*models, *four[2:]])
-    colors = {curve.label: curve.look.color for curve in curves}
+    colors = {curve.label: curve.style.color for curve in curves}
     assert colors["2DOF-C"] == "#cc79a7"
     assert colors["2DOF-C-SI"] == "#e69f00"
     assert colors["2DOF-S"] == "#d55e00"
     assert colors["2DOF-S-BW"] == "#56b4e9"
-    assert len({(curve.look.color, curve.look.dashes) for curve in curves}) == len(curves)
+    assert len({(curve.style.color, curve.style.dashes) for curve in curves}) == len(curves)
     assert curves[0].order < curves[1].order < 3.0

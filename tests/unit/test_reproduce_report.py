@@ -20,7 +20,7 @@ NUMBERS = (
     compared("ω_1 <b>", "Table 3", "1.66", 1.6557, "rad/s"),
     compared("a|b & c_*", "Section 1", "0.27", 0.16, note='says "so" & <more>'),
     statistic("R²", "Section 3.3", "0.99", Interval(0.983, 0.978, 0.988)),
-    stated("friction", "Section 3.1", "higher than 2", float("inf"), "> 2", ground=Verdict.EQUIVALENT),
+    stated("friction", "Section 3.1", "higher than 2", float("inf"), "> 2", agreed=Verdict.EQUIVALENT),
     statistic("difference", "Section 3.2", "0.002", Interval(0.00093, 0.00064, 0.00329), "rad"),
     count_of("pairs that rock", "Section 3.3", "693", Interval(882.0, 867.0, 900.0)),
 )

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
 from rockflex.papers.silva_stojadinovic_2024._comparison import (
-    WIDEST,
+    MAX_INTERVAL_WIDTH,
     Interval,
     check,
     compared,
@@ -133,8 +133,8 @@ def test_a_count_of_outcomes_under_other_records_is_not_compared(printed, low, h
 
 
 def test_ground_of_a_value_that_agrees_and_of_one_that_does_not():
-    assert compared("B/h", "", "0.16", 0.16, ground=Verdict.EQUIVALENT).verdict is Verdict.EQUIVALENT
-    assert compared("μ", "", "0.27", 0.16, ground=Verdict.EQUIVALENT).verdict is Verdict.NOT
+    assert compared("B/h", "", "0.16", 0.16, agreed=Verdict.EQUIVALENT).verdict is Verdict.EQUIVALENT
+    assert compared("μ", "", "0.27", 0.16, agreed=Verdict.EQUIVALENT).verdict is Verdict.NOT
 
 
 def test_a_value_that_is_cut_off_says_so():
@@ -175,7 +175,7 @@ def test_a_wider_interval_is_never_compatible_where_a_narrower_one_tells_nothing
     inner = Interval(value, value - below * 0.25 * value, value + above * 0.25 * value)
     outer = Interval(value, inner.low - 0.5 * value, inner.high + 0.5 * value)
     assert statistic("x", "y", printed, outer).verdict is Verdict.UNDECIDED
-    narrow = inner.high - inner.low <= WIDEST * float(printed)
+    narrow = inner.high - inner.low <= MAX_INTERVAL_WIDTH * float(printed)
     assert (statistic("x", "y", printed, inner).verdict is Verdict.COMPATIBLE) == narrow
 
 
@@ -208,7 +208,7 @@ def test_checks_hold_or_do_not_and_have_no_verdict():
 
 def test_statements_pass_by_their_criterion_alone():
     assert stated("slope", "", "overestimates", 0.97, "< 1").verdict is Verdict.REPRODUCED
-    wrong = stated("ratio", "", "underestimates", 1.09, "< 1", ground=Verdict.EQUIVALENT)
+    wrong = stated("ratio", "", "underestimates", 1.09, "< 1", agreed=Verdict.EQUIVALENT)
     assert wrong.verdict is Verdict.NOT
     assert (wrong.difference, wrong.difference_as_text) == (None, "")
     assert stated("friction", "", "higher than 2", math.inf, "> 2").ours_as_text == "∞"

@@ -136,7 +136,7 @@ def test_what_would_take_minutes_is_left_out(tmp_path, monkeypatch):
     found = runs(HELD, PULSE, ["2DOF-S"], ground=rf.Ground(springs=SPRINGS.springs, base_inertia=5e5))
     text = read(rf.write_report(found, tmp_path / "r.html")).text
     assert "not computed" not in text
-    monkeypatch.setattr(_checks, "MOST", found[0].time.size * SPRINGS.springs.n - 1)
+    monkeypatch.setattr(_checks, "MAX_WORK", found[0].time.size * SPRINGS.springs.n - 1)
     monkeypatch.setattr(rf.History, "required_friction", property(lambda _: pytest.fail("computed")))
     reader = read(rf.write_report(found, tmp_path / "r.html"))
     assert [cell[0] for cell in reader.tables["checks"][1]].count("not computed") == 2

@@ -10,7 +10,7 @@ from rockflex._shown import counted, shortened
 from rockflex.cli._console import note
 from rockflex.cli._simulations import Batch, Run
 from rockflex.cli._structures import LoadedStructure
-from rockflex.report.run import MOST, checked_path, write_report
+from rockflex.report.run import MAX_RUNS, checked_path, write_report
 
 _COMMAND, _FAILURE = 400, 200  # letters
 
@@ -45,9 +45,10 @@ def check_runs(batch: Batch) -> None:
             f"{counted(scales, 'scale')}. Name one record, such as SUITE/NAME ({first}), with one --scale; a loop "
             "writes a report of each."
         )
-    if models > MOST:
+    if models > MAX_RUNS:
         raise InputError(
-            f"--report has room for {MOST} models, but there are {models}. Choose the ones that matter with --model."
+            f"--report has room for {MAX_RUNS} models, but there are {models}. Choose the ones that matter with "
+            "--model."
         )
 
 

@@ -10,10 +10,10 @@ from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._numbers import prefixed
 from rockflex.plot._curves import Curve, curves_of, title_of
-from rockflex.plot._style import BLACK, BLUE, GRAY, RED, Size, letter, literal, new_figure, styled
+from rockflex.plot._style import BLACK, BLUE, GRAY, RED, Size, label_panel, literal, new_figure, styled
 from rockflex.response import History, Response
 
-FEW = 4  # springs: their forces are drawn as lines, those of more as a map
+MAX_LINES = 4  # springs: their forces are drawn as lines, those of more as a map
 _COLORS = (BLUE, RED, BLACK, GRAY)
 
 
@@ -69,7 +69,7 @@ def plot_footing(response: Response, *, title: str | None = None, size: Size | N
         _draw_soil(figure, soil, history)
         _draw_contact(contact, curve)
         for axes, mark in zip((edges, soil, contact), "ABC", strict=True):
-            letter(axes, mark)
+            label_panel(axes, mark)
         contact.set_xlabel("time [s]")
         contact.set_xlim(float(history.time[0]), float(history.time[-1]))
         figure.align_ylabels([edges, soil, contact])
@@ -83,7 +83,7 @@ def positions_of(history: History) -> Array:
     return model.springs.positions
 
 
-def shares(history: History) -> Array:
+def tributary_shares(history: History) -> Array:
     """Return the share of the width of the base that is nearest to each spring, shape (n_springs,)."""
     places, p = positions_of(history), history.model.properties
     middles = 0.5 * (places[1:] + places[:-1])
@@ -107,7 +107,7 @@ def _draw_soil(figure: Figure, axes: Axes, history: History) -> None:
     name, pushes = ("force", history.spring_force) if area is None else ("pressure", history.soil_pressure)
     factor, unit = prefixed(float(pushes.max()), "N" if area is None else "Pa")
     places = positions_of(history)
-    if places.size <= FEW:
+    if places.size <= MAX_LINES:
         for place, force, color in zip(places, pushes.T / factor, _COLORS, strict=False):
             axes.plot(history.time, force, color=color, linewidth=0.9, label=f"x = {place:.3g} m".replace("-", "−"))
         axes.set_ylabel(f"{name} [{unit}]")
@@ -125,7 +125,7 @@ def _draw_soil(figure: Figure, axes: Axes, history: History) -> None:
 
 def _draw_contact(axes: Axes, curve: Curve) -> None:
     history = curve.history
-    held = (history.spring_force > 0.0) @ shares(history)
+    held = (history.spring_force > 0.0) @ tributary_shares(history)
     axes.fill_between(history.time, 100.0 * held, color=GRAY, alpha=0.5, linewidth=0.0)
     axes.plot(history.time, 100.0 * held, color=BLACK, linewidth=0.7)
     axes.set(ylim=(0.0, 104.0), ylabel="in contact [%]")

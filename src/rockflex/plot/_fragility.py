@@ -26,7 +26,14 @@ from rockflex.fragility import (
     recordings_of,
     rocked,
 )
-from rockflex.plot._study_tables import check_columns, keys_of, looks_of, measure_name, names_in, structure_panels
+from rockflex.plot._study_tables import (
+    check_columns,
+    legend_handles,
+    measure_name,
+    names_in,
+    structure_panels,
+    styles_of,
+)
 from rockflex.plot._style import (
     BLACK,
     BLUE,
@@ -34,14 +41,14 @@ from rockflex.plot._style import (
     RED,
     SHADE,
     SMALL,
-    Look,
+    LineStyle,
     Size,
-    columns,
-    letter,
+    font_size,
+    is_narrow,
+    label_panel,
+    legend_above,
     literal,
-    narrow,
     new_figure,
-    points,
     styled,
 )
 
@@ -51,12 +58,12 @@ if TYPE_CHECKING:
     from rockflex.study.stripes import StripeLimit
 
 _POINTS = 400
-_END = np.log(0.995 / 0.005)  # logit at which a curve has arrived
+_LOGIT_END = np.log(0.995 / 0.005)  # logit at which a curve has arrived
 _NEEDED = (
     *("structure", "model", "motion", "group", "scale", "status", "max_rotation", "overturned", "resurrections"),
     *("first_overturning_scale", "last_survival_scale"),
 )
-_MOST = 6  # rows of panels
+_MAX_ROWS = 6  # rows of panels
 _SOURCE = "what run_incremental returned"
 
 
@@ -116,7 +123,7 @@ def plot_fragility(
     """
     groups = whole_number("bins", bins, 0)
     fits, runs = _fits(clouds, measure, groups)
-    looks = looks_of(names_in(fit.model for fit in fits))
+    styles = styles_of(names_in(fit.model for fit in fits))
     names = names_in(fit.structure for fit in fits)
     limit = _outcomes_limit(fits, runs, whole=overturning or groups > 0)
     ends = [fit.outcomes.measured[0] for fit in fits if fit.outcomes.measured is not None]
@@ -127,25 +134,24 @@ def plot_fragility(
         figure, panels = structure_panels(names, 3, 2.1, measure_name(fits[0].measure), y)
         for axes, name in zip(panels, names, strict=True):
             for fit in (fit for fit in fits if fit.structure == name):
-                look, marker = looks[fit.model]
-                _draw_outcomes(axes, fit, look, limit, confidence, overturning=overturning)
+                style, marker = styles[fit.model]
+                _draw_outcomes(axes, fit, style, limit, confidence, overturning=overturning)
                 if runs is not None and groups:
-                    _mark_observed(axes, rows_of(runs, fit.structure, fit.model), fit, marker, look.color, groups)
+                    _mark_observed(axes, rows_of(runs, fit.structure, fit.model), fit, marker, style.color, groups)
             if lowest is not None:
                 axes.axvspan(0.0, lowest, color=SHADE, linewidth=0.0, label="_no runs")
             failed = sum(fit.n_failed for fit in fits if fit.structure == name)
             if failed:
                 axes.text(0.97, 0.05, f"{failed} failed", transform=axes.transAxes, ha="right", fontsize=SMALL)
         panels[0].set(xlim=(0.0, limit), ylim=(-0.03, 1.03))
-        handles: list[Line2D | Patch] = [*keys_of(looks, symbols=False)]
+        handles: list[Line2D | Patch] = [*legend_handles(styles, symbols=False)]
         if groups:
             handles.append(Line2D([], [], color=GRAY, marker="o", linestyle="", markersize=3.0, label="observed"))
         if overturning:
             handles.append(Line2D([], [], color=GRAY, linewidth=0.6, label="overturning"))
         if lowest is not None:
             handles.append(Patch(color=SHADE, linewidth=0.0, label="no runs"))
-        labels = [str(handle.get_label()) for handle in handles]
-        figure.legend(handles=handles, loc="outside upper center", ncols=columns(labels, 42 + 44 * (len(names) > 1)))
+        legend_above(figure, handles)
     return figure
 
 
@@ -180,7 +186,7 @@ def _outcomes_limit(fits: list[CloudFits], runs: "pd.DataFrame | None", *, whole
     for fit in fits:
         rocks, falls = fit.outcomes.initiation, fit.outcomes.overturning
         if isinstance(rocks, LogisticFit) and rocks.b1 > 0.0:
-            ends.append(float(np.exp((_END - rocks.b0) / rocks.b1)))
+            ends.append(float(np.exp((_LOGIT_END - rocks.b0) / rocks.b1)))
         if whole and isinstance(falls, LogisticFit) and falls.b1 > 0.0:
             ends.append(2.0 * falls.median)
     if runs is None:
@@ -190,7 +196,7 @@ def _outcomes_limit(fits: list[CloudFits], runs: "pd.DataFrame | None", *, whole
 
 
 def _draw_outcomes(
-    axes: Axes, fit: CloudFits, look: Look, limit: float, confidence: float | None, *, overturning: bool
+    axes: Axes, fit: CloudFits, style: LineStyle, limit: float, confidence: float | None, *, overturning: bool
 ) -> None:
     im = np.linspace(limit / _POINTS, limit, _POINTS)
     curves = [(fit.outcomes.initiation, 1.2, fit.model)]
@@ -199,16 +205,16 @@ def _draw_outcomes(
     for curve, width, label in curves:
         if confidence is not None:
             low, high = curve.band(im, confidence)
-            axes.fill_between(im, low, high, color=look.color, alpha=0.13, linewidth=0.0, label="_band")
-        axes.plot(im, curve.probability(im), color=look.color, linestyle=look.dashes, linewidth=width, label=label)
+            axes.fill_between(im, low, high, color=style.color, alpha=0.13, linewidth=0.0, label="_band")
+        axes.plot(im, curve.probability(im), color=style.color, linestyle=style.dashes, linewidth=width, label=label)
 
 
 def _mark_observed(axes: Axes, runs: "pd.DataFrame", fit: CloudFits, marker: str, color: str, groups: int) -> None:
     """Fraction of rocking runs in groups of neighbouring intensities, at their geometric mean."""
     rocks = rocked(runs, fit.outcomes.threshold).to_numpy(dtype=bool)
-    points = observed_fractions(runs[fit.measure].to_numpy(dtype=float), rocks, groups)
+    font_size = observed_fractions(runs[fit.measure].to_numpy(dtype=float), rocks, groups)
     axes.plot(
-        [at for at, _ in points], [fraction for _, fraction in points],
+        [at for at, _ in font_size], [fraction for _, fraction in font_size],
         marker, color=color, markersize=3.0, markerfacecolor="none", markeredgewidth=0.7, label="_observed",
     )  # fmt: skip
 
@@ -281,7 +287,7 @@ def plot_stripes(
     counts = stripe_counts(runs, limit)
     if not len(counts):
         raise InputError("No run was solved. See the column error of the table.")
-    looks = looks_of(names_in(runs["model"]))
+    styles = styles_of(names_in(runs["model"]))
     names = names_in(runs["structure"])
     end = 1.1 * float(counts["level"].max())
     with styled(size=size):
@@ -290,7 +296,7 @@ def plot_stripes(
         figure, panels = structure_panels(names, 3, 2.1, measure_name(measure), y)
         for axes, name in zip(panels, names, strict=True):
             notes: list[tuple[str, str]] = []
-            for model, (look, marker) in looks.items():
+            for model, (style, marker) in styles.items():
                 stripes = counts[(counts["structure"].astype(str) == name) & (counts["model"].astype(str) == model)]
                 if len(stripes):
                     text = _draw_stripes(
@@ -298,20 +304,20 @@ def plot_stripes(
                         stripes,
                         _fit_of_stripes(rows_of(runs, name, model), limit),
                         model,
-                        look,
+                        style,
                         marker,
                         end,
                         confidence,
                     )
-                    notes.append((text, look.color))
+                    notes.append((text, style.color))
             axes.axvspan(0.0, float(counts["level"].min()), color=SHADE, linewidth=0.0, label="_no runs")
             for place, (text, color) in enumerate(reversed(notes)):
                 axes.text(
-                    0.97, 0.04 + 0.075 * place, text, transform=axes.transAxes, ha="right", fontsize=points(6.5),
+                    0.97, 0.04 + 0.075 * place, text, transform=axes.transAxes, ha="right", fontsize=font_size(6.5),
                     color=color,
                 )  # fmt: skip
         panels[0].set(xlim=(0.0, end), ylim=(-0.03, 1.03))
-        figure.legend(handles=keys_of(looks), loc="outside upper center", ncols=columns(list(looks), 42))
+        legend_above(figure, legend_handles(styles))
     return figure
 
 
@@ -320,7 +326,7 @@ def _draw_stripes(
     stripes: "pd.DataFrame",
     fit: LognormalFragility | None,
     model: str,
-    look: Look,
+    style: LineStyle,
     marker: str,
     end: float,
     confidence: float | None,
@@ -328,15 +334,15 @@ def _draw_stripes(
     """Draw symbols, curve and band; return their text."""
     at, events, total = (stripes[name].to_numpy(dtype=float) for name in ("level", "n_exceeding", "n_total"))
     axes.plot(
-        at, events / total, marker, color=look.color, markersize=3.5, markerfacecolor="none", markeredgewidth=0.8,
+        at, events / total, marker, color=style.color, markersize=3.5, markerfacecolor="none", markeredgewidth=0.8,
         label=f"_{model}",
     )  # fmt: skip
     if fit is None:
         return "no curve fits"
     im = np.linspace(end / _POINTS, end, _POINTS)
-    axes.plot(im, fit.probability(im), color=look.color, linestyle=look.dashes, label=model)
+    axes.plot(im, fit.probability(im), color=style.color, linestyle=style.dashes, label=model)
     if confidence is not None and fit.covariance is not None:
-        axes.fill_between(im, *fit.band(im, confidence), color=look.color, alpha=0.13, linewidth=0.0, label="_band")
+        axes.fill_between(im, *fit.band(im, confidence), color=style.color, alpha=0.13, linewidth=0.0, label="_band")
     return f"median {fit.median:.3g}, β = {fit.beta:.2f}"
 
 
@@ -411,12 +417,12 @@ def plot_ida(
     capacities = incremental_capacities(runs, measure)
     groups = [(name, model) for name in names_in(runs["structure"]) for model in names_in(runs["model"])]
     groups = [group for group in groups if len(rows_of(runs, *group))]
-    if len(groups) > _MOST:
+    if len(groups) > _MAX_ROWS:
         raise InputError(
-            f"{len(groups)} structures and models are too many for one figure; {_MOST} fit. Plot fewer at a time."
+            f"{len(groups)} structures and models are too many for one figure; {_MAX_ROWS} fit. Plot fewer at a time."
         )
     with styled(size=size):
-        across = 1 if narrow() else 2
+        across = 1 if is_narrow() else 2
         figure = new_figure(6.3, 0.9 + 2.1 * len(groups) * 2 // across)
         grid = figure.subplots(2 * len(groups) // across, across, sharex=True, squeeze=False).reshape(-1, 2)
         for row, (structure, model) in enumerate(groups):
@@ -426,18 +432,12 @@ def plot_ida(
             _draw_capacities(right, found, confidence, failed)
             left.set(title=literal(f"{structure}, {model}"), ylabel=r"$θ_{\mathrm{max}}$ [rad]")
             right.set_ylabel("P(overturning)")
-            letter(left, chr(ord("A") + 2 * row))
-            letter(right, chr(ord("B") + 2 * row))
+            label_panel(left, chr(ord("A") + 2 * row))
+            label_panel(right, chr(ord("B") + 2 * row))
         grid[0, 0].set_xlim(0.0, _ida_limit(runs, capacities, measure))
         for axes in grid[-1, -across:]:
             axes.set_xlabel(measure_name(measure))
-        figure.legend(
-            handles=_ida_handles(),
-            loc="outside upper center",
-            ncols=2 if narrow() else 5,
-            columnspacing=1.2,
-            handlelength=1.6,
-        )
+        legend_above(figure, _ida_handles(), columnspacing=1.2, handlelength=1.6)
     return figure
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from string import ascii_uppercase
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -14,11 +15,23 @@ from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._numbers import prefixed, short
 from rockflex._shown import shown
-from rockflex.plot._curves import Curve, curves_of, rotation_limit, title_of
-from rockflex.plot._style import BLACK, GRAY, SHADE, SMALL, Size, columns, letter, narrow, new_figure, points, styled
+from rockflex.plot._curves import Curve, curves_of, rotation_limit, time_limits, title_of
+from rockflex.plot._style import (
+    BLACK,
+    GRAY,
+    SHADE,
+    Size,
+    font_size,
+    is_narrow,
+    label_panel,
+    legend_above,
+    new_figure,
+    notes_beside,
+    styled,
+)
 from rockflex.response import History, Response
 
-_HEADROOM = 1.12
+_MARGIN = 1.12
 _BAR = 0.025  # height of an uplift bar as a share of the panel
 _POINTS = 2000  # across the panel, more than it has dots
 
@@ -44,14 +57,14 @@ _QUANTITIES = (
     Quantity("slip", "slip", "m", False, lambda h: h.slip),
     Quantity("rise of edges", "edge_uplift", "m", False, lambda h: h.edge_uplift),
 )
-_ASKED = ("horizontal_reaction", "slip", "edge_uplift")  # or shown where the ground makes them matter
-ALL = tuple(quantity.name for quantity in _QUANTITIES)
+_OPTIONAL = ("horizontal_reaction", "slip", "edge_uplift")  # or shown where the ground makes them matter
+PANELS = tuple(quantity.name for quantity in _QUANTITIES)
 
 
-def usual_panels(curves: list[Curve]) -> list[str]:
+def default_panels(curves: list[Curve]) -> list[str]:
     """All but ΣF_x; total displacement if the height of the top is known, slip and edges if a base slides or heaves."""
     known = all(curve.history.model.properties.top_height is not None for curve in curves)
-    usual = [name for name in ALL if name not in _ASKED and (known or name != "total_top_displacement")]
+    usual = [name for name in PANELS if name not in _OPTIONAL and (known or name != "total_top_displacement")]
     layouts = [curve.history.model.layout for curve in curves]
     moves = {
         "slip": any(layout.slip >= 0 for layout in layouts),
@@ -69,70 +82,65 @@ def quantities_of(panels: Sequence[str]) -> list[Quantity]:
         If there are none, or one is unknown or repeated.
     """
     names = [panels] if isinstance(panels, str) else list(panels)
-    if not names or len(set(names)) < len(names) or not set(names) <= set(ALL):
-        raise InputError(f"panels must be one or more of {', '.join(ALL)}, each once, but {shown(panels)} was given.")
+    if not names or len(set(names)) < len(names) or not set(names) <= set(PANELS):
+        raise InputError(
+            f"panels must be one or more of {', '.join(PANELS)}, each once, but {shown(panels)} was given."
+        )
     return [next(quantity for quantity in _QUANTITIES if quantity.name == name) for name in names]
 
 
-def scale_of(quantity: Quantity, curves: list[Curve]) -> tuple[float, str, float]:
+def axis_scale(quantity: Quantity, curves: list[Curve]) -> tuple[float, str, float]:
     """Divisor, unit and largest magnitude of an axis, with some room."""
     largest = max(_largest(curve, quantity) for curve in curves)
     if quantity.name == "rotation":
         largest = rotation_limit(curves)
     factor, unit = prefixed(largest, quantity.unit) if quantity.prefixed else (1.0, quantity.unit)
-    return factor, unit, _HEADROOM * largest / factor if largest > 0.0 else 1e-3
+    return factor, unit, _MARGIN * largest / factor if largest > 0.0 else 1e-3
 
 
 def draw_panel(axes: Axes, quantity: Quantity, curves: list[Curve], mark: str) -> list[Artist]:
     """Fill one panel over time and list the peaks beside it; return a line for each curve."""
     lines, peaks = draw_curves(axes, quantity, curves)
-    letter(axes, mark)
-    notes = [(text, curve.look.color) for text, curve in zip(peaks, curves, strict=True)]
-    list_beside(axes, [("peaks", "#404040"), *notes], 10.0)
+    label_panel(axes, mark)
+    notes = [(text, curve.style.color) for text, curve in zip(peaks, curves, strict=True)]
+    notes_beside(axes, [("peaks", "#404040"), *notes], 10.0)
     return lines
 
 
 def draw_curves(axes: Axes, quantity: Quantity, curves: list[Curve]) -> tuple[list[Artist], list[str]]:
     """Fill one panel over time; return a line for each curve, and its peak in words."""
-    factor, unit, limit = scale_of(quantity, curves)
-    low = -limit if quantity.name != "edge_uplift" else -_HEADROOM * _settlement(curves, limit)
+    factor, unit, limit = axis_scale(quantity, curves)
+    low = -limit if quantity.name != "edge_uplift" else -_MARGIN * _settlement(curves, limit)
     axes.set(ylim=(low, limit), ylabel=f"{quantity.symbol} [{unit}]")
     lines: list[Artist] = []
     peaks: list[str] = []
     for curve in curves:
-        look = curve.look
+        style = curve.style
         first, *others = axes.plot(
-            curve.history.time, quantity.of(curve.history) / factor, color=look.color, linestyle=look.dashes,
-            linewidth=look.width, label=curve.label, zorder=curve.order,
+            curve.history.time, quantity.of(curve.history) / factor, color=style.color, linestyle=style.dashes,
+            linewidth=style.width, label=curve.label, zorder=curve.order,
         )  # fmt: skip
         lines.append(first)
         for right in others:  # the right edge is thinner than the left one
-            right.set(linewidth=0.5 * look.width, label="_right")
+            right.set(linewidth=0.5 * style.width, label="_right")
         if curve.overturned:
-            axes.axvline(curve.response.end_time, color=look.color, linestyle=":", linewidth=0.8, zorder=1.5)
+            axes.axvline(curve.response.end_time, color=style.color, linestyle=":", linewidth=0.8, zorder=1.5)
         if curve.falls and quantity.name == "rotation":
             _mark_fall(axes, curve, limit)
         peaks.append(_mark_peak(axes, quantity, curve, factor))
     return lines, peaks
 
 
-def add_key(
-    figure: Figure, curves: list[Curve], handles: list[Artist], names: list[str], title: str | None, width: int
+def add_legend(
+    figure: Figure,
+    curves: list[Curve],
+    handles: Sequence[Artist],
+    names: Sequence[str],
+    title: str | None,
+    **options: Any,
 ) -> None:
-    """Add the legend of a figure above it; a row has room for `width` letters."""
-    figure.legend(
-        handles, names, loc="outside upper center", ncols=columns(names, width), title=title_of(curves, title),
-        title_fontsize="medium", handlelength=2.6, columnspacing=1.4,
-    )  # fmt: skip
-
-
-def list_beside(axes: Axes, notes: list[tuple[str, str]], step: float) -> None:
-    """Write lines of text in their colours to the right of a panel, `step` points apart."""
-    for row, (text, color) in enumerate(notes):
-        axes.annotate(
-            text, (1.0, 1.0), xytext=(5.0, -1.0 - step * row), xycoords="axes fraction", textcoords="offset points",
-            color=color, fontsize=SMALL, va="top", annotation_clip=False,
-        )  # fmt: skip
+    """Add the legend of responses above a figure, under its title."""
+    legend_above(figure, handles, names, title=title_of(curves, title), handlelength=2.6, columnspacing=1.4, **options)
 
 
 def _largest(curve: Curve, quantity: Quantity) -> float:
@@ -149,15 +157,15 @@ def _mark_peak(axes: Axes, quantity: Quantity, curve: Curve, factor: float) -> s
     peak = float(getattr(curve.response, f"max_{quantity.name}")) / factor
     if peak == 0.0:
         return "0"
-    when, side = _place(quantity, curve)
+    when, side = _peak_time_and_sign(quantity, curve)
     axes.plot(
-        [when], [side * peak], "o", color=curve.look.color, markersize=3.5, markerfacecolor="white",
+        [when], [side * peak], "o", color=curve.style.color, markersize=3.5, markerfacecolor="white",
         markeredgewidth=0.9, zorder=3.0,
     )  # fmt: skip
     return f"{short(peak)} at {when:.2f} s"
 
 
-def _place(quantity: Quantity, curve: Curve) -> tuple[float, float]:
+def _peak_time_and_sign(quantity: Quantity, curve: Curve) -> tuple[float, float]:
     """Return the time and the sign of a peak."""
     time, values = curve.history.time, quantity.of(curve.history)
     if quantity.name == "edge_uplift":
@@ -185,7 +193,7 @@ def _mark_fall(axes: Axes, curve: Curve, limit: float) -> None:
     when = float(np.interp(limit, np.abs(rotation[around]), time[around]))
     side = float(np.sign(rotation[-1]))
     marker = "^" if side > 0 else "v"
-    axes.plot([when], [side * limit], marker, color=curve.look.color, markersize=6.0, clip_on=False, zorder=5.0)
+    axes.plot([when], [side * limit], marker, color=curve.style.color, markersize=6.0, clip_on=False, zorder=5.0)
 
 
 def plot_history(
@@ -246,46 +254,41 @@ def plot_history(
     (2, 'time [s]')
     """
     curves = curves_of(responses, labels)
-    quantities = quantities_of(usual_panels(curves) if panels is None else panels)
+    quantities = quantities_of(default_panels(curves) if panels is None else panels)
     handles: list[Artist] = []
     with styled(size=size):
         figure = new_figure(6.3, len(quantities) * max(1.45, 0.155 * (len(curves) + 2)) + 0.8)
         grid: list[Axes] = list(figure.subplots(len(quantities), 1, sharex=True, squeeze=False).flat)
         for axes, quantity, mark in zip(grid, quantities, ascii_uppercase, strict=False):
             handles = draw_panel(axes, quantity, curves, mark)
-        names = [curve.label for curve in curves]
-        main = shade_uplifts(grid, curves)
-        if main is not None:
-            handles.append(Patch(facecolor=SHADE, edgecolor=GRAY, linewidth=0.4))
-            names.append(f"uplifted: {main.label}" if len(curves) > 1 else "uplifted")
-        grid[-1].set_xlabel("time [s]")
-        grid[-1].set_xlim(
-            min(float(curve.history.time[0]) for curve in curves),
-            max(float(curve.history.time[-1]) for curve in curves),
-        )
+        uplifts = shade_uplifts(grid, curves)
+        grid[-1].set(xlabel="time [s]", xlim=time_limits(curves))
         figure.align_ylabels()
-        add_key(figure, curves, handles, names, title, 88)
+        names = [curve.label for curve in curves]
+        add_legend(figure, curves, [*handles, *uplifts.values()], [*names, *uplifts], title)
     return figure
 
 
-def shade_uplifts(panels: list[Axes], curves: list[Curve]) -> Curve | None:
-    """Shade the uplifts of the most detailed model, and return that model."""
+def shade_uplifts(panels: list[Axes], curves: list[Curve]) -> dict[str, Artist]:
+    """Shade the uplifts of the most detailed model; return the entry of the legend that names it, if there are any."""
     rocking = [curve for curve in curves if curve.uplifts.size]
     if not rocking:
         text = "no uplift" if any(curve.lifts for curve in curves) else "fixed base"
         panels[0].text(0.5, 0.75, text, transform=panels[0].transAxes, ha="center", va="center", color="#404040")
-        return None
+        return {}
     main = max(rocking, key=lambda curve: curve.history.model.properties.n_modes)
     for axes in panels:
         _draw_spans(axes, main, 0.0, 1.0, SHADE, 0.5)
+    name = f"uplifted: {main.label}" if len(curves) > 1 else "uplifted"
+    entry: dict[str, Artist] = {name: Patch(facecolor=SHADE, edgecolor=GRAY, linewidth=0.4)}
     if len(rocking) == 1:
-        return main
+        return entry
     low, high = panels[0].get_ylim()
     foot = _BAR * (len(rocking) + 1)
     panels[0].set_ylim(low - (high - low) * foot / (1.0 - foot), high)
     for row, curve in enumerate(reversed(rocking)):
-        _draw_spans(panels[0], curve, _BAR * (row + 0.35), 0.7 * _BAR, curve.look.color, 2.6)
-    return main
+        _draw_spans(panels[0], curve, _BAR * (row + 0.35), 0.7 * _BAR, curve.style.color, 2.6)
+    return entry
 
 
 def _draw_spans(axes: Axes, curve: Curve, bottom: float, height: float, color: str, order: float) -> None:
@@ -354,17 +357,17 @@ def plot_spread(
             f"varied must hold {len(curves)} groups, one per response, each of at least one response, but groups of "
             f"{[len(group) for group in varied]} were given."
         )
-    groups = [[_alone(response) for response in group] for group in varied]
+    groups = [[_single_curve(response) for response in group] for group in varied]
     quantities = quantities_of(panels)
     everything = [*curves, *(curve for group in groups for curve in group)]
     times = np.linspace(0.0, max(float(curve.history.time[-1]) for curve in curves), _POINTS)
     with styled(size=size):
-        shape = (len(quantities) * len(curves), 1) if narrow() else (len(curves), len(quantities))
+        shape = (len(quantities) * len(curves), 1) if is_narrow() else (len(curves), len(quantities))
         figure = new_figure(0.8 + 3.2 * len(quantities), 0.9 + 1.35 * shape[0])
         # In a narrow figure all panels of a quantity stand above those of the next.
         grid = figure.subplots(*shape, sharex=True, squeeze=False).reshape(len(curves), -1, order="F")
         for column, quantity in enumerate(quantities):
-            factor, unit, limit = scale_of(quantity, everything)
+            factor, unit, limit = axis_scale(quantity, everything)
             for row, (curve, group) in enumerate(zip(curves, groups, strict=True)):
                 axes: Axes = grid[row, column]
                 low, high = _band(quantity, [curve, *group], times)
@@ -373,20 +376,17 @@ def plot_spread(
                 values = quantity.of(curve.history)[drawn] / factor
                 axes.plot(curve.history.time[drawn], values, color=BLACK, linewidth=0.8, label=curve.label)
                 axes.set(ylim=(-limit, limit), xlim=(0.0, float(times[-1])), ylabel=f"{quantity.symbol} [{unit}]")
-                axes.set_title(curve.label, fontsize=points(8.0), loc="left", pad=3.0)
-            if column + 1 == len(quantities) or not narrow():
+                axes.set_title(curve.label, fontsize=font_size(8.0), loc="left", pad=3.0)
+            if column + 1 == len(quantities) or not is_narrow():
                 grid[-1, column].set_xlabel("time [s]")
         figure.align_ylabels()
         handles = [grid[0, 0].get_lines()[0], Patch(facecolor=SHADE, edgecolor=GRAY, linewidth=0.4)]
         names = ["nominal", "from the least to the largest of what was varied"]
-        figure.legend(
-            handles, names, loc="outside upper center", ncols=columns(names, 16 + 45 * len(quantities)),
-            title=title_of(curves, title), title_fontsize="medium",
-        )  # fmt: skip
+        legend_above(figure, handles, names, title=title_of(curves, title))
     return figure
 
 
-def _alone(response: Response) -> Curve:
+def _single_curve(response: Response) -> Curve:
     return curves_of(response)[0]
 
 

@@ -17,7 +17,7 @@ from rockflex._errors import InputError
 from rockflex._numbers import prefixed, short
 from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.plot._curves import Curve, curves_of, title_of
-from rockflex.plot._history import add_key, draw_panel, quantities_of, scale_of, shade_uplifts
+from rockflex.plot._history import add_legend, axis_scale, draw_panel, quantities_of, shade_uplifts
 from rockflex.plot._style import (
     BLACK,
     BLUE,
@@ -28,10 +28,10 @@ from rockflex.plot._style import (
     RED,
     SKY,
     Size,
-    columns,
-    letter,
+    is_narrow,
+    label_panel,
+    legend_above,
     literal,
-    narrow,
     new_figure,
     styled,
 )
@@ -47,7 +47,7 @@ from rockflex.response import (
 )
 
 _COLORS = (SKY, ORANGE, PURPLE, GREEN, RED, "#7a5195")  # of elements, in their order
-_KINDS: dict[type[BaseElement], str] = {
+_ELEMENT_NAMES: dict[type[BaseElement], str] = {
     Tendon: "tendon",
     YieldingDissipator: "fuse",
     ViscousDamper: "viscous damper",
@@ -167,14 +167,14 @@ def resistance_of(history: History) -> tuple[Array, Array]:
     return heavier * weight, element_resistance(p, side, history.element_force)
 
 
-def follows_a_line(properties: RockingProperties) -> bool:
+def is_path_independent(properties: RockingProperties) -> bool:
     """Whether the resisting moment depends on the rotation alone: all elements are tendons that stay elastic."""
     return all(isinstance(each, Tendon) and each.post_yield_ratio is None for each in properties.elements)
 
 
 def name_of(element: BaseElement, number: int) -> str:
     """Name of an element in a figure, with its number, counted from 1, and its position."""
-    return f"{number} {_KINDS[type(element)]}, x = {short(element.position)} m"
+    return f"{number} {_ELEMENT_NAMES[type(element)]}, x = {short(element.position)} m"
 
 
 def plot_loops(
@@ -228,11 +228,11 @@ def plot_loops(
     drawn += [partial(_draw_element, place=place) for place in range(len(loops.elements))]
     count = len(drawn)
     with styled(size=size):
-        rows = count if narrow() else max(math.ceil(count / _PER_ROW), 1)
-        beside = 0 if narrow() else math.ceil(count / rows)
-        figure = new_figure(4.2 + 2.2 * beside, max(3.6, (3.3 if narrow() else 0.7) + 2.3 * rows))
+        rows = count if is_narrow() else max(math.ceil(count / _PER_ROW), 1)
+        beside = 0 if is_narrow() else math.ceil(count / rows)
+        figure = new_figure(4.2 + 2.2 * beside, max(3.6, (3.3 if is_narrow() else 0.7) + 2.3 * rows))
         figure.get_layout_engine().set(w_pad=0.07)  # pyright: ignore
-        if narrow():
+        if is_narrow():
             grid = figure.add_gridspec(1 + rows, 1, height_ratios=(1.4, *[1.0] * rows))
             base = figure.add_subplot(grid[0, 0])
         else:
@@ -240,14 +240,10 @@ def plot_loops(
             base = figure.add_subplot(grid[:, 0])
         _draw_base(base, loops)
         for place, draw in enumerate(drawn):
-            row, column = (1 + place, 0) if narrow() else (place // beside, 1 + place % beside)
+            row, column = (1 + place, 0) if is_narrow() else (place // beside, 1 + place % beside)
             draw(figure.add_subplot(grid[row, column]), loops)
         lines = base.get_lines()
-        names = [str(line.get_label()) for line in lines]
-        figure.legend(
-            lines, names, loc="outside upper center", ncols=columns(names, 36 + 22 * beside),
-            title=literal(title) if title is not None else loops.title, title_fontsize="medium", handlelength=2.0,
-        )  # fmt: skip
+        legend_above(figure, lines, title=literal(title) if title is not None else loops.title, handlelength=2.0)
     return figure
 
 
@@ -340,7 +336,7 @@ def plot_hysteresis(
     with styled(size=size):
         figure = new_figure(4.2, 3.6)
         lines = _draw_hysteresis(figure.subplots(), curves)
-        add_key(figure, curves, lines, [curve.label for curve in curves], title, 58)
+        add_legend(figure, curves, lines, [curve.label for curve in curves], title)
     return figure
 
 
@@ -393,8 +389,8 @@ def plot_yielding(
     curves = curves_of(responses, labels)
     with styled(size=size):
         tall = max(1.45, 0.155 * (len(curves) + 2))
-        figure = new_figure(8.6, (2.0 * tall if not narrow() else 2.0 * tall + 2.6) + 0.9)
-        if narrow():
+        figure = new_figure(8.6, (2.0 * tall if not is_narrow() else 2.0 * tall + 2.6) + 0.9)
+        if is_narrow():
             grid = figure.add_gridspec(3, 1, height_ratios=(tall, tall, 2.6))
         else:
             grid = figure.add_gridspec(2, 2, width_ratios=(1.55, 1.0))
@@ -405,19 +401,19 @@ def plot_yielding(
         shade_uplifts(histories, curves)
         top.tick_params(labelbottom=False)
         histories[1].set(xlabel="time [s]", xlim=(0.0, max(float(curve.history.time[-1]) for curve in curves)))
-        loops = figure.add_subplot(grid[2, 0] if narrow() else grid[:, 1])
+        loops = figure.add_subplot(grid[2, 0] if is_narrow() else grid[:, 1])
         lines = _draw_hysteresis(loops, curves)
-        letter(loops, "C")
+        label_panel(loops, "C")
         figure.align_ylabels(histories)
-        add_key(figure, curves, lines, [curve.label for curve in curves], title, 110)
+        add_legend(figure, curves, lines, [curve.label for curve in curves], title)
     return figure
 
 
 def _draw_hysteresis(axes: Axes, curves: list[Curve]) -> list[Artist]:
     """Fill a panel with V_b over u_top; return a line for each curve."""
     displacement, force = quantities_of(("top_displacement", "base_shear"))
-    _, across, right = scale_of(displacement, curves)
-    factor, unit, high = scale_of(force, curves)
+    _, across, right = axis_scale(displacement, curves)
+    factor, unit, high = axis_scale(force, curves)
     axes.set(xlim=(-right, right), ylim=(-high, high))
     axes.locator_params(axis="x", nbins=5)
     axes.set(xlabel=f"{displacement.symbol} [{across}]", ylabel=f"{force.symbol} [{unit}]")
@@ -425,7 +421,7 @@ def _draw_hysteresis(axes: Axes, curves: list[Curve]) -> list[Artist]:
     for curve in curves:
         drawn = curve.before_fall
         lines += axes.plot(
-            displacement.of(curve.history)[drawn], force.of(curve.history)[drawn] / factor, color=curve.look.color,
-            linestyle=curve.look.dashes, linewidth=curve.look.width, label=curve.label, zorder=curve.order,
+            displacement.of(curve.history)[drawn], force.of(curve.history)[drawn] / factor, color=curve.style.color,
+            linestyle=curve.style.dashes, linewidth=curve.style.width, label=curve.label, zorder=curve.order,
         )  # fmt: skip
     return lines

@@ -24,20 +24,20 @@ from rockflex.modal import (
     frequency_equation,
     uplifted_modes,
 )
-from rockflex.plot._history import list_beside
-from rockflex.plot._study_tables import label_plainly, surrogate_looks
+from rockflex.plot._study_tables import label_plainly, model_styles
 from rockflex.plot._style import (
     BLUE,
     GRAY,
     SMALL,
-    Look,
+    LineStyle,
     Size,
-    columns,
-    letter,
+    font_size,
+    is_narrow,
+    label_panel,
+    legend_above,
     literal,
-    narrow,
     new_figure,
-    points,
+    notes_beside,
     styled,
 )
 from rockflex.study import RockingStructure, properties_of
@@ -53,7 +53,7 @@ _SHARE = 75.0  # per cent of the curves' points that the panel holds
 Dashes = str | tuple[int, tuple[float, ...]]
 _DASHES: tuple[Dashes, ...] = ("-", (0, (5, 2)), (0, (1, 1)), (0, (6, 1, 1, 1)))
 _RATIO_COLUMNS = ("model", "aspect_ratio", "mode", "ratio")
-_ROOM = 1.06
+_MARGIN = 1.06
 
 
 class _HasModes(Protocol):
@@ -104,7 +104,7 @@ def plot_mode_shapes(
     total = float(modes.effective_mass.sum()) if complete else None
     shown = modes if n_modes is None else modes.truncated(n_modes)
     with styled(size=size):
-        per_row = min(shown.n_modes, _PER_NARROW_ROW if narrow() else _PER_ROW)
+        per_row = min(shown.n_modes, _PER_NARROW_ROW if is_narrow() else _PER_ROW)
         rows = math.ceil(shown.n_modes / per_row)
         figure = new_figure(max(1.26 * per_row, 2.6), 3.4 * rows)
         grid = figure.subplots(rows, per_row, sharey=True, squeeze=False)
@@ -142,7 +142,7 @@ def _draw_shape(axes: Axes, modes: ModalProperties, n: int, total: float | None)
     axes.set_xlim(-1.25 * largest, 1.25 * largest)
     axes.set_xticks([-tick, 0.0, tick], [f"−{tick:g}", "0", f"{tick:g}"])
     axes.set_ylim(0.0, 1.04 * float(heights[-1]))
-    axes.set_title(_describe(modes, n, total), fontsize=points(8.0))
+    axes.set_title(_describe(modes, n, total), fontsize=font_size(8.0))
 
 
 def _rounded_down(value: float) -> float:
@@ -217,22 +217,21 @@ def plot_frequency_equation(
         )
     end = None if highest is None else positive("highest", highest, "ω/ω_1")
     models = {name: _models_of(each, n_modes, side) for name, each in named.items()}
-    looks = surrogate_looks(label for each in models.values() for label in each)
+    styles = model_styles(label for each in models.values() for label in each)
     with styled(size=size):
         figure = new_figure(6.3, 0.5 + 2.4 * len(named))
         panels: list[Axes] = list(figure.subplots(len(named), 1, squeeze=False).flat)
         for axes, (name, each), mark in zip(panels, models.items(), ascii_uppercase, strict=False):
-            _draw_equation(axes, each, looks, end, side)
+            _draw_equation(axes, each, styles, end, side)
             axes.set_title(literal(name))
-            letter(axes, mark)
+            label_panel(axes, mark)
         panels[-1].set_xlabel(r"$ω/ω_1$")
         handles = [
-            Line2D([], [], color=look.color, linestyle=look.dashes, linewidth=look.width, label=label)  # pyright: ignore[reportArgumentType]
-            for label, look in looks.items()
+            Line2D([], [], color=style.color, linestyle=style.dashes, linewidth=style.width, label=label)  # pyright: ignore[reportArgumentType]
+            for label, style in styles.items()
         ]
         handles.append(Line2D([], [], color=GRAY, linestyle=":", linewidth=0.9, label=r"$ω_n/ω_1$, fixed base"))
-        across = columns([str(each.get_label()) for each in handles], 0) if narrow() else len(handles)
-        figure.legend(handles=handles, loc="outside upper center", ncols=across, handlelength=2.8)
+        legend_above(figure, handles, handlelength=2.8)
     return figure
 
 
@@ -254,7 +253,7 @@ def _models_of(
 def _draw_equation(
     axes: Axes,
     models: dict[str, tuple[RockingProperties, UpliftedModes]],
-    looks: dict[str, Look],
+    styles: dict[str, LineStyle],
     highest: float | None,
     side: int | None,
 ) -> None:
@@ -268,24 +267,24 @@ def _draw_equation(
     ordinates: list[Array] = []
     notes = [(r"zeros, $ω^*_n/ω_1$", "#404040")]
     for label, (p, modes) in models.items():
-        look = looks[label]
+        style = styles[label]
         omega = _between_poles(p.omega, end * first)
         inertia = p.weaker_pivot.i_theta if side is None else p.pivot(side).i_theta
         ordinate = frequency_equation(p, omega, side=side) / (inertia * first**2)
         ordinates.append(np.abs(ordinate[np.isfinite(ordinate)]))
         axes.plot(
-            omega / first, ordinate, color=look.color, linestyle=look.dashes, linewidth=look.width,
-            label=label, zorder=2.5 - 0.1 * look.width,
+            omega / first, ordinate, color=style.color, linestyle=style.dashes, linewidth=style.width,
+            label=label, zorder=2.5 - 0.1 * style.width,
         )  # fmt: skip
         roots = modes.omega[modes.omega < end * first] / first
         axes.plot(
-            roots, np.zeros(roots.size), "o", color=look.color, markersize=3.0 + 1.5 * look.width,
-            markerfacecolor="white", markeredgewidth=1.1, zorder=3.5 - 0.1 * look.width, label=f"_{label}",
+            roots, np.zeros(roots.size), "o", color=style.color, markersize=3.0 + 1.5 * style.width,
+            markerfacecolor="white", markeredgewidth=1.1, zorder=3.5 - 0.1 * style.width, label=f"_{label}",
         )  # fmt: skip
-        notes += [(label, look.color), *((f"   {root:.3f}", look.color) for root in roots[:_NAMED_ROOTS])]
+        notes += [(label, style.color), *((f"   {root:.3f}", style.color) for root in roots[:_NAMED_ROOTS])]
     limit = float(np.percentile(np.concatenate(ordinates), _SHARE))
     axes.set(ylim=(-limit, limit), xlim=(0.0, end), ylabel=r"frequency equation / $I_θ\,ω_1^2$")
-    list_beside(axes, notes, 10.5)
+    notes_beside(axes, notes, 10.5)
 
 
 def _between_poles(poles: Array, end: float) -> Array:
@@ -349,14 +348,14 @@ def plot_frequency_ratios(
     bounds = limits if isinstance(limits, Mapping) else {} if limits is None else dict.fromkeys(named, limits)
     shown = [whole_number("modes", mode, 1) for mode in modes]
     _check_ratios(named, bounds, shown)
-    looks = surrogate_looks(str(model) for table in named.values() for model in table["model"])
+    styles = model_styles(str(model) for table in named.values() for model in table["model"])
     dashes = dict(zip(named, _DASHES, strict=False))
     with styled(size=size):
-        rows = len(shown) if narrow() else 1
+        rows = len(shown) if is_narrow() else 1
         figure = new_figure(0.6 + 2.95 * len(shown) + 0.5 * (len(shown) == 1), 0.9 + 2.6 * rows)
         panels: list[Axes] = list(figure.subplots(rows, len(shown) // rows, squeeze=False).flat)
         for axes, mode, mark_of_panel in zip(panels, shown, ascii_uppercase, strict=False):
-            top = max(_draw_ratios(axes, table, mode, looks, dashes[name]) for name, table in named.items())
+            top = max(_draw_ratios(axes, table, mode, styles, dashes[name]) for name, table in named.items())
             for name, beam in bounds.items():
                 value = float(beam.ratio[mode - 1])
                 _draw_limit(axes, value, dashes[name])
@@ -365,27 +364,28 @@ def plot_frequency_ratios(
                 axes.axvline(mark, color=GRAY, linewidth=1.2, zorder=1.5, label="_mark")
             axes.set_xscale("log")
             axes.margins(x=0.0)
-            if narrow():
+            if is_narrow():
                 label_plainly(axes.xaxis)
-            axes.set(ylim=(1.0 - (_ROOM - 1.0) * (top - 1.0), 1.0 + _ROOM * (top - 1.0) + 1e-6), xlabel=r"$h^*_1/B$")
+            axes.set(
+                ylim=(1.0 - (_MARGIN - 1.0) * (top - 1.0), 1.0 + _MARGIN * (top - 1.0) + 1e-6), xlabel=r"$h^*_1/B$"
+            )
             axes.set_ylabel(rf"$ω^*_{{{mode}}}/ω_{{{mode}}}$")
-            letter(axes, mark_of_panel)
-        handles = _ratio_handles(looks, dashes, bool(bounds), mark)
-        across = columns([str(each.get_label()) for each in handles], 0) if narrow() else 3
-        figure.legend(handles=handles, loc="outside upper center", ncols=across)
+            label_panel(axes, mark_of_panel)
+        handles = _ratio_handles(styles, dashes, bool(bounds), mark)
+        legend_above(figure, handles, max_columns=3)
     return figure
 
 
-def _draw_ratios(axes: Axes, table: "pd.DataFrame", mode: int, looks: dict[str, Look], dashes: Dashes) -> float:
+def _draw_ratios(axes: Axes, table: "pd.DataFrame", mode: int, styles: dict[str, LineStyle], dashes: Dashes) -> float:
     """Draw one curve per model that has the mode; return the largest ordinate."""
     top = 1.0
-    for model, look in looks.items():
+    for model, style in styles.items():
         rows = table[(table["model"] == model) & (table["mode"] == mode)].sort_values("aspect_ratio")
         if len(rows):
             ratio = rows["ratio"].to_numpy(dtype=float)
             axes.plot(
-                rows["aspect_ratio"].to_numpy(dtype=float), ratio, color=look.color, linestyle=dashes,
-                linewidth=look.width, label=model, zorder=2.5 - 0.1 * look.width,
+                rows["aspect_ratio"].to_numpy(dtype=float), ratio, color=style.color, linestyle=dashes,
+                linewidth=style.width, label=model, zorder=2.5 - 0.1 * style.width,
             )  # fmt: skip
             top = max(top, float(ratio.max()))
     return top
@@ -400,9 +400,9 @@ def _draw_limit(axes: Axes, value: float, dashes: Dashes) -> None:
 
 
 def _ratio_handles(
-    looks: dict[str, Look], dashes: Mapping[str, Dashes], bounded: bool, mark: float | None
+    styles: dict[str, LineStyle], dashes: Mapping[str, Dashes], bounded: bool, mark: float | None
 ) -> list[Line2D]:
-    handles = [Line2D([], [], color=look.color, linewidth=look.width, label=model) for model, look in looks.items()]
+    handles = [Line2D([], [], color=style.color, linewidth=style.width, label=model) for model, style in styles.items()]
     if list(dashes) != [""]:
         handles += [
             Line2D([], [], color="#606060", linestyle=dash, label=literal(name))  # pyright: ignore[reportArgumentType]

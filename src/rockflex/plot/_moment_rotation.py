@@ -15,19 +15,30 @@ from rockflex._errors import InputError
 from rockflex._numbers import prefixed, short
 from rockflex.modal import Pivot, RockingProperties
 from rockflex.plot._curves import Curve, curves_of, rotation_limit
-from rockflex.plot._loops import follows_a_line, resistance_of
-from rockflex.plot._style import BLACK, BLUE, GRAY, SMALL, Size, letter, narrow, new_figure, styled
+from rockflex.plot._loops import is_path_independent, resistance_of
+from rockflex.plot._style import (
+    BLACK,
+    BLUE,
+    GRAY,
+    SMALL,
+    Size,
+    is_narrow,
+    label_panel,
+    legend_above,
+    new_figure,
+    styled,
+)
 from rockflex.response import Response, base_path, push_on_springs, resistance_on_springs
 from rockflex.study import RockingStructure, properties_of
 
-_HEADROOM = 1.1
+_LIMIT = 1.1
 _PER_ROW = 3
-_FREE = r"$\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$"
-_HELD = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$"
+_WITHOUT_TENDONS = r"$\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$"
+_WITH_TENDONS = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$"
 _PATH = "resisting moment of weight and elements"
 _SPRINGS = "static, on the springs"
-_SIDED = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$ of each side"
-_ROOM = 1.18
+_EACH_SIDE = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$ of each side"
+_MARGIN = 1.18
 
 
 def plot_moment_rotation(
@@ -80,20 +91,20 @@ def plot_moment_rotation(
             "None of the responses has a base that can lift, so there is no moment over rotation to plot. "
             'Give at least one of a model that rocks, such as "2DOF-S".'
         )
-    rotation = _HEADROOM * (rotation_limit(curves) or max(map(whole_line, curves)))
+    rotation = _LIMIT * (rotation_limit(curves) or max(map(whole_line, curves)))
     largest = max(largest_moment(curve) for curve in curves)
     factor, unit = prefixed(largest, "N m")
     with styled(size=size):
-        columns = 1 if narrow() else min(len(curves), _PER_ROW)
+        columns = 1 if is_narrow() else min(len(curves), _PER_ROW)
         rows = math.ceil(len(curves) / columns)
         figure = new_figure(2.2 + 1.8 * columns, 0.6 + 2.6 * rows)
         grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
         panels: list[Axes] = list(grid.flat)
-        panels[0].set(xlim=(-rotation, rotation), ylim=(-_HEADROOM * largest / factor, _HEADROOM * largest / factor))
+        panels[0].set(xlim=(-rotation, rotation), ylim=(-_LIMIT * largest / factor, _LIMIT * largest / factor))
         panels[0].locator_params(axis="x", nbins=5)
         for axes, curve in zip(panels, curves, strict=False):
             moment = curve.history.base_moment / factor
-            axes.plot(curve.history.rotation, moment, color=curve.look.color, linewidth=0.8, label=curve.label)
+            axes.plot(curve.history.rotation, moment, color=curve.style.color, linewidth=0.8, label=curve.label)
             axes.add_line(resistance_line(curve, rotation, factor))
             axes.set_title(curve.label)
             axes.tick_params(labelbottom=True)
@@ -102,7 +113,7 @@ def plot_moment_rotation(
         figure.supxlabel("θ [rad]", fontsize="medium")
         figure.supylabel(f"$M_b$ [{unit}]", fontsize="medium")
         kinds = {line.get_label(): line for axes in panels for line in axes.get_lines()[1:]}
-        figure.legend(handles=list(kinds.values()), loc="outside upper center", handlelength=3.0)
+        legend_above(figure, list(kinds.values()), max_columns=1, handlelength=3.0)
     return figure
 
 
@@ -118,7 +129,7 @@ def largest_moment(curve: Curve) -> float:
     if curve.falls:
         moment = float(np.max(np.abs(curve.history.base_moment[curve.before_fall])))
     p = curve.history.model.properties
-    held = 0.0 if follows_a_line(p) else float(np.max(np.abs(_path(curve)[1]), initial=0.0))
+    held = 0.0 if is_path_independent(p) else float(np.max(np.abs(_path(curve)[1]), initial=0.0))
     return max(moment, held, *(pivot.resisting_moment for pivot in p.pivots))
 
 
@@ -135,7 +146,7 @@ def _path(curve: Curve) -> tuple[Array, Array]:
 
 def resistance_line(curve: Curve, rotation: float, factor: float) -> Line2D:
     p = curve.history.model.properties
-    if not follows_a_line(p):
+    if not is_path_independent(p):
         theta, moment = _path(curve)
         return Line2D(theta, moment / factor, color=BLUE, linewidth=0.8, label=_PATH, zorder=3.0)
     dashes, push = (0, (4, 2)), push_on_springs(curve.history, rotation)
@@ -147,7 +158,7 @@ def resistance_line(curve: Curve, rotation: float, factor: float) -> Line2D:
         (each.resisting_moment / factor, (each.resisting_moment + each.rocking_stiffness * rotation) / factor)
         for each in (p.pivot(1), p.pivot(-1))
     )
-    law = (_HELD if p.tendons else _FREE) if p.symmetric else _SIDED
+    law = (_WITH_TENDONS if p.tendons else _WITHOUT_TENDONS) if p.symmetric else _EACH_SIDE
     return Line2D(
         [-rotation, 0.0, 0.0, rotation], [-left[1], -left[0], *right], color=BLUE, linestyle=dashes,
         linewidth=1.1, label="static, " + law, zorder=3.0,
@@ -205,26 +216,26 @@ def plot_moment_rotation_laws(
     sides = (p.pivot(1), p.pivot(-1))
     zeros = [side.balance_rotation for side in sides]
     vanishing = [zero for zero in zeros if math.isfinite(zero)]
-    default = _ROOM * max(vanishing) if vanishing else max(each.nominal_overturning_rotation for each in sides)
+    default = _MARGIN * max(vanishing) if vanishing else max(each.nominal_overturning_rotation for each in sides)
     end = default if rotation is None else positive("rotation", rotation, "rad")
     stiffness = p.l0r * GRAVITY if spring is None else positive("spring", spring, "N m/rad")
     pushes = [_push(p, side, end) for side in (1, -1)]
     starts, lasts = ([moment[place] for _, moment in pushes] for place in (0, -1))
     largest = max(float(np.max(np.abs(moment))) for _, moment in pushes)
     factor, unit = prefixed(largest, "N m")
-    line = follows_a_line(p)
+    line = is_path_independent(p)
     if not line:
         zeros = [_first_zero(*push) for push in pushes]
     with styled(size=size):
-        figure = new_figure(6.3, 5.6 if narrow() else 3.1)
-        left, right = figure.subplots(*((2, 1) if narrow() else (1, 2)), sharex=True, sharey=True)
+        figure = new_figure(6.3, 5.6 if is_narrow() else 3.1)
+        left, right = figure.subplots(*((2, 1) if is_narrow() else (1, 2)), sharex=True, sharey=True)
         for axes, mark, title in ((left, "A", "pinned beam on a spring"), (right, "B", "rocking base")):
             axes.axhline(0.0, color=GRAY, linewidth=0.8, label="_axis")
             axes.axvline(0.0, color=GRAY, linewidth=0.8, label="_axis")
             axes.set(title=title, xlabel="θ [rad]")
             axes.tick_params(labelleft=True)
-            letter(axes, mark)
-        left.set(ylabel=f"M [{unit}]", xlim=(-end, end), ylim=(-_ROOM * largest / factor, _ROOM * largest / factor))
+            label_panel(axes, mark)
+        left.set(ylabel=f"M [{unit}]", xlim=(-end, end), ylim=(-_MARGIN * largest / factor, _MARGIN * largest / factor))
         left.locator_params(axis="x", nbins=5)
         moment = stiffness * end / factor
         left.plot([-end, end], [-moment, moment], color=BLACK, linewidth=1.4, label="pinned beam")

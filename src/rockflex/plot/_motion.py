@@ -21,11 +21,11 @@ from rockflex.plot._style import (
     RED,
     SHADE,
     Size,
-    columns,
+    font_size,
+    is_narrow,
+    legend_above,
     literal,
-    narrow,
     new_figure,
-    points,
     styled,
 )
 
@@ -33,7 +33,7 @@ _PERIODS = np.geomspace(0.02, 10.0, 240)
 _DAMPING = 0.05
 _N_PERIODS = 100
 _BEYOND = 3.0  # the figure reaches beyond the range of periods by this factor
-_ASKED = 0.9  # of the target, by EN 1998-1:2004 and ASCE 7-16
+_CODE_MINIMUM = 0.9  # of the target, by EN 1998-1:2004 and ASCE 7-16
 _NAMES = {"component": "$S_a$", "geometric mean": "geometric-mean $S_a$", "rotd50": "RotD50 $S_a$",
           "rotd100": "RotD100 $S_a$"}  # fmt: skip
 
@@ -80,17 +80,17 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
     spectrum = motion.spectrum(_PERIODS, _DAMPING)
     first = motion.significant_duration(0.0, 0.05)
     histories = [
-        ("a", "m/s²", motion.acceleration, f"{_told('pga', motion)} ({short(motion.pga / GRAVITY)} g)"),
-        ("v", "m/s", motion.velocity, _told("pgv", motion)),
-        ("d", "m", motion.displacement, _told("pgd", motion)),
+        ("a", "m/s²", motion.acceleration, f"{_measure_text('pga', motion)} ({short(motion.pga / GRAVITY)} g)"),
+        ("v", "m/s", motion.velocity, _measure_text("pgv", motion)),
+        ("d", "m", motion.displacement, _measure_text("pgd", motion)),
     ]
     if motion.vertical is not None:
         histories.insert(
-            1, ("a_v", "m/s²", motion.vertical, f"{_told('pva', motion)} ({short(motion.pva / GRAVITY)} g)")
+            1, ("a_v", "m/s²", motion.vertical, f"{_measure_text('pva', motion)} ({short(motion.pva / GRAVITY)} g)")
         )
     with styled(size=size):
-        figure = new_figure(7.2, 1.0 + 1.2 * len(histories) + 2.4 * narrow())
-        if narrow():
+        figure = new_figure(7.2, 1.0 + 1.2 * len(histories) + 2.4 * is_narrow())
+        if is_narrow():
             stacked: list[Any] = [[name] for name in (*(symbol for symbol, *_ in histories), "spectrum")]
             panels = figure.subplot_mosaic(stacked, height_ratios=(*[1.0] * len(histories), 1.7))
         else:
@@ -101,7 +101,7 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
             axes.plot(motion.time, values, color=BLACK, linewidth=0.7)
             limit = 1.1 * float(np.max(np.abs(values))) or 1.0
             axes.set(ylim=(-limit, limit), xlim=(0.0, motion.duration), ylabel=f"${symbol}$ [{unit}]")
-            axes.set_title(peak, loc="right", fontsize=points(8.0))
+            axes.set_title(peak, loc="right", fontsize=font_size(8.0))
         for symbol, *_ in histories[:-1]:
             panels[symbol].sharex(panels["d"])
             panels[symbol].tick_params(labelbottom=False)
@@ -112,18 +112,18 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
         if motion.vertical is not None:
             upwards = motion.vertical_motion.spectrum(_PERIODS, _DAMPING)
             axes.plot(upwards.period, upwards.sa, color=ORANGE, linewidth=1.2, linestyle="--", label="vertical")
-            axes.legend(loc="upper right", fontsize=points(8.0))
+            axes.legend(loc="upper right", fontsize=font_size(8.0))
             largest = max(largest, float(upwards.sa.max()))
         axes.set(xscale="log", xlim=(_PERIODS[0], _PERIODS[-1]), ylim=(0.0, 1.08 * largest or 1.0))
         axes.xaxis.set_major_formatter("{x:g}")
         axes.set(xlabel="$T$ [s]", ylabel="$S_a$ [m/s²]")
-        measures = f"{_told('arias', motion)}, {_told('d5_95', motion)} (shaded)"
-        axes.set_title(f"{measures}\nspectrum for ζ = {100.0 * _DAMPING:g} %", fontsize=points(8.0))
+        measures = f"{_measure_text('arias', motion)}, {_measure_text('d5_95', motion)} (shaded)"
+        axes.set_title(f"{measures}\nspectrum for ζ = {100.0 * _DAMPING:g} %", fontsize=font_size(8.0))
         figure.suptitle(literal(motion.name) or "ground motion", fontsize="medium")
     return figure
 
 
-def _told(name: str, motion: GroundMotion) -> str:
+def _measure_text(name: str, motion: GroundMotion) -> str:
     """Symbol, value and unit of a measure."""
     measure = MEASURES[name]
     return f"{measure.sign} = {short(measure.of(Shaking(motion)))} {measure.unit}"
@@ -181,7 +181,7 @@ def plot_selection(selection: Selection[Any], *, size: Size | None = None) -> Fi
         within = np.isin(periods, known)
         lower.plot(known, rows.mean(axis=0)[within] / target.at(known), color=BLUE, linewidth=1.4)
         lower.axhline(1.0, color=RED, linewidth=0.9)
-        lower.axhline(_ASKED, color=BLACK, linewidth=0.8, linestyle="--")
+        lower.axhline(_CODE_MINIMUM, color=BLACK, linewidth=0.8, linestyle="--")
         inside = selection.mean / target.at(selection.periods)
         bottom, top = min(0.85, float(inside.min())), max(1.15, float(inside.max()))
         lower.set(ylim=(bottom - 0.1, top + 0.1), ylabel="mean/target", xlabel="$T$ [s]")
@@ -192,10 +192,8 @@ def plot_selection(selection: Selection[Any], *, size: Size | None = None) -> Fi
             axis.set_major_formatter("{x:g}")
             axis.set_minor_formatter(NullFormatter())
         handles, labels = upper.get_legend_handles_labels()
-        figure.legend(
-            handles, labels, loc="outside upper center", ncols=min(2, columns(labels, 78)),
-            title=f"ζ = {100.0 * target.damping_ratio:g} %, {low:.3g} to {high:.3g} s", title_fontsize="medium",
-        )  # fmt: skip
+        title = f"ζ = {100.0 * target.damping_ratio:g} %, {low:.3g} to {high:.3g} s"
+        legend_above(figure, handles, labels, title=title, max_columns=2)
     return figure
 
 

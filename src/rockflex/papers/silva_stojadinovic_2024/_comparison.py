@@ -27,8 +27,8 @@ import rockflex as rf
 from rockflex.report import Check, Number
 from rockflex.report._document import as_text
 
-WIDEST = 0.5  # of the printed value: the width of an interval, above which it tells nothing
-ROUGH = 0.2  # of a value that is printed as "about" so much: how far from it ours may be
+MAX_INTERVAL_WIDTH = 0.5  # of the printed value: the width of an interval, above which it tells nothing
+APPROXIMATE = 0.2  # of a value that is printed as "about" so much: how far from it ours may be
 _WORDS = r"(?P<word>about|approximately|≈|≅)\s*"
 _NUMBER = r"[-+−]?\d[\d' ]*(?:\.\d+)?"
 _VALUE = re.compile(rf"(?:{_WORDS})?(?P<value>{_NUMBER})(?:\s*/\s*(?P<divisor>{_NUMBER}))?")
@@ -53,8 +53,8 @@ class Verdict(_Explained):
     REPRODUCED = (
         "reproduced",
         "From the input in the paper: it rounds to the printed digits (or is cut off to them, as noted), and is within "
-        f'{100.0 * ROUGH:g} % of a value printed as "about" or "approximately" so much, which is our reading; or the '
-        "criterion holds.",
+        f'{100.0 * APPROXIMATE:g} % of a value printed as "about" or "approximately" so much, which is our reading; or '
+        "the criterion holds.",
     )
     COMPATIBLE = (
         "compatible",
@@ -168,7 +168,7 @@ def range_of(printed: str, *, truncated: bool = False) -> Range:
         low, high = (value - step, high) if value < 0.0 else (low, value + step)
     rough = match["word"] is not None
     if rough:
-        low, high = max(low, value - ROUGH * abs(value)), min(high, value + ROUGH * abs(value))
+        low, high = max(low, value - APPROXIMATE * abs(value)), min(high, value + APPROXIMATE * abs(value))
     return Range(low, high, open=False, value=value, step=step, is_bound=False, rough=rough)
 
 
@@ -205,7 +205,7 @@ def compared(
     ours: float,
     unit: str = "",
     *,
-    ground: Verdict = Verdict.REPRODUCED,
+    agreed: Verdict = Verdict.REPRODUCED,
     truncated: bool = False,
     note: str = "",
 ) -> Number:
@@ -223,10 +223,10 @@ def compared(
     wanted, value = range_of(printed, truncated=truncated), float(ours)
     criterion = "must hold" if wanted.is_bound else MUST_ROUND
     if wanted.rough:
-        criterion += f", and be within {100.0 * ROUGH:g} % of it"
+        criterion += f", and be within {100.0 * APPROXIMATE:g} % of it"
     if truncated and value in wanted and value not in range_of(printed):
         criterion = "cut off, not rounded, to it"
-    verdict = ground if value in wanted else Verdict.NOT
+    verdict = agreed if value in wanted else Verdict.NOT
     return _number(name, place, printed, value, unit, criterion, verdict, wanted, note)
 
 
@@ -238,12 +238,12 @@ def stated(
     criterion: str,
     unit: str = "",
     *,
-    ground: Verdict = Verdict.REPRODUCED,
+    agreed: Verdict = Verdict.REPRODUCED,
     note: str = "",
 ) -> Number:
     """Check a statement in words by a bound, such as ``"> 1"``, on a number (rules 1 and 3)."""
     wanted, value = range_of(criterion), float(ours)
-    verdict = ground if value in wanted else Verdict.NOT
+    verdict = agreed if value in wanted else Verdict.NOT
     return Number(name, place, printed, value, unit, criterion, _digits(wanted, value), note, verdict, None, None)
 
 
@@ -252,7 +252,7 @@ def statistic(name: str, place: str, printed: str, ours: Interval, unit: str = "
     wanted = range_of(printed)
     digits = _digits_of(wanted, ours.estimate)
     known = math.isfinite(ours.low) and math.isfinite(ours.high)
-    wide = ours.high - ours.low > WIDEST * abs(wanted.value)
+    wide = ours.high - ours.low > MAX_INTERVAL_WIDTH * abs(wanted.value)
     interval = f"90 % interval {as_text(ours.low, digits)} to {as_text(ours.high, digits)}"
     if not known:
         verdict, criterion = Verdict.UNDECIDED, "too few runs for an interval"

@@ -26,7 +26,7 @@ TOWER = rf.TaperedTower(
     damping_ratio=0.02,
 )  # fmt: skip
 """The chimney of Section 4.1.1."""
-SEEDS, FEWEST, SEED = 20, 10, 2024
+SEEDS, MIN_POPULATIONS, SEED = 20, 10, 2024
 SUITES = ("fema-p695-far-field", "fema-p695-near-field-no-pulse")
 
 
@@ -67,10 +67,10 @@ class Records:
     seed: int = SEED
 
     def __post_init__(self) -> None:
-        if self.seeds < FEWEST:
+        if self.seeds < MIN_POPULATIONS:
             raise rf.InputError(
-                f"seeds must be a whole number of at least {FEWEST}, but {self.seeds!r} was given: of fewer random "
-                "populations the spread of Figs. 9 and 13 cannot be told."
+                f"seeds must be a whole number of at least {MIN_POPULATIONS}, but {self.seeds!r} was given: of fewer "
+                "random populations the spread of Figs. 9 and 13 cannot be told."
             )
         if self.seed < 0:
             raise rf.InputError(f"seed must be a whole number of at least 0, but {self.seed!r} was given.")

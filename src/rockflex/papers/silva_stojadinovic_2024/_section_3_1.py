@@ -26,9 +26,9 @@ S1 = {
     "spacing": (1.5, 1.3, 1.65),
 }
 
-equal = partial(compared, ground=Verdict.EQUIVALENT)
-holds = partial(stated, ground=Verdict.EQUIVALENT)
-BUILT = "the equivalent is built so"
+equal = partial(compared, agreed=Verdict.EQUIVALENT)
+holds = partial(stated, agreed=Verdict.EQUIVALENT)
+BY_CONSTRUCTION = "the equivalent is built so"
 
 Free = Mapping[str, tuple[float, ...]]
 Make = Callable[..., rf.RockingProperties]
@@ -66,7 +66,7 @@ def histories(properties: rf.RockingProperties, run: Run) -> dict[str, rf.Respon
     return {model: run(properties, model) for model in SPECIMEN_MODELS}
 
 
-def widest(values: Iterable[float]) -> float:
+def largest_ratio(values: Iterable[float]) -> float:
     """Return the ratio of the largest to the smallest value."""
     found = list(values)
     return max(found) / min(found)
@@ -112,19 +112,19 @@ def _numbers_3(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> list[Nu
         equal("m*_1 h*_1/L_0^r", PLACE, "0.98", lever / p.l0r, note="follows from the form chosen"),
         holds(
             "θ_max, largest over least of the four models", PLACE, "any of the four can be used for the maxima",
-            widest(r.max_rotation for r in runs.values()), "< 1.2",
+            largest_ratio(r.max_rotation for r in runs.values()), "< 1.2",
         ),
         holds(
             "u_top,max, largest over least of the four models", PLACE, "any of the four can be used for the maxima",
-            widest(r.max_top_displacement for r in runs.values()), "< 1.2",
+            largest_ratio(r.max_top_displacement for r in runs.values()), "< 1.2",
         ),
         holds(
             "θ_max of 2DOF-C and 2DOF-C-SI, larger over smaller", PLACE, "2DOF-C and 2DOF-C-SI both follow the test",
-            widest(runs[m].max_rotation for m in ("2DOF-C", "2DOF-C-SI")), "< 1.02",
+            largest_ratio(runs[m].max_rotation for m in ("2DOF-C", "2DOF-C-SI")), "< 1.02",
         ),
         holds(
             "θ_max of MDOF-S and 2DOF-S, larger over smaller", PLACE, "the simplified models are very similar",
-            widest(runs[m].max_rotation for m in ("MDOF-S", "2DOF-S")), "< 1.02",
+            largest_ratio(runs[m].max_rotation for m in ("MDOF-S", "2DOF-S")), "< 1.02",
         ),
         holds(
             "longest time off the ground, 2DOF-S over 2DOF-C", PLACE, "simplified models have shorter rocking periods",
@@ -143,9 +143,9 @@ def _numbers_3(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> list[Nu
 
 def _checks_3(p: rf.RockingProperties, complete: rf.Response) -> tuple[Check, ...]:
     return (
-        check("T_1", PLACE, "0.5", 2.0 * np.pi / p.omega[0], unit="s", note=BUILT),
-        check("m*_1/m_s,tot", PLACE, "0.92", p.effective_mass[0] / 1.0, note=BUILT),
-        check("B/h*_1", PLACE, "0.16", _slenderness(p), note=BUILT),
+        check("T_1", PLACE, "0.5", 2.0 * np.pi / p.omega[0], unit="s", note=BY_CONSTRUCTION),
+        check("m*_1/m_s,tot", PLACE, "0.92", p.effective_mass[0] / 1.0, note=BY_CONSTRUCTION),
+        check("B/h*_1", PLACE, "0.16", _slenderness(p), note=BY_CONSTRUCTION),
         check(
             "simplified over complete resisting moment, less 1, mean while rocking", PLACE, "approximately 7",
             100.0 * _excess(p, complete), unit="%", note="its size is chosen for 7 % at the uplift",
@@ -219,12 +219,12 @@ def _numbers_4(runs: dict[str, rf.Response]) -> list[Number]:
         equal("u_top,max of MDOF-S over 2DOF-S, less 1", PLACE, "about −21", change, "%", note=swept),
         holds(
             "u_top,max of the 2DOF models, largest over least", PLACE, "2DOF-C, 2DOF-S and 2DOF-C-SI almost identical",
-            widest(runs[m].max_top_displacement for m in alone), "< 1.02",
+            largest_ratio(runs[m].max_top_displacement for m in alone), "< 1.02",
         ),
         holds(
             "time of the first impact, largest over least of the four models", PLACE,
-            "all four agree for the first rocking cycle", widest(float(r.impact_times[0]) for r in runs.values()),
-            "< 1.02",
+            "all four agree for the first rocking cycle",
+            largest_ratio(float(r.impact_times[0]) for r in runs.values()), "< 1.02",
         ),
         holds(
             "friction that MDOF-S needs, Eq. 22 as printed", PLACE, "force ratios higher than 2", friction, "> 2",
@@ -237,9 +237,9 @@ def _numbers_4(runs: dict[str, rf.Response]) -> list[Number]:
 def _checks_4(p: rf.RockingProperties) -> tuple[Check, ...]:
     lever = p.effective_mass[0] * p.effective_height[0]
     return (
-        check("T_1", PLACE, "0.11", 2.0 * np.pi / p.omega[0], unit="s", note=BUILT),
-        check("m*_1/m_s,tot", PLACE, "0.48", p.effective_mass[0] / 1.0, note=BUILT),
-        check("m*_1 h*_1/L_0^r", PLACE, "0.87", lever / p.l0r, note=BUILT),
+        check("T_1", PLACE, "0.11", 2.0 * np.pi / p.omega[0], unit="s", note=BY_CONSTRUCTION),
+        check("m*_1/m_s,tot", PLACE, "0.48", p.effective_mass[0] / 1.0, note=BY_CONSTRUCTION),
+        check("m*_1 h*_1/L_0^r", PLACE, "0.87", lever / p.l0r, note=BY_CONSTRUCTION),
     )
 
 

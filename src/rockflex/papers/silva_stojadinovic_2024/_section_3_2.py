@@ -267,7 +267,7 @@ def figure_5(records: Records) -> Result:
         ),
         tendency(
             "largest difference of P between MDOF-S and a 2DOF model, flexure", PLACE, words, flexure, AGREE,
-            note=f"0.1 is our reading; {_few(runs)}",
+            note=f"0.1 is our reading; {_runs_without_rocking(runs)}",
         ),
         tendency(
             "largest difference of P between MDOF-S and a 2DOF model, flexure less shear", PLACE,
@@ -315,7 +315,7 @@ def _curve(pgv: Array, rocks: Bools, grid: Array) -> Array:
     return rf.fit_logistic(pgv, rocks).probability(grid)
 
 
-def _few(runs: "pd.DataFrame") -> str:
+def _runs_without_rocking(runs: "pd.DataFrame") -> str:
     """Show how few runs support the curves of #2, which differ the most."""
     still = runs[(runs["structure"] == "#2") & (runs["max_rotation"] <= THRESHOLD)]
     counts = still["model"].astype(str).value_counts()

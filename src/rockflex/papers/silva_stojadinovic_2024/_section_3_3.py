@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     import pandas as pd
 
 QUANTITIES = ("top_displacement", "base_shear", "base_moment")
-FEW = 5  # pairs that count as "the largest"
+N_LARGEST = 5  # pairs that count as "the largest"
 PAIRS = 1000
 DRAWS = 400
-KNOWN = 0.95  # share of the draws in which a measure must exist
+MIN_KNOWN_SHARE = 0.95  # share of the draws in which a measure must exist
 FACTOR = 0.6  # on the acceleration of the records
 FIGURE_8 = "Distribution of the random prototypes"
 RANGES = {
@@ -91,9 +91,9 @@ COMBINED = {
 }
 
 
-def measure(pairs: "pd.DataFrame") -> dict[str, float]:
+def measures_of(pairs: "pd.DataFrame") -> dict[str, float]:
     """Return outcomes, agreement and discrepancies of some pairs; NaN where there are too few."""
-    found = rf.population_statistics(pairs, n_resamples=1, n_outliers=2 * FEW)
+    found = rf.population_statistics(pairs, n_resamples=1, n_outliers=2 * N_LARGEST)
     return _outcomes(pairs) | _agreement(found) | _combination(found) | _resting(pairs) | _outliers(pairs, found)
 
 
@@ -137,8 +137,8 @@ def _resting(pairs: "pd.DataFrame") -> dict[str, float]:
         names = ("largest rotation of 2DOF-S", "stories, least of the worst", "aspect ratio of the largest")
         return dict.fromkeys(names, math.nan)
     miss = (resting["max_top_displacement_mdof"] - resting["max_top_displacement_2dof"]).abs()
-    worst = resting.loc[miss.nlargest(FEW).index]
-    tall = resting.nlargest(FEW, "max_top_displacement_mdof")
+    worst = resting.loc[miss.nlargest(N_LARGEST).index]
+    tall = resting.nlargest(N_LARGEST, "max_top_displacement_mdof")
     return {
         "largest rotation of 2DOF-S": float(resting["max_rotation_2dof"].max()),
         "stories, least of the worst": float(worst["n_stories"].min()),
@@ -148,7 +148,7 @@ def _resting(pairs: "pd.DataFrame") -> dict[str, float]:
 
 def _outliers(pairs: "pd.DataFrame", found: rf.PopulationStatistics) -> dict[str, float]:
     """Return properties of the rocking pairs with the largest differences in rotation."""
-    few = found.outliers[found.outliers["share"].notna()].head(FEW)  # none, if all overturned
+    few = found.outliers[found.outliers["share"].notna()].head(N_LARGEST)  # none, if all overturned
     return {
         "aspect ratio of outliers": float(few["aspect_ratio"].astype(float).median()),
         "stories of outliers": float(few["n_stories"].astype(float).median()),
@@ -178,23 +178,23 @@ def intervals(records: Records) -> dict[str, Interval]:
     """
     pairs, generator = pool(records), np.random.default_rng(records.seed)
     drawn = [
-        measure(pairs.iloc[np.sort(generator.choice(len(pairs), PAIRS, replace=False))].reset_index(drop=True))
+        measures_of(pairs.iloc[np.sort(generator.choice(len(pairs), PAIRS, replace=False))].reset_index(drop=True))
         for _ in range(DRAWS)
     ]
     found: dict[str, Interval] = {}
     for name in drawn[0]:
         values = np.array([each[name] for each in drawn])
         known = values[~np.isnan(values)]
-        enough = known.size >= KNOWN * DRAWS
+        enough = known.size >= MIN_KNOWN_SHARE * DRAWS
         # Quantiles are values that occur, so that counts remain integers.
         quantiles = np.quantile(known, (0.5, 0.05, 0.95), method="inverted_cdf") if enough else np.full(3, np.nan)
         found[name] = Interval(*quantiles.tolist())
     return found
 
 
-def under_weaker(records: Records, rows: Mapping[str, tuple[str, str]]) -> Remark:
+def under_weaker_records(records: Records, rows: Mapping[str, tuple[str, str]]) -> Remark:
     """Compare some measures, with their printed values, for unscaled and for weaker records."""
-    as_they_are, weaker = intervals(records), measure(_pairs(records))
+    as_they_are, weaker = intervals(records), measures_of(_pairs(records))
     return Remark(
         Kind.AFTERWARDS,
         f"All records times {FACTOR}",
@@ -257,14 +257,14 @@ def figure_9(records: Records) -> Result:
     pairs = population(records)
     return Result(
         "figure-9", FIGURE_9, numbers, {"figure-9": lambda: rf.plot_agreement(pairs)}, note,
-        remarking=(partial(_seeds, records), partial(under_weaker, records, WEAKER_ROWS)),
+        remarking=(partial(_seeds, records), partial(under_weaker_records, records, WEAKER_ROWS)),
     )  # fmt: skip
 
 
 def _seeds(records: Records) -> Remark:
     """Show the result of each seed by itself."""
     pairs = pool(records)
-    found = [measure(pairs.iloc[i : i + PAIRS].reset_index(drop=True)) for i in range(0, len(pairs), PAIRS)]
+    found = [measures_of(pairs.iloc[i : i + PAIRS].reset_index(drop=True)) for i in range(0, len(pairs), PAIRS)]
     rows: list[tuple[str, ...]] = []
     for key, (name, _, printed) in AGREEMENT.items():
         values = [each[key] for each in found]
@@ -299,7 +299,7 @@ def figure_13(records: Records) -> Result:
     )
     return Result(
         "figure-13", FIGURE_13, numbers, {"figure-13": lambda: rf.plot_modal_combination(pairs)}, note,
-        remarking=(partial(under_weaker, records, COMBINATION),),
+        remarking=(partial(under_weaker_records, records, COMBINATION),),
     )  # fmt: skip
 
 

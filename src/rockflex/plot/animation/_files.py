@@ -14,12 +14,12 @@ from scipy.spatial import KDTree
 from rockflex._errors import InputError
 from rockflex._files import path_of, writing
 from rockflex._shown import shown
-from rockflex.plot.animation._poses import Clock
-from rockflex.plot.animation._scene import Picture, Scene
+from rockflex.plot.animation._poses import Timing
+from rockflex.plot.animation._scene import AnimatedFigure, Picture
 
 GIF, MP4 = ".gif", ".mp4"
 LAST_FRAME = 100  # hundredths of a second for which the last frame stays: a fall must be seen before the GIF repeats
-COLORS = 255  # and one that is transparent
+MAX_COLORS = 255  # and one that is transparent
 _SAMPLES = 12  # frames from which the palette is taken
 _BITS = 6  # of each of red, green and blue that the palette tells apart
 _LEVELS = (1 << _BITS) - 1
@@ -55,15 +55,15 @@ def file_of(path: str | Path) -> tuple[Path, str]:
     return target, suffix
 
 
-def write_gif(target: Path, scene: Scene, clock: Clock, advance: Callable[[int], None]) -> Path:
+def write_gif(target: Path, figure: AnimatedFigure, timing: Timing, advance: Callable[[int], None]) -> Path:
     """Write the frames of a scene to a GIF that repeats; return its path."""
-    count = clock.times.size
-    palette, table = _palette([scene.picture(int(each)) for each in np.linspace(0, count - 1, _SAMPLES)])
-    shown_for = clock.hundredths
+    count = timing.times.size
+    palette, table = _palette([figure.picture(int(each)) for each in np.linspace(0, count - 1, _SAMPLES)])
+    shown_for = timing.hundredths
     shown_for[-1] += LAST_FRAME
     with writing(target) as temporary, temporary.open("wb") as file:
         before: Indices | None = None
-        for place, picture in enumerate(scene.pictures(count)):
+        for place, picture in enumerate(figure.pictures(count)):
             indices = table[_packed(picture)]
             if before is None:
                 _write(file, GifImagePlugin.getheader(_image(indices, palette), info={"loop": 0})[0])
@@ -79,10 +79,10 @@ def _palette(samples: list[Picture]) -> tuple[bytes, Indices]:
     present, often = np.unique(np.concatenate([_packed(each).ravel() for each in samples]), return_counts=True)
     # Letters and thin lines matter as much as the ground behind them: each colour counts by the root of its pixels.
     weighted = np.repeat(present, np.ceil(np.sqrt(often)).astype(int))
-    few = Image.fromarray(_colors(weighted)[None]).quantize(COLORS, Image.Quantize.MAXCOVERAGE, kmeans=1)
-    colors = np.array(few.getpalette("RGB"), np.uint8).reshape(-1, 3)[:COLORS]
+    few = Image.fromarray(_colors(weighted)[None]).quantize(MAX_COLORS, Image.Quantize.MAXCOVERAGE, kmeans=1)
+    colors = np.array(few.getpalette("RGB"), np.uint8).reshape(-1, 3)[:MAX_COLORS]
     nearest = KDTree(colors.astype(float)).query(_colors(np.arange(1 << (3 * _BITS))).astype(float))[1]
-    palette = np.zeros((COLORS + 1, 3), np.uint8)
+    palette = np.zeros((MAX_COLORS + 1, 3), np.uint8)
     palette[: colors.shape[0]] = colors
     return palette.tobytes(), np.asarray(nearest, np.uint8)
 
@@ -114,8 +114,11 @@ def _write_change(file: IO[bytes], indices: Indices, before: Indices | None, pal
         rows, columns = (np.flatnonzero(differs.any(axis=axis)) for axis in (1, 0))
         ends = (rows[0], rows[-1] + 1, columns[0], columns[-1] + 1) if rows.size else (0, 1, 0, 1)
         where = np.s_[ends[0] : ends[1], ends[2] : ends[3]]
-        offset, part = (int(ends[2]), int(ends[0])), np.where(differs[where], indices[where], COLORS).astype(np.uint8)
-    more = {"duration": 10 * hundredths, "disposal": 1, "transparency": COLORS, "interlace": 0}
+        offset, part = (
+            (int(ends[2]), int(ends[0])),
+            np.where(differs[where], indices[where], MAX_COLORS).astype(np.uint8),
+        )
+    more = {"duration": 10 * hundredths, "disposal": 1, "transparency": MAX_COLORS, "interlace": 0}
     _write(file, GifImagePlugin.getdata(_image(part, palette), offset, **more))
 
 
@@ -124,27 +127,27 @@ def _write(file: IO[bytes], blocks: list[bytes]) -> None:
         file.write(block)
 
 
-def write_video(target: Path, scene: Scene, clock: Clock, advance: Callable[[int], None]) -> Path:
+def write_video(target: Path, figure: AnimatedFigure, timing: Timing, advance: Callable[[int], None]) -> Path:
     """Write the frames of a scene to an MP4; return its path."""
     from imageio_ffmpeg import count_frames_and_secs, write_frames
 
-    count, still = clock.times.size, round(0.01 * LAST_FRAME * clock.frames_per_second)
+    count, still = timing.times.size, round(0.01 * LAST_FRAME * timing.frames_per_second)
     with writing(target, ".mp4") as temporary:  # ffmpeg chooses the format by it
-        look: dict[str, Any] = {"pix_fmt_in": "rgb24", "pix_fmt_out": "yuv420p", "codec": "libx264"}
-        look |= {
+        style: dict[str, Any] = {"pix_fmt_in": "rgb24", "pix_fmt_out": "yuv420p", "codec": "libx264"}
+        style |= {
             "macro_block_size": 1,
             "quality": None,
-            "fps": clock.frames_per_second,
+            "fps": timing.frames_per_second,
             "output_params": _OPTIONS,
             "ffmpeg_log_level": "error",
         }
-        with closing(write_frames(str(temporary), scene.size, **look)) as encoder:
+        with closing(write_frames(str(temporary), figure.size, **style)) as encoder:
             encoder.send(None)
-            for picture in scene.pictures(count):
+            for picture in figure.pictures(count):
                 encoder.send(picture)
                 advance(1)
             for _ in range(still):
-                encoder.send(scene.picture(count - 1))
+                encoder.send(figure.picture(count - 1))
         # A full disk shows only here: the encoder ends without an error.
         written = count_frames_and_secs(str(temporary))[0] if temporary.is_file() else 0
         if written != count + still:

@@ -21,18 +21,20 @@ RATES = {".gif": (1.0, 50.0), ".mp4": (1.0, 120.0)}
 """Frames per second that a file may have: viewers slow down a faster GIF."""
 
 Kind = Literal["block", "frame", "column", "mast"]
-MOST_POINTS = 60  # heights of a structure that are drawn
+MAX_POINTS = 60  # heights of a structure that are drawn
 _STORIES = (Frame, FishBone, LumpedStructure)
-_SAME = 1e-6  # relative difference of two widths of the same base
-_SLIDING = 1e-4  # m/s below which a base counts as still
-_MARKED = 0.12  # s of the animation for which an impact is marked
-ROUND = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0, 60.0, 80.0, 100.0, 150.0, 200.0, 300.0,
-         400.0, 500.0, 600.0, 800.0, 1000.0)  # fmt: skip
-VISIBLE = 0.15  # drawn displacement of the top over the size of the structure, at most
+_WIDTH_TOLERANCE = 1e-6  # relative difference of two widths of the same base
+_MIN_SLIP_SPEED = 1e-4  # m/s below which a base counts as still
+_IMPACT_SECONDS = 0.12  # s of the animation for which an impact is marked
+ROUND_FACTORS = (
+    *(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0, 60.0, 80.0, 100.0, 150.0, 200.0, 300.0),
+    *(400.0, 500.0, 600.0, 800.0, 1000.0),
+)
+MAX_DRAWN_MOTION = 0.15  # drawn displacement of the top over the size of the structure, at most
 
 
 @dataclass(frozen=True, eq=False)
-class Clock:
+class Timing:
     """The instants of the response in s that the frames show, shape (k,), and the frames per second."""
 
     times: Array
@@ -46,14 +48,14 @@ class Clock:
         return np.diff(ends).astype(int)
 
 
-def clock_of(
+def timing_of(
     curves: Sequence[Curve],
     suffix: str,
     speed: float,
     frames_per_second: float,
     start: float | None,
     stop: float | None,
-) -> Clock:
+) -> Timing:
     """Return the frames of an animation in a file with some suffix; the arguments are those of `animate`.
 
     Raises
@@ -61,7 +63,7 @@ def clock_of(
     InputError
         If one is out of range, or there would be too many frames.
     """
-    pace = positive("speed", speed, "seconds of the response per second of the animation")
+    ratio = positive("speed", speed, "seconds of the response per second of the animation")
     low, high = RATES[suffix]
     rate = real_or_nan(frames_per_second)
     if not low <= rate <= high:
@@ -81,11 +83,11 @@ def clock_of(
             f"{begin:g} and {end:g} s were given.",
             field="start",
         )
-    step = pace / rate
+    step = ratio / rate
     count = (end - begin) / step
     if count > MAX_FRAMES:
         raise InputError(
-            f"{end - begin:g} s at speed {pace:g} and {rate:g} frames per second are {count:.3g} frames, above the "
+            f"{end - begin:g} s at speed {ratio:g} and {rate:g} frames per second are {count:.3g} frames, above the "
             f"limit of {MAX_FRAMES}. Raise the speed, lower frames_per_second, or give start and stop.",
             field="speed",
         )
@@ -93,7 +95,7 @@ def clock_of(
     if end - times[-1] > 0.25 * step:
         times = np.append(times, end)
     times[-1] = end  # where a fall ends
-    return Clock(times, pace, rate)
+    return Timing(times, ratio, rate)
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,9 +150,9 @@ def outline_of(history: History, structure: Any | None, place: int) -> Outline:
         return Outline(_kind(structure), *_modal(structure, p, place), *edges)
     if p.floors is not None:
         stories = p.floors.heights.size > 1
-        return Outline("frame" if stories else "mast", *_based(p.floors.heights, p.floors.displacement), *edges)
+        return Outline("frame" if stories else "mast", *_with_base(p.floors.heights, p.floors.displacement), *edges)
     top = p.top_height or 1.25 * float(np.abs(p.effective_height).max())
-    return Outline("column", *_based(np.array([top]), p.top_ordinate[None, :]), *edges)
+    return Outline("column", *_with_base(np.array([top]), p.top_ordinate[None, :]), *edges)
 
 
 def _kind(structure: Any) -> Kind:
@@ -170,20 +172,20 @@ def _modal(structure: Any, p: RockingProperties, place: int) -> tuple[Array, Arr
             field="structure",
         )
     modes, own = structure.modal(), structure.rocking()
-    if own.n_modes < p.n_modes or abs(own.half_width - p.half_width) > _SAME * p.half_width:
+    if own.n_modes < p.n_modes or abs(own.half_width - p.half_width) > _WIDTH_TOLERANCE * p.half_width:
         raise InputError(
             f"structure is not that of responses[{place}]: it has {own.n_modes} modes and B = {own.half_width:g} m, "
             f"and the response {p.n_modes} modes and B = {p.half_width:g} m. Give what simulate was given, one for "
             "each response if they differ, or leave it out.",
             field="structure",
         )
-    return _based(modes.heights, (modes.shapes * modes.participation)[:, : p.n_modes])
+    return _with_base(modes.heights, (modes.shapes * modes.participation)[:, : p.n_modes])
 
 
-def _based(heights: Array, shapes: Array) -> tuple[Array, Array]:
+def _with_base(heights: Array, shapes: Array) -> tuple[Array, Array]:
     """Add the base, order the points by height, and leave some out where there are very many."""
     order = np.argsort(heights, kind="stable")
-    kept = order[np.unique(np.linspace(0, order.size - 1, min(MOST_POINTS, order.size)).astype(int))]
+    kept = order[np.unique(np.linspace(0, order.size - 1, min(MAX_POINTS, order.size)).astype(int))]
     return np.append(0.0, heights[kept]), np.vstack((np.zeros(shapes.shape[1]), shapes[kept]))
 
 
@@ -265,26 +267,26 @@ def poses_of(curve: Curve, outline: Outline, times: Array, speed: float) -> Pose
         sway=at.modal_displacement @ outline.shapes.T,
         rise=at.edge_uplift if model.lifts else np.zeros((times.size, 2)),
         uplifted=np.asarray(at.uplifted) if model.lifts else np.zeros(times.size, bool),
-        sliding=running & (np.abs(at.slip_velocity) > _SLIDING) if model.lifts else np.zeros(times.size, bool),
-        impact=(since < _MARKED * speed) & running,
+        sliding=running & (np.abs(at.slip_velocity) > _MIN_SLIP_SPEED) if model.lifts else np.zeros(times.size, bool),
+        impact=(since < _IMPACT_SECONDS * speed) & running,
         lifts=model.lifts,
         sprung=sprung,
     )
 
 
-def usual_amplification(curves: Sequence[Curve], poses: Sequence[Poses]) -> float:
+def default_amplification(curves: Sequence[Curve], poses: Sequence[Poses]) -> float:
     """Return the largest round number for which no structure is drawn to move by more than 0.15 of its size.
 
     At least 1, and 1 if one falls: a fall shows without it, and could not be told from a large rotation with it.
     """
     if any(curve.falls or curve.overturned for curve in curves):
         return 1.0
-    largest = max(map(_motion, poses))
-    fitting = [each for each in ROUND if each * largest <= VISIBLE]
+    largest = max(map(_largest_motion, poses))
+    fitting = [each for each in ROUND_FACTORS if each * largest <= MAX_DRAWN_MOTION]
     return fitting[-1] if fitting else 1.0
 
 
-def _motion(poses: Poses) -> float:
+def _largest_motion(poses: Poses) -> float:
     """Return the largest displacement in the frames over the size of the structure."""
     size = poses.outline.size
     turned = np.abs(poses.rotation) * size + np.abs(poses.sway).max(axis=1)

@@ -20,10 +20,10 @@ from rockflex._versions import versions_of
 from rockflex.models import SpringModel
 from rockflex.motion import GroundMotion
 from rockflex.report._write import inline
-from rockflex.report.run._checks import check_table, ground_friction, is_bedded, legend, long_runs
-from rockflex.report.run._runs import Given, given
+from rockflex.report.run._checks import check_table, ground_friction, has_bearing_area, legend, long_runs
+from rockflex.report.run._runs import ReportedRuns, checked_runs
 from rockflex.report.run._tables import (
-    FELL,
+    DAGGER,
     Fact,
     Record,
     Table,
@@ -42,79 +42,32 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 WIDTH, HEIGHT = 186.0, 272.0  # of a sheet of A4 within its margins, in mm
-FIGURE = (58.0, 160.0)  # least and largest height of the figure in mm
-SMALLEST = 0.75  # of the usual size of the type, on a sheet that is full
-LINE = 3.4  # height of a line of text in mm
-SMALL = 0.9  # size of small text over that of text
-_EM = 2.61  # mm
-_ROW, _HEAD = 0.7, 4.4  # what a row of a table has above its lines, and the heading of a part, in mm
-_LEFT, _RIGHT = 116.0, 65.0  # columns at the top in mm
-_NARROW, _WIDE = frozenset(" .,:;!|'’ijltfrI()[]/-"), frozenset("MWmw@%—…")
+FIGURE_HEIGHTS = (58.0, 160.0)  # least and largest height of the figure in mm
+MIN_SCALE = 0.75  # of the usual size of the type, on a sheet that is full
+ROW = 3.4  # height of a line of text in mm
+ROW_LETTERS = 130  # in a line over the whole width
 TEMPLATES = Path(__file__).parent / "templates"
-LONGEST = {"title": 110, "name": 70, "source": 110, "warning": 400}  # letters
-WARNINGS = 4  # texts
-_NOTES = 6  # of more, each does not have a line of its own
+MAX_LETTERS = {"title": 110, "name": 70, "source": 110, "warning": 400}  # letters
+MAX_WARNINGS = 4  # texts
+_MAX_NOTE_LINES = 6  # of more, each does not have a line of its own
 _STRIP = (65.0, 22.0)  # mm
-_DOWN, _UP = re.compile(r"([^\W\d_]\*?)_([\w*–]+)"), re.compile(r"\^(−?\d+)")
+_SUBSCRIPT, _SUPERSCRIPT = re.compile(r"([^\W\d_]\*?)_([\w*–]+)"), re.compile(r"\^(−?\d+)")
 SUFFIXES = (".html", ".htm")
 MAX_NOTES = 800  # letters of all notes
 
 
-def lines_of(text: str, width: float = WIDTH, size: float = 1.0) -> int:
-    """Return how many lines of `width` mm a text takes in type of a relative size."""
-    return max(1, math.ceil(1.04 * _length(text) * size / (width - 2.0)))
+def rows_of(text: str) -> int:
+    """Return about how many lines a text takes."""
+    return math.ceil(len(text) / ROW_LETTERS)
 
 
-def _length(text: str) -> float:
-    """Return the length of a text in one line in mm, in a font without serifs."""
-    return _EM * sum(_share(letter) for letter in text)
-
-
-def _share(letter: str) -> float:
-    if letter in _WIDE or ord(letter) >= 0x2E80:  # ideographs and symbols
-        return 1.0
-    if letter in _NARROW:
-        return 0.34
-    return 0.72 if letter.isupper() else 0.57
-
-
-def height_of_facts(facts: Sequence[Fact], width: float, columns: int) -> float:
-    """Return the height in mm of facts in some columns."""
-    share = width / columns - 4.0
-    lines = [lines_of(f"{fact.name}  {fact.cell.text} {fact.unit:6}", share) for fact in facts]
-    rows = [max(lines[place : place + columns]) for place in range(0, len(lines), columns)]
-    return sum(LINE * row + 0.2 for row in rows)
-
-
-def height_of_table(table: Table | None, *, units: bool = False) -> float:
-    """Return the height in mm of a table, whose `units` may be below its headings."""
+def table_rows(table: Table | None) -> int:
+    """Return about how many lines a table takes with its heading."""
     if table is None:
-        return 0.0
-    rows = [[name for name, _ in table.heads], *([cell.text for cell in row] for row in table.rows)]
-    widths = [max(_length(row[place]) for row in rows) + 1.7 for place in range(len(table.heads))]
-    if units:  # numbers do not wrap, their headings may
-        return 3.0 * LINE + _ROW + len(table.rows) * (LINE + _ROW)
-    lines = math.ceil(1.04 * sum(widths) / WIDTH)
-    return LINE + _ROW + len(table.rows) * (lines * LINE + _ROW)
-
-
-def height_above(facts: Sequence[Fact], modes: Table | None, kind: str) -> float:
-    """Return the height in mm of the structure."""
-    table = 0.0 if modes is None else 1.2 + 2.0 * LINE + _ROW + len(modes.rows) * (LINE + _ROW)
-    return _HEAD + LINE * (lines_of(f"Structure {kind}", _LEFT, 1.2) - 1) + height_of_facts(facts, _LEFT, 2) + table
-
-
-def height_beside(facts: Sequence[Fact], name: str, source: str) -> float:
-    """Return the height in mm of the record with its strip."""
-    told = LINE * lines_of(source, _RIGHT, SMALL) if source else 0.0
-    return (
-        _HEAD + LINE * (lines_of(f"Record {name}", _RIGHT, 1.2) - 1) + told + 23.0 + height_of_facts(facts, _RIGHT, 1)
-    )
-
-
-def part(*heights: float) -> float:
-    """Return the height in mm of a part with its heading and the gap below it."""
-    return _HEAD + sum(heights) + 1.5
+        return 0
+    cells = [[name for name, _ in table.heads], *([cell.text for cell in row] for row in table.rows)]
+    across = sum(1 + max(map(len, column)) for column in zip(*cells, strict=True))
+    return 3 + len(table.rows) * math.ceil(across / ROW_LETTERS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,52 +91,29 @@ class Page:
     inputs: str
 
     @property
-    def needed(self) -> float:
-        """Height in mm of all but the figure, the warnings and the notes."""
-        record = self.record
-        above = height_above(self.facts, self.modes, shortened(self.kind, LONGEST["name"]))
-        source = shortened(record.source, LONGEST["source"])
-        beside = height_beside(record.facts, shortened(record.name, LONGEST["name"]), source)
-        base = sum(LINE * lines_of(f"{head}. {text}") for head, text in self.lines)
-        return (
-            5.2 * lines_of(self.title, WIDTH - 40.0, 1.75) + 3.0
-            + max(above, beside) + 1.5
-            + (part(base, height_of_table(self.elements)) if self.lines or self.elements else 0.0)
-            + part(height_of_table(self.peaks, units=True))
-            + part(height_of_table(self.checks), LINE * lines_of(" ".join(self.legend), size=SMALL))
-            + LINE * lines_of(self.versions, WIDTH - 40.0, SMALL) + 4.0
-        )  # fmt: skip
+    def height(self) -> float:
+        """About the height in mm of all but the figure: the browser makes the layout, and the figure takes the rest."""
+        structure = len(self.facts) / 2 + (0 if self.modes is None else 2 + len(self.modes.rows))
+        record = 8 + len(self.record.facts)
+        lines = sum(rows_of(f"{head} {text}") for head, text in self.lines)
+        tables = table_rows(self.elements) + table_rows(self.peaks) + table_rows(self.checks)
+        texts = rows_of(" ".join(self.legend)) + sum(map(rows_of, (*self.warnings, *self.notes)))
+        return ROW * (6 + rows_of(self.title) + max(structure, record) + lines + tables + texts)
 
     @property
     def scale(self) -> float:
-        """Size of everything on the sheet: 1, or less where that makes room for the warnings and notes."""
-        told = LINE * sum(self.lines_of_texts(10**6)) + 3.0
-        return min(1.0, max(SMALLEST, HEIGHT / (self.needed + FIGURE[0] + told)))
+        """Size of everything on the sheet: 1, or less to make room for all texts."""
+        return min(1.0, max(MIN_SCALE, HEIGHT / (self.height + FIGURE_HEIGHTS[0])))
 
     @property
-    def held(self) -> list[int]:
-        """Lines of each warning and then of each note, which are cut off after these."""
-        return self.lines_of_texts(max(0, math.floor((HEIGHT / self.scale - self.needed - FIGURE[0] - 3.0) / LINE)))
-
-    @property
-    def room(self) -> float:
-        """Height in mm that is left for the figure, before it is scaled."""
-        left = HEIGHT / self.scale - self.needed - LINE * sum(self.held) - 3.0
-        return min(max(left, FIGURE[0]), FIGURE[1])
-
-    def lines_of_texts(self, most: int) -> list[int]:
-        """Return the lines that each warning and each note has, one at least, if there is room for `most` lines."""
-        lines: list[int] = []
-        texts = [*(f"Warning. {each}" for each in self.warnings), *self.notes]
-        for place, text in enumerate(texts):
-            after = len(texts) - place - 1
-            lines.append(max(1, min(lines_of(text, WIDTH - 2.0), most - after)))
-            most -= lines[-1]
-        return lines
+    def figure_height(self) -> float:
+        """Height in mm for which the figure is drawn, before it is scaled."""
+        low, high = FIGURE_HEIGHTS
+        return min(max(HEIGHT / self.scale - self.height, low), high)
 
 
 def page_of(
-    about: Given,
+    report: ReportedRuns,
     *,
     title: str | None,
     date: str,
@@ -193,58 +123,59 @@ def page_of(
     omitted: Collection[str] = (),
 ) -> Page:
     """Put together what a page shows; for the labels in `omitted` nothing is computed that takes long."""
-    left_out = long_runs(about).union(omitted)
-    known = about.properties if about.structure is None else about.structure
-    record, kind = record_of(about), kind_of(known)
+    left_out = long_runs(report).union(omitted)
+    known = report.properties if report.structure is None else report.structure
+    record, kind = record_of(report), kind_of(known)
     if not title:
         title = f"{kind} under {record.name or 'a ground motion'}"
-    fell = any(run.status == "overturned" for run in about.responses)
-    own = [f"{FELL} The values of a run that overturned include its fall."] * fell
-    sliding = [ground_friction(each.model) is not None for each in about.histories]
-    told = legend(
-        friction, sided=about.properties.eccentricity != 0.0, slides=any(sliding), stays=not all(sliding),
-        omitted=bool(left_out), held=bool(about.properties.elements), bedded=any(map(is_bedded, about.histories)),
-        impacts=any(follows_law(each.model) for each in about.histories),
+    fell = any(run.status == "overturned" for run in report.responses)
+    own = [f"{DAGGER} The values of a run that overturned include its fall."] * fell
+    sliding = [ground_friction(each.model) is not None for each in report.histories]
+    texts = legend(
+        friction, sided=report.properties.eccentricity != 0.0, slides=any(sliding), stays=not all(sliding),
+        omitted=bool(left_out), held=bool(report.properties.elements),
+        bedded=any(map(has_bearing_area, report.histories)),
+        impacts=any(follows_law(each.model) for each in report.histories),
     )  # fmt: skip
     return Page(
-        title=shortened(title, LONGEST["title"]),
+        title=shortened(title, MAX_LETTERS["title"]),
         date=date,
         kind=kind,
-        facts=structure_facts(about.properties),
-        modes=mode_table(about.properties),
+        facts=structure_facts(report.properties),
+        modes=mode_table(report.properties),
         record=record,
-        lines=assumption_lines(about),
-        elements=element_table(about),
-        peaks=peak_table(about),
-        checks=check_table(about, friction, left_out),
-        legend=[*own, *told],
-        warnings=_few([*warnings, *_warnings(about, left_out)]),
+        lines=assumption_lines(report),
+        elements=element_table(report),
+        peaks=peak_table(report),
+        checks=check_table(report, friction, left_out),
+        legend=[*own, *texts],
+        warnings=_first_warnings([*warnings, *_warnings(report, left_out)]),
         notes=_run_together(notes),
         versions=", ".join(f"{name} {version}" for name, version in _versions().items()),
-        inputs=fingerprint(about, record),
+        inputs=fingerprint(report, record),
     )
 
 
-def html_of(page: Page, about: Given) -> str:
+def html_of(page: Page, report: ReportedRuns) -> str:
     """Return a page as HTML with its figures."""
     from markupsafe import Markup
 
     from rockflex.plot import record_strip, run_sheet, svg_of
 
-    sheet = run_sheet(about.responses, about.labels, width=WIDTH / page.scale, height=page.room)
+    sheet = run_sheet(report.responses, report.labels, width=WIDTH / page.scale, height=page.figure_height)
     strip = record_strip(page.record.time, page.record.acceleration, width=_STRIP[0], height=_STRIP[1])
     drawings = {
         "sheet": Markup(inline(svg_of(sheet), "sheet", "Histories and loops of all models")),
         "strip": Markup(inline(svg_of(strip), "strip", "Ground acceleration")),
     }
     template = _environment().get_template("run.html.jinja")
-    return template.render(page=page, longest=LONGEST, **drawings)
+    return template.render(page=page, max_letters=MAX_LETTERS, **drawings)
 
 
-def _warnings(about: Given, omitted: Collection[str]) -> list[str]:
+def _warnings(report: ReportedRuns, omitted: Collection[str]) -> list[str]:
     """Return the warnings of the runs, each with its models; for the labels in `omitted` those of the peaks only."""
     found: dict[str, list[str]] = {}
-    for label, run in zip(about.labels, about.responses, strict=True):
+    for label, run in zip(report.labels, report.responses, strict=True):
         for text in warnings_of(run.model, run.peaks()) if label in omitted else run.warnings:
             found.setdefault(text, []).append(label)
     return [f"{', '.join(labels)}: {text}" for text, labels in found.items()]
@@ -253,13 +184,13 @@ def _warnings(about: Given, omitted: Collection[str]) -> list[str]:
 def _run_together(notes: Sequence[str]) -> list[str]:
     """Return the notes without breaks of lines; many of them as one paragraph."""
     texts = [text for text in (" ".join(note.split()) for note in notes) if text]
-    return texts if len(texts) <= _NOTES else [" • ".join(texts)]
+    return texts if len(texts) <= _MAX_NOTE_LINES else [" • ".join(texts)]
 
 
-def _few(texts: Sequence[str]) -> list[str]:
-    rest = len(texts) - WARNINGS
+def _first_warnings(texts: Sequence[str]) -> list[str]:
+    rest = len(texts) - MAX_WARNINGS
     return [
-        *(shortened(text, LONGEST["warning"]) for text in texts[:WARNINGS]),
+        *(shortened(text, MAX_LETTERS["warning"]) for text in texts[:MAX_WARNINGS]),
         *([f"and {counted(rest, 'more warning')}; see the responses"] if rest > 0 else []),
     ]
 
@@ -287,8 +218,8 @@ def _symbols(text: str) -> str:
     """Set what follows "_" as an index and what follows "^" as an exponent."""
     from markupsafe import Markup, escape
 
-    lowered = _DOWN.sub(r"\1<sub>\2</sub>", str(escape(text)))
-    return Markup(_UP.sub(r"<sup>\1</sup>", lowered))
+    lowered = _SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text)))
+    return Markup(_SUPERSCRIPT.sub(r"<sup>\1</sup>", lowered))
 
 
 def write_report(
@@ -385,18 +316,18 @@ def report_html(
     """Return the page of `write_report` as text; no energies and no friction of the models in `omitted`."""
     heading, day = _heading(title), _day(date)
     coefficient = None if friction is None else _coefficient(friction)
-    told = _notes(notes)
-    about = given(responses, structure, motion)
+    texts = _notes(notes)
+    report = checked_runs(responses, structure, motion)
     page = page_of(
-        about,
+        report,
         title=heading,
         date=day,
         friction=coefficient,
-        warnings=_structure_warnings(about.properties if structure is None else structure),
-        notes=told,
+        warnings=_structure_warnings(report.properties if structure is None else structure),
+        notes=texts,
         omitted=omitted,
     )
-    return html_of(page, about)
+    return html_of(page, report)
 
 
 def checked_path(name: str, path: str | Path) -> Path:
@@ -461,14 +392,14 @@ def _structure_warnings(structure: Any) -> tuple[str, ...]:
     return structure_warnings(structure)
 
 
-def fingerprint(about: Given, record: Record) -> str:
+def fingerprint(report: ReportedRuns, record: Record) -> str:
     """Return the hash of structure, ground, record, and what each run assumed and started from."""
-    p = about.properties
+    p = report.properties
     numbers: list[Any] = [record.time, record.acceleration, record.vertical]
     numbers += [p.omega, p.effective_mass, p.effective_height, p.zeta, p.top_ordinate]
     numbers.append([p.i_theta, p.l0r, p.m_tot, p.half_width, p.translational_inertia, p.eccentricity])
-    texts = [repr((p.elements, about.labels))]
-    for history in about.histories:
+    texts = [repr((p.elements, report.labels))]
+    for history in report.histories:
         model = history.model
         # What follows from the inputs, as rest on springs does, has errors of rounding.
         numbers += [[float(f"{value:.6g}") for value in history.states[0].tolist()], *_ground_numbers(model)]

@@ -14,14 +14,14 @@ from rockflex.modal import RockingProperties
 from rockflex.motion import GroundMotion
 from rockflex.response import History, Response
 
-MOST = 6  # runs, for which a page has room
+MAX_RUNS = 6  # runs, for which a page has room
 _HOW = 'Give what simulate(..., output="history") returned, or several of these.'
-_SAME = ("m_tot", "half_width", "l0r", "i_theta", "eccentricity")
-_CLOSE = 1e-6
+_COMPARED = ("m_tot", "half_width", "l0r", "i_theta", "eccentricity")
+_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Given:
+class ReportedRuns:
     """What a report is about.
 
     Attributes
@@ -52,7 +52,7 @@ class Given:
         return max(self.histories, key=lambda h: (h.model.lifts, h.model.properties.n_modes))
 
 
-def given(responses: Response | Iterable[Response], structure: Any, motion: Any) -> Given:
+def checked_runs(responses: Response | Iterable[Response], structure: Any, motion: Any) -> ReportedRuns:
     """Check what a report is to be made of.
 
     Raises
@@ -76,7 +76,7 @@ def given(responses: Response | Iterable[Response], structure: Any, motion: Any)
     for run in runs:
         seen[run.model] += 1
         labels.append(run.model if counts[run.model] == 1 else f"{run.model} ({seen[run.model]})")
-    return Given(runs, histories, tuple(labels), properties, structure, motion, scale)
+    return ReportedRuns(runs, histories, tuple(labels), properties, structure, motion, scale)
 
 
 def _runs(responses: Any) -> tuple[Response, ...]:
@@ -94,9 +94,9 @@ def _runs(responses: Any) -> tuple[Response, ...]:
             )
     if not runs:
         raise InputError(f"There is no response to report. {_HOW}", field="responses")
-    if len(runs) > MOST:
+    if len(runs) > MAX_RUNS:
         raise InputError(
-            f"A page has room for {MOST} runs, but {len(runs)} were given. Choose the models that matter, or write "
+            f"A page has room for {MAX_RUNS} runs, but {len(runs)} were given. Choose the models that matter, or write "
             "several reports.",
             field="responses",
         )
@@ -127,18 +127,18 @@ def _differing(motions: list[str], histories: tuple[History, ...]) -> str:
 
 def _same_ground(one: History, other: History, of: str = "ground_acceleration") -> bool:
     """Whether two runs had the same ground acceleration, or that named by `of`, while both lasted."""
-    jumps = one.time[~_single(one.time)]
-    kept = (other.time <= one.time[-1]) & _single(other.time) & ~np.isin(other.time, jumps)
+    jumps = one.time[~_without_jumps(one.time)]
+    kept = (other.time <= one.time[-1]) & _without_jumps(other.time) & ~np.isin(other.time, jumps)
     there: Array = getattr(one, of)
     here: Array = getattr(other, of)
     return _equal(np.interp(other.time[kept], one.time, there), here[kept], float(np.max(np.abs(there))))
 
 
 def _equal(one: Array, other: Array, largest: float) -> bool:
-    return bool(np.max(np.abs(one - other), initial=0.0) <= _CLOSE * largest)
+    return bool(np.max(np.abs(one - other), initial=0.0) <= _TOLERANCE * largest)
 
 
-def _single(time: Array) -> Bools:
+def _without_jumps(time: Array) -> Bools:
     """Return which instants have one row; where there are two, the acceleration may jump, as at the end of a record."""
     double = np.diff(time) == 0.0
     return ~(np.append(double, False) | np.append(False, double))
@@ -150,9 +150,9 @@ def _properties(structure: Any, histories: tuple[History, ...]) -> RockingProper
     whole = known if structure is None else _rocking(structure)
     for history in histories:
         ran = history.model.properties
-        differing = [name for name in _SAME if not _close(getattr(ran, name), getattr(whole, name))]
+        differing = [name for name in _COMPARED if not _close(getattr(ran, name), getattr(whole, name))]
         modes = min(ran.n_modes, whole.n_modes)
-        if not np.allclose(ran.omega[:modes], whole.omega[:modes], rtol=_CLOSE, atol=0.0):
+        if not np.allclose(ran.omega[:modes], whole.omega[:modes], rtol=_TOLERANCE, atol=0.0):
             differing.append("omega")
         if differing:
             first = differing[0]
@@ -180,7 +180,7 @@ def _plain(value: Any) -> Any:
 
 
 def _close(one: float, other: float) -> bool:
-    return bool(np.isclose(one, other, rtol=_CLOSE, atol=0.0))
+    return bool(np.isclose(one, other, rtol=_TOLERANCE, atol=0.0))
 
 
 def _scale(motion: Any, history: History, name: str) -> float:
@@ -191,7 +191,7 @@ def _scale(motion: Any, history: History, name: str) -> float:
             field="motion",
         )
     # At its end a record may jump to zero, and a run that ends there has one side of the jump only.
-    kept = (history.time < (1.0 - _CLOSE) * motion.duration) & _single(history.time)
+    kept = (history.time < (1.0 - _TOLERANCE) * motion.duration) & _without_jumps(history.time)
     time, ran = history.time[kept], history.ground_acceleration[kept]
     record = np.interp(time, motion.time, motion.acceleration)
     size = float(record @ record)

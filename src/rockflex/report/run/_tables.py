@@ -23,7 +23,7 @@ from rockflex.modal import (
 )
 from rockflex.models import Restitution, RockingModel, SidedRestitution, SpringModel
 from rockflex.motion import GroundMotion
-from rockflex.report.run._runs import Given
+from rockflex.report.run._runs import ReportedRuns
 from rockflex.response import History, Response
 
 MAX_MODES = 4  # modes
@@ -32,7 +32,7 @@ MAX_COORDINATES = 3  # modes
 MAX_ELEMENTS = 6  # elements
 _LAW, _INITIAL = "Impact law", "Initial state"
 STATUS = {"no_uplift": "no uplift", "rocking": "rocking", "overturned": "overturned"}
-FELL = "†"
+DAGGER = "†"
 
 
 @dataclass(frozen=True)
@@ -74,14 +74,14 @@ class Table:
     rows: Sequence[Sequence[Cell]]
 
 
-def shows(value: float | None, of: str, size: float = 1.0, digits: int = 3, *, wrong: bool = False) -> Cell:
+def value_cell(value: float | None, of: str, size: float = 1.0, digits: int = 3, *, wrong: bool = False) -> Cell:
     """Return the cell of a value in units of `size`."""
     return Cell(rounded(None if value is None else value / size, digits), value, of, wrong)
 
 
 def fact(name: str, value: float, unit: str, of: str, size: float = 1.0, digits: int = 3) -> Fact:
     """Return a fact with a value in units of `size`, whose name is `unit`."""
-    return Fact(name, shows(value, of, size, digits), unit)
+    return Fact(name, value_cell(value, of, size, digits), unit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,15 +106,15 @@ class Record:
     facts: list[Fact]
 
 
-def record_of(about: Given) -> Record:
+def record_of(report: ReportedRuns) -> Record:
     """Return the record of the runs: from the motion if it is known, otherwise from the longest history."""
-    name = about.responses[0].motion
-    longest = max(range(len(about.histories)), key=lambda place: float(about.histories[place].time[-1]))
-    history, run = about.histories[longest], about.responses[longest]
+    name = report.responses[0].motion
+    longest = max(range(len(report.histories)), key=lambda place: float(report.histories[place].time[-1]))
+    history, run = report.histories[longest], report.responses[longest]
     ends = fact("Length of the run", float(history.time[-1]), "s", "end_time")
     pva = float(np.max(np.abs(history.vertical_ground_acceleration), initial=0.0))
     vertical = [fact("PVA, vertical", pva, "g", "pva", GRAVITY)] if pva > 0.0 else []
-    if about.motion is None:
+    if report.motion is None:
         time, acceleration = history.time, history.ground_acceleration
         steps = 0.5 * (acceleration[1:] + acceleration[:-1]) * np.diff(time)
         pgv = float(np.max(np.abs(np.cumsum(steps)), initial=0.0))
@@ -123,8 +123,8 @@ def record_of(about: Given) -> Record:
         cut = " during the run" if run.status == "overturned" else ""
         facts = [fact(f"PGA{cut}", pga, "g", "pga", GRAVITY), fact(f"PGV{cut}", pgv, "m/s", "pgv"), *vertical, ends]
         return Record(name, "", time, acceleration, history.vertical_ground_acceleration, facts)
-    motion = about.motion.scaled(about.scale)
-    scale = about.scale if motion.metadata is None or motion.metadata.scale is None else motion.metadata.scale
+    motion = report.motion.scaled(report.scale)
+    scale = report.scale if motion.metadata is None or motion.metadata.scale is None else motion.metadata.scale
     facts = [
         Fact("Scale", Cell(f"{scale:.6g}", scale, "scale")),
         fact("PGA", motion.pga, "g", "pga", GRAVITY),
@@ -217,18 +217,18 @@ def mode_table(p: RockingProperties) -> Table | None:
         rows.append(
             [
                 Cell(str(n + 1)),
-                shows(2.0 * math.pi / float(p.omega[n]), "period"),
-                shows(beyond, "uplifted_period"),
-                shows(float(shares[n]), "mass_share", 0.01),
-                shows(float(p.effective_height[n]), "effective_height"),
-                shows(float(p.zeta[n]), "zeta", 0.01),
-                shows(damped, "uplifted_damping_ratio", 0.01),
+                value_cell(2.0 * math.pi / float(p.omega[n]), "period"),
+                value_cell(beyond, "uplifted_period"),
+                value_cell(float(shares[n]), "mass_share", 0.01),
+                value_cell(float(p.effective_height[n]), "effective_height"),
+                value_cell(float(p.zeta[n]), "zeta", 0.01),
+                value_cell(damped, "uplifted_damping_ratio", 0.01),
             ]
         )
     total = Cell(f"1–{p.n_modes}" if p.n_modes > MAX_MODES else "Σ")
     if p.n_modes > 1:
         empty = Cell("")
-        rows.append([total, empty, empty, shows(float(np.sum(shares)), "mass_share", 0.01), empty, empty, empty])
+        rows.append([total, empty, empty, value_cell(float(np.sum(shares)), "mass_share", 0.01), empty, empty, empty])
     share = "m*_n/m_tot" if p.base_mass is None else "m*_n/Σm"
     heads = [("mode", ""), ("T_n", "s"), ("T*_n", "s"), (share, "%"), ("h*_n", "m"), ("ζ_n", "%"), ("ζ*_n", "%")]
     return Table(heads, rows)
@@ -258,8 +258,8 @@ def initial_state(history: History) -> str:
         *((f"D_{k + 1}", 1e3 * layout.of(state, k)[0], "mm") for k in range(n)),
         *((f"D′_{k + 1}", layout.of(state, n + k)[0], "m/s") for k in range(n)),
     ]
-    told = [f"{name} = {rounded(float(value))} {unit}" for name, value, unit in values if np.abs(value) > 1e-12]
-    return ", ".join([*told[: 2 + MAX_COORDINATES], *(["…"] if len(told) > 2 + MAX_COORDINATES else [])])
+    shown = [f"{name} = {rounded(float(value))} {unit}" for name, value, unit in values if np.abs(value) > 1e-12]
+    return ", ".join([*shown[: 2 + MAX_COORDINATES], *(["…"] if len(shown) > 2 + MAX_COORDINATES else [])])
 
 
 def starts_uplifted(history: History) -> bool:
@@ -267,18 +267,18 @@ def starts_uplifted(history: History) -> bool:
     return bool(history.uplifted[0])
 
 
-def assumption_lines(about: Given) -> list[tuple[str, str]]:
+def assumption_lines(report: ReportedRuns) -> list[tuple[str, str]]:
     """Return impact laws, hysteresis, ground and initial states as headed lines.
 
     What does not hold for all runs, or an impact law for all that have one, is followed by the labels of its runs.
     """
     found: dict[str, dict[str, list[str]]] = {head: {} for head in (_LAW, "Hysteresis", "Ground", "Friction", _INITIAL)}
-    for label, history in zip(about.labels, about.histories, strict=True):
+    for label, history in zip(report.labels, report.histories, strict=True):
         for head, text in _lines_of(history):
             found[head].setdefault(text, []).append(label)
     lines: list[tuple[str, str]] = []
     for head, texts in found.items():
-        among = sum(map(len, texts.values())) if head == _LAW else len(about.labels)
+        among = sum(map(len, texts.values())) if head == _LAW else len(report.labels)
         each = [text if len(runs) == among else f"{text} ({', '.join(runs)})" for text, runs in texts.items()]
         lines += [(head, "; ".join(each))] if each else []
     return lines
@@ -351,13 +351,13 @@ def ground_friction(model: Any) -> tuple[float, float] | None:
     return float(values.min()), float(values.max())
 
 
-def element_table(about: Given) -> Table | None:
+def element_table(report: ReportedRuns) -> Table | None:
     """Return the elements of the base with their largest forces and elongations among the runs that lift.
 
     Returns None if there are none, or no run lifts.
     """
-    elements = about.properties.elements
-    runs = [run for run, history in zip(about.responses, about.histories, strict=True) if history.model.lifts]
+    elements = report.properties.elements
+    runs = [run for run, history in zip(report.responses, report.histories, strict=True) if history.model.lifts]
     if not elements or not runs:
         return None
     heads = [("element", ""), ("x", "m"), ("properties", ""), ("F_max", "kN"), ("δ_max", "mm"), ("state", "")]
@@ -376,10 +376,10 @@ def _row(place: int, elements: Sequence[BaseElement], runs: Sequence[Response]) 
     name, properties, state = _describe_element(element)
     return [
         Cell(f"{place + 1} {name}"),
-        shows(element.position, "position"),
+        value_cell(element.position, "position"),
         Cell(properties),
-        shows(force, f"max_element_force_{place + 1}", 1e3),
-        shows(elongation, f"max_element_elongation_{place + 1}", 1e-3),
+        value_cell(force, f"max_element_force_{place + 1}", 1e3),
+        value_cell(elongation, f"max_element_elongation_{place + 1}", 1e-3),
         Cell(state[yielded], None, "", yielded and isinstance(element, Tendon)),
     ]
 
@@ -435,24 +435,24 @@ class _Column:
     value: Callable[[Response], float | None]
 
 
-def peak_table(about: Given) -> Table:
+def peak_table(report: ReportedRuns) -> Table:
     """Return the largest values of every run, with columns for what its base and ground do."""
-    columns = _columns(about)
+    columns = _columns(report)
     rows: list[list[Cell]] = []
-    for label, run, history in zip(about.labels, about.responses, about.histories, strict=True):
+    for label, run, history in zip(report.labels, report.responses, report.histories, strict=True):
         fell = run.status == "overturned"
         passed = run.nominal_overturning
         words = STATUS[run.status] if history.model.lifts else "fixed base"
-        status = Cell(f"{words} {FELL}" if fell else words, None, "status", passed)
-        cells = [shows(column.value(run), column.of, column.size) for column in columns]
+        status = Cell(f"{words} {DAGGER}" if fell else words, None, "status", passed)
+        cells = [value_cell(column.value(run), column.of, column.size) for column in columns]
         rows.append([Cell(label), status, *cells, Cell(str(run.n_uplifts), run.n_uplifts, "n_uplifts")])
     heads = [("model", ""), ("status", ""), *((column.name, column.unit) for column in columns), ("uplifts", "")]
     return Table(heads, rows)
 
 
-def _columns(about: Given) -> list[_Column]:
-    runs = about.responses
-    models: list[RockingModel] = [history.model for history in about.histories]
+def _columns(report: ReportedRuns) -> list[_Column]:
+    runs = report.responses
+    models: list[RockingModel] = [history.model for history in report.histories]
     size, unit = moment_unit(max(run.max_base_moment for run in runs))
 
     def peak(name: str) -> Callable[[Response], float]:
@@ -465,7 +465,7 @@ def _columns(about: Given) -> list[_Column]:
             "%",
             0.01,
             "nominal_share",
-            lambda run: _share(about, run),
+            lambda run: _share(report, run),
         ),
         _Column("u_top relative", "mm", 1e-3, "max_top_displacement", peak("max_top_displacement")),
         _Column("u_top total", "mm", 1e-3, "max_total_top_displacement", peak("max_total_top_displacement")),
@@ -487,10 +487,10 @@ def _columns(about: Given) -> list[_Column]:
     return columns
 
 
-def _share(about: Given, run: Response) -> float | None:
+def _share(report: ReportedRuns, run: Response) -> float | None:
     if run.status == "overturned" or run.history is None:
         return None
-    return nominal_share(about.properties, run, run.history)
+    return nominal_share(report.properties, run, run.history)
 
 
 def _floor_acceleration(run: Response) -> float | None:

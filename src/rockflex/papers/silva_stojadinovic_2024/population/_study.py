@@ -45,8 +45,8 @@ COMBINED = "max_second_displacement_mdof srss_top_displacement srss_base_shear s
 
 Result = TypeVar("Result")
 
-TOGETHER = 64  # structures that are prepared together
-MOST = 2**32 - 1  # pairs with different random numbers
+BATCH_SIZE = 64  # structures that are prepared together
+MAX_PAIRS = 2**32 - 1  # pairs with different random numbers
 
 
 @dataclass(frozen=True)
@@ -153,7 +153,7 @@ class PopulationStudy(Spec):
 
     study: Literal["population"] = Field("population", description='"population"')
     pairs: int = Field(
-        1000, ge=1, le=MOST, description="the number of random structures, a whole number from 1 to 4294967295"
+        1000, ge=1, le=MAX_PAIRS, description="the number of random structures, a whole number from 1 to 4294967295"
     )
     seed: int = Field(0, ge=0, description="what the draws depend on, a whole number of at least 0")
     free_vibration: FreeVibration = 0.0
@@ -219,7 +219,9 @@ class PopulationPlan(ChunkedPlan):
 
     def rows(self, units: Sequence[int]) -> list[Row]:
         """Draw a structure a unit, and simulate it with both models; some at a time."""
-        return [row for first in range(0, len(units), TOGETHER) for row in self._rows(units[first : first + TOGETHER])]
+        return [
+            row for first in range(0, len(units), BATCH_SIZE) for row in self._rows(units[first : first + BATCH_SIZE])
+        ]
 
     def _rows(self, units: Sequence[int]) -> list[Row]:
         """Do each step for all structures before the next one, so that its code stays in the processor's cache."""
@@ -364,7 +366,7 @@ def run_population(
     1     1          4   flexure     rocking     rocking
     2     2          3   flexure     rocking     rocking
     """
-    count, start = whole_number("pairs", pairs, 1, MOST), whole_number("seed", seed, 0)
+    count, start = whole_number("pairs", pairs, 1, MAX_PAIRS), whole_number("seed", seed, 0)
     suite = motions if isinstance(motions, Suite) else Suite(motions_of(motions))
     free, limit = free_vibration_time(free_vibration), work_limit_of(work_limit)
     return run_plan(PopulationPlan(suite, count, start, free, 32, limit), workers, progress)

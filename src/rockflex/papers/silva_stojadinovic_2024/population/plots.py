@@ -17,13 +17,27 @@ from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.plot._study_tables import MARKERS, check_columns, measure_name
-from rockflex.plot._style import BLUE, GRAY, GREEN, ORANGE, RED, SMALL, Size, letter, narrow, new_figure, points, styled
+from rockflex.plot._style import (
+    BLUE,
+    GRAY,
+    GREEN,
+    ORANGE,
+    RED,
+    SMALL,
+    Size,
+    font_size,
+    is_narrow,
+    label_panel,
+    legend_above,
+    new_figure,
+    styled,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
 
 BEHAVIOURS = {"shear": r"shear, $ρ=\infty$", "flexure": r"flexure, $ρ=0$"}
-_FEWEST = 3  # pairs for a comparison, as in `population_statistics`
+_MIN_PAIRS = 3  # pairs for a comparison, as in `population_statistics`
 _STATUSES = ("behaviour", "status_mdof", "status_2dof")
 _CHARACTERISTICS = {
     "n_stories": "stories",
@@ -34,9 +48,9 @@ _CHARACTERISTICS = {
     "pgv": measure_name("pgv"),
 }
 _COLORS = {"shear": RED, "flexure": BLUE}
-_FEW = 20  # largest number of values for which each has a bar
+_MAX_BARS = 20  # largest number of values for which each has a bar
 _BINS = 20
-_MOST_TICKS = 8
+_MAX_TICKS = 8
 _PEAKS = (
     *("n_stories", "aspect_ratio", "period", "max_top_displacement_mdof", "max_top_displacement_2dof"),
     *("max_rotation_mdof", "max_rotation_2dof"),
@@ -97,12 +111,12 @@ def square_panel(axes: Axes, x: Array, y: Array, lines: list[str]) -> float:
 
 def slope(x: Array, y: Array) -> float:
     """Return c1 of y = c1 x by least squares; NaN for too few pairs."""
-    return float(x @ y / (x @ x)) if x.size >= _FEWEST and x.any() else math.nan
+    return float(x @ y / (x @ x)) if x.size >= _MIN_PAIRS and x.any() else math.nan
 
 
 def determination(x: Array, y: Array) -> float:
     """Return R² = 1 - Σ(y - x)²/Σ(y - ȳ)² of the line y = x; NaN for too few pairs."""
-    spread = float(np.sum((y - y.mean()) ** 2)) if y.size >= _FEWEST else 0.0
+    spread = float(np.sum((y - y.mean()) ** 2)) if y.size >= _MIN_PAIRS else 0.0
     return 1.0 - float(np.sum((y - x) ** 2)) / spread if spread > 0.0 else math.nan
 
 
@@ -144,20 +158,20 @@ def plot_population(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figur
     """
     check_columns(pairs, ("behaviour", *_CHARACTERISTICS), "what run_population returned")
     with styled(size=size):
-        figure = new_figure(6.3, 5.6 if narrow() else 4.3)
-        panels: list[Axes] = list(figure.subplots(*((3, 2) if narrow() else (2, 3))).flat)
+        figure = new_figure(6.3, 5.6 if is_narrow() else 4.3)
+        panels: list[Axes] = list(figure.subplots(*((3, 2) if is_narrow() else (2, 3))).flat)
         for axes, (name, label), mark in zip(panels, _CHARACTERISTICS.items(), "ABCDEF", strict=True):
             _draw_bars(axes, name, pairs)
             axes.set_xlabel(label)
             axes.grid(visible=False, axis="x")
             axes.locator_params(axis="y", integer=True, nbins=6)
-            letter(axes, mark)
-        for axes in panels[:: 2 if narrow() else 3]:
+            label_panel(axes, mark)
+        for axes in panels[:: 2 if is_narrow() else 3]:
             axes.set_ylabel("pairs")
         counts = {name: int((pairs["behaviour"] == name).sum()) for name in BEHAVIOURS}
         handles, _ = panels[0].get_legend_handles_labels()
         names = [f"{BEHAVIOURS[name]} ({count})" for name, count in counts.items()]
-        figure.legend(handles, names, loc="outside upper center", ncols=2)
+        legend_above(figure, handles, names)
     return figure
 
 
@@ -175,14 +189,14 @@ def _draw_bars(axes: Axes, name: str, pairs: "pd.DataFrame") -> None:
         )  # fmt: skip
         below += counts
     if _separate(values) and name != "height":
-        most = _MOST_TICKS // 2 if narrow() else _MOST_TICKS
+        most = _MAX_TICKS // 2 if is_narrow() else _MAX_TICKS
         axes.set_xticks(centres[:: -(-centres.size // most)])
 
 
 def _separate(values: Array) -> bool:
     """Whether there are few values, on a grid with few places, so that each has a bar."""
     different = np.unique(values)
-    return different.size <= _FEW and bool(np.ptp(different) <= _FEW * np.diff(different).min(initial=np.inf))
+    return different.size <= _MAX_BARS and bool(np.ptp(different) <= _MAX_BARS * np.diff(different).min(initial=np.inf))
 
 
 def _bars(values: Array) -> tuple[Array, Array]:
@@ -236,8 +250,8 @@ def plot_agreement(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figure
     periods = pairs["period"].to_numpy(dtype=float)
     scale = Normalize(float(periods.min()), float(periods.max()))
     with styled(size=size):
-        figure = new_figure(6.3, 9.8 if narrow() else 6.0)
-        if narrow():
+        figure = new_figure(6.3, 9.8 if is_narrow() else 6.0)
+        if is_narrow():
             panels: list[Axes] = list(figure.subplots(4, 1, height_ratios=(1.0, 1.0, 1.0, 0.75)))
         else:
             panels = list(figure.subplots(2, 2).flat)
@@ -245,7 +259,7 @@ def plot_agreement(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figure
             rows = groups.resting if group == "no_uplift" else groups.rocking
             _draw_agreement(axes, rows, quantity, markers, scale)
             axes.set(xlabel=rf"${symbol}$, 2DOF-S [{unit}]", ylabel=rf"${symbol}$, MDOF-S [{unit}]", title=name)
-            letter(axes, mark)
+            label_panel(axes, mark)
         _draw_legends(figure, panels[3], pairs, markers, scale, groups.left_out)
     return figure
 
@@ -381,11 +395,11 @@ def plot_modal_combination(pairs: "pd.DataFrame", *, size: Size | None = None) -
     rows = groups.rocking
     behaviours = rows["behaviour"].astype(str).to_numpy()
     with styled(size=size):
-        figure = new_figure(6.3, 9.8 if narrow() else 6.4)
-        axes_of: list[Axes] = list(figure.subplots(*((4, 1) if narrow() else (2, 2))).flat)
+        figure = new_figure(6.3, 9.8 if is_narrow() else 6.4)
+        axes_of: list[Axes] = list(figure.subplots(*((4, 1) if is_narrow() else (2, 2))).flat)
         for axes, panel, mark in zip(axes_of, _COMBINATION_PANELS, "ABCD", strict=True):
             _draw_combination(axes, panel, rows, behaviours)
-            letter(axes, mark)
+            label_panel(axes, mark)
         handles = [
             Line2D([], [], color=color, marker=marker, linestyle="", markersize=3.5, label=BEHAVIOURS[behaviour])
             for behaviour, (marker, color) in _SYMBOLS.items()
@@ -395,13 +409,7 @@ def plot_modal_combination(pairs: "pd.DataFrame", *, size: Size | None = None) -
             Line2D([], [], color=BLUE, label="$y = c_1 x$"),
         ]
         title = f"{len(rows)} rocking pairs" + (f"; left out: {groups.left_out}" if groups.left_out else "")
-        figure.legend(
-            handles=handles,
-            loc="outside upper center",
-            ncols=2 if narrow() else 4,
-            title=title,
-            title_fontsize=points(8.0),
-        )
+        legend_above(figure, handles, title=title, title_size=font_size(8.0))
     return figure
 
 
