@@ -2,7 +2,8 @@
 
 from typing import TYPE_CHECKING, Any
 
-from rockflex.cli._console import grid, moment_unit, number, output, show
+from rockflex._numbers import moment_unit
+from rockflex.cli._console import grid, number, output, show
 from rockflex.cli._elements import elements_table
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "Rocking
 
 def _alike(p: "RockingProperties") -> list[tuple[str, str, str]]:
     """The parameters that are the same about both pivots."""
-    unit, size = moment_unit(p.resisting_moment)
+    size, unit = moment_unit(p.resisting_moment)
     stiffness = ("Their stiffness while rocking", number(p.tendon_stiffness / size), f"{unit}/rad")
     weight = "(m_tot g + P)" if p.tendons else "m_tot g"
     return [
@@ -68,7 +69,7 @@ def _alike(p: "RockingProperties") -> list[tuple[str, str, str]]:
 
 def _each(p: "RockingProperties") -> list[tuple[str, str, str, str]]:
     """The parameters that differ between the pivots."""
-    unit, size = moment_unit(p.resisting_moment)
+    size, unit = moment_unit(p.resisting_moment)
     sides = (p.pivot(1), p.pivot(-1))
 
     def row(name: str, values: tuple[float, ...], unit: str) -> tuple[str, str, str, str]:

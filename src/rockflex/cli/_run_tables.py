@@ -4,8 +4,9 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
+from rockflex._numbers import moment_unit
 from rockflex._shown import counted
-from rockflex.cli._console import Styled, fits, grid, moment_unit, note, number, output, show
+from rockflex.cli._console import Styled, fits, grid, note, number, output, show
 from rockflex.cli._elements import elements_table
 from rockflex.cli._simulations import SLIDING, Batch, Run
 from rockflex.fragility import NOMINAL
@@ -108,7 +109,7 @@ def _list(found: Sequence[str], rest: str) -> None:
 
 def _peaks(runs: Sequence[Run]) -> Columns:
     moments = [abs(run.peaks["max_base_moment"] or 0.0) for run in runs]
-    unit, size = moment_unit(max(moments))
+    size, unit = moment_unit(max(moments))
     columns: Columns = [
         ("status", [_status(run) for run in runs]),
         ("θ_max [rad]", _column(runs, "max_rotation")),

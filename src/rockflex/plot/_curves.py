@@ -26,7 +26,7 @@ from rockflex.response import History, Response
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """One response with its history, label and look."""
+    """One response with its history, label and line style."""
 
     response: Response
     history: History

@@ -377,7 +377,7 @@ def _draw_costs(axes: Axes, found: BestDesign, variable: str, styles: dict[str, 
 def _draw_plane(
     axes: Axes, found: BestDesign, between: Interpolated, names: tuple[str, str], styles: dict[str, LineStyle]
 ) -> None:
-    """Draw the limits over two variables, where the others are those of the best design or the one nearest to it."""
+    """Draw the limits over two variables; the others have their values in the best design, or in the nearest to it."""
     designs = found.designs
     place = found.best if found.best is not None else _nearest(found)
     values = {name: np.array([float(designs[name].iloc[place])]) for name in between.given}

@@ -98,7 +98,7 @@ def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
 
 
 def _layers(history: History, released: float, settled: float) -> list[tuple[str, str, Array]]:
-    """Return label, colour and values; from the bottom, as what is gone never falls and carries what can return."""
+    """Return label, colour and values from the bottom: dissipated energy, which never falls, below stored energy."""
     ledger, elements = history.energy, history.model.properties.elements
     only_tendons = all(isinstance(each, Tendon) for each in elements)
     return [

@@ -364,7 +364,7 @@ def plot_spread(
     with styled(size=size):
         shape = (len(quantities) * len(curves), 1) if is_narrow() else (len(curves), len(quantities))
         figure = new_figure(0.8 + 3.2 * len(quantities), 0.9 + 1.35 * shape[0])
-        # In a narrow figure all panels of a quantity stand above those of the next.
+        # A narrow figure has one column: all panels of the first quantity, then of the next.
         grid = figure.subplots(*shape, sharex=True, squeeze=False).reshape(len(curves), -1, order="F")
         for column, quantity in enumerate(quantities):
             factor, unit, limit = axis_scale(quantity, everything)
@@ -391,7 +391,7 @@ def _single_curve(response: Response) -> Curve:
 
 
 def _band(quantity: Quantity, curves: list[Curve], times: Array) -> tuple[Array, Array]:
-    """Smallest and largest value at each time, among those that have not ended."""
+    """Smallest and largest value at each time, among the runs that have not ended."""
     rows = np.full((len(curves), times.size), np.nan)
     for row, curve in zip(rows, curves, strict=True):
         drawn = curve.before_fall

@@ -58,7 +58,7 @@ _PER_ROW = 2
 
 @dataclass(frozen=True, eq=False)
 class BaseLoops:
-    """The path of a base, without the states in contact, and that of its elements.
+    """The paths of a base, without the states in contact, and of its elements.
 
     Attributes
     ----------
@@ -157,7 +157,7 @@ def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> B
 
 
 def resistance_of(history: History) -> tuple[Array, Array]:
-    """Return what the weight (n,) and the elements (n, E) add to the resisting moment in N m; zero in contact."""
+    """Return the resisting moments of the weight (n,) and of the elements (n, E) in N m; zero in contact."""
     p, side = history.model.properties, history.side.astype(np.int64)
     heavier = 1.0 + history.vertical_ground_acceleration / GRAVITY
     if history.model.complete:

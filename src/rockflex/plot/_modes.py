@@ -99,7 +99,7 @@ def plot_mode_shapes(
     (2, 'height [m]')
     """
     modes = _modes_of(structure_or_modal)
-    # With all modes, and with no fewer, a unit translation is the sum of what they take of it.
+    # Γ_n φ_n sums to 1 at every height over all modes, and only over all of them.
     complete = np.allclose(modes.shapes @ modes.participation, 1.0, rtol=0.0, atol=1e-6)
     total = float(modes.effective_mass.sum()) if complete else None
     shown = modes if n_modes is None else modes.truncated(n_modes)

@@ -102,12 +102,12 @@ def _panels(curves: list[Curve], height: float) -> list[str]:
 
 
 def _short_label(label: str, room: float) -> str:
-    """Return the label of an axis, without what needs more than `room` mm."""
+    """Return the label of an axis, without its qualifier where the panel is lower than `room` mm."""
     return label if room > _MIN_PANEL_MM else label.replace(", total", "").replace(", relative", "")
 
 
 def _draw_loops(axes: Axes, curves: list[Curve], mark: str) -> None:
-    """Draw base moment over rotation, and what resists it."""
+    """Draw base moment over rotation, and the static resisting moment."""
     rotation = _MARGIN * (rotation_limit(curves) or max(map(whole_line, curves)))
     (moment,) = quantities_of(["base_moment"])
     largest = max(largest_moment(curves[0]), axis_scale(moment, curves)[2] * axis_scale(moment, curves)[0] / _MARGIN)

@@ -25,7 +25,7 @@ _MAX_PANELS = 12  # panels in one figure
 
 
 def model_styles(models: Iterable[str]) -> dict[str, LineStyle]:
-    """Give each model its own look, in order of appearance; fewer modes are drawn over more.
+    """Give each model its own line style, in order of appearance; fewer modes are drawn over more.
 
     Raises
     ------

@@ -92,7 +92,7 @@ class LineStyle:
 
 _DASHES = ("-", (0, (6, 2)), (0, (1, 1)), (0, (6, 1, 1, 1, 1, 1)))
 LINE_STYLES = tuple(LineStyle(color, dashes) for dashes in _DASHES for color in (PURPLE, ORANGE, SKY))
-"""Looks for models without one of their own, the most distinct first; blue is left to reference lines."""
+"""Line styles of models without a fixed style, the most distinct first; blue is left to reference lines."""
 
 
 Size = Literal["column", "page"] | tuple[float, float]
@@ -128,7 +128,7 @@ def styled(theme: str = "light", size: Size | None = None) -> Generator[None, No
             name: value for name, value in THEMES[theme].items() if name in _SAVED or not _set_by_caller(name)
         }
         settings |= {name: settings[name] * font / _FONT for name in _FONT_SIZES if name in settings}
-        settings["lines.linewidth"] = _STYLE["lines.linewidth"]  # those of the caller are applied at the end
+        settings["lines.linewidth"] = _STYLE["lines.linewidth"]  # _rescale applies the settings of the caller
         with rc_context(settings):
             figures: list[Figure] = []
             tokens = _SIZE.set(inches), _DRAWN.set(figures)
@@ -229,7 +229,7 @@ def font_size(size: float) -> float:
 
 
 def recoloured(styles: Iterable[LineStyle]) -> list[LineStyle]:
-    """Looks in the colours of the caller's own cycle (``axes.prop_cycle``), if there is one."""
+    """Line styles in the colours of the caller's own cycle (``axes.prop_cycle``), if there is one."""
     cycle = rcParams["axes.prop_cycle"].by_key().get("color") if _set_by_caller("axes.prop_cycle") else None
     if not cycle:
         return list(styles)
@@ -281,7 +281,7 @@ def notes_beside(axes: Axes, notes: list[tuple[str, str]], step: float) -> None:
 
 
 def _rescale(figure: Figure, width: float | None, mark: float | None) -> None:
-    """Draw lines and marks as much wider or larger as the caller's own lines and marks are than those here."""
+    """Scale line widths and marker sizes by the ratio of the caller's settings to the settings here."""
     for line in (line for part in (*figure.axes, *_legends(figure)) for line in part.get_lines()):
         if width is not None:
             line.set_linewidth(line.get_linewidth() * width / _STYLE["lines.linewidth"])

@@ -10,12 +10,12 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Line:
-    """A value of a publication, or what it says in words, and ours; texts are plain.
+    """A value or a statement of a publication, and our value; texts are plain.
 
     Attributes
     ----------
     name, place : str
-        What the value is, and where it is in the publication.
+        Name of the value, and its place in the publication.
     printed : str
         As printed, or the statement in words.
     ours : float
@@ -81,7 +81,7 @@ class Number(Line):
 
 @dataclass(frozen=True)
 class Check(Line):
-    """Something that must hold by construction, so that it is not counted; `holds` tells whether it does."""
+    """A condition that must hold by construction, and is not counted."""
 
     holds: bool
 

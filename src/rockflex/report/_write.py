@@ -13,7 +13,7 @@ from rockflex._files import write_whole
 from rockflex.report._document import Check, Document, Result
 
 if TYPE_CHECKING:
-    from jinja2 import Template
+    from jinja2 import Environment
 
 TEMPLATES = Path(__file__).parent / "templates"
 CLASSES = ("best", "good", "fair", "open", "bad")  # of the verdicts, best first; the last one is bad
@@ -73,21 +73,24 @@ def to_html(document: Document, drawings: Mapping[str, str]) -> str:
     last = len(verdicts) - 1
     looks = {name: CLASSES[-1 if place == last else min(place, 3)] for place, name in enumerate(verdicts)}
     failing = [line for s in document.sections for line in s.numbers if line.verdict == verdicts[-1]]
-    return _template().render(
-        document=document, figures=figures, looks=looks, counts=document.counts, failing=failing, worst=verdicts[-1]
+    return (
+        templates_in(TEMPLATES)
+        .get_template("report.html.jinja")
+        .render(
+            document=document, figures=figures, looks=looks, counts=document.counts, failing=failing, worst=verdicts[-1]
+        )
     )
 
 
-@lru_cache(maxsize=1)
-def _template() -> "Template":
+@lru_cache(maxsize=2)
+def templates_in(folder: Path) -> "Environment":
+    """Return the templates of a folder; everything is escaped but figures, which are marked as safe."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    # Everything is escaped but the figures, which are ours.
-    loaded = Environment(
-        loader=FileSystemLoader(TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
+    return Environment(
+        loader=FileSystemLoader(folder), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
         lstrip_blocks=True, keep_trailing_newline=True,
     )  # fmt: skip
-    return loaded.get_template("report.html.jinja")
 
 
 def to_markdown(document: Document) -> str:

@@ -2,6 +2,7 @@
 
 from rockflex.response._base_path import base_path
 from rockflex.response._columns import NAMES, STATUSES, columns_among, columns_of
+from rockflex.response._edges import springs_of, tilt_at_rest
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floor_peaks import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
@@ -48,7 +49,9 @@ __all__ = [
     "push_on_springs",
     "resistance_on_springs",
     "respond",
+    "springs_of",
     "springs_path",
+    "tilt_at_rest",
     "warnings_of",
     "warnings_of_energy",
     "weight_resistance",

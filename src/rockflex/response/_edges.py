@@ -4,6 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rockflex.modal import Springs
 from rockflex.models import RockingModel, SpringModel
 from rockflex.solve import Solution
 
@@ -29,6 +30,11 @@ def edges_of(model: RockingModel, rotation: tuple[float, float], solution: Solut
     if model.complete:
         right, left = float(np.sin(right)), float(np.sin(left))
     return Edges((width * left, width * right), (0.0, 0.0))
+
+
+def springs_of(model: RockingModel) -> Springs | None:
+    """Return the springs under the base; None on rigid ground."""
+    return model.springs if isinstance(model, SpringModel) else None
 
 
 def tilt_at_rest(model: RockingModel) -> float:

@@ -27,8 +27,8 @@ import rockflex as rf
 from rockflex.report import Check, Number
 from rockflex.report._document import as_text
 
-MAX_INTERVAL_WIDTH = 0.5  # of the printed value: the width of an interval, above which it tells nothing
-APPROXIMATE = 0.2  # of a value that is printed as "about" so much: how far from it ours may be
+MAX_INTERVAL_WIDTH = 0.5  # over the printed value, above which the interval decides nothing
+APPROXIMATE = 0.2  # largest relative difference from a value that is printed as "about" so much
 _WORDS = r"(?P<word>about|approximately|≈|≅)\s*"
 _NUMBER = r"[-+−]?\d[\d' ]*(?:\.\d+)?"
 _VALUE = re.compile(rf"(?:{_WORDS})?(?P<value>{_NUMBER})(?:\s*/\s*(?P<divisor>{_NUMBER}))?")

@@ -75,7 +75,7 @@ def largest_ratio(values: Iterable[float]) -> float:
 def drawings(
     name: str, title: str, responses: Mapping[str, rf.Response], free: Free, make: Make, run: Run
 ) -> dict[str, Callable[[], Any]]:
-    """Return the figure of the responses, and that of each model with the band over all combinations."""
+    """Return the figure of the responses, and the figure of each model with the band over all combinations."""
     nominals, panels = list(responses.values()), ("rotation", "top_displacement")
 
     def spread() -> Any:

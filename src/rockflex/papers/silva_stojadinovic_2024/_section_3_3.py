@@ -121,7 +121,7 @@ def _agreement(found: rf.PopulationStatistics) -> dict[str, float]:
 
 
 def _combination(found: rf.PopulationStatistics) -> dict[str, float]:
-    """R² and slopes of Section 3.4, such as ``"r2, base_shear, SRSS"``, and what SRSS adds to R²."""
+    """R² and slopes of Section 3.4, such as ``"r2, base_shear, SRSS"``, and the gain in R² by SRSS."""
     rows = found.combination.to_dict("records")
     values = {
         f"{value}, {row['quantity']}, {row['estimate']}": float(row[value]) for row in rows for value in ("r2", "slope")

@@ -28,7 +28,7 @@ PLACES = {"lower end": 0.0, "upper end": 1.0}
 FIGURE_15 = "Chimney under El Centro times 2"
 CHIMNEY = "Section 4.1.1"
 CHIMNEY_MODELS = ("5DOF-fixed", "2DOF-S", "3DOF-S", "4DOF-S", "6DOF-S")
-# Errors against 6DOF-S in per cent. The text tells the direction for the base moment alone.
+# Errors against 6DOF-S in per cent. The text gives their signs for the base moment only.
 ERRORS = (
     ("2DOF-S", "top_displacement", "5.8"), ("3DOF-S", "top_displacement", "0.6"),
     ("3DOF-S", "rotation", "2.2"), ("2DOF-S", "rotation", "41"),

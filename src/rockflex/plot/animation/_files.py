@@ -21,7 +21,7 @@ GIF, MP4 = ".gif", ".mp4"
 LAST_FRAME = 100  # hundredths of a second for which the last frame stays: a fall must be seen before the GIF repeats
 MAX_COLORS = 255  # and one that is transparent
 _SAMPLES = 12  # frames from which the palette is taken
-_BITS = 6  # of each of red, green and blue that the palette tells apart
+_BITS = 6  # of red, green and blue each, by which the palette is indexed
 _LEVELS = (1 << _BITS) - 1
 Indices = NDArray[np.uint8]
 # H.264 in the format that every browser plays; the index at the front, so that it plays while it loads.
@@ -107,7 +107,7 @@ def _image(indices: Indices, palette: bytes) -> Image.Image:
 
 
 def _write_change(file: IO[bytes], indices: Indices, before: Indices | None, palette: bytes, hundredths: int) -> None:
-    """Write the smallest rectangle that changed; what did not change in it is transparent."""
+    """Write the smallest rectangle that changed, with its unchanged pixels transparent."""
     offset, part = (0, 0), indices
     if before is not None:
         differs = indices != before

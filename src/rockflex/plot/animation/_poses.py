@@ -13,7 +13,7 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.plot._curves import Curve
-from rockflex.response import History
+from rockflex.response import History, springs_of
 from rockflex.structure import CantileverWithTipMass, Eccentric, FishBone, Frame, LumpedStructure, Restrained
 
 MAX_FRAMES = 20_000
@@ -100,7 +100,7 @@ def timing_of(
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """What is drawn of a structure at rest, in m from the axis of its masses and from the base.
+    """Lines of a structure at rest, in m from the axis of its masses and from the base.
 
     Attributes
     ----------
@@ -247,12 +247,12 @@ class Poses:
 
 
 def poses_of(curve: Curve, outline: Outline, times: Array, speed: float) -> Poses:
-    """Return the poses of a response at some instants in s; `speed` is what an animation shows of it in a second."""
+    """Return the poses of a response at some instants in s; `speed` is in seconds of the response per second."""
     history = curve.history
-    model: Any = history.model
+    model, springs = history.model, springs_of(history.model)
     known = history.time
     at = history.at(np.clip(times, known[0], known[-1]))
-    sprung = model.layout.heave >= 0
+    sprung = springs is not None
     running = times <= known[-1]
     still = np.zeros(times.size)
     struck = history.impact_times
@@ -260,7 +260,7 @@ def poses_of(curve: Curve, outline: Outline, times: Array, speed: float) -> Pose
     since = np.where(last >= 0, times - struck[last], np.inf) if struck.size else np.full(times.size, np.inf)
     return Poses(
         outline=outline,
-        springs=model.springs.positions if sprung else np.empty(0),
+        springs=np.empty(0) if springs is None else springs.positions,
         rotation=at.rotation if model.lifts else still,
         slip=at.slip if model.lifts else still,
         heave=at.heave if sprung else still,

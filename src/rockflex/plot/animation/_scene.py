@@ -35,10 +35,10 @@ _MAX_WIDE_SPRINGS, _MAX_THICK_FLOORS = 4, 25  # springs that are drawn wide; sto
 _AT_REST = "#c9ced6"
 HEAD, FOOT, EDGE = 34.0, 40.0, 8.0  # points above, below and beside the structures
 MIN_SPRING, MAX_SPRING = 14.0, 60.0  # points of a spring that is unloaded
-_MAX_FRAMES_SEARCHED = 200  # that are looked at for the room a structure needs
+_MAX_FRAMES_SEARCHED = 200  # of which the extent of a structure is taken
 _ASIDE = 1.8  # reach to one side over that to the other, beyond which a structure is not drawn in the middle
 _INK = "#404040"
-_FADING = 0.62  # of white over what is still to come
+_FADING = 0.62  # opacity of white over times after the cursor
 Picture = NDArray[np.uint8]
 """Red, green and blue of every pixel, shape (height, width, 3)."""
 
@@ -143,7 +143,7 @@ class StructureArtists:
 
     @property
     def moving(self) -> list[Artist]:
-        """What is drawn anew in each frame, from the back to the front."""
+        """Artists that are redrawn in each frame, from the back to the front."""
         parts = (self._gap, self._free, self._pressed, self._block, self._columns, self._floors, self._mass, self._base)
         return [*parts, *self._element_lines.values(), self._impacts]
 
@@ -199,7 +199,7 @@ class StructureArtists:
         axes.plot(*joined([*closed, *floors]), color=_AT_REST, linewidth=0.8)
 
     def _show_springs(self, frame: int) -> None:
-        """Draw the springs from the ground to the base, those that it left at their full length and lighter."""
+        """Draw the springs from the ground to the base; without contact they have their full length and are lighter."""
         poses, (middle, rest, ground, zoom) = self._poses, self._here
         half = 2.2 if poses.springs.size > _MAX_WIDE_SPRINGS else 4.0
         ends = poses.place(frame, poses.springs, np.zeros(poses.springs.size), self._by)
@@ -281,7 +281,7 @@ class StructurePanel:
 
     @property
     def moving(self) -> list[Artist]:
-        """What is drawn anew in each frame, from the back to the front."""
+        """Artists that are redrawn in each frame, from the back to the front."""
         texts = [each for pair in self._texts for each in pair]
         return [part for structure in self._structures for part in structure.moving] + texts + [self._time]
 
@@ -306,7 +306,7 @@ def _scales(amplification: float, speed: float) -> str:
 
 
 class _Extent(NamedTuple):
-    """What a structure needs in m: to the left and the right of its axis, upwards, and below its unloaded springs."""
+    """Extent of a structure in m: to the left and right of its axis, upwards, and below its unloaded springs."""
 
     left: float
     right: float
@@ -315,7 +315,7 @@ class _Extent(NamedTuple):
 
     @property
     def middle(self) -> float:
-        """What stands in the middle of the cell: the axis of the masses, unless the structure falls to one side."""
+        """Middle of the cell: the axis of the masses, unless the structure falls to one side."""
         aside = max(self.left, self.right) > _ASIDE * min(self.left, self.right)
         return 0.5 * (self.right - self.left) if aside else 0.0
 
@@ -326,7 +326,7 @@ class _Extent(NamedTuple):
 
 
 def _zoom(extents: Sequence[_Extent], width: float, height: float, *, sprung: bool) -> tuple[float, float]:
-    """Return the points per metre with which everything stays in its cell, and those below the unloaded springs."""
+    """Return the points per metre that keep everything in its cell, and the points below the unloaded springs."""
     up = max(extent.up for extent in extents)
     zoom = min(width / max(extent.width for extent in extents), height / up)
     if not sprung:
@@ -358,7 +358,7 @@ def _draw_ground(axes: Axes, left: float, right: float) -> None:
 
 
 class HistoryPanels:
-    """One panel for each quantity; what is still to come is faded, and dots mark the present values."""
+    """One panel for each quantity; times after the cursor are faded, and dots mark the values at it."""
 
     def __init__(self, grid: list[Axes], quantities: Sequence[Quantity], curves: list[Curve], timing: Timing) -> None:
         self._timing = timing
@@ -381,7 +381,7 @@ class HistoryPanels:
 
     @property
     def moving(self) -> list[Artist]:
-        """What is drawn anew in each frame, from the back to the front."""
+        """Artists that are redrawn in each frame, from the back to the front."""
         return [*self._future, *self._cursors, *(dot for dot, _ in self._dots)]
 
     def show(self, frame: int) -> None:
@@ -418,7 +418,7 @@ def _dot(axes: Axes, curve: Curve, values: Array) -> tuple[Line2D, Array]:
 
 
 class AnimatedFigure:
-    """The figure of an animation and what moves in it."""
+    """The figure of an animation, with its still and its moving artists."""
 
     def __init__(
         self, curves: list[Curve], poses: Sequence[Poses], quantities: Sequence[Quantity], timing: Timing,
@@ -468,7 +468,7 @@ def _axes(artist: Artist) -> Axes:
 
 
 def _layout(models: int, panels: int, width: int) -> tuple[Figure, Axes, list[Axes]]:
-    """Return a figure, the axes of the stage and those of the panels; both numbers of pixels are even, for H.264."""
+    """Return a figure, the axes of the structures and of the panels; width and height in pixels are even, for H.264."""
     beside = models <= MAX_BESIDE
     inches = max(4.8, 1.35 * panels + 1.1) if beside else 3.3 + 1.2 * panels + 0.9
     dpi = width / INCHES

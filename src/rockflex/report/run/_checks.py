@@ -7,10 +7,9 @@ from functools import partial
 
 from rockflex._errors import InputError, SolverError
 from rockflex._numbers import rounded
-from rockflex.models import SpringModel
 from rockflex.report.run._runs import ReportedRuns
 from rockflex.report.run._tables import Cell, Table, ground_friction, overturning_margin, starts_uplifted, value_cell
-from rockflex.response import BALANCED, IMPACT_WINDOW, History, Response
+from rockflex.response import BALANCED, IMPACT_WINDOW, History, Response, springs_of
 
 NOT_COMPUTED = "not computed"
 MAX_CLOSED_ROTATION, MAX_TILT = 1e-9, 1e-4  # rad
@@ -27,25 +26,25 @@ class Run:
     history: History
     friction: float | None
     long: bool
-    """Whether to compute what takes long: its energies and the friction that it requires."""
+    """Whether to compute its energies and required friction, which may take minutes."""
 
 
 def long_runs(report: ReportedRuns) -> set[str]:
-    """Return the labels of runs whose energies and friction would take minutes: those on many stiff springs."""
+    """Return the labels of runs whose energies and friction would take minutes: runs on many stiff springs."""
     return {
-        label
-        for label, history in zip(report.labels, report.histories, strict=True)
-        if isinstance(history.model, SpringModel) and _work_of(history, history.model.springs.n) > MAX_WORK
+        label for label, history in zip(report.labels, report.histories, strict=True) if _work_of(history) > MAX_WORK
     }
 
 
-def _work_of(history: History, n_springs: int) -> int:
-    return history.time.size * n_springs * max(history.model.properties.n_modes, 1)
+def _work_of(history: History) -> int:
+    springs = springs_of(history.model)
+    return 0 if springs is None else history.time.size * springs.n * max(history.model.properties.n_modes, 1)
 
 
 def has_bearing_area(history: History) -> bool:
     """Return whether the base stands on springs with an area."""
-    return isinstance(history.model, SpringModel) and history.model.springs.area is not None
+    springs = springs_of(history.model)
+    return springs is not None and springs.area is not None
 
 
 def check_table(report: ReportedRuns, friction: float | None, omitted: Collection[str]) -> Table:
@@ -97,7 +96,7 @@ def _overturning(report: ReportedRuns, run: Run) -> Cell:
 
 def _contact(run: Run) -> Cell:
     least = run.response.min_vertical_reaction
-    if isinstance(run.history.model, SpringModel):
+    if springs_of(run.history.model) is not None:
         if not (run.long and has_bearing_area(run.history)):
             return Cell("springs only push", least, "min_vertical_reaction")
         bearing, soil = (float(q.max()) for q in (run.history.bearing_pressure, run.history.soil_pressure))
@@ -141,7 +140,7 @@ def _tendons(run: Run) -> Cell:
 
 
 def _residual(report: ReportedRuns, run: Run) -> Cell:
-    """Tell what rotation is left once the base is at rest, and λ at |θ| → 0 and at the largest rotation."""
+    """Residual rotation of the base at rest, and λ at |θ| → 0 and at the largest rotation."""
     p, response = report.properties, run.response
     if not run.history.model.lifts or response.status == "overturned":
         return Cell("–")
@@ -159,7 +158,7 @@ def _residual(report: ReportedRuns, run: Run) -> Cell:
     if abs(left) < MAX_CLOSED_ROTATION:
         return Cell(f"closes{ratios}", left, "settled_rotation")
     # On springs fuses that yielded tilt a base that is closed.
-    wrong = abs(left) > MAX_TILT or not isinstance(run.history.model, SpringModel)
+    wrong = abs(left) > MAX_TILT or springs_of(run.history.model) is None
     return Cell(f"θ = {rounded(1e3 * left)} mrad left{ratios}", left, "settled_rotation", wrong)
 
 
@@ -202,7 +201,7 @@ def legend(
     bedded: bool,
     impacts: bool,
 ) -> list[str]:
-    """Return what the columns mean, in sentences; `slides` and `stays` tell whether some base can slide, or cannot.
+    """Return the legend of the columns; `slides` and `stays` tell whether some base can slide, or cannot.
 
     `sided` tells whether the limit differs between the sides, `held` whether elements hold the base, and `impacts`
     whether some run follows an impact law.

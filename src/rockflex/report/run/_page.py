@@ -7,9 +7,8 @@ import re
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import date as Date  # noqa: N812
-from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -17,9 +16,8 @@ from rockflex._errors import InputError
 from rockflex._files import path_of, write_whole
 from rockflex._shown import counted, shortened, shown
 from rockflex._versions import versions_of
-from rockflex.models import SpringModel
 from rockflex.motion import GroundMotion
-from rockflex.report._write import inline
+from rockflex.report._write import inline, templates_in
 from rockflex.report.run._checks import check_table, ground_friction, has_bearing_area, legend, long_runs
 from rockflex.report.run._runs import ReportedRuns, checked_runs
 from rockflex.report.run._tables import (
@@ -36,10 +34,7 @@ from rockflex.report.run._tables import (
     record_of,
     structure_facts,
 )
-from rockflex.response import Response, friction_coefficient, warnings_of
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
+from rockflex.response import Response, friction_coefficient, springs_of, warnings_of
 
 WIDTH, HEIGHT = 186.0, 272.0  # of a sheet of A4 within its margins, in mm
 FIGURE_HEIGHTS = (58.0, 160.0)  # least and largest height of the figure in mm
@@ -72,7 +67,7 @@ def table_rows(table: Table | None) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Page:
-    """What a page shows; see the template."""
+    """Contents of a page, in the order of the template."""
 
     title: str
     date: str
@@ -122,7 +117,7 @@ def page_of(
     notes: Sequence[str],
     omitted: Collection[str] = (),
 ) -> Page:
-    """Put together what a page shows; for the labels in `omitted` nothing is computed that takes long."""
+    """Collect the contents of a page, without energies and friction of the labels in `omitted`."""
     left_out = long_runs(report).union(omitted)
     known = report.properties if report.structure is None else report.structure
     record, kind = record_of(report), kind_of(known)
@@ -168,12 +163,14 @@ def html_of(page: Page, report: ReportedRuns) -> str:
         "sheet": Markup(inline(svg_of(sheet), "sheet", "Histories and loops of all models")),
         "strip": Markup(inline(svg_of(strip), "strip", "Ground acceleration")),
     }
-    template = _environment().get_template("run.html.jinja")
+    templates = templates_in(TEMPLATES)
+    templates.filters |= {"symbols": _symbols, "shortened": shortened}
+    template = templates.get_template("run.html.jinja")
     return template.render(page=page, max_letters=MAX_LETTERS, **drawings)
 
 
 def _warnings(report: ReportedRuns, omitted: Collection[str]) -> list[str]:
-    """Return the warnings of the runs, each with its models; for the labels in `omitted` those of the peaks only."""
+    """Return the warnings of the runs, each with its models; of the peaks only for the labels in `omitted`."""
     found: dict[str, list[str]] = {}
     for label, run in zip(report.labels, report.responses, strict=True):
         for text in warnings_of(run.model, run.peaks()) if label in omitted else run.warnings:
@@ -201,21 +198,8 @@ def _versions() -> dict[str, str]:
     return found | {"Python": python}
 
 
-@lru_cache(maxsize=1)
-def _environment() -> "Environment":
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    made = Environment(
-        loader=FileSystemLoader(TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
-        lstrip_blocks=True, keep_trailing_newline=True,
-    )  # fmt: skip
-    made.filters["symbols"] = _symbols
-    made.filters["shortened"] = shortened
-    return made
-
-
 def _symbols(text: str) -> str:
-    """Set what follows "_" as an index and what follows "^" as an exponent."""
+    """Write "_" as a subscript and "^" as a superscript."""
     from markupsafe import Markup, escape
 
     lowered = _SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text)))
@@ -233,7 +217,7 @@ def write_report(
     friction: float | None = None,
     notes: str | Iterable[str] = (),
 ) -> Path:
-    """Write what a structure did under one record on one sheet of A4, as HTML that needs nothing else.
+    """Write the response of a structure to one record on one sheet of A4, as HTML that needs no other file.
 
     The page has the parameters of the structure and its modes, the record, what is assumed, the histories and the loop
     of base moment and rotation of every model, their largest values, checks with their warnings, and the versions
@@ -393,7 +377,7 @@ def _structure_warnings(structure: Any) -> tuple[str, ...]:
 
 
 def fingerprint(report: ReportedRuns, record: Record) -> str:
-    """Return the hash of structure, ground, record, and what each run assumed and started from."""
+    """Return a hash of structure, ground and record, and of the assumptions and the initial state of each run."""
     p = report.properties
     numbers: list[Any] = [record.time, record.acceleration, record.vertical]
     numbers += [p.omega, p.effective_mass, p.effective_height, p.zeta, p.top_ordinate]
@@ -401,7 +385,7 @@ def fingerprint(report: ReportedRuns, record: Record) -> str:
     texts = [repr((p.elements, report.labels))]
     for history in report.histories:
         model = history.model
-        # What follows from the inputs, as rest on springs does, has errors of rounding.
+        # Initial states that follow from the input, such as rest on springs, have rounding errors.
         numbers += [[float(f"{value:.6g}") for value in history.states[0].tolist()], *_ground_numbers(model)]
         texts += [_law_text(model), repr(model.bouc_wen), f"{float(history.time[-1]):.6g}"]
     content = b"".join(np.asarray(each, dtype=np.float64).tobytes() for each in numbers)
@@ -411,9 +395,8 @@ def fingerprint(report: ReportedRuns, record: Record) -> str:
 def _ground_numbers(model: Any) -> list[Any]:
     friction = getattr(model, "friction", None)
     known = [] if friction is None else [friction]
-    if not isinstance(model, SpringModel):
-        return known
-    return [*known, model.springs.positions, model.springs.stiffness, model.springs.damping, model.inertia]
+    springs = springs_of(model)
+    return known if springs is None else [*known, springs.positions, springs.stiffness, springs.damping, model.inertia]
 
 
 def _law_text(model: Any) -> str:

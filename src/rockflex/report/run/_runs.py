@@ -22,7 +22,7 @@ _TOLERANCE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class ReportedRuns:
-    """What a report is about.
+    """The checked input of a report.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class ReportedRuns:
 
 
 def checked_runs(responses: Response | Iterable[Response], structure: Any, motion: Any) -> ReportedRuns:
-    """Check what a report is to be made of.
+    """Check the input of a report.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def _without_jumps(time: Array) -> Bools:
 
 
 def _properties(structure: Any, histories: tuple[History, ...]) -> RockingProperties:
-    """Return the properties of the structure, which must be that of every run."""
+    """Return the properties of the structure, after comparing them with every run."""
     known = max((each.model.properties for each in histories), key=lambda p: p.n_modes)
     whole = known if structure is None else _rocking(structure)
     for history in histories:
@@ -171,7 +171,7 @@ def _properties(structure: Any, histories: tuple[History, ...]) -> RockingProper
 def _rocking(structure: Any) -> RockingProperties:
     from rockflex.structure import structure_warnings
 
-    structure_warnings(structure)  # refuses what is not a structure
+    structure_warnings(structure)  # raises if it is no structure
     return structure if isinstance(structure, RockingProperties) else structure.rocking()
 
 

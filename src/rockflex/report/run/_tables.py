@@ -1,4 +1,4 @@
-"""Facts and tables of the page: the structure and its modes, what the runs assume, and their largest values."""
+"""Facts and tables of the page: structure, modes, record, assumptions, elements, and largest values."""
 
 import math
 import re
@@ -21,10 +21,10 @@ from rockflex.modal import (
     ViscousDamper,
     uplifted_modes,
 )
-from rockflex.models import Restitution, RockingModel, SidedRestitution, SpringModel
+from rockflex.models import Restitution, RockingModel, SidedRestitution
 from rockflex.motion import GroundMotion
 from rockflex.report.run._runs import ReportedRuns
-from rockflex.response import History, Response
+from rockflex.response import History, Response, springs_of, tilt_at_rest
 
 MAX_MODES = 4  # modes
 _MOST_UPLIFTED = 200  # modes, for which the uplifted ones are found at once
@@ -250,7 +250,7 @@ def initial_state(history: History) -> str:
     """Return the rotation, the modal displacements and their velocities at the start, as far as they are not zero."""
     layout, state = history.model.layout, history.states[:1]
     # On springs the base may rest at an angle, from which the rotation of an initial state counts.
-    rest = history.model.rest[0] if isinstance(history.model, SpringModel) else 0.0
+    rest = tilt_at_rest(history.model)
     n = layout.modes
     values = [
         ("θ", 1e3 * (layout.of(state, layout.rotation)[0] - rest), "mrad"),
@@ -285,7 +285,7 @@ def assumption_lines(report: ReportedRuns) -> list[tuple[str, str]]:
 
 
 def _lines_of(history: History) -> list[tuple[str, str]]:
-    """Return what one run assumes."""
+    """Return the assumptions of one run."""
     model = history.model
     lines = [(_LAW, _law(model.law))] if follows_law(model) else []
     if model.bouc_wen is not None:
@@ -297,7 +297,7 @@ def _lines_of(history: History) -> list[tuple[str, str]]:
 
 def follows_law(model: Any) -> bool:
     """Whether an impact law ends the rocking of a model: on springs none does."""
-    return model.lifts and not isinstance(model, SpringModel)
+    return model.lifts and springs_of(model) is None
 
 
 def _law(law: Any) -> str:
@@ -319,8 +319,8 @@ def _hysteresis(b: Any) -> str:
 def _ground(model: Any) -> list[tuple[str, str]]:
     """Return the ground of a model; nothing for rigid ground on which it does not slide."""
     lines: list[tuple[str, str]] = []
-    if isinstance(model, SpringModel):
-        springs, mass = model.springs, model.properties.m_tot
+    springs, mass = springs_of(model), model.properties.m_tot
+    if springs is not None:
         ratio = 0.5 * springs.total_damping / math.sqrt(springs.total_stiffness * mass)
         inertia = model.inertia - model.properties.translational_inertia
         turns = f", I_b = {rounded(inertia / 1e3)} t m²" if inertia > 1e-9 * model.inertia else ""
@@ -436,7 +436,7 @@ class _Column:
 
 
 def peak_table(report: ReportedRuns) -> Table:
-    """Return the largest values of every run, with columns for what its base and ground do."""
+    """Return the largest values of every run, with columns for the motion of its base on the ground."""
     columns = _columns(report)
     rows: list[list[Cell]] = []
     for label, run, history in zip(report.labels, report.responses, report.histories, strict=True):

@@ -1,4 +1,4 @@
-"""How well one mode represents all modes (Section 3.3), and what the second mode adds (Section 3.4)."""
+"""Agreement of one mode with all modes (Section 3.3), and the contribution of the second mode (Section 3.4)."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, SupportsIndex

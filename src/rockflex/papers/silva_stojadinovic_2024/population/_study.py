@@ -260,7 +260,7 @@ class PopulationPlan(ChunkedPlan):
 
 
 def _attempt(function: Callable[..., Result], *given: Any) -> "Result | InputError | SolverError":
-    """Return what a function returns, or the error that it raises."""
+    """Return the result of a function, or the error that it raises."""
     try:
         return function(*given)
     except (SolverError, InputError) as error:
