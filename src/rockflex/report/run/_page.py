@@ -93,7 +93,7 @@ class Page:
         lines = sum(rows_of(f"{head} {text}") for head, text in self.lines)
         tables = table_rows(self.elements) + table_rows(self.peaks) + table_rows(self.checks)
         texts = rows_of(" ".join(self.legend)) + sum(map(rows_of, (*self.warnings, *self.notes)))
-        return ROW * (6 + rows_of(self.title) + max(structure, record) + lines + tables + texts)
+        return ROW * (8 + rows_of(self.title) + max(structure, record) + lines + tables + texts)
 
     @property
     def scale(self) -> float:

@@ -17,15 +17,16 @@ from rockflex.motion import GroundMotion, Suite
 from rockflex.progress import ProgressChoice
 from rockflex.response import Response, respond
 from rockflex.structure import Frame
-from rockflex.study._arguments import WORK_LIMIT, free_vibration_time, work_limit_of
-from rockflex.study._case import Case, prepare_together
-from rockflex.study._modal_combination import SecondMode, combine, second_mode
+from rockflex.study import WORK_LIMIT, Case, SecondMode
+from rockflex.study._arguments import free_vibration_time, work_limit_of
+from rockflex.study._case import prepare_together
+from rockflex.study._modal_combination import combine, second_mode
 from rockflex.study._results import result_columns, results_of
 from rockflex.study._subjects import Motions, motions_of
 from rockflex.study._tables import Columns, Row, kinds_of
+from rockflex.study.plan import ChunkedPlan, Spec, run_plan
 from rockflex.study.plan._bench import record_columns, record_facts
-from rockflex.study.plan._chunked import ChunkedPlan, run_plan
-from rockflex.study.plan._spec import FreeVibration, Spec
+from rockflex.study.plan._spec import FreeVibration
 
 if TYPE_CHECKING:
     import pandas as pd
