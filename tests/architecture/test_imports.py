@@ -64,6 +64,7 @@ FOUNDATION = {
     "_html",
     "_json",
     "_matrices",
+    "_numbers",
     "_schema",
     "_shown",
     "_values",

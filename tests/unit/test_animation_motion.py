@@ -7,11 +7,15 @@ from PIL import Image
 import rockflex as rf
 from builders import PROPERTIES, make_frame
 from rockflex.plot._curves import curves_of
-from rockflex.plot.animation._amplification import ROUND, VISIBLE, usual_amplification
-from rockflex.plot.animation._clock import clock_of
-from rockflex.plot.animation._outline import outline_of
-from rockflex.plot.animation._poses import poses_of
-from rockflex.plot.animation._words import state_of
+from rockflex.plot.animation._poses import (
+    MAX_DRAWN_MOTION,
+    ROUND_FACTORS,
+    default_amplification,
+    outline_of,
+    poses_of,
+    timing_of,
+)
+from rockflex.plot.animation._scene import state_text
 
 FRAME = make_frame()
 RECORD = rf.load_suite("el-centro-1940")[0]
@@ -115,7 +119,7 @@ def test_a_base_on_springs_moves_as_the_response_says(runs):
 def test_words_are_those_of_the_response(runs, name):
     curve, poses = posed(runs[name])
     end = curve.history.time[-1]
-    words = [state_of(curve, poses, k, t)[0] for k, t in enumerate(TIMES)]
+    words = [state_text(curve, poses, k, t)[0] for k, t in enumerate(TIMES)]
     at = curve.history.at(np.minimum(TIMES, end))
     for time, word, lifted in zip(TIMES, words, at.uplifted, strict=True):
         if word.startswith("uplifted"):
@@ -172,40 +176,40 @@ def test_outlines_follow_what_is_known():
 @pytest.mark.parametrize("name", ["simplified", "springs", "fixed", "block"])
 def test_the_usual_amplification_is_the_largest_that_keeps_the_limit(runs, name):
     curve, poses = posed(runs[name])
-    factor = usual_amplification([curve], [poses])
-    assert factor in ROUND
+    factor = default_amplification([curve], [poses])
+    assert factor in ROUND_FACTORS
 
     def reach(by):
         there = [poses.bent(k, 0.0, by)[0][-1] for k in range(TIMES.size)]
         return np.abs(there).max() / poses.outline.size
 
-    assert factor == 1.0 or reach(factor) <= VISIBLE + 0.02
-    larger = [each for each in ROUND if each > factor]
-    assert reach(larger[0]) > 0.5 * VISIBLE
+    assert factor == 1.0 or reach(factor) <= MAX_DRAWN_MOTION + 0.02
+    larger = [each for each in ROUND_FACTORS if each > factor]
+    assert reach(larger[0]) > 0.5 * MAX_DRAWN_MOTION
 
 
 def test_what_falls_is_not_enlarged(runs):
     curve, poses = posed(runs["fallen"])
-    assert usual_amplification([curve], [poses]) == 1.0
+    assert default_amplification([curve], [poses]) == 1.0
 
 
 def test_frames_are_at_equal_steps_to_the_end():
     curves = curves_of(rf.simulate(FRAME, rf.ricker_pulse(4.0, 0.6), "2DOF-S"))
-    clock = clock_of(curves, ".gif", 2.0, 25, 0.5, 2.0)
-    np.testing.assert_allclose(clock.times[:-1], 0.5 + 0.08 * np.arange(clock.times.size - 1))
-    assert clock.times[-1] == 2.0
-    assert clock.hundredths.tolist() == [4] * clock.times.size
+    timing = timing_of(curves, ".gif", 2.0, 25, 0.5, 2.0)
+    np.testing.assert_allclose(timing.times[:-1], 0.5 + 0.08 * np.arange(timing.times.size - 1))
+    assert timing.times[-1] == 2.0
+    assert timing.hundredths.tolist() == [4] * timing.times.size
 
 
 def test_the_last_frame_of_a_fall_says_when_it_overturned(runs):
     curve, _ = posed(runs["fallen"])
     for rate in (7, 10, 25, 30):
-        clock = clock_of([curve], ".gif", 1.0, rate, None, None)
-        assert clock.times[-1] == runs["fallen"].end_time
-        assert (np.diff(clock.times) > 0.0).all()
-        assert np.diff(clock.times).max() <= 1.25 / rate + 1e-12
-        _, poses = posed(runs["fallen"], times=clock.times)
-        assert state_of(curve, poses, clock.times.size - 1, clock.times[-1])[0].startswith("overturned at")
+        timing = timing_of([curve], ".gif", 1.0, rate, None, None)
+        assert timing.times[-1] == runs["fallen"].end_time
+        assert (np.diff(timing.times) > 0.0).all()
+        assert np.diff(timing.times).max() <= 1.25 / rate + 1e-12
+        _, poses = posed(runs["fallen"], times=timing.times)
+        assert state_text(curve, poses, timing.times.size - 1, timing.times[-1])[0].startswith("overturned at")
 
 
 def test_the_picture_moves_as_the_response(tmp_path):

@@ -17,6 +17,7 @@ from typer.testing import CliRunner
 
 import rockflex
 from rockflex import InputError
+from rockflex._numbers import moment_unit
 from rockflex.cli import _console, app
 from rockflex.cli._output import check_folder, file_stems, staged, to_json, versions
 from rockflex.progress import _lines
@@ -186,7 +187,7 @@ def test_numbers_in_tables(value, text):
 
 @pytest.mark.parametrize(("largest", "unit"), [(9.99e6, "kN m"), (1e7, "MN m")])
 def test_unit_of_moments(largest, unit):
-    assert _console.moment_unit(largest)[0] == unit
+    assert moment_unit(largest)[1] == unit
 
 
 ROOT = Path(__file__).parents[2]

@@ -9,7 +9,7 @@ import pytest
 
 import rockflex as rf
 from rockflex.modal._uplifted import uplifted_damping
-from rockflex.papers.silva_stojadinovic_2024._structures import TOWER, frame_of
+from rockflex.papers.silva_stojadinovic_2024._inputs import TOWER, frame_of
 
 
 def roots_of(p):

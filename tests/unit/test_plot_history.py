@@ -1,3 +1,5 @@
+"""Histories: panels, peaks, uplifts and falls, and bands of varied properties."""
+
 import io
 import math
 import subprocess
@@ -12,13 +14,18 @@ from matplotlib.colors import to_hex
 
 import rockflex as rf
 from builders import make_frame
-from drawing import notes, spans, uplift_intervals
-from rockflex.plot import plot_history
+from drawing import drawn, notes, spans, uplift_intervals
+from rockflex.plot import plot_history, plot_spread
 from rockflex.plot._curves import curves_of
 
 FRAME = make_frame()
 MODELS = ("2DOF-S", "3DOF-S", "MDOF-S", "fixed")
 RECORD = rf.load_suite("el-centro-1940")[0]
+# Rotation at which the static resisting moment vanishes, from the masses by hand.
+HALF_WIDTH = FRAME.modal().effective_height[0] / 10.0
+BALANCE = 6 * 40e3 * HALF_WIDTH / (40e3 * 3.0 * (1 + 2 + 3 + 4 + 5))
+SPREAD_MODELS = ("2DOF-C", "2DOF-S")
+PULSE = rf.ricker_pulse(0.981, 0.5)
 
 
 @pytest.fixture(scope="module")
@@ -177,8 +184,8 @@ def test_takes_one_response_any_iterable_and_the_column_of_a_table(four):
 
 
 def test_sixteen_responses_are_told_apart_and_no_more(four):
-    looks = [c.look for c in curves_of([*four, *[four[0]] * 12])]
-    assert len({(look.color, look.dashes) for look in looks}) == 16
+    looks = [c.style for c in curves_of([*four, *[four[0]] * 12])]
+    assert len({(style.color, style.dashes) for style in looks}) == 16
     with pytest.raises(rf.InputError, match=r"^17 responses are too many to distinguish in one figure\. Plot fewer"):
         plot_history([*four, *[four[0]] * 13])
 
@@ -186,8 +193,8 @@ def test_sixteen_responses_are_told_apart_and_no_more(four):
 def test_black_is_for_the_model_with_the_most_modes(four):
     five = rf.simulate(FRAME, RECORD, "5DOF-S")
     four_modes = rf.simulate(FRAME, RECORD, "4DOF-S")
-    assert [c.look.color for c in curves_of([four_modes, five])][1] == "#000000"
-    assert [c.look.color for c in curves_of([five, four[2]])][1] == "#000000"
+    assert [c.style.color for c in curves_of([four_modes, five])][1] == "#000000"
+    assert [c.style.color for c in curves_of([five, four[2]])][1] == "#000000"
 
 
 def test_what_cannot_be_drawn_is_named(four):
@@ -279,10 +286,164 @@ def test_complete_and_yielding_models_have_looks_of_their_own(four):
     models = [rf.simulate(FRAME, RECORD, label) for label in labels]
     models.append(rf.simulate(FRAME, RECORD, "2DOF-S", bouc_wen=rf.BoucWen(0.02)))
     curves = curves_of([*models, *four[2:]])
-    colors = {curve.label: curve.look.color for curve in curves}
+    colors = {curve.label: curve.style.color for curve in curves}
     assert colors["2DOF-C"] == "#cc79a7"
     assert colors["2DOF-C-SI"] == "#e69f00"
     assert colors["2DOF-S"] == "#d55e00"
     assert colors["2DOF-S-BW"] == "#56b4e9"
-    assert len({(curve.look.color, curve.look.dashes) for curve in curves}) == len(curves)
+    assert len({(curve.style.color, curve.style.dashes) for curve in curves}) == len(curves)
     assert curves[0].order < curves[1].order < 3.0
+
+
+@pytest.fixture(scope="module")
+def fallen():
+    """Released beyond the amplitude from which it can return, after one return."""
+    quiet = rf.quiet_motion(20.0)
+    return rf.simulate(FRAME, quiet, "2DOF-S", initial=rf.InitialState(rotation=0.05, rotation_velocity=0.5))
+
+
+@pytest.fixture(scope="module")
+def returned():
+    return rf.simulate(FRAME, rf.quiet_motion(20.0), "3DOF-S", initial=rf.InitialState(rotation=0.05))
+
+
+def test_overturning_squashes_no_other_curve(fallen, returned):
+    assert (fallen.status, returned.status) == ("overturned", "rocking")
+    figure = plot_history([fallen, returned])
+    rotation, displacement, total, moment, _ = figure.axes
+    high = rotation.get_ylim()[1]
+    assert high == pytest.approx(1.12 * returned.max_rotation)
+    (triangle,) = (line for line in rotation.get_lines() if line.get_marker() in "^v")
+    when = float(np.interp(high, np.abs(fallen.rotation), fallen.time))
+    assert float(triangle.get_xdata()[0]) == pytest.approx(when, rel=1e-9)
+    assert triangle.get_marker() == "^"
+    assert triangle.get_ydata()[0] == high
+    for axes in figure.axes:
+        (line,) = (line for line in axes.get_lines() if line.get_linestyle() == ":")
+        assert list(line.get_xdata()) == [fallen.end_time] * 2
+    assert f"overturned, {fallen.end_time:.2f} s" in notes(rotation)
+    before = fallen.time < np.min(fallen.time[np.abs(fallen.rotation) > BALANCE])
+    for axes, values, factor, name in (
+        (displacement, fallen.top_displacement, 1.0, "top_displacement"),
+        (total, fallen.total_top_displacement, 1.0, "total_top_displacement"),
+        (moment, fallen.base_moment, 1e6, "base_moment"),
+    ):
+        largest = max(np.abs(values[before]).max(), getattr(returned, f"max_{name}")) / factor
+        assert axes.get_ylim()[1] == pytest.approx(1.12 * largest)
+    assert np.abs(fallen.base_moment).max() / 1e6 > moment.get_ylim()[1]
+
+
+def test_overturning_to_the_left_points_down():
+    initial = rf.InitialState(rotation=-0.05, rotation_velocity=-0.5)
+    left = rf.simulate(FRAME, rf.quiet_motion(20.0), "2DOF-S", initial=initial)
+    assert left.status == "overturned"
+    axes = plot_history(left).axes[0]
+    (triangle,) = (line for line in axes.get_lines() if line.get_marker() in "^v")
+    assert triangle.get_marker() == "v"
+    assert triangle.get_ydata()[0] == axes.get_ylim()[0]
+
+
+def test_where_all_overturn_the_axis_reaches_the_rotation_of_balance(fallen):
+    assert plot_history(fallen).axes[0].get_ylim()[1] == pytest.approx(1.12 * BALANCE)
+    fixed = rf.simulate(FRAME, rf.quiet_motion(20.0), "fixed")
+    assert plot_history([fallen, fixed]).axes[0].get_ylim()[1] == pytest.approx(1.12 * BALANCE)
+
+
+def test_a_fall_that_the_record_cuts_short_squashes_nothing_either(returned):
+    initial = rf.InitialState(rotation=0.05, rotation_velocity=0.5)
+    falling = rf.simulate(FRAME, rf.quiet_motion(1.0), "2DOF-S", initial=initial)
+    assert falling.status == "rocking"
+    assert falling.max_rotation > BALANCE
+    axes = plot_history([falling, returned]).axes[0]
+    assert axes.get_ylim()[1] == pytest.approx(1.12 * returned.max_rotation)
+    assert any(line.get_marker() == "^" for line in axes.get_lines())
+
+
+def test_a_run_beyond_balance_from_the_start_is_shown_whole():
+    start = rf.InitialState(rotation=1.2 * BALANCE)
+    response = rf.simulate(FRAME, rf.quiet_motion(20.0), "2DOF-S", initial=start)
+    assert response.status == "overturned"
+    panels = plot_history(response).axes
+    assert panels[0].get_ylim()[1] > 0.5 * math.pi
+    assert panels[1].get_ylim()[1] > response.max_top_displacement
+
+
+def test_phases_open_at_both_ends_are_shaded(returned):
+    initial = rf.InitialState(rotation=0.05)
+    short = rf.simulate(FRAME, rf.quiet_motion(0.5), "2DOF-S", initial=initial)
+    np.testing.assert_allclose(spans(plot_history(short).axes[1].collections[0]), [[0.0, 0.5]])
+    expected = uplift_intervals(returned)
+    assert expected[0, 0] == 0.0
+    np.testing.assert_allclose(spans(plot_history(returned).axes[1].collections[0]), expected, rtol=1e-12)
+
+
+def run(base, model):
+    return rf.simulate(rf.equivalent_2hz_long_base(base, 0.01), PULSE, model, free_vibration=1.0)
+
+
+@pytest.fixture(scope="module")
+def nominal():
+    return [run(0.1, model) for model in SPREAD_MODELS]
+
+
+@pytest.fixture(scope="module")
+def varied():
+    return [[run(base, model) for base in (0.0, 0.3)] for model in SPREAD_MODELS]
+
+
+def band(axes):
+    """Time, lower and upper edge of a filled band."""
+    (area,) = axes.collections
+    vertices = area.get_paths()[0].vertices
+    times = np.unique(vertices[:, 0])
+    edges = [vertices[vertices[:, 0] == t, 1] for t in times]
+    return times, np.array([e.min() for e in edges]), np.array([e.max() for e in edges])
+
+
+def test_the_band_is_least_and_largest_of_all_at_each_instant(nominal, varied):
+    figure = drawn(plot_spread(nominal, varied, title="x"))
+    panels = np.array(figure.axes).reshape(2, 2)
+    for row, (one, group) in enumerate(zip(nominal, varied, strict=True)):
+        for column, name in enumerate(("rotation", "top_displacement")):
+            axes = panels[row, column]
+            times, low, high = band(axes)
+            values = np.array([np.interp(times, r.time, getattr(r, name)) for r in (one, *group)])
+            np.testing.assert_allclose(low, values.min(axis=0), atol=1e-12)
+            np.testing.assert_allclose(high, values.max(axis=0), atol=1e-12)
+            (line,) = axes.get_lines()
+            np.testing.assert_array_equal(line.get_ydata(), getattr(one, name))
+            assert axes.get_title(loc="left") == SPREAD_MODELS[row]
+            assert axes.get_ylim()[1] > max(getattr(r, f"max_{name}") for r in group)
+    assert figure.legends[0].get_title().get_text() == "x"
+
+
+def test_panels_and_labels_are_the_caller_s(nominal, varied):
+    figure = drawn(plot_spread(nominal, varied, ["a", "b"], panels=["base_shear"]))
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["a", "b"]
+    assert all(axes.get_ylabel().startswith("$V_b$") for axes in figure.axes)
+    assert figure.legends[0].get_title().get_text() == PULSE.name
+
+
+def test_what_falls_counts_no_more_and_stretches_nothing():
+    p = rf.equivalent_s1(0.3, 0.02, 0.2, 0.5)
+    quiet = rf.quiet_motion(2.0)
+    stands = rf.simulate(p, quiet, "2DOF-S", initial=rf.InitialState(rotation=0.1))
+    falls = rf.simulate(p, quiet, "2DOF-S", initial=rf.InitialState(rotation=0.1, rotation_velocity=5.0))
+    assert falls.status == "overturned"
+    axes = plot_spread([stands], [[falls]], panels=["rotation"]).axes[0]
+    balance = p.m_tot * p.half_width / p.l0r
+    assert axes.get_ylim()[1] < 1.2 * balance
+    times, low, high = band(axes)
+    after = times > falls.end_time
+    np.testing.assert_allclose(low[after], high[after], atol=1e-12)
+
+
+def test_groups_must_fit(nominal, varied):
+    text = "varied must hold 2 groups, one per response, each of at least one response, but groups of {} were given."
+    for groups, sizes in (([varied[0]], "[2]"), ([varied[0], []], "[2, 0]")):
+        with pytest.raises(rf.InputError) as caught:
+            plot_spread(nominal, groups)
+        assert str(caught.value) == text.format(sizes)
+    peaks = rf.simulate(rf.equivalent_2hz_long_base(0.0, 0.01), PULSE, "2DOF-S", output="peaks")
+    with pytest.raises(rf.InputError, match="keeps peaks only"):
+        plot_spread(nominal, [varied[0], [peaks]])

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 import rockflex as rf
 from page import check_page
 from rockflex.cli import app
-from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, _pool, reproduce
+from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, _section_3_3, reproduce
 
 
 def invoke(*arguments):
@@ -98,9 +98,9 @@ def test_a_negative_seed_is_refused():
 
 
 def test_populations_have_the_given_seeds(at2, monkeypatch):
-    monkeypatch.setattr(_pool, "PAIRS", 3)
+    monkeypatch.setattr(_section_3_3, "PAIRS", 3)
     records = Records(at2, 10, seed=7)
-    pairs = _pool.pool(records)
+    pairs = _section_3_3.pool(records)
     for place in (0, 9):
         alone = rf.run_population(records.suite, 3, 7 + place).reset_index(drop=True)
         pd.testing.assert_frame_equal(pairs.iloc[3 * place : 3 * place + 3].reset_index(drop=True), alone)
@@ -133,7 +133,7 @@ def test_force_needs_a_folder():
 
 
 def test_records_of_ones_own(at2, monkeypatch):
-    monkeypatch.setattr(_pool, "PAIRS", 30)
+    monkeypatch.setattr(_section_3_3, "PAIRS", 30)
     done = invoke("figure-6", "--records", at2)
     assert done.exit_code == 0, done.stderr
     assert f"8 records of the folder {at2.name}, in place of the paper's 210" in done.stderr

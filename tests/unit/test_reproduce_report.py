@@ -1,18 +1,22 @@
-"""The report of made-up results: pages that need nothing else, and the same numbers in all three."""
+"""The report on a publication, and what its targets may import."""
 
+import ast
 import csv
 import io
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from matplotlib.figure import Figure
 
+import rockflex
 from page import Page, check_page
+from rockflex.papers import silva_stojadinovic_2024 as paper
 from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
-from rockflex.papers.silva_stojadinovic_2024._number import Interval, check, compared, count_of, stated, statistic
+from rockflex.papers.silva_stojadinovic_2024._comparison import Interval, check, compared, count_of, stated, statistic
 from rockflex.report import Document, Remark, Result, to_csv, to_html, to_markdown, write_document
-from rockflex.report._svg import inline
+from rockflex.report._write import inline
 
 MEANINGS = {str(verdict): verdict.meaning for verdict in Verdict}
 KINDS = {str(kind): kind.meaning for kind in Kind}
@@ -20,12 +24,13 @@ NUMBERS = (
     compared("ω_1 <b>", "Table 3", "1.66", 1.6557, "rad/s"),
     compared("a|b & c_*", "Section 1", "0.27", 0.16, note='says "so" & <more>'),
     statistic("R²", "Section 3.3", "0.99", Interval(0.983, 0.978, 0.988)),
-    stated("friction", "Section 3.1", "higher than 2", float("inf"), "> 2", ground=Verdict.EQUIVALENT),
+    stated("friction", "Section 3.1", "higher than 2", float("inf"), "> 2", agreed=Verdict.EQUIVALENT),
     statistic("difference", "Section 3.2", "0.002", Interval(0.00093, 0.00064, 0.00329), "rad"),
     count_of("pairs that rock", "Section 3.3", "693", Interval(882.0, 867.0, 900.0)),
 )
 CHECKS = (check("T_1 & <x>", "Section 3.1", "0.5", 0.5, unit="s"), check("M_r", "Table 2", "m_tot g B", 1.1, "< 1"))
 computed = []
+ROOT = Path(rockflex.__file__).parent
 
 
 def remark():
@@ -159,3 +164,51 @@ def test_inline_figures_do_not_share_names():
         '<svg viewBox="0 0 3 2" role="img" aria-label="label" class="drawing"><defs><path id="f-m1"/></defs>'
         '<g id="f-g" clip-path="url(#f-p)"><use href="#f-m1"/><image href="data:image/png;base64,AA=="/></g></svg>'
     )
+
+
+def imported(source):
+    """Modules of ours that a source imports, wherever it does."""
+    found = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            found.add("." * node.level + (node.module or ""))
+    return {name for name in found if name.startswith((".", "rockflex"))}
+
+
+def beyond(source, allowed):
+    """What it imports of ours besides these modules and what is in them."""
+    return {name for name in imported(source) if not any(name == a or name.startswith(f"{a}.") for a in allowed)}
+
+
+ALLOWED = ("rockflex.papers", "rockflex.report", "rockflex._arrays")  # results are filled in, arrays only named
+LIBRARY = ("population", "_equivalents")  # parts of the library that only the paper needs
+
+
+def targets():
+    """Modules of the papers that reproduce something, or help with it."""
+    paths = sorted((ROOT / "papers").rglob("*.py"))
+    return [path for path in paths if not any(part in (*path.parts, path.stem) for part in LIBRARY)]
+
+
+@pytest.mark.parametrize("path", targets(), ids=lambda path: path.stem)
+def test_papers_use_the_public_front_alone(path):
+    others = imported(path.read_text("utf-8")) - {"rockflex"}
+    assert {name for name in others if not name.startswith(ALLOWED)} == set()
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "report").glob("*.py")), ids=lambda path: path.stem)
+def test_the_report_of_the_paper_knows_figures_and_files(path):
+    assert beyond(path.read_text("utf-8"), {"rockflex.report", "rockflex.plot", "rockflex._files"}) == set()
+
+
+def test_the_walk_sees_what_is_forbidden():
+    source = "import rockflex as rf\ndef f():\n    from rockflex.solve import Engine\n    from ..motion import x\n"
+    assert imported(source) == {"rockflex", "rockflex.solve", "..motion"}
+    assert beyond(source, {"rockflex.plot"}) == {"rockflex", "rockflex.solve", "..motion"}
+
+
+def test_every_target_has_a_title_of_its_own():
+    titles = [paper.title_of(target) for target in paper.TARGETS]
+    assert len(set(titles)) == len(titles)

@@ -11,8 +11,8 @@ import pytest
 import rockflex as rf
 from report_case import FRAME, HELD, PIER, PULSE, SPRINGS, runs
 from report_page import number, read
-from rockflex.report.run import _checks
-from rockflex.report.run._numbers import rounded
+from rockflex._numbers import rounded
+from rockflex.report.run import _checks, _page
 
 MODELS = ("2DOF-S", "MDOF-S", "fixed")
 SIZES = {
@@ -24,6 +24,15 @@ SIZES = {
     "max_horizontal_reaction": 1e3,
     "min_vertical_reaction": 1e3,
 }
+PERIOD = 0.6
+JUMPS = {
+    "cosine": rf.one_cosine_pulse(4.0, PERIOD),
+    "rectangular": rf.rectangular_pulse(4.0, PERIOD),
+    "cut off": rf.GroundMotion(PULSE.acceleration[: PULSE.acceleration.size // 2 + 3], PULSE.dt, name="cut"),
+}
+BLOCK = rf.rigid_block(0.2, 3.0, 20e3)
+SOFT = rf.Ground(0.4, rf.Springs([-0.8, 0.8], stiffness=2e8, damping=3e5), base_inertia=4e4)
+LIGHT = rf.Ground(springs=rf.Springs([-0.4, 0.0, 0.5], stiffness=2e8, damping=3e5), base_inertia=4e4)
 
 
 @pytest.fixture(scope="module")
@@ -136,7 +145,7 @@ def test_what_would_take_minutes_is_left_out(tmp_path, monkeypatch):
     found = runs(HELD, PULSE, ["2DOF-S"], ground=rf.Ground(springs=SPRINGS.springs, base_inertia=5e5))
     text = read(rf.write_report(found, tmp_path / "r.html")).text
     assert "not computed" not in text
-    monkeypatch.setattr(_checks, "MOST", found[0].time.size * SPRINGS.springs.n - 1)
+    monkeypatch.setattr(_checks, "MAX_WORK", found[0].time.size * SPRINGS.springs.n - 1)
     monkeypatch.setattr(rf.History, "required_friction", property(lambda _: pytest.fail("computed")))
     reader = read(rf.write_report(found, tmp_path / "r.html"))
     assert [cell[0] for cell in reader.tables["checks"][1]].count("not computed") == 2
@@ -248,3 +257,260 @@ def test_the_page_says_what_forces_with_an_impact_law_leave_out(page, tmp_path):
     for frame, model, options in ((PIER, "2DOF-S", {"ground": SPRINGS}), (FRAME, "fixed", {})):
         path = rf.write_report(runs(frame, PULSE, (model,), **options), tmp_path / f"{model}.html", structure=frame)
         assert "impulse of impacts" not in path.read_text("utf-8")
+
+
+@pytest.fixture(scope="module")
+def one():
+    return runs(FRAME, PULSE, ["2DOF-S"])
+
+
+OTHER = rf.Frame(2, 3.0, 40e3, 40e3, 1e9, period=0.6, aspect_ratio=5.0, damping_ratio=0.02)
+
+
+def refused(field, word, responses, path, **options):
+    with pytest.raises(rf.InputError) as error:
+        rf.write_report(responses, path, **options)
+    assert error.value.field == field
+    assert word in str(error.value)
+    assert not path.is_file()
+
+
+def test_responses_that_cannot_be_reported(one, tmp_path):
+    path = tmp_path / "r.html"
+    peaks = rf.simulate(FRAME, PULSE, "2DOF-S", output="peaks")
+    refused("responses", 'output="history"', [peaks], path)
+    refused("responses", "no response", [], path)
+    refused("responses", "'x'", "x", path)
+    refused("responses", "responses[1]", [*one, 3], path)
+    refused("responses", "6 runs", one * 7, path)
+    scaled = runs(FRAME, PULSE.scaled(2.0), ["2DOF-S"])
+    refused("responses", "several scales", one + scaled, path)
+    named = runs(FRAME, rf.GroundMotion(PULSE.acceleration, PULSE.dt, name="b"), ["2DOF-S"])
+    refused("responses", "2 records", one + named, path)
+    refused("responses", "one structure", one + runs(OTHER, PULSE, ["2DOF-S"]), path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_structure_or_a_motion_of_other_runs(one, tmp_path):
+    path = tmp_path / "r.html"
+    refused("structure", "half_width", one, path, structure=OTHER)
+    refused("structure", "Frame", one, path, structure=3)
+    refused("motion", "Ricker", one, path, motion=rf.one_sine_pulse(1.0, 0.5))
+    refused("motion", "GroundMotion", one, path, motion="el-centro-1940")
+
+
+def test_values_out_of_range(one, tmp_path):
+    path = tmp_path / "r.html"
+    refused("friction", "above zero", one, path, friction=-0.1)
+    refused("title", "text", one, path, title=3)
+    refused("date", "datetime.date", one, path, date=3)
+    refused("notes", "800", one, path, notes="a" * 900)
+    refused("notes", "texts", one, path, notes=[3])
+
+
+def test_paths_that_are_no_page(one, tmp_path):
+    refused("path", "folder", one, tmp_path)
+    refused("path", ".html", one, tmp_path / "r.pdf")
+    refused("path", ".html", one, tmp_path / "r")
+    (tmp_path / "file").write_text("x")
+    refused("path", "Cannot write to", one, tmp_path / "file" / "r.html")
+
+
+def test_folders_are_made_and_files_replaced(one, tmp_path):
+    path = tmp_path / "a" / "b" / "r.HTML"
+    rf.write_report(one, path, date="1")
+    first = path.read_bytes()
+    rf.write_report(one, path, date="2")
+    assert path.read_bytes() != first
+    assert [each.name for each in path.parent.iterdir()] == ["r.HTML"]
+
+
+def test_an_earlier_page_survives_an_error(one, tmp_path, monkeypatch):
+    path = rf.write_report(one, tmp_path / "r.html")
+    before = path.read_bytes()
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(_page, "write_whole", full)
+    with pytest.raises(rf.InputError, match=r"Cannot write to .*: No space left on device"):
+        rf.write_report(one, path)
+    assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize("free", [0.0, 3.0, "settle"])
+@pytest.mark.parametrize("name", JUMPS)
+def test_a_record_may_end_with_a_jump(name, free, tmp_path):
+    motion = JUMPS[name]
+    assert motion.acceleration[-1] != 0.0
+    found = runs(FRAME, motion.scaled(0.7), ["2DOF-S", "MDOF-S", "fixed"], free_vibration=free)
+    facts = read(rf.write_report(found, tmp_path / "r.html", motion=motion)).facts
+    assert facts["scale"][2] == pytest.approx(0.7)
+
+
+def test_a_run_that_settles_at_the_jump(tmp_path):
+    weak = JUMPS["cosine"].scaled(0.01)
+    still, long = (rf.simulate(FRAME, weak, "2DOF-S", output="history", free_vibration=how) for how in ("settle", 1.0))
+    for pair in ([still, long], [long, still]):
+        assert read(rf.write_report(pair, tmp_path / "r.html", motion=weak)).facts["scale"][2] == pytest.approx(0.01)
+
+
+def with_vertical(motion, factor):
+    return rf.GroundMotion(motion.acceleration, motion.dt, name="named", vertical=factor * motion.acceleration)
+
+
+def test_the_vertical_component_is_compared(tmp_path):
+    path = tmp_path / "r.html"
+    plain, *shaken = (rf.simulate(FRAME, with_vertical(PULSE, k), "2DOF-S", output="history") for k in (0.0, 0.4, 0.5))
+    for pair in ([plain, shaken[0]], shaken):
+        for each in (pair, pair[::-1]):
+            with pytest.raises(rf.InputError, match=r"differ in the vertical acceleration of the ground\. Write"):
+                rf.write_report(each, path)
+    for motion, run, words in (
+        (
+            with_vertical(PULSE, 0.0),
+            shaken[0],
+            "were run with vertical acceleration, but 'named' is without it. Give",
+        ),
+        (with_vertical(PULSE, 0.4), plain, "run without vertical acceleration, but 'named' is with it. Give"),
+        (with_vertical(PULSE, 0.4), shaken[1], "run with vertical acceleration, but 'named' is with it, or with an"),
+    ):
+        with pytest.raises(rf.InputError) as error:
+            rf.write_report(run, path, motion=motion)
+        assert words in str(error.value)
+    assert not path.exists()
+    twice = runs(FRAME, with_vertical(PULSE, 0.4).scaled(2.0), ["2DOF-S", "MDOF-C", "fixed"])
+    facts = read(rf.write_report(twice, path, motion=with_vertical(PULSE, 0.4))).facts
+    assert facts["pva"][2] == pytest.approx(0.8 * PULSE.pga, rel=1e-3)
+
+
+def test_the_margin_of_an_eccentric_base_is_that_of_the_side_it_moves_to(tmp_path):
+    whole = FRAME.rocking()
+    tipped = rf.Eccentric(FRAME, 0.3 * whole.half_width)
+    height = whole.effective_height[0]
+    for motion in (PULSE.scaled(1.4), PULSE.scaled(-1.4)):
+        (run,) = runs(tipped, motion, ["2DOF-S"], free_vibration=3.0)
+        reader = read(rf.write_report(run, tmp_path / "r.html", structure=tipped))
+        checks = {name: (text, value) for text, name, value in reader.tables["checks"][1]}
+        arms = {1: 0.7 * whole.half_width, -1: 1.3 * whole.half_width}
+        shares = [np.max(side * run.rotation) / math.atan2(arm, height) for side, arm in arms.items()]
+        text, margin = checks["overturning_margin"]
+        assert margin == pytest.approx(0.7 / max(shares), rel=1e-3)
+        assert ("<" in text) == (margin < 1.0)
+        peaks = {name: value for _, name, value in reader.tables["peaks"][1]}
+        assert peaks["nominal_share"] == pytest.approx(max(shares) / 0.7, rel=1e-3)
+        assert reader.facts["nominal_right"][2] == pytest.approx(0.7 * math.atan2(arms[1], height))
+        assert reader.facts["alpha_right"][2] == pytest.approx(whole.m_tot * arms[1] / whole.l0r)
+        words = reader.text.replace("θmax", "θ_max").replace("θnom", "θ_nom")
+        assert "θ_nom over θ_max, to the side that is nearer to it" in words
+
+
+def test_an_empty_title_is_no_title(tmp_path):
+    (run,) = runs(FRAME, PULSE, ["2DOF-S"])
+    assert "Frame under Ricker" in read(rf.write_report(run, tmp_path / "r.html", structure=FRAME, title="")).text
+
+
+def lines(path):
+    """The headed lines of a page."""
+    return dict(re.findall(r"<p><b>(.+?)\.</b> (.*?)</p>", re.sub(r"</?su[bp]>", "", path.read_text("utf-8"))))
+
+
+def response_of(*arguments, **options):
+    return rf.simulate(*arguments, output="history", **options)
+
+
+def test_inputs_of_some_runs_have_their_labels(tmp_path):
+    yields = [response_of(FRAME, PULSE, "2DOF-S-BW", bouc_wen=rf.BoucWen(d)) for d in (0.02, 0.08)]
+    grounds = [response_of(FRAME, PULSE, "2DOF-S", ground=g) for g in (rf.Ground(friction=0.1), SOFT)]
+    found = lines(rf.write_report([*yields, *grounds, response_of(FRAME, PULSE, "2DOF-S")], tmp_path / "r.html"))
+    bouc_wen, soft = found["Hysteresis"].split("; ")
+    assert bouc_wen.startswith("Bouc–Wen, Dy = 20.0 mm, post-yield ratio 0.01, γ")
+    assert bouc_wen.endswith(" (2DOF-S-BW (1))")
+    assert "Dy = 80.0 mm" in soft
+    assert soft.endswith(" (2DOF-S-BW (2))")
+    assert found["Ground"].endswith(" (2DOF-S (2))")
+    assert found["Friction"] == ("the base slides at μ = 0.1 (2DOF-S (1)); the base slides at μ = 0.4 (2DOF-S (2))")
+    assert found["Impact law"].endswith("VVELSimplified (2DOF-S (1), 2DOF-S (3))") or "(" not in found["Impact law"]
+
+
+def test_inputs_of_all_runs_have_none(tmp_path):
+    found = lines(rf.write_report(runs(PIER, PULSE, ["2DOF-S", "MDOF-S"], ground=SPRINGS), tmp_path / "r.html"))
+    assert found["Friction"] == "the base slides at μ = 0.4"
+    assert found["Ground"].startswith("12 springs without tension, x = −1.80 to 1.80 m, Σk = 1440 MN/m")
+    assert found["Ground"].endswith(" in heave), Ib = 500 t m²")
+    assert "Initial state" not in found
+
+
+def test_the_start_is_on_the_page(tmp_path):
+    quiet, starts = rf.quiet_motion(6.0), (rf.InitialState(0.05), rf.InitialState(rotation_velocity=-0.1), None)
+    found = [response_of(FRAME, quiet, "2DOF-S", initial=start) for start in starts]
+    path = rf.write_report(found, tmp_path / "r.html")
+    assert lines(path)["Initial state"] == "θ = 50.0 mrad (2DOF-S (1)); θ′ = −0.100 rad/s (2DOF-S (2))"
+    checks = [row[1] for row in read(path).tables["checks"][1:]]
+    for (text, _, value), run in zip(checks[:2], found[:2], strict=True):
+        assert run.n_uplifts > 0
+        assert value == run.uplift_times[0]
+        assert re.fullmatch(rf"starts uplifted; {run.n_uplifts}×, next at [\d.]+ s", text)
+    assert checks[2][0] == "none"
+    block = response_of(BLOCK, quiet, "rigid", initial=starts[0])
+    assert block.n_uplifts == 0  # it passes from one edge to the other
+    assert read(rf.write_report(block, path)).tables["checks"][1][1][0] == "starts uplifted"
+
+
+def test_the_start_on_springs_counts_from_rest(tmp_path):
+    still = response_of(FRAME, PULSE, "2DOF-S", ground=LIGHT)
+    assert abs(still.rotation[0]) > 1e-6  # the springs are not symmetric
+    tipped = response_of(FRAME, PULSE, "2DOF-S", ground=LIGHT, initial=rf.InitialState(0.002, [0.003]))
+    found = lines(rf.write_report([still, tipped], tmp_path / "r.html"))
+    assert found["Initial state"] == "θ = 2.00 mrad, D1 = 3.00 mm (2DOF-S (2))"
+
+
+def test_the_hash_tells_inputs_apart(tmp_path):
+    quick = rf.quiet_motion(0.2)
+    shaken = rf.GroundMotion(PULSE.acceleration[:40], PULSE.dt, vertical=PULSE.acceleration[:40])
+    plain = rf.GroundMotion(shaken.acceleration, shaken.dt)
+    other = rf.Ground(springs=rf.Springs([-0.4, 0.0, 0.6], stiffness=2e8, damping=3e5), base_inertia=4e4)
+    cases = [
+        *((quick, {"ground": ground}) for ground in (None, rf.Ground(friction=0.1), rf.Ground(friction=0.2))),
+        *((quick, {"ground": ground}) for ground in (LIGHT, other, rf.Ground(springs=LIGHT.springs, base_inertia=5e4))),
+        *((quick, {"impact": rf.Restitution(e)}) for e in (0.5, 0.6)),
+        *((quick, {"initial": rf.InitialState(angle)}) for angle in (0.02, 0.021)),
+        (quick, {"free_vibration": 0.3}),
+        (plain, {}),
+        (shaken, {}),
+    ]
+
+    def hashes(run, motion):
+        pages = [rf.write_report(run, tmp_path / "r.html", motion=each).read_text("utf-8") for each in (None, motion)]
+        return [re.search(r"inputs ([0-9a-f]{12})<", page)[1] for page in pages]
+
+    found = [hashes(response_of(FRAME, motion, "2DOF-S", **options), motion) for motion, options in cases]
+    for column in zip(*found, strict=True):
+        assert len(set(column)) == len(cases)
+    assert hashes(response_of(FRAME, quick, "2DOF-S", impact=rf.Restitution(0.5)), quick) == found[6]
+
+
+def test_peaks_of_ground_motion_are_those_of_the_run_if_all_overturn(tmp_path):
+    late = np.concatenate([rf.one_sine_pulse(8.0, 2.5).acceleration, [0.0, 30.0, 0.0, 0.0]])
+    motion = rf.GroundMotion(late, rf.one_sine_pulse(8.0, 2.5).dt)
+    fell = response_of(FRAME, motion, "2DOF-S")
+    assert fell.status == "overturned"
+    path = tmp_path / "r.html"
+    for found, record, words in (
+        (fell, None, True), (fell, motion, False), ([fell, response_of(FRAME, motion, "fixed")], None, False),
+    ):  # fmt: skip
+        reader = read(rf.write_report(found, path, motion=record))
+        names = re.findall(r"PGA( during the run)?", reader.text)
+        assert [bool(each) for each in names] == [words]
+        assert (reader.facts["pga"][2] == pytest.approx(30.0)) == (not words)
+
+
+def test_impact_laws_in_words(tmp_path):
+    tipped = rf.Eccentric(FRAME, 0.2)
+    run = response_of(tipped, PULSE, "rigid")
+    found = lines(rf.write_report(run, tmp_path / "r.html"))
+    law = run.history.model.law
+    right, left = map(float, re.findall(r"0\.\d{3}", found["Impact law"]))
+    assert right != left
+    assert right == pytest.approx(law.right.e, abs=1e-3)
+    assert left == pytest.approx(law.left.e, abs=1e-3)

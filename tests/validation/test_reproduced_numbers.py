@@ -13,11 +13,10 @@ import pytest
 
 import rockflex as rf
 from drawing import drawn
-from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, Verdict, _pool, reproduce
-from rockflex.papers.silva_stojadinovic_2024._cloud import cloud, differences, places
-from rockflex.papers.silva_stojadinovic_2024._number import Interval
-from rockflex.papers.silva_stojadinovic_2024._pool import intervals, pool
-from rockflex.papers.silva_stojadinovic_2024.figure_9 import COUNTS
+from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, Verdict, _section_3_3, _section_4, reproduce
+from rockflex.papers.silva_stojadinovic_2024._comparison import Interval
+from rockflex.papers.silva_stojadinovic_2024._section_3_2 import cloud, differences, places
+from rockflex.papers.silva_stojadinovic_2024._section_3_3 import COUNTS, intervals, pool
 
 PAIRS = 300  # of a population, in place of the report's thousand
 SLOW = {"sliding"}  # tested with few records
@@ -50,7 +49,7 @@ OWN = {"figure-8": 10, "figure-11": 1, "table-2": 8, "figure-3": 4, "figure-4": 
 @pytest.fixture(scope="module")
 def records():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(_pool, "PAIRS", PAIRS)
+        patch.setattr(_section_3_3, "PAIRS", PAIRS)
         yield Records(seeds=10)
 
 
@@ -244,9 +243,11 @@ def test_draws_of_a_population_spread_as_populations_do(records):
 
 def test_a_measure_that_few_draws_have_is_none(records, monkeypatch):
     calls = iter(range(10**6))
-    monkeypatch.setattr(_pool, "DRAWS", 20)
-    monkeypatch.setattr(_pool, "measure", lambda _: {"x": float(i) if (i := next(calls)) % 10 else np.nan, "y": 1.0})
-    found = _pool.intervals.__wrapped__(records)
+    monkeypatch.setattr(_section_3_3, "DRAWS", 20)
+    monkeypatch.setattr(
+        _section_3_3, "measure", lambda _: {"x": float(i) if (i := next(calls)) % 10 else np.nan, "y": 1.0}
+    )
+    found = _section_3_3.intervals.__wrapped__(records)
     assert found["y"] == Interval(1.0, 1.0, 1.0)
     assert all(np.isnan(found["x"]))
 
@@ -261,10 +262,7 @@ def test_every_figure_can_be_drawn(results, name):
 
 
 def test_ours_would_fail_if_the_structure_were_another(monkeypatch):
-    from rockflex.papers.silva_stojadinovic_2024 import figure_14, table_3
-
     other = rf.TaperedTower(199.0, 8.0, 4.0, 1.0, 2400.0, 25e9, 0.02)
-    for module in (figure_14, table_3):
-        monkeypatch.setattr(module, "TOWER", other)
+    monkeypatch.setattr(_section_4, "TOWER", other)
     assert reproduce(["figure-14"])[0].count(Verdict.REPRODUCED) == 0
     assert reproduce(["table-3"])[0].count(Verdict.REPRODUCED) < 15

@@ -174,8 +174,3 @@ def number(value: float | None, digits: int = 4) -> str:
     if not -5 <= magnitude < 7:
         return f"{value:.{digits - 1}e}"
     return f"{value:.{max(0, digits - 1 - magnitude)}f}"
-
-
-def moment_unit(largest: float) -> tuple[str, float]:
-    """Return the unit in which moments up to `largest` (N m) are written, and its size in N m."""
-    return ("MN m", 1e6) if largest >= 1e7 else ("kN m", 1e3)

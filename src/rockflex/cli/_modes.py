@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rockflex._errors import InputError
+from rockflex._numbers import moment_unit
 from rockflex._schema import FrameFlags
 from rockflex.cli import _options as options
-from rockflex.cli._console import grid, moment_unit, note, number, output, show, warn
+from rockflex.cli._console import grid, note, number, output, show, warn
 from rockflex.cli._options import flag_values
 from rockflex.cli._output import check_folder, staged, to_json, versions
 
@@ -252,7 +253,7 @@ def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "Rocking
 
 def _of_both_pivots(p: "RockingProperties") -> list[tuple[str, str, str]]:
     """The parameters that are the same about both pivots."""
-    unit, size = moment_unit(p.resisting_moment)
+    size, unit = moment_unit(p.resisting_moment)
     stiffness = ("Their stiffness while rocking", number(p.tendon_stiffness / size), f"{unit}/rad")
     weight = "(m_tot g + P)" if p.tendons else "m_tot g"
     return [
@@ -266,7 +267,7 @@ def _of_both_pivots(p: "RockingProperties") -> list[tuple[str, str, str]]:
 
 def _of_each_pivot(p: "RockingProperties") -> list[tuple[str, str, str, str]]:
     """The parameters that differ between the pivots."""
-    unit, size = moment_unit(p.resisting_moment)
+    size, unit = moment_unit(p.resisting_moment)
     sides = (p.pivot(1), p.pivot(-1))
 
     def row(name: str, values: tuple[float, ...], unit: str) -> tuple[str, str, str, str]:

@@ -8,16 +8,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockflex._errors import InputError
+from rockflex._numbers import moment_unit
 from rockflex._shown import counted, shortened
 from rockflex.cli._batch import SLIDING, Batch, Run
-from rockflex.cli._console import Styled, fits, grid, moment_unit, note, number, output, show
+from rockflex.cli._console import Styled, fits, grid, note, number, output, show
 from rockflex.cli._output import file_stems, staged
 from rockflex.cli._run_options import option_lines
 from rockflex.cli._structures import LoadedStructure, elements_table
 from rockflex.fragility import NOMINAL
 from rockflex.modal import Ground
 from rockflex.motion import MEASURES, GroundMotion
-from rockflex.report.run import MOST, checked_path, write_report
+from rockflex.report.run import MAX_RUNS, checked_path, write_report
 from rockflex.response import IMPACT_WINDOW, Response, history_columns
 from rockflex.study._arguments import ground_under
 
@@ -122,7 +123,7 @@ def _list(found: Sequence[str], rest: str) -> None:
 
 def _peaks(runs: Sequence[Run]) -> Columns:
     moments = [abs(run.peaks["max_base_moment"] or 0.0) for run in runs]
-    unit, size = moment_unit(max(moments))
+    size, unit = moment_unit(max(moments))
     columns: Columns = [
         ("status", [_status(run) for run in runs]),
         ("θ_max [rad]", _column(runs, "max_rotation")),
@@ -365,9 +366,10 @@ def check_runs(batch: Batch) -> None:
             f"{counted(scales, 'scale')}. Name one record, such as SUITE/NAME ({first}), with one --scale; a loop "
             "writes a report of each."
         )
-    if models > MOST:
+    if models > MAX_RUNS:
         raise InputError(
-            f"--report has room for {MOST} models, but there are {models}. Choose the ones that matter with --model."
+            f"--report has room for {MAX_RUNS} models, but there are {models}. Choose the ones that matter with "
+            "--model."
         )
 
 

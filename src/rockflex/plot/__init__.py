@@ -1,28 +1,19 @@
 """Figures of results; matplotlib is imported here and nowhere else."""
 
 from rockflex.plot._clouds import plot_clouds
-from rockflex.plot._design import plot_design
-from rockflex.plot._design_search import plot_design_search
+from rockflex.plot._design import plot_design, plot_design_search
 from rockflex.plot._energy import plot_energy
 from rockflex.plot._footing import plot_footing
-from rockflex.plot._fragility import plot_fragility
-from rockflex.plot._frequency_curves import plot_frequency_equation
-from rockflex.plot._frequency_ratios import plot_frequency_ratios
-from rockflex.plot._history import plot_history
-from rockflex.plot._ida import plot_ida
-from rockflex.plot._loops import plot_loops
-from rockflex.plot._mode_shapes import plot_mode_shapes
-from rockflex.plot._moment_rotation import plot_moment_rotation
-from rockflex.plot._moment_rotation_laws import plot_moment_rotation_laws
-from rockflex.plot._motion import plot_motion
+from rockflex.plot._fragility import plot_fragility, plot_ida, plot_stripes
+from rockflex.plot._history import plot_history, plot_spread
+from rockflex.plot._loops import plot_hysteresis, plot_loops, plot_yielding
+from rockflex.plot._modes import plot_frequency_equation, plot_frequency_ratios, plot_mode_shapes
+from rockflex.plot._moment_rotation import plot_moment_rotation, plot_moment_rotation_laws
+from rockflex.plot._motion import plot_motion, plot_selection
 from rockflex.plot._rocking_spectra import plot_overturning_spectrum, plot_rocking_spectrum
 from rockflex.plot._run_sheet import record_strip, run_sheet
-from rockflex.plot._save import save_figure, svg_of
-from rockflex.plot._selection import plot_selection
-from rockflex.plot._spread import plot_spread
-from rockflex.plot._stripes import plot_stripes
+from rockflex.plot._style import save_figure, svg_of
 from rockflex.plot._tower import plot_tower
-from rockflex.plot._yielding import plot_hysteresis, plot_yielding
 from rockflex.plot.animation import animate
 
 __all__ = [

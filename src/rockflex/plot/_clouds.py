@@ -14,14 +14,14 @@ from rockflex._shown import shown
 from rockflex.fragility import NOMINAL, OVERTURNING, ROCKED, CloudFit, fit_each_cloud, rocked
 from rockflex.plot._study_tables import (
     check_columns,
-    keys_of,
     label_plainly,
-    looks_of,
+    legend_handles,
     measure_name,
     names_in,
     structure_panels,
+    styles_of,
 )
-from rockflex.plot._style import BLACK, Look, Size, columns, points, styled
+from rockflex.plot._style import BLACK, LineStyle, Size, font_size, legend_above, styled
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -109,7 +109,7 @@ def plot_clouds(
 
     check_columns(runs, ("structure", "model", "status", measure), "what run_cloud returned")
     clouds = _clouds(runs, quantity, measure, threshold, nominal=nominal)
-    looks = looks_of(names_in(cloud.model for cloud in clouds))
+    styles = styles_of(names_in(cloud.model for cloud in clouds))
     names = names_in(cloud.structure for cloud in clouds)
     rocked, fallen = pd.concat([cloud.rocked for cloud in clouds]), pd.concat([cloud.fallen for cloud in clouds])
     with styled(size=size):
@@ -117,20 +117,19 @@ def plot_clouds(
         panels[0].set(xscale="log", yscale="log")
         for axes in panels:
             label_plainly(axes.xaxis)
-        _set_limits(panels[0], rocked, pd.concat([rocked, fallen]), quantity, measure, len(looks))
+        _set_limits(panels[0], rocked, pd.concat([rocked, fallen]), quantity, measure, len(styles))
         for axes, name in zip(panels, names, strict=True):
             rows: list[tuple[str, str]] = []
             for cloud in (cloud for cloud in clouds if cloud.structure == name):
-                look, marker = looks[cloud.model]
-                _draw(axes, cloud, quantity, measure, look, marker)
-                _mark_fallen(axes, cloud.fallen[measure].to_numpy(dtype=float), look, list(looks).index(cloud.model))
-                rows.append((_numbers(cloud), look.color))
+                style, marker = styles[cloud.model]
+                _draw(axes, cloud, quantity, measure, style, marker)
+                _mark_fallen(axes, cloud.fallen[measure].to_numpy(dtype=float), style, list(styles).index(cloud.model))
+                rows.append((_numbers(cloud), style.color))
             _write(axes, rows)
-        handles = keys_of(looks)
+        handles = legend_handles(styles)
         if len(fallen):
             handles.append(Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.0, label="overturned"))
-        labels = [str(handle.get_label()) for handle in handles]
-        figure.legend(handles=handles, loc="outside upper center", ncols=columns(labels, 40 + 40 * (len(names) > 1)))
+        legend_above(figure, handles)
     return figure
 
 
@@ -178,24 +177,24 @@ def _set_limits(
     axes.set_xlim(left / margin, right * margin)
 
 
-def _draw(axes: Axes, cloud: _Cloud, quantity: str, measure: str, look: Look, marker: str) -> None:
+def _draw(axes: Axes, cloud: _Cloud, quantity: str, measure: str, style: LineStyle, marker: str) -> None:
     im = cloud.rocked[measure].to_numpy(dtype=float)
     axes.plot(
-        im, cloud.rocked[quantity].to_numpy(dtype=float), marker, color=look.color, markersize=2.4,
+        im, cloud.rocked[quantity].to_numpy(dtype=float), marker, color=style.color, markersize=2.4,
         markerfacecolor="none", markeredgewidth=0.45, alpha=0.6, label=f"_{cloud.model}",
     )  # fmt: skip
     if cloud.line is not None:
         ends = np.array([im.min(), im.max()])
         axes.plot(
-            ends, cloud.line.median(ends), color=look.color, linestyle=look.dashes, linewidth=1.3, label=cloud.model,
+            ends, cloud.line.median(ends), color=style.color, linestyle=style.dashes, linewidth=1.3, label=cloud.model,
             zorder=3.0,
         )  # fmt: skip
 
 
-def _mark_fallen(axes: Axes, im: Array, look: Look, rank: int) -> None:
+def _mark_fallen(axes: Axes, im: Array, style: LineStyle, rank: int) -> None:
     """Crosses of the runs that overturned, in the model's own row at the top."""
     axes.plot(
-        im, np.full(im.size, 0.97 - _CROSSES * rank), "x", color=look.color, markersize=2.6, markeredgewidth=0.6,
+        im, np.full(im.size, 0.97 - _CROSSES * rank), "x", color=style.color, markersize=2.6, markeredgewidth=0.6,
         transform=axes.get_xaxis_transform(), label="_overturned",
     )  # fmt: skip
 
@@ -215,6 +214,6 @@ def _write(axes: Axes, rows: list[tuple[str, str]]) -> None:
     for place, (text, color) in enumerate(reversed([(header, BLACK), *rows])):
         axes.text(
             0.985, 0.025 + _ROW * place, text.ljust(width), transform=axes.transAxes, color=color,
-            fontsize=points(_TINY), ha="right", family="DejaVu Sans Mono",
+            fontsize=font_size(_TINY), ha="right", family="DejaVu Sans Mono",
             bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.6, "pad": 0.5},
         )  # fmt: skip

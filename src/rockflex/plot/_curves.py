@@ -8,18 +8,30 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.plot._style import BLACK, GRAY, GREEN, LOOKS, ORANGE, PURPLE, RED, SKY, Look, literal, recoloured
+from rockflex.plot._style import (
+    BLACK,
+    GRAY,
+    GREEN,
+    LINE_STYLES,
+    ORANGE,
+    PURPLE,
+    RED,
+    SKY,
+    LineStyle,
+    literal,
+    recoloured,
+)
 from rockflex.response import History, Response
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """One response with its history, label and look."""
+    """One response with its history, label and line style."""
 
     response: Response
     history: History
     label: str
-    look: Look
+    style: LineStyle
 
     @property
     def overturned(self) -> bool:
@@ -35,7 +47,7 @@ class Curve:
     def order(self) -> float:
         """Drawing order: models with fewer modes on top, and dashes over solid lines, which show through the gaps."""
         modes = 2.0 + 1.0 / (1.0 + self.history.model.properties.n_modes) if self.lifts else 1.9
-        return modes - 0.01 * (self.look.dashes == "-")
+        return modes - 0.01 * (self.style.dashes == "-")
 
     @property
     def balance_rotation(self) -> float:
@@ -90,6 +102,12 @@ def rotation_limit(curves: list[Curve]) -> float:
     return finished if standing else max(finished, *fallen, 0.0)
 
 
+def time_limits(curves: list[Curve]) -> tuple[float, float]:
+    """First and last time of all curves in s."""
+    times = [curve.history.time for curve in curves]
+    return min(float(time[0]) for time in times), max(float(time[-1]) for time in times)
+
+
 def title_of(curves: list[Curve], title: str | None) -> str:
     """The title given, or the name of the motion if there is only one."""
     if title is not None:
@@ -111,8 +129,8 @@ def curves_of(responses: Response | Iterable[Response], labels: Sequence[str] | 
         raise InputError('There is no response to plot. Give at least one from simulate(..., output="history").')
     histories = [_history(i, response) for i, response in enumerate(everything)]
     names = _names(everything, labels)
-    looks = _looks(histories)
-    return [Curve(*parts) for parts in zip(everything, histories, names, looks, strict=True)]
+    styles = _line_styles(histories)
+    return [Curve(*parts) for parts in zip(everything, histories, names, styles, strict=True)]
 
 
 def _history(index: int, response: Response) -> History:
@@ -143,32 +161,32 @@ def _names(responses: list[Response], labels: Sequence[str] | None) -> list[str]
     return list(labels)
 
 
-def _looks(histories: list[History]) -> list[Look]:
+def _line_styles(histories: list[History]) -> list[LineStyle]:
     """Line styles of Silva & Stojadinović 2024, Fig. 15, for fixed base, most modes, one and two, and others."""
-    most = max((h.model.properties.n_modes for h in histories if h.model.lifts), default=0)
-    wanted = [_own_look(history, most) for history in histories]
-    spare, looks = [look for look in LOOKS if look not in wanted], list[Look]()
+    max_modes = max((h.model.properties.n_modes for h in histories if h.model.lifts), default=0)
+    wanted = [_usual_style(history, max_modes) for history in histories]
+    spare, styles = [style for style in LINE_STYLES if style not in wanted], list[LineStyle]()
     for own in wanted:
-        if own is None or own in looks:
+        if own is None or own in styles:
             if not spare:
                 raise InputError(
                     f"{len(histories)} responses are too many to distinguish in one figure. Plot fewer at a time."
                 )
             own = spare.pop(0)
-        looks.append(own)
-    return recoloured(looks)
+        styles.append(own)
+    return recoloured(styles)
 
 
-def _own_look(history: History, most: int) -> Look | None:
+def _usual_style(history: History, max_modes: int) -> LineStyle | None:
     model = history.model
     n = model.properties.n_modes
     if not model.lifts:
-        return Look(GRAY, "-", 1.4)
+        return LineStyle(GRAY, "-", 1.4)
     if np.any(history.yielding != 0.0):
-        return Look(SKY, "-")
+        return LineStyle(SKY, "-")
     if "-C" in model.label:
         closed = model.label.removesuffix("-R").endswith(("-SI", "-E"))
-        return Look(ORANGE, (0, (4, 1.5))) if closed else Look(PURPLE, "-")
-    if model.label.startswith("M") or n == most > 2:
-        return Look(BLACK, "-")
-    return {1: Look(RED, "-."), 2: Look(GREEN, "--")}.get(n)
+        return LineStyle(ORANGE, (0, (4, 1.5))) if closed else LineStyle(PURPLE, "-")
+    if model.label.startswith("M") or n == max_modes > 2:
+        return LineStyle(BLACK, "-")
+    return {1: LineStyle(RED, "-."), 2: LineStyle(GREEN, "--")}.get(n)

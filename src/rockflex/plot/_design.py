@@ -1,22 +1,42 @@
-"""Probability or annual rate of exceeding a limit over the half width of the base."""
+"""Designs: exceedance over the half width of the base, and the least cost of a search."""
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from rockflex._checks import instance, one_of
 from rockflex._errors import InputError
+from rockflex._numbers import prefixed, short
+from rockflex._shown import shown
 from rockflex.fragility import OVERTURNED, OVERTURNING, beyond, symbol_of_nominal
-from rockflex.plot._study_tables import MARKERS, check_columns, keys_of, names_in, structure_panels
-from rockflex.plot._style import BLACK, BLUE, GREEN, LOOKS, RED, SMALL, Look, Size, columns, literal, recoloured, styled
-from rockflex.plot._units import short
+from rockflex.plot._study_tables import MARKERS, check_columns, legend_handles, names_in, structure_panels
+from rockflex.plot._style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    LINE_STYLES,
+    ORANGE,
+    RED,
+    SMALL,
+    THEMES,
+    LineStyle,
+    Size,
+    is_narrow,
+    legend_above,
+    literal,
+    new_figure,
+    recoloured,
+    styled,
+)
+from rockflex.study.design.search import BestDesign, Interpolated, margins_of, trade_off
 
 if TYPE_CHECKING:
     import pandas as pd
-
 
 _NEEDED = (
     "model",
@@ -30,8 +50,16 @@ _NEEDED = (
     "high",
 )
 _SOURCE = "what design_table returned"
-_LOOKS = (Look(BLACK, "-"), Look(RED, "--"), Look(GREEN, "-."), *LOOKS)
+_STYLES = (LineStyle(BLACK, "-"), LineStyle(RED, "--"), LineStyle(GREEN, "-."), *LINE_STYLES)
 _DECADES = 4.0  # of rates below the largest that are shown, or below the target
+_AXES = {
+    "half_width": ("half_width", "half width $B$", "m"),
+    "tendon_factor": ("prestress", "prestress $ΣF_0$", "N"),
+    "dissipator_factor": ("dissipator_force", "force of the dissipators $ΣF_y$", "N"),
+}
+_SEARCH_STYLES = (LineStyle(BLUE, "-"), LineStyle(ORANGE, "--"), LineStyle(GREEN, "-."), *LINE_STYLES)
+_FINE = 81  # points along each side of a plane
+_MARK = 4.0
 
 
 class _Value(NamedTuple):
@@ -90,32 +118,30 @@ def plot_design(
     tendons, models = names_in(table["tendon"]), names_in(table["model"])
     if len(tendons) > len(MARKERS):
         raise InputError(f"{len(tendons)} tendons were given, but there are {len(MARKERS)} symbols. Plot some of them.")
-    found = None if target is None else _least(table, target)
-    looks: dict[str, tuple[Look, str]] = dict(
-        zip(tendons, zip(recoloured(_LOOKS), MARKERS, strict=False), strict=False)
+    found = None if target is None else _smallest_widths(table, target)
+    styles: dict[str, tuple[LineStyle, str]] = dict(
+        zip(tendons, zip(recoloured(_STYLES), MARKERS, strict=False), strict=False)
     )
-    drawn = _Value(value, _words(table, value), value == "rate" if logarithmic is None else logarithmic)
+    drawn = _Value(value, _value_name(table, value), value == "rate" if logarithmic is None else logarithmic)
     with styled(size=size):
         figure, panels = structure_panels(models, 2, 2.9, "half width $B$ [m]", drawn.name)
         for axes, model in zip(panels, models, strict=True):
-            for tendon, (look, marker) in looks.items():
-                _draw(axes, _of(table, model, tendon), drawn, look, marker, tendon)
+            for tendon, (style, marker) in styles.items():
+                _draw(axes, _of(table, model, tendon), drawn, style, marker, tendon)
             if found is not None and target is not None:
                 axes.axhline(target, color=BLUE, linewidth=0.8, dashes=(5, 3), label="_target")
-                _answer(axes, _of(found, model), looks, target)
+                _draw_smallest_widths(axes, _of(found, model), styles, target)
         _limits(panels, table, drawn, target)
         for axes in panels:
             _slenderness(axes, table)
-        handles = keys_of({literal(tendon): look for tendon, look in looks.items()})
+        handles = legend_handles({literal(tendon): style for tendon, style in styles.items()})
         if target is not None:
             handles.append(Line2D([], [], color=BLUE, linewidth=0.8, dashes=(5, 3), label=f"target {short(target)}"))
-        labels = [str(handle.get_label()) for handle in handles]
-        width = 42 + 44 * (len(panels) > 1)
-        figure.legend(handles=handles, loc="outside upper center", ncols=columns(labels, width))
+        legend_above(figure, handles)
     return figure
 
 
-def _least(table: "pd.DataFrame", target: float) -> "pd.DataFrame":
+def _smallest_widths(table: "pd.DataFrame", target: float) -> "pd.DataFrame":
     from rockflex.study.design import smallest_width
 
     return smallest_width(table, target)
@@ -126,7 +152,7 @@ def _of(table: "pd.DataFrame", model: str, tendon: str | None = None) -> "pd.Dat
     return rows if tendon is None else rows[rows["tendon"].astype(str) == tendon].sort_values("half_width")
 
 
-def _words(table: "pd.DataFrame", value: str) -> str:
+def _value_name(table: "pd.DataFrame", value: str) -> str:
     """Name of the values on the axis: one limit in rad, one multiple of 0.7 atan(B/h*_1), or overturning."""
     limits, nominal = table["limit"].to_numpy(float), 0.7 * np.arctan(1.0 / table["aspect_ratio"].to_numpy(float))
     known = np.isfinite(limits)
@@ -143,35 +169,37 @@ def _words(table: "pd.DataFrame", value: str) -> str:
     return f"annual rate of {event}" if value == "rate" else f"P({event})"
 
 
-def _draw(axes: Axes, rows: "pd.DataFrame", drawn: _Value, look: Look, marker: str, name: str) -> None:
+def _draw(axes: Axes, rows: "pd.DataFrame", drawn: _Value, style: LineStyle, marker: str, name: str) -> None:
     b, y, low, high = (rows[column].to_numpy(float) for column in ("half_width", drawn.column, "low", "high"))
     shown = np.isfinite(y) & ((y > 0.0) | (not drawn.logarithmic))
     axes.plot(
-        b[shown], y[shown], color=look.color, linestyle=look.dashes, marker=marker, markersize=3.5,
+        b[shown], y[shown], color=style.color, linestyle=style.dashes, marker=marker, markersize=3.5,
         markerfacecolor="none", markeredgewidth=0.7, label=name,
     )  # fmt: skip
     bounded = np.isfinite(low) & np.isfinite(high)
     floor = 1e-300 if drawn.logarithmic else 0.0
     axes.fill_between(
-        b, np.maximum(low, floor), np.maximum(high, floor), where=bounded, color=look.color, alpha=0.13,
+        b, np.maximum(low, floor), np.maximum(high, floor), where=bounded, color=style.color, alpha=0.13,
         linewidth=0.0, label="_band",
     )  # fmt: skip
 
 
-def _answer(axes: Axes, found: "pd.DataFrame", looks: dict[str, tuple[Look, str]], target: float) -> None:
+def _draw_smallest_widths(
+    axes: Axes, found: "pd.DataFrame", styles: dict[str, tuple[LineStyle, str]], target: float
+) -> None:
     """Draw a ring where each curve meets the target, and list the half widths."""
     lines: list[tuple[str, str]] = []
     for row in found.to_dict("records"):
-        look, _ = looks[str(row["tendon"])]
+        style, _ = styles[str(row["tendon"])]
         width = float(row["half_width"])
         met = row["outcome"] in ("met", "met more than once")
         if met:
             axes.plot(
-                [width], [target], "o", color=look.color, markersize=7.0, markerfacecolor="none", markeredgewidth=1.2,
+                [width], [target], "o", color=style.color, markersize=7.0, markerfacecolor="none", markeredgewidth=1.2,
                 label="_answer", zorder=3.0,
             )  # fmt: skip
         text = f"B {'=' if met else '≤'} {width:.3g} m" if math.isfinite(width) else "not met"
-        lines.append((text + " (met more than once)" * (row["outcome"] == "met more than once"), look.color))
+        lines.append((text + " (met more than once)" * (row["outcome"] == "met more than once"), style.color))
     for place, (text, color) in enumerate(lines):
         axes.annotate(
             text, (0.97, 0.95), xytext=(0.0, -11.0 * place), xycoords="axes fraction", textcoords="offset points",
@@ -215,3 +243,193 @@ def _slenderness(axes: Axes, table: "pd.DataFrame") -> None:
             places.append(float(v))
     top.set_xticks(places, [f"{v:g}" for v in places])
     top.minorticks_off()
+
+
+class _Scale:
+    """The column of a variable as it is plotted, and the name of its axis."""
+
+    def __init__(self, variable: str, designs: "pd.DataFrame") -> None:
+        self.variable = variable
+        self.column, words, unit = _AXES[variable]
+        if not designs[self.column].to_numpy(float).any():  # factors on forces of zero
+            self.column, words, unit = variable, variable.replace("_", " "), ""
+        forces = unit == "N"
+        self.divisor, self.unit = prefixed(float(designs[self.column].max()), unit) if forces else (1.0, unit)
+        self.name = f"{words} [{self.unit}]" if unit else words
+
+    def of(self, table: "pd.DataFrame") -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
+        return table[self.column].to_numpy(float) / self.divisor
+
+
+def plot_design_search(
+    found: BestDesign, *, theme: Literal["light", "dark"] = "light", size: Size | None = None
+) -> Figure:
+    """Plot the least cost over the width, and the trade-off of prestress against dissipators at the best width.
+
+    Left: the least cost at which all targets are met, as predicted by `trade_off`, in the colour of the limit that
+    governs; symbols are the designs that were run, filled where they meet all targets; a ring with bars is the cheapest
+    of them with its band. Right, if the search varied two variables or more: for the other values of the cheapest
+    design, lines on which each limit just meets its target, the region in which one does not (shaded), and lines of
+    equal cost.
+
+    Parameters
+    ----------
+    found
+        What `best_design` returned.
+    theme
+        ``"light"`` or ``"dark"``.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One or two axes.
+
+    Raises
+    ------
+    InputError
+        If the theme is unknown, or too few designs have probabilities of all limits; or the size is unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> held = rf.Restrained(frame, rf.Tendon(initial_force=300e3, stiffness=2e6))
+    >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
+    >>> search = rf.DesignSearch([1.0, 2.0, 3.0], tendon_factors=[0.0, 1.0, 2.0], refinements=1)
+    >>> targets, cost = [rf.Requirement(0.01, 0.2, at=0.5)], rf.DesignCost(half_width=1.0, prestress=5e-7)
+    >>> runs = rf.search_design(held, pulses, search, targets, cost, model="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> figure = rf.plot_design_search(rf.best_design(runs, targets, cost))
+    >>> [axes.get_xlabel() for axes in figure.axes]
+    ['half width $B$ [m]', 'half width $B$ [m]']
+    """
+    instance("found", found, BestDesign)
+    if not one_of(theme, THEMES):
+        raise InputError(f'theme must be "light" or "dark", but {shown(theme)} was given.')
+    between = Interpolated.of(found)
+    varied = [*between.given]
+    labels = [each.label for each in found.requirements]
+    if len(labels) > len(_SEARCH_STYLES):
+        raise InputError(f"{len(labels)} requirements were given, but there are {len(_STYLES)} looks for their lines.")
+    styles = dict(zip(labels, recoloured(_SEARCH_STYLES), strict=False))
+    with styled(theme, size=size):
+        count = min(len(varied), 2)
+        figure = new_figure(7.2 if count > 1 else 4.2, 0.9 + 3.0 * count if is_narrow() else 3.9)
+        panels: list[Axes] = list(np.atleast_1d(figure.subplots(*((count, 1) if is_narrow() else (1, count)))))
+        _draw_costs(panels[0], found, varied[0], styles)
+        if len(varied) > 1:
+            _draw_plane(panels[1], found, between, (varied[-2], varied[-1]), styles)
+        for axes in panels:
+            axes.tick_params(colors=_text_color(), grid_color=mpl.rcParams["grid.color"])
+        handles = [
+            Line2D([], [], color=style.color, linestyle=style.dashes, label=literal(label))  # pyright: ignore[reportArgumentType]
+            for label, style in styles.items()
+        ]
+        for name, face in (("run, meets all targets", _text_color()), ("run, does not", "none")):
+            handles.append(
+                Line2D(
+                    [], [], color="none", marker="o", markersize=_MARK, markeredgecolor=_text_color(),
+                    markerfacecolor=face, label=name,
+                )
+            )  # fmt: skip
+        legend_above(figure, handles, title=_best_text(found), max_columns=1 if is_narrow() else 2)
+    return figure
+
+
+def _text_color() -> str:
+    return str(mpl.rcParams["text.color"])
+
+
+def _best_text(found: BestDesign) -> str:
+    if found.best is None:
+        return "No design meets all targets"
+    best = found.designs.iloc[found.best]
+    words = [f"B = {short(best['half_width'])} m"]
+    for column, symbol in (("prestress", "$ΣF_0$"), ("dissipator_force", "$ΣF_y$")):
+        if best[column] > 0.0:
+            divisor, unit = prefixed(float(best[column]), "N")
+            words.append(f"{symbol} = {short(best[column] / divisor)} {unit}")
+    return f"Cheapest: {', '.join(words)}; {literal(found.governs)} governs"
+
+
+def _draw_costs(axes: Axes, found: BestDesign, variable: str, styles: dict[str, LineStyle]) -> None:
+    scale = _Scale(variable, found.designs)
+    curve = trade_off(found, variable)
+    for label, style in styles.items():
+        cost = np.where(curve["governs"] == label, curve["cost"].to_numpy(float), np.nan)
+        axes.plot(scale.of(curve), cost, color=style.color, linestyle=style.dashes, linewidth=1.6, label=label)
+    _draw_runs(axes, scale.of(found.designs), found.designs["cost"].to_numpy(float), found)
+    if found.best is not None:
+        bands = {str(row["quantity"]): np.array([row["low"], row["high"]]) for row in found.interval.to_dict("records")}
+        across = bands.get(scale.column, np.full(2, np.nan)) / scale.divisor
+        x, y = (
+            float(values[found.best]) for values in (scale.of(found.designs), found.designs["cost"].to_numpy(float))
+        )
+        for ends in ((across, [y, y]), ([x, x], bands["cost"])):
+            axes.plot(*ends, color=_text_color(), linewidth=2.0, alpha=0.6, label="_band", solid_capstyle="butt")
+        _mark_best(axes, x, y)
+    axes.set(xlabel=scale.name, ylabel="cost")
+
+
+def _draw_plane(
+    axes: Axes, found: BestDesign, between: Interpolated, names: tuple[str, str], styles: dict[str, LineStyle]
+) -> None:
+    """Draw the limits over two variables; the others have their values in the best design, or in the nearest to it."""
+    designs = found.designs
+    place = found.best if found.best is not None else _nearest(found)
+    values = {name: np.array([float(designs[name].iloc[place])]) for name in between.given}
+    for name in names:
+        values[name] = np.linspace(between.given[name][0], between.given[name][-1], _FINE)
+    table = between.designs(values)
+    across, up = (_Scale(name, designs) for name in names)
+    shape = _FINE, _FINE
+    x, y = (scale.of(table).reshape(shape) for scale in (across, up))
+    margins = between.at(table)
+    worst = margins.max(axis=1).reshape(shape)
+    axes.contourf(x, y, worst, levels=[0.0, np.inf], colors=[_text_color()], alpha=0.12)
+    for column, (_, style) in enumerate(styles.items()):
+        each = margins[:, column].reshape(shape)
+        if each.min() < 0.0 < each.max():
+            axes.contour(x, y, each, levels=[0.0], colors=[style.color], linestyles=[style.dashes], linewidths=1.6)
+    cost = np.asarray(found.cost.of(table["half_width"], table["prestress"], table["dissipator_force"]), dtype=float)
+    if cost.max() > cost.min():
+        lines = axes.contour(
+            x, y, cost.reshape(shape), levels=6, colors=[_text_color()], linewidths=0.6, linestyles="dotted"
+        )
+        axes.clabel(lines, fontsize=SMALL, fmt=short)
+    others = [name for name in between.given if name not in names]
+    near = np.all([np.isclose(designs[name], values[name][0]) for name in others], axis=0) if others else slice(None)
+    there = designs[near] if others else designs
+    _draw_runs(axes, across.of(there), up.of(there), found, there["meets"].to_numpy(bool))
+    if found.best is not None:
+        _mark_best(axes, float(across.of(designs)[place]), float(up.of(designs)[place]))
+    fixed = [_Scale(name, designs) for name in others]
+    words = [f"{s.name.rpartition(' [')[0] or s.name} = {short(float(s.of(designs)[place]))} {s.unit}" for s in fixed]
+    axes.set(xlabel=across.name, ylabel=up.name, title=", ".join(words))
+
+
+def _nearest(found: BestDesign) -> int:
+    labels = [each.label for each in found.requirements]
+    margins = margins_of(found.designs[labels].to_numpy(float), found.requirements)
+    return int(np.nan_to_num(margins, nan=np.inf).max(axis=1).argmin())
+
+
+def _draw_runs(axes: Axes, x: object, y: object, found: BestDesign, meets: object = None) -> None:
+    met = found.designs["meets"].to_numpy(bool) if meets is None else np.asarray(meets, dtype=bool)
+    for which, face in ((~met, "none"), (met, _text_color())):
+        if not which.any():  # an empty line that is not clipped spoils the layout
+            continue
+        axes.plot(
+            np.asarray(x)[which], np.asarray(y)[which], "o", markersize=_MARK, markerfacecolor=face,
+            markeredgecolor=_text_color(), markeredgewidth=0.6, alpha=0.75, label="_runs", clip_on=False,
+        )  # fmt: skip
+
+
+def _mark_best(axes: Axes, x: float, y: float) -> None:
+    axes.plot(
+        [x], [y], "o", markersize=11.0, markerfacecolor="none", markeredgecolor=RED, markeredgewidth=1.8,
+        label="_best", zorder=4.0, clip_on=False,
+    )  # fmt: skip

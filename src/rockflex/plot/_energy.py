@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
+from rockflex._numbers import prefixed
 from rockflex.modal import Tendon
 from rockflex.plot._curves import curves_of
 from rockflex.plot._style import (
@@ -17,12 +18,11 @@ from rockflex.plot._style import (
     SKY,
     YELLOW,
     Size,
-    key_beside,
+    legend_beside,
     literal,
     new_figure,
     styled,
 )
-from rockflex.plot._units import readable
 from rockflex.response import History, Response
 
 BROWN, SAND, CLAY = "#7d5a30", "#d8c9a3", "#b8926a"  # of the ground
@@ -69,13 +69,13 @@ def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
     (curve,) = curves_of([response])
     history = curve.history
     ledger, drawn = history.energy, curve.before_fall
-    held = -min(float(ledger.element_strain[drawn].min()), 0.0)  # at t = 0, and given back later
-    sunk = -min(float(ledger.gravity[drawn].min()), 0.0)  # below the level of the unloaded springs
-    layers = [(label, color, values[drawn]) for label, color, values in _layers(curve.history, held, sunk)]
+    released = -min(float(ledger.element_strain[drawn].min()), 0.0)  # at t = 0, and given back later
+    settled = -min(float(ledger.gravity[drawn].min()), 0.0)  # below the level of the unloaded springs
+    layers = [(label, color, values[drawn]) for label, color, values in _layers(curve.history, released, settled)]
     layers = [layer for layer in layers if np.any(layer[2] != 0.0)]
-    start = float(ledger.stored[0]) + held + sunk
+    start = float(ledger.stored[0]) + released + settled
     supply = ledger.input[drawn] + start
-    factor, unit = readable(float(np.max(np.abs(supply))), "J")
+    factor, unit = prefixed(float(np.max(np.abs(supply))), "J")
     time = history.time[drawn]
     with styled(size=size):
         figure = new_figure(6.3, 3.4)
@@ -93,12 +93,12 @@ def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
         title = f"{curve.label} under {literal(curve.response.motion)}, closing error {ledger.closing_error:.1e}"
         axes.set_title(title)
         handles, _ = axes.get_legend_handles_labels()
-        key_beside(figure, handles[::-1])
+        legend_beside(figure, handles[::-1])
     return figure
 
 
-def _layers(history: History, held: float, sunk: float) -> list[tuple[str, str, Array]]:
-    """Return label, colour and values; from the bottom, as what is gone never falls and carries what can return."""
+def _layers(history: History, released: float, settled: float) -> list[tuple[str, str, Array]]:
+    """Return label, colour and values from the bottom: dissipated energy, which never falls, below stored energy."""
     ledger, elements = history.energy, history.model.properties.elements
     only_tendons = all(isinstance(each, Tendon) for each in elements)
     return [
@@ -107,9 +107,9 @@ def _layers(history: History, held: float, sunk: float) -> list[tuple[str, str, 
         ("yield of tendons" if only_tendons else "taken by elements", YELLOW, ledger.elements.sum(axis=1)),
         ("friction of the base", BROWN, ledger.friction),
         ("damped by the ground", SAND, ledger.soil.sum(axis=1)),
-        ("raised weight", GREEN, ledger.gravity + sunk),
+        ("raised weight", GREEN, ledger.gravity + settled),
         ("compressed ground", CLAY, ledger.soil_strain),
-        ("tendons" if only_tendons else "stored in elements", PURPLE, ledger.element_strain + held),
+        ("tendons" if only_tendons else "stored in elements", PURPLE, ledger.element_strain + released),
         ("strain", SKY, ledger.strain),
         ("kinetic", ORANGE, ledger.kinetic),
     ]

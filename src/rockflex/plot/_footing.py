@@ -1,19 +1,18 @@
 """A base on its springs over time: its edges, the pressure under it, and how much of it is in contact."""
 
-from typing import Any
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex.plot._curves import Curve, curves_of, title_of
-from rockflex.plot._style import BLACK, BLUE, GRAY, RED, Size, letter, literal, new_figure, styled
-from rockflex.plot._units import readable
-from rockflex.response import History, Response
+from rockflex._numbers import prefixed
+from rockflex.modal import RockingProperties, Springs
+from rockflex.plot._curves import curves_of, title_of
+from rockflex.plot._style import BLACK, BLUE, GRAY, RED, Size, label_panel, literal, new_figure, styled
+from rockflex.response import History, Response, springs_of
 
-FEW = 4  # springs: their forces are drawn as lines, those of more as a map
+MAX_LINES = 4  # springs whose forces are drawn as lines; more springs as a map
 _COLORS = (BLUE, RED, BLACK, GRAY)
 
 
@@ -57,7 +56,8 @@ def plot_footing(response: Response, *, title: str | None = None, size: Size | N
     """
     (curve,) = curves = curves_of(response)
     history = curve.history
-    if not history.spring_force.shape[1]:
+    springs = springs_of(history.model)
+    if springs is None:
         raise InputError(
             "The base of this response is not on springs. Simulate it with "
             "ground=Ground(springs=..., base_inertia=...), or use plot_history."
@@ -66,10 +66,10 @@ def plot_footing(response: Response, *, title: str | None = None, size: Size | N
         figure = new_figure(6.3, 5.4)
         edges, soil, contact = figure.subplots(3, 1, sharex=True, height_ratios=(1.0, 1.3, 0.7))
         _draw_edges(edges, history)
-        _draw_soil(figure, soil, history)
-        _draw_contact(contact, curve)
+        _draw_soil(figure, soil, history, springs)
+        _draw_contact(contact, history, springs)
         for axes, mark in zip((edges, soil, contact), "ABC", strict=True):
-            letter(axes, mark)
+            label_panel(axes, mark)
         contact.set_xlabel("time [s]")
         contact.set_xlim(float(history.time[0]), float(history.time[-1]))
         figure.align_ylabels([edges, soil, contact])
@@ -77,15 +77,9 @@ def plot_footing(response: Response, *, title: str | None = None, size: Size | N
     return figure
 
 
-def positions_of(history: History) -> Array:
-    """Return the distances of the springs from the axis of the masses in m, shape (n_springs,)."""
-    model: Any = history.model
-    return model.springs.positions
-
-
-def shares(history: History) -> Array:
+def tributary_shares(springs: Springs, p: RockingProperties) -> Array:
     """Return the share of the width of the base that is nearest to each spring, shape (n_springs,)."""
-    places, p = positions_of(history), history.model.properties
+    places = springs.positions
     middles = 0.5 * (places[1:] + places[:-1])
     ends = np.clip(np.concatenate(([-p.pivot(-1).arm], middles, [p.pivot(1).arm])), -p.pivot(-1).arm, p.pivot(1).arm)
     return np.diff(ends) / (2.0 * p.half_width)
@@ -101,13 +95,12 @@ def _draw_edges(axes: Axes, history: History) -> None:
     axes.set_ylim(low, high + 0.25 * (high - low))  # room for the legend
 
 
-def _draw_soil(figure: Figure, axes: Axes, history: History) -> None:
-    model: Any = history.model
-    area = model.springs.area
+def _draw_soil(figure: Figure, axes: Axes, history: History, springs: Springs) -> None:
+    area = springs.area
     name, pushes = ("force", history.spring_force) if area is None else ("pressure", history.soil_pressure)
-    factor, unit = readable(float(pushes.max()), "N" if area is None else "Pa")
-    places = positions_of(history)
-    if places.size <= FEW:
+    factor, unit = prefixed(float(pushes.max()), "N" if area is None else "Pa")
+    places = springs.positions
+    if places.size <= MAX_LINES:
         for place, force, color in zip(places, pushes.T / factor, _COLORS, strict=False):
             axes.plot(history.time, force, color=color, linewidth=0.9, label=f"x = {place:.3g} m".replace("-", "−"))
         axes.set_ylabel(f"{name} [{unit}]")
@@ -123,9 +116,8 @@ def _draw_soil(figure: Figure, axes: Axes, history: History) -> None:
     figure.colorbar(drawn, ax=axes, label=f"{name} [{unit}]", pad=0.01)
 
 
-def _draw_contact(axes: Axes, curve: Curve) -> None:
-    history = curve.history
-    held = (history.spring_force > 0.0) @ shares(history)
+def _draw_contact(axes: Axes, history: History, springs: Springs) -> None:
+    held = (history.spring_force > 0.0) @ tributary_shares(springs, history.model.properties)
     axes.fill_between(history.time, 100.0 * held, color=GRAY, alpha=0.5, linewidth=0.0)
     axes.plot(history.time, 100.0 * held, color=BLACK, linewidth=0.7)
     axes.set(ylim=(0.0, 104.0), ylabel="in contact [%]")

@@ -1,19 +1,180 @@
-"""Loops of a base and of its elements."""
+"""Loops: resisting moment and elements of a base, and the restoring force of the superstructure."""
 
 import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from functools import partial
-from typing import cast
+from typing import Any, cast
 
+import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
-from rockflex.plot._base_loops import COLORS, BaseLoops, base_loops, name_of
-from rockflex.plot._style import BLACK, BLUE, GRAY, Size, columns, literal, narrow, new_figure, styled
-from rockflex.plot._units import readable
-from rockflex.response import MomentRotation, MomentRotationOnSprings, Response
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+from rockflex._numbers import prefixed, short
+from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.plot._curves import Curve, curves_of, title_of
+from rockflex.plot._history import add_legend, axis_scale, draw_panel, quantities_of, shade_uplifts
+from rockflex.plot._style import (
+    BLACK,
+    BLUE,
+    GRAY,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    RED,
+    SKY,
+    Size,
+    is_narrow,
+    label_panel,
+    legend_above,
+    literal,
+    new_figure,
+    styled,
+)
+from rockflex.response import (
+    History,
+    MomentRotation,
+    MomentRotationOnSprings,
+    Response,
+    element_resistance,
+    large_resistance,
+    resistance_on_springs,
+    weight_resistance,
+)
 
+_COLORS = (SKY, ORANGE, PURPLE, GREEN, RED, "#7a5195")  # of elements, in their order
+_ELEMENT_NAMES: dict[type[BaseElement], str] = {
+    Tendon: "tendon",
+    YieldingDissipator: "fuse",
+    ViscousDamper: "viscous damper",
+    FrictionDamper: "friction damper",
+}
 _PER_ROW = 2
+
+
+@dataclass(frozen=True, eq=False)
+class BaseLoops:
+    """The paths of a base, without the states in contact, and of its elements.
+
+    Attributes
+    ----------
+    title
+        Name of the motion; empty for a quasi-static path.
+    elements
+        The elements, in their order.
+    rotation
+        θ in rad, shape (n,).
+    weight, parts
+        Contributions to the resisting moment in N m: of the weight, shape (n,), and of the elements, shape (n, E).
+    elongation, force
+        δ in m and F in N of the elements, also in contact, shape (m, E).
+    springs
+        Contribution of the springs under the base in N m, shape (n,); None on rigid ground.
+    edges
+        Rise of the left and of the right edge of a base on springs in m, shape (n, 2); None on rigid ground.
+    """
+
+    title: str
+    elements: tuple[BaseElement, ...]
+    rotation: Array
+    weight: Array
+    parts: Array
+    elongation: Array
+    force: Array
+    springs: Array | None = None
+    edges: Array | None = None
+
+    @property
+    def moment(self) -> Array:
+        """Resisting moment in N m, shape (n,)."""
+        held = self.weight + self.parts.sum(axis=1)
+        return held if self.springs is None else held + self.springs
+
+
+def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> BaseLoops:
+    """Return the path of a base from a cyclic pushover, or from the history of a run.
+
+    Raises
+    ------
+    InputError
+        If `result` is neither, has no history, or is of a base that cannot lift.
+    """
+    if isinstance(result, MomentRotation | MomentRotationOnSprings):
+        on_springs = isinstance(result, MomentRotationOnSprings)
+        return BaseLoops(
+            title="",
+            elements=result.elements,
+            rotation=result.rotation,
+            weight=result.weight_moment,
+            parts=result.element_moment,
+            elongation=result.element_elongation,
+            force=result.element_force,
+            springs=result.spring_moment if on_springs else None,
+            edges=result.edge_uplift if on_springs else None,
+        )
+    given: Any = result
+    if not hasattr(given, "history"):
+        raise InputError(
+            f"result must be a Response or a MomentRotation, but {type(given).__name__} was given. Give what simulate "
+            "or moment_rotation returned."
+        )
+    (curve,) = curves = curves_of(result)
+    if not curve.lifts:
+        raise InputError(
+            "The base of this response cannot lift, so it has no loops. Give the response of a model that rocks, such "
+            'as "2DOF-S".'
+        )
+    history, kept = curve.history, curve.before_fall
+    title, elements = title_of(curves, None), history.model.properties.elements
+    resistance = resistance_on_springs(history)
+    if resistance is not None:
+        return BaseLoops(
+            title=title,
+            elements=elements,
+            rotation=history.rotation[kept],
+            weight=resistance.weight[kept],
+            parts=resistance.elements[kept],
+            elongation=history.element_elongation[kept],
+            force=history.element_force[kept],
+            springs=resistance.springs[kept],
+            edges=history.edge_uplift[kept],
+        )
+    rocking = np.flatnonzero(history.side[kept] != 0.0)
+    weight, parts = resistance_of(history)
+    return BaseLoops(
+        title=title,
+        elements=elements,
+        rotation=history.rotation[rocking],
+        weight=weight[rocking],
+        parts=parts[rocking],
+        elongation=history.element_elongation[kept],
+        force=history.element_force[kept],
+    )
+
+
+def resistance_of(history: History) -> tuple[Array, Array]:
+    """Return the resisting moments of the weight (n,) and of the elements (n, E) in N m; zero in contact."""
+    p, side = history.model.properties, history.side.astype(np.int64)
+    heavier = 1.0 + history.vertical_ground_acceleration / GRAVITY
+    if history.model.complete:
+        weight, parts = large_resistance(p, side, history.rotation, history.element_force)
+        return heavier * weight, parts
+    weight = weight_resistance(p, side, history.rotation)
+    return heavier * weight, element_resistance(p, side, history.element_force)
+
+
+def is_path_independent(properties: RockingProperties) -> bool:
+    """Whether the resisting moment depends on the rotation alone: all elements are tendons that stay elastic."""
+    return all(isinstance(each, Tendon) and each.post_yield_ratio is None for each in properties.elements)
+
+
+def name_of(element: BaseElement, number: int) -> str:
+    """Name of an element in a figure, with its number, counted from 1, and its position."""
+    return f"{number} {_ELEMENT_NAMES[type(element)]}, x = {short(element.position)} m"
 
 
 def plot_loops(
@@ -67,11 +228,11 @@ def plot_loops(
     drawn += [partial(_draw_element, place=place) for place in range(len(loops.elements))]
     count = len(drawn)
     with styled(size=size):
-        rows = count if narrow() else max(math.ceil(count / _PER_ROW), 1)
-        beside = 0 if narrow() else math.ceil(count / rows)
-        figure = new_figure(4.2 + 2.2 * beside, max(3.6, (3.3 if narrow() else 0.7) + 2.3 * rows))
+        rows = count if is_narrow() else max(math.ceil(count / _PER_ROW), 1)
+        beside = 0 if is_narrow() else math.ceil(count / rows)
+        figure = new_figure(4.2 + 2.2 * beside, max(3.6, (3.3 if is_narrow() else 0.7) + 2.3 * rows))
         figure.get_layout_engine().set(w_pad=0.07)  # pyright: ignore
-        if narrow():
+        if is_narrow():
             grid = figure.add_gridspec(1 + rows, 1, height_ratios=(1.4, *[1.0] * rows))
             base = figure.add_subplot(grid[0, 0])
         else:
@@ -79,20 +240,16 @@ def plot_loops(
             base = figure.add_subplot(grid[:, 0])
         _draw_base(base, loops)
         for place, draw in enumerate(drawn):
-            row, column = (1 + place, 0) if narrow() else (place // beside, 1 + place % beside)
+            row, column = (1 + place, 0) if is_narrow() else (place // beside, 1 + place % beside)
             draw(figure.add_subplot(grid[row, column]), loops)
         lines = base.get_lines()
-        names = [str(line.get_label()) for line in lines]
-        figure.legend(
-            lines, names, loc="outside upper center", ncols=columns(names, 36 + 22 * beside),
-            title=literal(title) if title is not None else loops.title, title_fontsize="medium", handlelength=2.0,
-        )  # fmt: skip
+        legend_above(figure, lines, title=literal(title) if title is not None else loops.title, handlelength=2.0)
     return figure
 
 
 def _draw_base(axes: Axes, loops: BaseLoops) -> None:
     moment = loops.moment
-    factor, unit = readable(max(map(abs, (*moment, 0.0))), "N m")
+    factor, unit = prefixed(max(map(abs, (*moment, 0.0))), "N m")
     axes.plot(loops.rotation, moment / factor, color=BLACK, linewidth=1.4, label="total", zorder=3.0)
     if loops.elements or loops.springs is not None:
         axes.plot(loops.rotation, loops.weight / factor, color=GRAY, linewidth=0.9, label="weight")
@@ -119,11 +276,152 @@ def _draw_edges(axes: Axes, loops: BaseLoops) -> None:
 
 def _draw_element(axes: Axes, loops: BaseLoops, place: int) -> None:
     force = loops.force[:, place]
-    factor, unit = readable(max(map(abs, (*force, 0.0))), "N")
+    factor, unit = prefixed(max(map(abs, (*force, 0.0))), "N")
     axes.plot(loops.elongation[:, place], force / factor, color=_color(place), linewidth=1.1)
     axes.set(title=name_of(loops.elements[place], place + 1), xlabel="δ [m]", ylabel=f"F [{unit}]")
     axes.locator_params(axis="x", nbins=4)
 
 
 def _color(place: int) -> str:
-    return COLORS[place % len(COLORS)]
+    return _COLORS[place % len(_COLORS)]
+
+
+def plot_hysteresis(
+    responses: Response | Iterable[Response],
+    labels: Sequence[str] | None = None,
+    *,
+    title: str | None = None,
+    size: Size | None = None,
+) -> Figure:
+    r"""Plot the restoring force V_b of the superstructure over its top displacement u_top.
+
+    For one mode V_b is Eq. 37 of Silva & Stojadinović 2024 times m*_1, and an elastic superstructure gives a line; for
+    several modes V_b is not a function of u_top. Overturning is plotted until the weight overturns the structure.
+
+    Parameters
+    ----------
+    responses
+        One response or several, each with its history.
+    labels
+        A name for each response in the legend. Default: the models, with the motions if a model occurs twice.
+    title
+        Default: the name of the motion, if there is only one.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes; u_top in m, V_b in a unit that suits its size.
+
+    Raises
+    ------
+    InputError
+        If there are no responses or too many, one has no history, or the number of labels differs; or the size is
+        unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S-BW",
+    ...                        bouc_wen=rf.BoucWen(yield_displacement=0.01))
+    >>> figure = rf.plot_hysteresis(response)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$u_{\\mathrm{top}}$, relative [m]', '$V_b$ [kN]')
+    """
+    curves = curves_of(responses, labels)
+    with styled(size=size):
+        figure = new_figure(4.2, 3.6)
+        lines = _draw_hysteresis(figure.subplots(), curves)
+        add_legend(figure, curves, lines, [curve.label for curve in curves], title)
+    return figure
+
+
+def plot_yielding(
+    responses: Response | Iterable[Response],
+    labels: Sequence[str] | None = None,
+    *,
+    title: str | None = None,
+    size: Size | None = None,
+) -> Figure:
+    r"""Plot rotation θ and top displacement u_top over time, and the hysteresis of the superstructure.
+
+    The figure is that of Silva & Stojadinović 2024, Figs. 16 and 17. Peaks and uplifts are shown as in `plot_history`,
+    loops as in `plot_hysteresis`.
+
+    Parameters
+    ----------
+    responses
+        One response or several, each with its history.
+    labels
+        A name for each response in the legend. Default: the models, with the motions if a model occurs twice.
+    title
+        Default: the name of the motion, if there is only one.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three axes: A, θ in rad over s; B, u_top in m over s; C, V_b, in the unit that suits its size, over m.
+
+    Raises
+    ------
+    InputError
+        If there are no responses or too many, one has no history, or the number of labels differs; or the size is
+        unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S-BW",
+    ...                        bouc_wen=rf.BoucWen(yield_displacement=0.01))
+    >>> figure = rf.plot_yielding(response)
+    >>> len(figure.axes), figure.axes[-1].get_xlabel()
+    (3, '$u_{\\mathrm{top}}$, relative [m]')
+    """
+    curves = curves_of(responses, labels)
+    with styled(size=size):
+        tall = max(1.45, 0.155 * (len(curves) + 2))
+        figure = new_figure(8.6, (2.0 * tall if not is_narrow() else 2.0 * tall + 2.6) + 0.9)
+        if is_narrow():
+            grid = figure.add_gridspec(3, 1, height_ratios=(tall, tall, 2.6))
+        else:
+            grid = figure.add_gridspec(2, 2, width_ratios=(1.55, 1.0))
+        top = figure.add_subplot(grid[0, 0])
+        histories: list[Axes] = [top, figure.add_subplot(grid[1, 0], sharex=top)]
+        for axes, quantity, mark in zip(histories, quantities_of(("rotation", "top_displacement")), "AB", strict=True):
+            draw_panel(axes, quantity, curves, mark)
+        shade_uplifts(histories, curves)
+        top.tick_params(labelbottom=False)
+        histories[1].set(xlabel="time [s]", xlim=(0.0, max(float(curve.history.time[-1]) for curve in curves)))
+        loops = figure.add_subplot(grid[2, 0] if is_narrow() else grid[:, 1])
+        lines = _draw_hysteresis(loops, curves)
+        label_panel(loops, "C")
+        figure.align_ylabels(histories)
+        add_legend(figure, curves, lines, [curve.label for curve in curves], title)
+    return figure
+
+
+def _draw_hysteresis(axes: Axes, curves: list[Curve]) -> list[Artist]:
+    """Fill a panel with V_b over u_top; return a line for each curve."""
+    displacement, force = quantities_of(("top_displacement", "base_shear"))
+    _, across, right = axis_scale(displacement, curves)
+    factor, unit, high = axis_scale(force, curves)
+    axes.set(xlim=(-right, right), ylim=(-high, high))
+    axes.locator_params(axis="x", nbins=5)
+    axes.set(xlabel=f"{displacement.symbol} [{across}]", ylabel=f"{force.symbol} [{unit}]")
+    lines: list[Artist] = []
+    for curve in curves:
+        drawn = curve.before_fall
+        lines += axes.plot(
+            displacement.of(curve.history)[drawn], force.of(curve.history)[drawn] / factor, color=curve.style.color,
+            linestyle=curve.style.dashes, linewidth=curve.style.width, label=curve.label, zorder=curve.order,
+        )  # fmt: skip
+    return lines

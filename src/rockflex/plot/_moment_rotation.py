@@ -1,4 +1,4 @@
-"""Base moment over rotation."""
+"""Base moment over rotation: of responses, and the static laws of a structure."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -9,20 +9,36 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rockflex._arrays import Array
+from rockflex._checks import positive
+from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex.plot._base_loops import follows_a_line, resistance_of
+from rockflex._numbers import prefixed, short
+from rockflex.modal import Pivot, RockingProperties
 from rockflex.plot._curves import Curve, curves_of, rotation_limit
-from rockflex.plot._style import BLUE, Size, narrow, new_figure, styled
-from rockflex.plot._units import readable
-from rockflex.response import Response, push_on_springs, resistance_on_springs
+from rockflex.plot._loops import is_path_independent, resistance_of
+from rockflex.plot._style import (
+    BLACK,
+    BLUE,
+    GRAY,
+    SMALL,
+    Size,
+    is_narrow,
+    label_panel,
+    legend_above,
+    new_figure,
+    styled,
+)
+from rockflex.response import Response, base_path, push_on_springs, resistance_on_springs
+from rockflex.study import RockingStructure, properties_of
 
-_HEADROOM = 1.1
+_LIMIT = 1.1
 _PER_ROW = 3
-_FREE = r"$\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$"
-_HELD = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$"
+_WITHOUT_TENDONS = r"$\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$"
+_WITH_TENDONS = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$"
 _PATH = "resisting moment of weight and elements"
 _SPRINGS = "static, on the springs"
-_SIDED = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$ of each side"
+_EACH_SIDE = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$ of each side"
+_MARGIN = 1.18
 
 
 def plot_moment_rotation(
@@ -75,20 +91,20 @@ def plot_moment_rotation(
             "None of the responses has a base that can lift, so there is no moment over rotation to plot. "
             'Give at least one of a model that rocks, such as "2DOF-S".'
         )
-    rotation = _HEADROOM * (rotation_limit(curves) or max(map(whole_line, curves)))
+    rotation = _LIMIT * (rotation_limit(curves) or max(map(whole_line, curves)))
     largest = max(largest_moment(curve) for curve in curves)
-    factor, unit = readable(largest, "N m")
+    factor, unit = prefixed(largest, "N m")
     with styled(size=size):
-        columns = 1 if narrow() else min(len(curves), _PER_ROW)
+        columns = 1 if is_narrow() else min(len(curves), _PER_ROW)
         rows = math.ceil(len(curves) / columns)
         figure = new_figure(2.2 + 1.8 * columns, 0.6 + 2.6 * rows)
         grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
         panels: list[Axes] = list(grid.flat)
-        panels[0].set(xlim=(-rotation, rotation), ylim=(-_HEADROOM * largest / factor, _HEADROOM * largest / factor))
+        panels[0].set(xlim=(-rotation, rotation), ylim=(-_LIMIT * largest / factor, _LIMIT * largest / factor))
         panels[0].locator_params(axis="x", nbins=5)
         for axes, curve in zip(panels, curves, strict=False):
             moment = curve.history.base_moment / factor
-            axes.plot(curve.history.rotation, moment, color=curve.look.color, linewidth=0.8, label=curve.label)
+            axes.plot(curve.history.rotation, moment, color=curve.style.color, linewidth=0.8, label=curve.label)
             axes.add_line(resistance_line(curve, rotation, factor))
             axes.set_title(curve.label)
             axes.tick_params(labelbottom=True)
@@ -97,7 +113,7 @@ def plot_moment_rotation(
         figure.supxlabel("θ [rad]", fontsize="medium")
         figure.supylabel(f"$M_b$ [{unit}]", fontsize="medium")
         kinds = {line.get_label(): line for axes in panels for line in axes.get_lines()[1:]}
-        figure.legend(handles=list(kinds.values()), loc="outside upper center", handlelength=3.0)
+        legend_above(figure, list(kinds.values()), max_columns=1, handlelength=3.0)
     return figure
 
 
@@ -113,7 +129,7 @@ def largest_moment(curve: Curve) -> float:
     if curve.falls:
         moment = float(np.max(np.abs(curve.history.base_moment[curve.before_fall])))
     p = curve.history.model.properties
-    held = 0.0 if follows_a_line(p) else float(np.max(np.abs(_path(curve)[1]), initial=0.0))
+    held = 0.0 if is_path_independent(p) else float(np.max(np.abs(_path(curve)[1]), initial=0.0))
     return max(moment, held, *(pivot.resisting_moment for pivot in p.pivots))
 
 
@@ -130,7 +146,7 @@ def _path(curve: Curve) -> tuple[Array, Array]:
 
 def resistance_line(curve: Curve, rotation: float, factor: float) -> Line2D:
     p = curve.history.model.properties
-    if not follows_a_line(p):
+    if not is_path_independent(p):
         theta, moment = _path(curve)
         return Line2D(theta, moment / factor, color=BLUE, linewidth=0.8, label=_PATH, zorder=3.0)
     dashes, push = (0, (4, 2)), push_on_springs(curve.history, rotation)
@@ -142,8 +158,175 @@ def resistance_line(curve: Curve, rotation: float, factor: float) -> Line2D:
         (each.resisting_moment / factor, (each.resisting_moment + each.rocking_stiffness * rotation) / factor)
         for each in (p.pivot(1), p.pivot(-1))
     )
-    law = (_HELD if p.tendons else _FREE) if p.symmetric else _SIDED
+    law = (_WITH_TENDONS if p.tendons else _WITHOUT_TENDONS) if p.symmetric else _EACH_SIDE
     return Line2D(
         [-rotation, 0.0, 0.0, rotation], [-left[1], -left[0], *right], color=BLUE, linestyle=dashes,
         linewidth=1.1, label="static, " + law, zorder=3.0,
+    )  # fmt: skip
+
+
+def plot_moment_rotation_laws(
+    structure: "RockingStructure | RockingProperties",
+    spring: float | None = None,
+    *,
+    rotation: float | None = None,
+    size: Size | None = None,
+) -> Figure:
+    """Plot the static base moment over the rotation: of a pinned beam on a spring, and of the rocking structure.
+
+    The figure is that of Silva & Stojadinović 2024, Fig. 11: M = k_r θ, and M = ±(M_r + k |θ|) with the slope
+    k = -L_0^r g, to which tendons add theirs. While the base stands, M is anything between -M_r and M_r. For an
+    eccentric base, or tendons that are not symmetric, M_r and k differ between the two sides. With elements that yield
+    or slide, the curve is that of a first push to each side; `plot_loops` shows cycles.
+
+    Parameters
+    ----------
+    structure
+        The rocking structure, or its `RockingProperties`.
+    spring
+        Stiffness k_r of the pinned beam's spring in N m/rad, positive. Default: L_0^r g, so that the slopes
+        differ only in sign.
+    rotation
+        Largest rotation shown in rad. Default: a little beyond the one at which M vanishes, or the nominal
+        overturning rotation where tendons keep it from vanishing.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Two axes; θ in rad, M in the unit that suits its size.
+
+    Raises
+    ------
+    InputError
+        If no structure is given, or a number is not positive and finite; or the size is unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> figure = rf.plot_moment_rotation_laws(frame)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('θ [rad]', 'M [MN m]')
+    """
+    p = properties_of(structure)
+    sides = (p.pivot(1), p.pivot(-1))
+    zeros = [side.balance_rotation for side in sides]
+    vanishing = [zero for zero in zeros if math.isfinite(zero)]
+    default = _MARGIN * max(vanishing) if vanishing else max(each.nominal_overturning_rotation for each in sides)
+    end = default if rotation is None else positive("rotation", rotation, "rad")
+    stiffness = p.l0r * GRAVITY if spring is None else positive("spring", spring, "N m/rad")
+    pushes = [_push(p, side, end) for side in (1, -1)]
+    starts, lasts = ([moment[place] for _, moment in pushes] for place in (0, -1))
+    largest = max(float(np.max(np.abs(moment))) for _, moment in pushes)
+    factor, unit = prefixed(largest, "N m")
+    line = is_path_independent(p)
+    if not line:
+        zeros = [_first_zero(*push) for push in pushes]
+    with styled(size=size):
+        figure = new_figure(6.3, 5.6 if is_narrow() else 3.1)
+        left, right = figure.subplots(*((2, 1) if is_narrow() else (1, 2)), sharex=True, sharey=True)
+        for axes, mark, title in ((left, "A", "pinned beam on a spring"), (right, "B", "rocking base")):
+            axes.axhline(0.0, color=GRAY, linewidth=0.8, label="_axis")
+            axes.axvline(0.0, color=GRAY, linewidth=0.8, label="_axis")
+            axes.set(title=title, xlabel="θ [rad]")
+            axes.tick_params(labelleft=True)
+            label_panel(axes, mark)
+        left.set(ylabel=f"M [{unit}]", xlim=(-end, end), ylim=(-_MARGIN * largest / factor, _MARGIN * largest / factor))
+        left.locator_params(axis="x", nbins=5)
+        moment = stiffness * end / factor
+        left.plot([-end, end], [-moment, moment], color=BLACK, linewidth=1.4, label="pinned beam")
+        right.plot(
+            np.concatenate((-pushes[1][0][::-1], pushes[0][0])),
+            np.concatenate((-pushes[1][1][::-1], pushes[0][1])) / factor,
+            color=BLACK, linewidth=1.4, label="rocking",
+        )  # fmt: skip
+        _note(left, f"slope $k_r$ =\n{_with_unit(stiffness, 'N m/rad')}", low=True)
+        starts, lasts = [start / factor for start in starts], [last / factor for last in lasts]
+        low = lasts[0] > -0.3 * starts[0]
+        crossings = [sign * zero for sign, zero in ((-1.0, zeros[1]), (1.0, zeros[0])) if zero <= end]
+        if crossings:
+            right.plot(
+                crossings, [0.0] * len(crossings), "o", color=BLACK, markersize=4.0, markerfacecolor="white", label="_0"
+            )
+        slope = _slope(sides, symmetric=p.symmetric) if line else ""
+        zero = _vanishing(zeros, end, symmetric=p.symmetric) if line or min(zeros) <= end else ""
+        resisting = [f"$M_r$ = {_with_unit(start * factor, 'N m')}" for start in starts]
+        corners = not p.symmetric or low  # where M_r is written; else with the rest
+        if corners:
+            _beside(right, resisting[0], starts[0], left=True)
+        if not p.symmetric:
+            _beside(right, resisting[1], -starts[1], left=False)
+            for rotation in crossings:
+                _above(right, f"{short(rotation)} rad", rotation)
+        lines = (slope, zero) if corners else (zero, slope, resisting[0])
+        at = 0.48 if low and not p.symmetric else None  # between the axis and the lower corner
+        _note(right, "\n".join(filter(None, lines)), low=low, at=at)
+    return figure
+
+
+def _push(p: RockingProperties, side: int, end: float) -> tuple[Array, Array]:
+    """Rotation |θ| and moment, positive, of a first push to one side, from lift-off on."""
+    push = base_path(p, np.array([side * end]))
+    return np.abs(push.rotation[1:]), side * push.moment[1:]
+
+
+def _first_zero(rotation: Array, moment: Array) -> float:
+    """Rotation at which the moment first vanishes; infinite if it does not."""
+    below = np.flatnonzero((moment[:-1] > 0.0) & (moment[1:] <= 0.0))[:1]
+    if not below.size:
+        return math.inf
+    k = int(below[0])
+    return float(rotation[k] + (rotation[k + 1] - rotation[k]) * moment[k] / (moment[k] - moment[k + 1]))
+
+
+def _slope(sides: tuple[Pivot, Pivot], *, symmetric: bool) -> str:
+    held = any(side.tendon_stiffness for side in sides)
+    name = r"k_t - L_0^r\,g" if held else r"-L_0^r\,g"
+    values = [_with_unit(side.rocking_stiffness, "N m/rad") for side in sides]
+    return f"slope ${name}$ =\n{_each(values, symmetric=symmetric or not held)}"
+
+
+def _vanishing(zeros: list[float], end: float, *, symmetric: bool) -> str:
+    """Text about the rotations at which M vanishes, if they are shown."""
+    if symmetric:
+        if zeros[0] <= end:
+            return f"$M$ = 0 at ±{short(zeros[0])} rad"
+        return "$M$ does not vanish" if math.isinf(zeros[0]) else ""
+    # Written beside the marks, as each side has its own.
+    return "$M$ does not vanish" if all(map(math.isinf, zeros)) else ""
+
+
+def _each(values: list[str], *, symmetric: bool) -> str:
+    return values[0] if symmetric else f"{values[0]} (right)\n{values[1]} (left)"
+
+
+def _with_unit(value: float, unit: str) -> str:
+    factor, named = prefixed(value, unit)
+    return f"{short(value / factor)} {named}"
+
+
+def _beside(axes: Axes, text: str, moment: float, *, left: bool) -> None:
+    """Write next to the corner of the curve at θ = 0, on the free side."""
+    axes.annotate(
+        text, (0.0, moment), xytext=(-4 if left else 4, 0), ha="right" if left else "left", va="center",
+        textcoords="offset points", fontsize=SMALL,
+    )  # fmt: skip
+
+
+def _above(axes: Axes, text: str, rotation: float) -> None:
+    axes.annotate(
+        text, (rotation, 0.0), xytext=(5, 4), ha="left", va="bottom", textcoords="offset points", fontsize=SMALL
+    )
+
+
+def _note(axes: Axes, text: str, *, low: bool, at: float | None = None) -> None:
+    """Write into the lower or the upper right corner, whichever is free, or below a given height."""
+    height = at if at is not None else (0.03 if low else 0.97)
+    axes.text(
+        0.97, height, text, transform=axes.transAxes, ha="right", va="bottom" if low and at is None else "top",
+        fontsize=SMALL, linespacing=1.5,
     )  # fmt: skip

@@ -15,11 +15,11 @@ from rockflex.plot._style import (
     BLUE,
     GRAY,
     GREEN,
-    LOOKS,
+    LINE_STYLES,
     RED,
-    Look,
+    LineStyle,
     Size,
-    key_beside,
+    legend_beside,
     literal,
     new_figure,
     recoloured,
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 _CROSSES = 0.045  # of the panel, from row to row
-_LOOKS = (Look(BLACK, "-"), Look(RED, "-."), Look(GREEN, "--"), Look(BLUE, ":"), *LOOKS)
+_STYLES = (LineStyle(BLACK, "-"), LineStyle(RED, "-."), LineStyle(GREEN, "--"), LineStyle(BLUE, ":"), *LINE_STYLES)
 
 
 def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "", size: Size | None = None) -> Figure:
@@ -70,7 +70,7 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "", size: Size 
     """
     check_columns(table, ("slenderness", "period", "relative_rotation", "overturned"), "what rocking_spectrum returned")
     groups = list(table.groupby("slenderness"))
-    _check_number(len(groups), "slendernesses")
+    _check_count(len(groups), "slendernesses")
     fell = table["overturned"].fillna(False).astype(bool)
     standing = [float(value) for value in table["relative_rotation"][~fell] if np.isfinite(value)]
     room = 1.0 - _CROSSES * (len(groups) + 1)
@@ -78,22 +78,22 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "", size: Size 
     with styled(size=size):
         figure = new_figure(6.3, 3.6)
         axes = figure.subplots()
-        for rank, ((slenderness, rows), look) in enumerate(zip(groups, recoloured(_LOOKS), strict=False)):
+        for rank, ((slenderness, rows), style) in enumerate(zip(groups, recoloured(_STYLES), strict=False)):
             block = rows.sort_values("period")
             over = block["overturned"].fillna(False).to_numpy(dtype=bool)
             values = np.where(over, np.nan, block["relative_rotation"].to_numpy(dtype=float))
             axes.plot(
-                block["period"], values, color=look.color, linestyle=look.dashes, marker=".",
+                block["period"], values, color=style.color, linestyle=style.dashes, marker=".",
                 markersize=2.5, label=f"α = {slenderness:.3g} rad",
             )  # fmt: skip
             axes.plot(
-                block["period"][over], np.full(over.sum(), 1.0 - _CROSSES * (rank + 1)), "x", color=look.color,
+                block["period"][over], np.full(over.sum(), 1.0 - _CROSSES * (rank + 1)), "x", color=style.color,
                 markersize=3.5, transform=axes.get_xaxis_transform(), label="_overturned",
             )  # fmt: skip
         axes.set(ylim=(0.0, limit), xlabel=r"$2π/p$ [s]", ylabel=r"$θ_{\mathrm{max}}/α$", title=literal(title))
         cross = Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.5, label="overturned")
         handles, _ = axes.get_legend_handles_labels()
-        key_beside(figure, [*handles, cross])
+        legend_beside(figure, [*handles, cross])
     return figure
 
 
@@ -139,7 +139,7 @@ def plot_overturning_spectrum(
     named: Mapping[str, pd.DataFrame] = tables if isinstance(tables, Mapping) else {"": tables}
     if not named:
         raise InputError("There is no table to plot. Give at least one from overturning_spectrum.")
-    _check_number(len(named), "tables")
+    _check_count(len(named), "tables")
     for table in named.values():
         check_columns(table, ("frequency_ratio", "lowest", "highest_standing"), "what overturning_spectrum returned")
     with styled(size=size):
@@ -148,28 +148,28 @@ def plot_overturning_spectrum(
         finite = [v for table in named.values() for v in table["lowest"] if np.isfinite(v)]
         top = [v for table in named.values() for v in table["highest_standing"] if np.isfinite(v)]
         limit = 1.1 * max([*finite, *top, 1.0])
-        for (name, table), look in zip(named.items(), recoloured(_LOOKS), strict=False):
+        for (name, table), style in zip(named.items(), recoloured(_STYLES), strict=False):
             rows = table.sort_values("frequency_ratio")
             ratio, low = rows["frequency_ratio"].to_numpy(dtype=float), rows["lowest"].to_numpy(dtype=float)
             high = np.minimum(rows["highest_standing"].to_numpy(dtype=float), limit)
             both = high > low * (1.0 + 1e-3)
             axes.fill_between(
-                ratio, low, high, where=both, facecolor="none", edgecolor=look.color, hatch="////", linewidth=0.0,
+                ratio, low, high, where=both, facecolor="none", edgecolor=style.color, hatch="////", linewidth=0.0,
                 alpha=0.5,
             )  # fmt: skip
-            axes.plot(ratio, low, color=look.color, linestyle=look.dashes, label=literal(name) or "lowest")
+            axes.plot(ratio, low, color=style.color, linestyle=style.dashes, label=literal(name) or "lowest")
         axes.axhline(1.0, color=GRAY, linewidth=0.8, label="uplift")
         axes.set_xlim(left=0.0)
         axes.set(ylim=(0.0, limit), xlabel=r"$ω_g/p$", ylabel=r"$a_p/(g\,α)$", title=literal(title))
         handles, _ = axes.get_legend_handles_labels()
         if axes.collections and any(len(area.get_paths()) for area in axes.collections):
             handles.append(Patch(facecolor="none", edgecolor=GRAY, hatch="////", linewidth=0.0, label="either"))
-        key_beside(figure, handles)
+        legend_beside(figure, handles)
     return figure
 
 
-def _check_number(given: int, what: str) -> None:
-    if given > len(_LOOKS):
+def _check_count(given: int, what: str) -> None:
+    if given > len(_STYLES):
         raise InputError(
-            f"{given} {what} are too many to distinguish in one figure; at most {len(_LOOKS)} can be shown."
+            f"{given} {what} are too many to distinguish in one figure; at most {len(_STYLES)} can be shown."
         )

@@ -7,23 +7,20 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from rockflex._arrays import Array
-from rockflex.plot._curves import Curve, curves_of, rotation_limit
-from rockflex.plot._history import shade_uplifts
+from rockflex._numbers import prefixed
+from rockflex.plot._curves import Curve, curves_of, rotation_limit, time_limits
+from rockflex.plot._history import add_legend, axis_scale, draw_curves, quantities_of, shade_uplifts
 from rockflex.plot._moment_rotation import largest_moment, resistance_line, whole_line
-from rockflex.plot._panel import draw_curves, quantities_of, scale_of
-from rockflex.plot._style import BLACK, GRAY, SHADE, SMALL, columns, new_figure, points, styled
-from rockflex.plot._units import readable
+from rockflex.plot._style import BLACK, SMALL, font_size, new_figure, styled
 from rockflex.response import Response
 
 _MM = 1.0 / 25.4  # inches
-_ROOM = 1.08
-_PANEL = 26.0  # mm of height that a panel needs
-_LEAST = 3  # panels in any case
-_PATH = 500  # points of a line that is a path, not a law
-_LETTERS = 125  # of a legend over the whole width
+_MARGIN = 1.08
+_MIN_PANEL_MM = 26.0  # mm of height that a panel needs
+_MIN_PANELS = 3  # panels in any case
+_MAX_LAW_POINTS = 500  # points of a line that is a path, not a law
 
 
 def run_sheet(
@@ -53,27 +50,18 @@ def run_sheet(
         for row, (quantity, mark) in enumerate(zip(quantities, ascii_uppercase, strict=False)):
             axes = figure.add_subplot(grid[row, 0], sharex=panels[0] if panels else None)
             handles, _ = draw_curves(axes, quantity, curves)
-            axes.annotate(
-                mark, (0.0, 1.0), xytext=(4, -3), xycoords="axes fraction", textcoords="offset points", weight="bold",
-                va="top", zorder=6.0,
-            )  # fmt: skip
-            axes.set_ylabel(_fitting(axes.get_ylabel(), height / len(quantities)), fontsize=points(8.0))
+            _label_inside(axes, mark)
+            axes.set_ylabel(_short_label(axes.get_ylabel(), height / len(quantities)), fontsize=font_size(8.0))
             axes.tick_params(labelbottom=row == len(quantities) - 1)
             axes.locator_params(axis="y", nbins=5)
             panels.append(axes)
-        main = shade_uplifts(panels, curves)
-        panels[-1].set(xlabel="time [s]", xlim=_span(curves))
+        uplifts = shade_uplifts(panels, curves)
+        panels[-1].set(xlabel="time [s]", xlim=time_limits(curves))
         figure.align_ylabels(panels)
-        names = [curve.label for curve in curves]
-        if main is not None:
-            handles.append(Patch(facecolor=SHADE, edgecolor=GRAY, linewidth=0.4))
-            names.append(f"uplifted: {main.label}" if len(curves) > 1 else "uplifted")
         if loops:
             _draw_loops(figure.add_subplot(grid[:, 1]), loops, ascii_uppercase[len(quantities)])
-        figure.legend(
-            handles, names, loc="outside upper center", ncols=columns(names, _LETTERS), handlelength=2.6,
-            columnspacing=1.4, borderpad=0.1, borderaxespad=0.1,
-        )  # fmt: skip
+        entries = [*handles, *uplifts.values()], [*(curve.label for curve in curves), *uplifts]
+        add_legend(figure, curves, *entries, "", borderpad=0.1, borderaxespad=0.1)
     return figure
 
 
@@ -85,7 +73,7 @@ def record_strip(time: Array, acceleration: Array, *, width: float, height: floa
         figure.get_layout_engine().set(h_pad=0.01, w_pad=0.02)  # pyright: ignore
         axes = figure.add_subplot()
         axes.plot(time, acceleration, color=BLACK, linewidth=0.5)
-        axes.set(xlim=(float(time[0]), float(time[-1])), ylim=(-_ROOM * largest, _ROOM * largest))
+        axes.set(xlim=(float(time[0]), float(time[-1])), ylim=(-_MARGIN * largest, _MARGIN * largest))
         axes.locator_params(axis="y", nbins=4)
         axes.tick_params(labelsize=SMALL)
         axes.set_xlabel("time [s]", fontsize=SMALL, labelpad=1.0)
@@ -108,40 +96,39 @@ def _panels(curves: list[Curve], height: float) -> list[str]:
     if any(model.layout.heave >= 0 for model in models):
         names.append("edge_uplift")
     spare = [name for name in ("base_shear", "base_moment") if name in names]
-    while len(names) * _PANEL > height and len(names) > _LEAST and spare:
+    while len(names) * _MIN_PANEL_MM > height and len(names) > _MIN_PANELS and spare:
         names.remove(spare.pop(0))
     return names
 
 
-def _fitting(label: str, room: float) -> str:
-    """Return the label of an axis, without what needs more than `room` mm."""
-    return label if room > _PANEL else label.replace(", total", "").replace(", relative", "")
-
-
-def _span(curves: list[Curve]) -> tuple[float, float]:
-    times = [curve.history.time for curve in curves]
-    return min(float(time[0]) for time in times), max(float(time[-1]) for time in times)
+def _short_label(label: str, room: float) -> str:
+    """Return the label of an axis, without its qualifier where the panel is lower than `room` mm."""
+    return label if room > _MIN_PANEL_MM else label.replace(", total", "").replace(", relative", "")
 
 
 def _draw_loops(axes: Axes, curves: list[Curve], mark: str) -> None:
-    """Draw base moment over rotation, and what resists it."""
-    rotation = _ROOM * (rotation_limit(curves) or max(map(whole_line, curves)))
+    """Draw base moment over rotation, and the static resisting moment."""
+    rotation = _MARGIN * (rotation_limit(curves) or max(map(whole_line, curves)))
     (moment,) = quantities_of(["base_moment"])
-    largest = max(largest_moment(curves[0]), scale_of(moment, curves)[2] * scale_of(moment, curves)[0] / _ROOM)
-    factor, unit = readable(largest, "N m")
+    largest = max(largest_moment(curves[0]), axis_scale(moment, curves)[2] * axis_scale(moment, curves)[0] / _MARGIN)
+    factor, unit = prefixed(largest, "N m")
     for curve in curves:
         kept = curve.before_fall
         axes.plot(
-            curve.history.rotation[kept], curve.history.base_moment[kept] / factor, color=curve.look.color,
-            linestyle=curve.look.dashes, linewidth=0.8 * curve.look.width, zorder=curve.order,
+            curve.history.rotation[kept], curve.history.base_moment[kept] / factor, color=curve.style.color,
+            linestyle=curve.style.dashes, linewidth=0.8 * curve.style.width, zorder=curve.order,
         )  # fmt: skip
     line = resistance_line(curves[0], rotation, factor)
-    line.set(linewidth=0.9 if len(line.get_xdata()) < _PATH else 0.5, zorder=1.8)  # pyright: ignore[reportArgumentType]
+    line.set(linewidth=0.9 if len(line.get_xdata()) < _MAX_LAW_POINTS else 0.5, zorder=1.8)  # pyright: ignore[reportArgumentType]
     axes.add_line(line)
-    limit = _ROOM * largest / factor
+    limit = _MARGIN * largest / factor
     axes.set(xlim=(-rotation, rotation), ylim=(-limit, limit), xlabel="θ [rad]", ylabel=f"$M_b$ [{unit}]")
     axes.locator_params(axis="x", nbins=4)
     axes.set_title(f"$M_b$ over θ; blue: resisting moment\nof {curves[0].label}", fontsize=SMALL, loc="right")
+    _label_inside(axes, mark)
+
+
+def _label_inside(axes: Axes, mark: str) -> None:
     axes.annotate(
         mark, (0.0, 1.0), xytext=(4, -3), xycoords="axes fraction", textcoords="offset points", weight="bold", va="top",
         zorder=6.0,

@@ -1,4 +1,4 @@
-"""Shared by figures of studies: the columns they need, names of axes, and one panel per structure."""
+"""Shared by figures of studies: columns of tables, names of axes, styles of models, and a panel for each structure."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -11,17 +11,33 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rockflex._errors import InputError
+from rockflex._numbers import short
 from rockflex.motion import MEASURES
-from rockflex.plot._style import Look, literal, narrow, new_figure
-from rockflex.plot._surrogates import surrogate_looks
-from rockflex.plot._units import short
+from rockflex.plot._style import BLACK, GREEN, LINE_STYLES, RED, LineStyle, is_narrow, literal, new_figure, recoloured
 
 if TYPE_CHECKING:
     import pandas as pd
 
+_OWN = {"2DOF-S": LineStyle(RED, "-."), "3DOF-S": LineStyle(GREEN, "--"), "MDOF-S": LineStyle(BLACK, "-", 2.0)}
 MARKERS = ("o", "^", "s", "D", "v", "P", "X", "<", ">", "h", "p", "*", "d", "8", "H")
 
-_MOST = 12  # panels in one figure
+_MAX_PANELS = 12  # panels in one figure
+
+
+def model_styles(models: Iterable[str]) -> dict[str, LineStyle]:
+    """Give each model its own line style, in order of appearance; fewer modes are drawn over more.
+
+    Raises
+    ------
+    InputError
+        If there are too many models to distinguish.
+    """
+    names = list(dict.fromkeys(models))
+    others = [name for name in names if name not in _OWN]
+    if len(others) > len(LINE_STYLES):
+        raise InputError(f"{len(names)} models are too many to distinguish in one figure. Plot fewer at a time.")
+    styles = _OWN | dict(zip(others, LINE_STYLES, strict=False))
+    return dict(zip(names, recoloured(styles[name] for name in names), strict=True))
 
 
 def check_columns(table: object, columns: Iterable[str], source: str) -> None:
@@ -42,10 +58,10 @@ def names_in(column: "pd.Series[Any] | Iterable[object]") -> list[str]:
     return list(dict.fromkeys(str(name) for name in column))
 
 
-def looks_of(models: Sequence[str]) -> dict[str, tuple[Look, str]]:
+def styles_of(models: Sequence[str]) -> dict[str, tuple[LineStyle, str]]:
     """Give each model its own line and symbol."""
-    looks = surrogate_looks(models)
-    return {model: (look, marker) for (model, look), marker in zip(looks.items(), MARKERS, strict=False)}
+    styles = model_styles(models)
+    return {model: (style, marker) for (model, style), marker in zip(styles.items(), MARKERS, strict=False)}
 
 
 def label_plainly(axis: Axis) -> None:
@@ -59,14 +75,14 @@ def _plain(value: float, _: object) -> str:
     return short(value)
 
 
-def keys_of(looks: dict[str, tuple[Look, str]], *, symbols: bool = True) -> list[Line2D]:
+def legend_handles(styles: dict[str, tuple[LineStyle, str]], *, symbols: bool = True) -> list[Line2D]:
     """Entries of a legend, one per model, with its line and its symbol."""
     return [
         Line2D(
-            [], [], color=look.color, linestyle=look.dashes,  # pyright: ignore[reportArgumentType]
+            [], [], color=style.color, linestyle=style.dashes,  # pyright: ignore[reportArgumentType]
             marker=marker if symbols else "", markersize=3.5, markerfacecolor="none", markeredgewidth=0.7, label=model,
         )
-        for model, (look, marker) in looks.items()
+        for model, (style, marker) in styles.items()
     ]  # fmt: skip
 
 
@@ -78,9 +94,11 @@ def structure_panels(names: Sequence[str], across: int, height: float, x: str, y
     InputError
         If there are too many for one figure.
     """
-    if len(names) > _MOST:
-        raise InputError(f"{len(names)} structures are too many for one figure; {_MOST} fit. Plot fewer at a time.")
-    columns = 1 if narrow() else min(across, len(names))
+    if len(names) > _MAX_PANELS:
+        raise InputError(
+            f"{len(names)} structures are too many for one figure; {_MAX_PANELS} fit. Plot fewer at a time."
+        )
+    columns = 1 if is_narrow() else min(across, len(names))
     rows = math.ceil(len(names) / columns)
     figure = new_figure(4.2 if columns == 1 else 6.3, 0.6 + height * rows)
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)

@@ -1,7 +1,4 @@
-"""Style of all figures: sizes, fonts, colours and line styles.
-
-What the caller has set in matplotlib's rcParams stays, and nothing that is set here lasts.
-"""
+"""The style, the size and the files of figures."""
 
 import io
 import itertools
@@ -11,6 +8,7 @@ from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
+from pathlib import Path
 from threading import RLock
 from typing import Any, Literal
 
@@ -21,11 +19,10 @@ from matplotlib.axes import Axes
 from matplotlib.backend_bases import RendererBase
 from matplotlib.colors import is_color_like, to_hex, to_rgb
 from matplotlib.figure import Figure
-from matplotlib.font_manager import FontProperties
 from matplotlib.text import Text
-from matplotlib.textpath import TextPath
 
 from rockflex._errors import InputError
+from rockflex._files import path_of, write_whole
 from rockflex._shown import shown
 
 # Okabe & Ito's palette, which colour-blind readers can tell apart.
@@ -36,10 +33,9 @@ SHADE = "#e9edf2"
 SMALL = "small"  # letters of notes, relative to font.size
 
 _FONT = 9.0
-_POINTS = 72.0  # in an inch
-_HANDLE, _BORDER = 5.6, 2.0  # widths of a legend's handle with its gaps, and of its borders, in sizes of letters
+MAX_LEGEND_COLUMNS = 8
 
-COARSE, FINE = 100, 2  # points of a notebook an inch, and dots a point: sharp on screens of many dots
+NOTEBOOK_DPI, PIXEL_RATIO = 100, 2  # points of a notebook an inch, and dots a point: sharp on screens of many dots
 
 _STYLE: dict[Any, Any] = {
     "font.family": "sans-serif",
@@ -67,12 +63,12 @@ _STYLE: dict[Any, Any] = {
     "savefig.bbox": "standard",
     "svg.hashsalt": "rockflex",
 }
-_INK, _NIGHT = "#d7dbe0", "#14181d"
+_INK, _DARK_GROUND = "#d7dbe0", "#14181d"
 _DARK: dict[Any, Any] = _STYLE | {
     "axes.edgecolor": _INK,
-    "axes.facecolor": _NIGHT,
+    "axes.facecolor": _DARK_GROUND,
     "axes.labelcolor": _INK,
-    "figure.facecolor": _NIGHT,
+    "figure.facecolor": _DARK_GROUND,
     "grid.color": "#39414a",
     "text.color": _INK,
     "xtick.color": _INK,
@@ -80,10 +76,13 @@ _DARK: dict[Any, Any] = _STYLE | {
 }
 THEMES = {"light": _STYLE, "dark": _DARK}
 _LOCK = RLock()
+# A date in the file would make equal figures differ.
+_UNDATED: dict[str, dict[str, Any]] = {".png": {}, ".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
+_DPI = 200
 
 
 @dataclass(frozen=True)
-class Look:
+class LineStyle:
     """Colour and line style of one curve."""
 
     color: str
@@ -92,8 +91,8 @@ class Look:
 
 
 _DASHES = ("-", (0, (6, 2)), (0, (1, 1)), (0, (6, 1, 1, 1, 1, 1)))
-LOOKS = tuple(Look(color, dashes) for dashes in _DASHES for color in (PURPLE, ORANGE, SKY))
-"""Looks for models without one of their own, the most distinct first; blue is left to reference lines."""
+LINE_STYLES = tuple(LineStyle(color, dashes) for dashes in _DASHES for color in (PURPLE, ORANGE, SKY))
+"""Line styles of models without a fixed style, the most distinct first; blue is left to reference lines."""
 
 
 Size = Literal["column", "page"] | tuple[float, float]
@@ -102,9 +101,9 @@ Size = Literal["column", "page"] | tuple[float, float]
 _WIDTHS = {"column": 3.5, "page": 7.2}  # inches
 _NARROW = 4.6  # inches of width below which panels are stacked
 _COLUMN_FONT = 8.0
-_LETTERS = ("font.size", "axes.labelsize", "axes.titlesize", "legend.fontsize", "xtick.labelsize", "ytick.labelsize")
+_FONT_SIZES = ("font.size", "axes.labelsize", "axes.titlesize", "legend.fontsize", "xtick.labelsize", "ytick.labelsize")
 _SAVED = ("savefig.bbox", "svg.hashsalt", "pdf.fonttype", "path.simplify")  # so that equal figures give equal files
-_DARKEST = 0.5  # brightness of a background on which ink is dark
+_DARK_BRIGHTNESS = 0.5  # brightness of a background on which ink is dark
 
 _SIZE: ContextVar[tuple[float, float | None] | None] = ContextVar("size", default=None)
 _DRAWN: ContextVar[list[Figure] | None] = ContextVar("drawn", default=None)
@@ -121,13 +120,15 @@ def styled(theme: str = "light", size: Size | None = None) -> Generator[None, No
     """
     inches = _inches(size)
     with _LOCK:
-        font = rcParams["font.size"] if _chosen("font.size") else _default_font(inches)
-        lines, marks = (rcParams[name] if _chosen(name) else None for name in ("lines.linewidth", "lines.markersize"))
+        font = rcParams["font.size"] if _set_by_caller("font.size") else _default_font(inches)
+        lines, marks = (
+            rcParams[name] if _set_by_caller(name) else None for name in ("lines.linewidth", "lines.markersize")
+        )
         settings: dict[Any, Any] = {
-            name: value for name, value in THEMES[theme].items() if name in _SAVED or not _chosen(name)
+            name: value for name, value in THEMES[theme].items() if name in _SAVED or not _set_by_caller(name)
         }
-        settings |= {name: settings[name] * font / _FONT for name in _LETTERS if name in settings}
-        settings["lines.linewidth"] = _STYLE["lines.linewidth"]  # those of the caller are applied at the end
+        settings |= {name: settings[name] * font / _FONT for name in _FONT_SIZES if name in settings}
+        settings["lines.linewidth"] = _STYLE["lines.linewidth"]  # _rescale applies the settings of the caller
         with rc_context(settings):
             figures: list[Figure] = []
             tokens = _SIZE.set(inches), _DRAWN.set(figures)
@@ -138,13 +139,13 @@ def styled(theme: str = "light", size: Size | None = None) -> Generator[None, No
                 _DRAWN.reset(tokens[1])
             for figure in figures:
                 _rescale(figure, lines, marks)
-                if theme == "light" and _brightness(rcParams["axes.facecolor"]) < _DARKEST:
+                if theme == "light" and _brightness(rcParams["axes.facecolor"]) < _DARK_BRIGHTNESS:
                     _invert(figure)
                 if inches is not None or font != _FONT:
                     _wrap(figure)
 
 
-def _chosen(name: Any) -> bool:
+def _set_by_caller(name: Any) -> bool:
     """Whether the caller has set one of matplotlib's settings."""
     return bool(rcParams[name] != rcParamsDefault[name])
 
@@ -195,8 +196,8 @@ class NotebookFigure(Figure):
     def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
         content = io.BytesIO()
         with styled():
-            self.savefig(content, format="png", dpi=FINE * COARSE)
-        width, height = (round(COARSE * inches) for inches in self.get_size_inches())
+            self.savefig(content, format="png", dpi=PIXEL_RATIO * NOTEBOOK_DPI)
+        width, height = (round(NOTEBOOK_DPI * inches) for inches in self.get_size_inches())
         return content.getvalue(), {"width": width, "height": height}
 
 
@@ -216,62 +217,71 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
-def narrow() -> bool:
+def is_narrow() -> bool:
     """Whether the caller has asked for a figure so narrow that panels must be stacked."""
     asked = _SIZE.get()
     return asked is not None and asked[0] < _NARROW
 
 
-def points(size: float) -> float:
+def font_size(size: float) -> float:
     """Size of letters in points that is `size` in a figure with letters of 9 points."""
     return size * rcParams["font.size"] / _FONT
 
 
-def recoloured(looks: Iterable[Look]) -> list[Look]:
-    """Looks in the colours of the caller's own cycle (``axes.prop_cycle``), if there is one."""
-    cycle = rcParams["axes.prop_cycle"].by_key().get("color") if _chosen("axes.prop_cycle") else None
+def recoloured(styles: Iterable[LineStyle]) -> list[LineStyle]:
+    """Line styles in the colours of the caller's own cycle (``axes.prop_cycle``), if there is one."""
+    cycle = rcParams["axes.prop_cycle"].by_key().get("color") if _set_by_caller("axes.prop_cycle") else None
     if not cycle:
-        return list(looks)
-    return [replace(look, color=color) for look, color in zip(looks, itertools.cycle(cycle), strict=False)]
+        return list(styles)
+    return [replace(style, color=color) for style, color in zip(styles, itertools.cycle(cycle), strict=False)]
 
 
-def letter(axes: Axes, text: str) -> None:
+def label_panel(axes: Axes, text: str) -> None:
     """Panel letter outside the axes, left of their upper corner."""
     axes.annotate(
         text, (0.0, 1.0), xytext=(-46, 1), xycoords="axes fraction", textcoords="offset points", weight="bold", va="top"
     )
 
 
-def columns(names: Sequence[str], letters: int) -> int:
-    """Number of columns of a legend, if a row has room for `letters`, or for the width that the caller asked for.
+def legend_above(
+    figure: Figure,
+    handles: Sequence[Artist],
+    labels: Sequence[str] | None = None,
+    *,
+    title: str = "",
+    title_size: float | str = "medium",
+    max_columns: int = MAX_LEGEND_COLUMNS,
+    **options: Any,
+) -> None:
+    """Add the legend of a figure above its panels, in as many columns as its width holds; it fills column by column."""
+    names = [str(handle.get_label()) for handle in handles] if labels is None else list(labels)
+    for count in range(min(len(names), max_columns), 0, -1):
+        legend = figure.legend(handles, names, loc="outside upper center", ncols=count, **options)
+        if count == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            legend.set_title(title or None, prop={"size": title_size})  # pyright: ignore[reportArgumentType]
+            return
+        legend.remove()
 
-    The legend fills column by column.
-    """
-    asked, font = _SIZE.get(), FontProperties(size=rcParams["legend.fontsize"]).get_size_in_points()
-    room = letters if asked is None else _POINTS * asked[0] / font - _BORDER
-    widths = [len(name) + 7.0 if asked is None else _HANDLE + _length(name) for name in names]
-    for count in range(len(names), 1, -1):
-        if sum(float(max(column)) for column in np.array_split(widths, count)) <= room:
-            return count
-    return 1
 
-
-def _length(text: str) -> float:
-    """Length of a text of a legend in the size of its letters; those on a screen are wider than their outlines."""
-    return 0.106 * float(TextPath((0.0, 0.0), text, size=10.0).get_extents().width)
-
-
-def key_beside(figure: Figure, handles: Sequence[Artist]) -> None:
+def legend_beside(figure: Figure, handles: Sequence[Artist]) -> None:
     """Add the legend of a figure to the right of its panels, or above them in a narrow one."""
-    if narrow():
-        names = [str(handle.get_label()) for handle in handles]
-        figure.legend(handles=handles, loc="outside upper center", ncols=columns(names, 0))
+    if is_narrow():
+        legend_above(figure, handles)
     else:
         figure.legend(handles=handles, loc="outside right upper")
 
 
+def notes_beside(axes: Axes, notes: list[tuple[str, str]], step: float) -> None:
+    """Write lines of text in their colours to the right of a panel, `step` points apart."""
+    for row, (text, color) in enumerate(notes):
+        axes.annotate(
+            text, (1.0, 1.0), xytext=(5.0, -1.0 - step * row), xycoords="axes fraction", textcoords="offset points",
+            color=color, fontsize=SMALL, va="top", annotation_clip=False,
+        )  # fmt: skip
+
+
 def _rescale(figure: Figure, width: float | None, mark: float | None) -> None:
-    """Draw lines and marks as much wider or larger as the caller's own lines and marks are than those here."""
+    """Scale line widths and marker sizes by the ratio of the caller's settings to the settings here."""
     for line in (line for part in (*figure.axes, *_legends(figure)) for line in part.get_lines()):
         if width is not None:
             line.set_linewidth(line.get_linewidth() * width / _STYLE["lines.linewidth"])
@@ -354,3 +364,56 @@ def _break(text: Text | None, room: float, *, turned: bool = False) -> None:
             else:
                 lines[-1] = more
     label.set_text("\n".join(lines))
+
+
+def save_figure(figure: Figure, path: str | Path) -> Path:
+    """Write a figure as PNG (200 dots per inch), PDF or SVG, by the suffix of `path`.
+
+    Missing folders are created. The file is written completely or not at all, and equal figures give equal files.
+
+    Parameters
+    ----------
+    figure
+        A figure of one of the plot functions, or any matplotlib figure.
+    path
+        Path of the file; an existing file is replaced.
+
+    Returns
+    -------
+    Path
+        The file written.
+
+    Raises
+    ------
+    InputError
+        If the suffix is not .png, .pdf or .svg.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import rockflex as rf
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> rf.save_figure(rf.plot_motion(rf.ricker_pulse(4.0, 0.6)), folder / "pulse.svg").name
+    'pulse.svg'
+    """
+    target = path_of("path", path)
+    suffix = target.suffix.lower()
+    if suffix not in _UNDATED:
+        raise InputError(
+            f"A figure can be saved as .png, .pdf or .svg, but the path {shown(str(path))} ends in "
+            f"{shown(target.suffix)}. Change the suffix."
+        )
+    return write_whole(target, _content(figure, suffix))
+
+
+def svg_of(figure: Figure) -> str:
+    """Return a figure as the text of an SVG file."""
+    return _content(figure, ".svg").decode()
+
+
+def _content(figure: Figure, suffix: str) -> bytes:
+    content = io.BytesIO()
+    with styled():
+        figure.savefig(content, format=suffix[1:], dpi=_DPI, metadata=_UNDATED[suffix])
+    return content.getvalue()

@@ -4,13 +4,8 @@ A run is one page of HTML, for an appendix; a publication is a page of HTML, the
 numbers.
 """
 
-from rockflex.report._csv import to_csv
-from rockflex.report._document import Document
-from rockflex.report._html import to_html
-from rockflex.report._line import Check, Number
-from rockflex.report._markdown import to_markdown
-from rockflex.report._result import Remark, Result
-from rockflex.report._write import write_document
+from rockflex.report._document import Check, Document, Number, Remark, Result
+from rockflex.report._write import to_csv, to_html, to_markdown, write_document
 from rockflex.report.run import write_report
 
 __all__ = [

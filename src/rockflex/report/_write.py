@@ -1,13 +1,188 @@
-"""The files of a report."""
+"""A report on a publication as files: HTML, Markdown, a table of its numbers, and its figures."""
 
-from collections.abc import Callable
+import csv
+import io
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rockflex._files import write_whole
-from rockflex.report._csv import to_csv
-from rockflex.report._document import Document
-from rockflex.report._html import to_html
-from rockflex.report._markdown import to_markdown
+from rockflex.report._document import Check, Document, Result
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+TEMPLATES = Path(__file__).parent / "templates"
+CLASSES = ("best", "good", "fair", "open", "bad")  # of the verdicts, best first; the last one is bad
+CHECKS = ("place", "check", "paper", "rockflex", "unit", "holds", "criterion and remarks")
+HEAD = ("place", "number", "paper", "rockflex", "unit", "difference", "verdict", "criterion and remarks")
+COLUMNS = ("target", "place", "name", "printed", "rockflex", "unit", "difference", "criterion", "verdict", "note")
+
+
+def inline(drawing: str, stem: str, label: str) -> str:
+    """Turn an SVG file into an element of a page.
+
+    The prolog, metadata and namespaces of a separate file are removed. Identifiers get the stem as a prefix, because
+    other figures in the page may use the same ones. The element fills the available width.
+
+    Parameters
+    ----------
+    drawing
+        The file's text.
+    stem
+        A name that no other figure in the page has.
+    label
+        Alternative text for readers who cannot see the figure, without quotes or markup.
+    """
+    body = drawing[drawing.index("<svg") :]
+    body = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", body, flags=re.DOTALL)
+    body = re.sub(r'\s+xmlns(:\w+)?="[^"]*"', "", body).replace("xlink:href=", "href=")
+    body = re.sub(r'(\bid="|\bhref="#|\burl\(#)', rf"\g<1>{stem}-", body)
+    head, rest = body.split(">", 1)
+    head = re.sub(r'\s(width|height)="[^"]*"', "", head)
+    # A rule of one figure would hold for the whole page.
+    rest = re.sub(r'<style type="text/css">.*?</style>', "", rest, flags=re.DOTALL)
+    return f'{head} role="img" aria-label="{label}" class="drawing">{rest}'
+
+
+def to_html(document: Document, drawings: Mapping[str, str]) -> str:
+    """Write the document as a page.
+
+    Parameters
+    ----------
+    document
+        The report.
+    drawings
+        Text of the SVG file of each figure, by its stem.
+
+    Examples
+    --------
+    >>> from rockflex.report import Document, to_html
+    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> "<h1>A title</h1>" in to_html(document, drawings={})
+    True
+    """
+    from markupsafe import Markup, escape
+
+    labels = {stem: str(escape(s.title)) for s in document.sections for stem in s.figures}
+    figures = {stem: Markup(inline(drawings[stem], stem, label)) for stem, label in labels.items()}
+    verdicts = list(document.verdicts)
+    last = len(verdicts) - 1
+    looks = {name: CLASSES[-1 if place == last else min(place, 3)] for place, name in enumerate(verdicts)}
+    failing = [line for s in document.sections for line in s.numbers if line.verdict == verdicts[-1]]
+    return (
+        templates_in(TEMPLATES)
+        .get_template("report.html.jinja")
+        .render(
+            document=document, figures=figures, looks=looks, counts=document.counts, failing=failing, worst=verdicts[-1]
+        )
+    )
+
+
+@lru_cache(maxsize=2)
+def templates_in(folder: Path) -> "Environment":
+    """Return the templates of a folder; everything is escaped but figures, which are marked as safe."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    return Environment(
+        loader=FileSystemLoader(folder), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
+        lstrip_blocks=True, keep_trailing_newline=True,
+    )  # fmt: skip
+
+
+def to_markdown(document: Document) -> str:
+    """Write the document as GitHub-flavoured Markdown; figures are links to ``<stem>.svg``.
+
+    Examples
+    --------
+    >>> from rockflex.report import Document, to_markdown
+    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> to_markdown(document).splitlines()[0]
+    '# A title'
+    """
+    counts = document.counts
+    parts = [
+        f"# {_plain(document.title)}",
+        _plain(document.source),
+        f"Records. {_plain(document.records)}",
+        "Versions. " + ", ".join(f"{name} {_plain(version)}" for name, version in document.versions.items()) + ".",
+        _table(
+            ("verdict", "numbers", "meaning"),
+            [(name, str(counts[name]), meaning) for name, meaning in document.verdicts.items()],
+        ),
+        _plain(document.checks),
+        "\n".join(f"- *Remark, {_plain(kind)}.* {_plain(meaning)}" for kind, meaning in document.remarks.items()),
+        *(part for section in document.sections for part in _section(section)),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def _section(section: Result) -> Iterable[str]:
+    yield f"## {_plain(section.name)}: {_plain(section.title)}"
+    if section.note:
+        yield _plain(section.note)
+    for stem in section.figures:
+        yield f"![{_plain(section.title)}]({stem}.svg)"
+    rows = [
+        (
+            line.place, line.name, line.printed, line.ours_as_text, line.unit, line.difference_as_text,
+            f"**{line.verdict}**", line.remarks,
+        )
+        for line in section.numbers
+    ]  # fmt: skip
+    if rows:
+        yield _table(HEAD, rows)
+    if section.checks:
+        yield "Checks of ourselves, not counted:"
+        yield _table(CHECKS, [_check(check) for check in section.checks])
+    for remark in section.remarks:
+        yield f"**Remark, {_plain(remark.kind)}: {_plain(remark.title)}.** {_plain(remark.text)}"
+        if remark.head:
+            yield _table(remark.head, remark.rows)
+
+
+def _check(check: Check) -> tuple[str, ...]:
+    holds = "yes" if check.holds else "**no**"
+    return check.place, check.name, check.printed, check.ours_as_text, check.unit, holds, check.remarks
+
+
+def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    lines = [[_plain(cell) for cell in head], ["---"] * len(head)]
+    lines += [[cell if cell.startswith("**") else _plain(cell) for cell in row] for row in rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def _plain(text: str) -> str:
+    """Escape characters that Markdown would read as markup."""
+    return re.sub(r"([\\`*_\[\]<>|#])", r"\\\1", text)
+
+
+def to_csv(document: Document) -> str:
+    """Write one row per number, with a header, in UTF-8; `rockflex` has all digits, or "inf" or "nan".
+
+    Examples
+    --------
+    >>> from rockflex.report import Document, to_csv
+    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> to_csv(document).split(",")[:3]
+    ['target', 'place', 'name']
+    """
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for section in document.sections:
+        for line in section.numbers:
+            ours = repr(line.ours) if math.isfinite(line.ours) else f"{line.ours:g}"
+            writer.writerow(
+                (
+                    section.name, line.place, line.name, line.printed, ours, line.unit, line.difference_as_text,
+                    line.criterion, line.verdict, line.note,
+                )
+            )  # fmt: skip
+    return out.getvalue()
 
 
 def write_document(document: Document, folder: Path, progress: Callable[[str], None] | None = None) -> list[Path]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex.modal import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.modal import BaseElement, FrictionDamper, Springs, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.models import (
     HEADER,
     SIDE,
@@ -48,6 +48,11 @@ def edges_of(model: RockingModel, rotation: tuple[float, float], solution: Solut
     if model.complete:
         right, left = float(np.sin(right)), float(np.sin(left))
     return Edges((width * left, width * right), (0.0, 0.0))
+
+
+def springs_of(model: RockingModel) -> Springs | None:
+    """Return the springs under the base; None on rigid ground."""
+    return model.springs if isinstance(model, SpringModel) else None
 
 
 def rotation_at_rest(model: RockingModel) -> float:

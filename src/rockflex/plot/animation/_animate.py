@@ -8,21 +8,16 @@ from rockflex._checks import positive, whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.plot._curves import Curve, curves_of
-from rockflex.plot._panel import quantities_of, usual_panels
-from rockflex.plot.animation._amplification import usual_amplification
-from rockflex.plot.animation._clock import clock_of
-from rockflex.plot.animation._file import GIF, MP4, file_of
-from rockflex.plot.animation._gif import write_gif
-from rockflex.plot.animation._outline import outline_of
-from rockflex.plot.animation._poses import poses_of
-from rockflex.plot.animation._scene import Scene
-from rockflex.plot.animation._video import write_video
+from rockflex.plot._history import default_panels, quantities_of
+from rockflex.plot.animation._files import GIF, MP4, file_of, write_gif, write_video
+from rockflex.plot.animation._poses import default_amplification, outline_of, poses_of, timing_of
+from rockflex.plot.animation._scene import AnimatedFigure
 from rockflex.progress import ProgressChoice, telling
 from rockflex.response import Response
 
-NARROWEST, WIDEST = 320, 3840  # pixels
-MOST_RESPONSES = 6
-_USUAL = ("rotation", "total_top_displacement", "top_displacement", "base_moment", "slip", "edge_uplift")
+MIN_WIDTH, MAX_WIDTH = 320, 3840  # pixels
+MAX_RESPONSES = 6
+_DEFAULT_PANELS = ("rotation", "total_top_displacement", "top_displacement", "base_moment", "slip", "edge_uplift")
 _WRITERS = {GIF: write_gif, MP4: write_video}
 
 
@@ -111,23 +106,23 @@ def animate(
     """
     target, suffix = file_of(path)
     curves = curves_of(responses, labels)
-    if len(curves) > MOST_RESPONSES:
+    if len(curves) > MAX_RESPONSES:
         raise InputError(
-            f"An animation shows up to {MOST_RESPONSES} responses, but {len(curves)} were given. Show fewer at a time."
+            f"An animation shows up to {MAX_RESPONSES} responses, but {len(curves)} were given. Show fewer at a time."
         )
-    quantities = quantities_of(_usual_panels(curves) if panels is None else panels)
-    clock = clock_of(curves, suffix, speed, frames_per_second, start, stop)
-    pixels = whole_number("width", width, NARROWEST, WIDEST)
+    quantities = quantities_of(_default_panels(curves) if panels is None else panels)
+    timing = timing_of(curves, suffix, speed, frames_per_second, start, stop)
+    pixels = whole_number("width", width, MIN_WIDTH, MAX_WIDTH)
     structures = _structures(structure, len(curves))
     outlines = [
         outline_of(curve.history, each, i) for i, (curve, each) in enumerate(zip(curves, structures, strict=True))
     ]
-    poses = [poses_of(curve, o, clock.times, clock.speed) for curve, o in zip(curves, outlines, strict=True)]
-    factor = usual_amplification(curves, poses) if amplification is None else _factor(amplification)
-    with telling(progress, clock.times.size, "frames") as advance:
-        scene = Scene(curves, poses, quantities, clock, factor, title, pixels)
+    poses = [poses_of(curve, o, timing.times, timing.speed) for curve, o in zip(curves, outlines, strict=True)]
+    factor = default_amplification(curves, poses) if amplification is None else _factor(amplification)
+    with telling(progress, timing.times.size, "frames") as advance:
+        picture = AnimatedFigure(curves, poses, quantities, timing, factor, title, pixels)
         try:
-            return _WRITERS[suffix](target, scene, clock, advance)
+            return _WRITERS[suffix](target, picture, timing, advance)
         except OSError as error:
             reason = error.strerror or str(error)
             raise InputError(f"{target} cannot be written ({reason}). Give another path.", field="path") from error
@@ -154,12 +149,12 @@ def _factor(given: float) -> float:
     return factor
 
 
-def _usual_panels(curves: list[Curve]) -> list[str]:
+def _default_panels(curves: list[Curve]) -> list[str]:
     """Return a few of the panels of a history; the total displacement of the top rather than the relative one."""
-    known = usual_panels(curves)
-    left_out = {"top_displacement"} if "total_top_displacement" in known else set[str]()
+    available = default_panels(curves)
+    left_out = {"top_displacement"} if "total_top_displacement" in available else set[str]()
     if not any(curve.lifts for curve in curves):
         left_out.add("rotation")
     if not any(curve.history.model.properties.n_modes for curve in curves):
         left_out.add("base_moment")  # of elastic forces, which a rigid block does not have
-    return [name for name in _USUAL if name in known and name not in left_out]
+    return [name for name in _DEFAULT_PANELS if name in available and name not in left_out]

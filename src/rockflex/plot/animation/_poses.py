@@ -1,16 +1,192 @@
-"""How a structure stands at the instants of an animation, and where its points are then."""
+"""Frames of an animation: their instants, the outline of a structure, its poses, and the factor on displacements."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
+from rockflex._checks import finite, positive, real_or_nan
+from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex.modal import RockingProperties
 from rockflex.plot._curves import Curve
-from rockflex.plot.animation._outline import Outline
+from rockflex.response import History, springs_of
+from rockflex.structure import CantileverWithTipMass, Eccentric, FishBone, Frame, LumpedStructure, Restrained
 
-_SLIDING = 1e-4  # m/s below which a base counts as still
-_MARKED = 0.12  # s of the animation for which an impact is marked
+MAX_FRAMES = 20_000
+RATES = {".gif": (1.0, 50.0), ".mp4": (1.0, 120.0)}
+"""Frames per second that a file may have: viewers slow down a faster GIF."""
+
+Kind = Literal["block", "frame", "column", "mast"]
+MAX_POINTS = 60  # heights of a structure that are drawn
+_STORIES = (Frame, FishBone, LumpedStructure)
+_WIDTH_TOLERANCE = 1e-6  # relative difference of two widths of the same base
+_MIN_SLIP_SPEED = 1e-4  # m/s below which a base counts as still
+_IMPACT_SECONDS = 0.12  # s of the animation for which an impact is marked
+ROUND_FACTORS = (
+    *(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0, 60.0, 80.0, 100.0, 150.0, 200.0, 300.0),
+    *(400.0, 500.0, 600.0, 800.0, 1000.0),
+)
+MAX_DRAWN_MOTION = 0.15  # drawn displacement of the top over the size of the structure, at most
+
+
+@dataclass(frozen=True, eq=False)
+class Timing:
+    """The instants of the response in s that the frames show, shape (k,), and the frames per second."""
+
+    times: Array
+    speed: float
+    frames_per_second: float
+
+    @property
+    def hundredths(self) -> NDArray[np.intp]:
+        """Time for which each frame is shown in 1/100 s, shape (k,); rounding errors do not add up."""
+        ends = np.round(100.0 / self.frames_per_second * np.arange(self.times.size + 1))
+        return np.diff(ends).astype(int)
+
+
+def timing_of(
+    curves: Sequence[Curve],
+    suffix: str,
+    speed: float,
+    frames_per_second: float,
+    start: float | None,
+    stop: float | None,
+) -> Timing:
+    """Return the frames of an animation in a file with some suffix; the arguments are those of `animate`.
+
+    Raises
+    ------
+    InputError
+        If one is out of range, or there would be too many frames.
+    """
+    ratio = positive("speed", speed, "seconds of the response per second of the animation")
+    low, high = RATES[suffix]
+    rate = real_or_nan(frames_per_second)
+    if not low <= rate <= high:
+        more = ", or write .mp4" if suffix == ".gif" and rate > high else ""
+        raise InputError(
+            f"frames_per_second must be from {low:g} to {high:g} for {suffix}, but {shown(frames_per_second)} was "
+            f"given. Give 25, which is smooth{more}.",
+            field="frames_per_second",
+        )
+    first = min(float(curve.history.time[0]) for curve in curves)
+    last = max(float(curve.history.time[-1]) for curve in curves)
+    begin = first if start is None else finite("start", start, "s")
+    end = last if stop is None else finite("stop", stop, "s")
+    if not first <= begin < end <= last:
+        raise InputError(
+            f"start and stop must be times within the responses, from {first:g} to {last:g} s, start before stop, but "
+            f"{begin:g} and {end:g} s were given.",
+            field="start",
+        )
+    step = ratio / rate
+    count = (end - begin) / step
+    if count > MAX_FRAMES:
+        raise InputError(
+            f"{end - begin:g} s at speed {ratio:g} and {rate:g} frames per second are {count:.3g} frames, above the "
+            f"limit of {MAX_FRAMES}. Raise the speed, lower frames_per_second, or give start and stop.",
+            field="speed",
+        )
+    times = np.asarray(begin + step * np.arange(int(count * (1.0 + 1e-12)) + 1), np.float64)
+    if end - times[-1] > 0.25 * step:
+        times = np.append(times, end)
+    times[-1] = end  # where a fall ends
+    return Timing(times, ratio, rate)
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """Lines of a structure at rest, in m from the axis of its masses and from the base.
+
+    Attributes
+    ----------
+    kind
+        ``"block"`` (rigid), ``"frame"`` (columns and floors), ``"column"`` or ``"mast"`` (a column with a mass on top).
+    heights
+        From zero at the base to the top, ascending, shape (m,).
+    shapes
+        Horizontal displacement of these points per unit of each D_n, relative to the base, shape (m, n).
+    left, right
+        Edges of the base.
+    """
+
+    kind: Kind
+    heights: Array
+    shapes: Array
+    left: float
+    right: float
+
+    @property
+    def top(self) -> float:
+        """Height of the top above the base in m."""
+        return float(self.heights[-1])
+
+    @property
+    def size(self) -> float:
+        """The larger of height and width in m."""
+        return max(self.top, self.right - self.left)
+
+
+def outline_of(history: History, structure: Any | None, place: int) -> Outline:
+    """Return the outline of the structure of a response, number `place` of those given.
+
+    Without the structure itself, floors are drawn where its properties have them, and otherwise a straight line.
+
+    Raises
+    ------
+    InputError
+        If the structure is none, or not that of the response.
+    """
+    p = history.model.properties
+    edges = -p.pivot(-1).arm, p.pivot(1).arm
+    if not p.n_modes:
+        heights = np.array([0.0, p.top_height or 2.0 * p.l0r / p.m_tot])
+        return Outline("block", heights, np.zeros((2, 0)), *edges)
+    if structure is not None and not isinstance(structure, RockingProperties):
+        return Outline(_kind(structure), *_modal(structure, p, place), *edges)
+    if p.floors is not None:
+        stories = p.floors.heights.size > 1
+        return Outline("frame" if stories else "mast", *_with_base(p.floors.heights, p.floors.displacement), *edges)
+    top = p.top_height or 1.25 * float(np.abs(p.effective_height).max())
+    return Outline("column", *_with_base(np.array([top]), p.top_ordinate[None, :]), *edges)
+
+
+def _kind(structure: Any) -> Kind:
+    while isinstance(structure, Restrained | Eccentric):
+        structure = structure.structure
+    if isinstance(structure, CantileverWithTipMass):
+        return "mast"
+    return "frame" if isinstance(structure, _STORIES) else "column"
+
+
+def _modal(structure: Any, p: RockingProperties, place: int) -> tuple[Array, Array]:
+    """Return heights and shapes from the modes of the structure."""
+    if not hasattr(structure, "modal"):
+        raise InputError(
+            f"structure must be that of responses[{place}], such as a Frame, but {type(structure).__name__} was given. "
+            "Give what simulate was given, or leave it out.",
+            field="structure",
+        )
+    modes, own = structure.modal(), structure.rocking()
+    if own.n_modes < p.n_modes or abs(own.half_width - p.half_width) > _WIDTH_TOLERANCE * p.half_width:
+        raise InputError(
+            f"structure is not that of responses[{place}]: it has {own.n_modes} modes and B = {own.half_width:g} m, "
+            f"and the response {p.n_modes} modes and B = {p.half_width:g} m. Give what simulate was given, one for "
+            "each response if they differ, or leave it out.",
+            field="structure",
+        )
+    return _with_base(modes.heights, (modes.shapes * modes.participation)[:, : p.n_modes])
+
+
+def _with_base(heights: Array, shapes: Array) -> tuple[Array, Array]:
+    """Add the base, order the points by height, and leave some out where there are very many."""
+    order = np.argsort(heights, kind="stable")
+    kept = order[np.unique(np.linspace(0, order.size - 1, min(MAX_POINTS, order.size)).astype(int))]
+    return np.append(0.0, heights[kept]), np.vstack((np.zeros(shapes.shape[1]), shapes[kept]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,12 +247,12 @@ class Poses:
 
 
 def poses_of(curve: Curve, outline: Outline, times: Array, speed: float) -> Poses:
-    """Return the poses of a response at some instants in s; `speed` is what an animation shows of it in a second."""
+    """Return the poses of a response at some instants in s; `speed` is in seconds of the response per second."""
     history = curve.history
-    model: Any = history.model
+    model, springs = history.model, springs_of(history.model)
     known = history.time
     at = history.at(np.clip(times, known[0], known[-1]))
-    sprung = model.layout.heave >= 0
+    sprung = springs is not None
     running = times <= known[-1]
     still = np.zeros(times.size)
     struck = history.impact_times
@@ -84,15 +260,35 @@ def poses_of(curve: Curve, outline: Outline, times: Array, speed: float) -> Pose
     since = np.where(last >= 0, times - struck[last], np.inf) if struck.size else np.full(times.size, np.inf)
     return Poses(
         outline=outline,
-        springs=model.springs.positions if sprung else np.empty(0),
+        springs=np.empty(0) if springs is None else springs.positions,
         rotation=at.rotation if model.lifts else still,
         slip=at.slip if model.lifts else still,
         heave=at.heave if sprung else still,
         sway=at.modal_displacement @ outline.shapes.T,
         rise=at.edge_uplift if model.lifts else np.zeros((times.size, 2)),
         uplifted=np.asarray(at.uplifted) if model.lifts else np.zeros(times.size, bool),
-        sliding=running & (np.abs(at.slip_velocity) > _SLIDING) if model.lifts else np.zeros(times.size, bool),
-        impact=(since < _MARKED * speed) & running,
+        sliding=running & (np.abs(at.slip_velocity) > _MIN_SLIP_SPEED) if model.lifts else np.zeros(times.size, bool),
+        impact=(since < _IMPACT_SECONDS * speed) & running,
         lifts=model.lifts,
         sprung=sprung,
     )
+
+
+def default_amplification(curves: Sequence[Curve], poses: Sequence[Poses]) -> float:
+    """Return the largest round number for which no structure is drawn to move by more than 0.15 of its size.
+
+    At least 1, and 1 if one falls: a fall shows without it, and could not be told from a large rotation with it.
+    """
+    if any(curve.falls or curve.overturned for curve in curves):
+        return 1.0
+    largest = max(map(_largest_motion, poses))
+    fitting = [each for each in ROUND_FACTORS if each * largest <= MAX_DRAWN_MOTION]
+    return fitting[-1] if fitting else 1.0
+
+
+def _largest_motion(poses: Poses) -> float:
+    """Return the largest displacement in the frames over the size of the structure."""
+    size = poses.outline.size
+    turned = np.abs(poses.rotation) * size + np.abs(poses.sway).max(axis=1)
+    moved = turned + np.abs(poses.slip) + np.abs(poses.heave)
+    return float(moved.max()) / size

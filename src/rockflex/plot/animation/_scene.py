@@ -1,46 +1,438 @@
-"""The picture of an animation: drawn once where nothing moves, and frame by frame where something does."""
+"""The picture of an animation: still parts drawn once, structures and histories drawn frame by frame."""
 
 from collections.abc import Generator, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon, Rectangle
 from numpy.typing import NDArray
 
+from rockflex._arrays import Array
 from rockflex.plot._curves import Curve
-from rockflex.plot._panel import Quantity, add_key
-from rockflex.plot._style import new_figure, styled
-from rockflex.plot.animation._chart import Chart
-from rockflex.plot.animation._clock import Clock
-from rockflex.plot.animation._poses import Poses
-from rockflex.plot.animation._stage import Stage
+from rockflex.plot._history import Quantity, add_legend, axis_scale, draw_curves, shade_uplifts
+from rockflex.plot._style import BLUE, GRAY, RED, SHADE, SMALL, new_figure, styled
+from rockflex.plot.animation._poses import Poses, Timing
 
+Polyline = Sequence[tuple[float, float]]
+
+ELEMENT_COLORS = {
+    "Tendon": "#b5558a",
+    "YieldingDissipator": "#6b7a00",
+    "ViscousDamper": "#0f7f8c",
+    "FrictionDamper": "#7d5a30",
+}
+SPRING, SPRING_FREE = "#64748b", "#a9b1bb"
+DARK_RED = "#b3261e"
+COLUMN_OFFSET = 0.82  # of the distance from the axis to the nearer edge, at which columns are drawn
+TENDON_REACH = 0.6  # of the height to which tendons reach
+BRACKET_REACH = 26.0  # points above the base to which other elements reach
+_MAX_WIDE_SPRINGS, _MAX_THICK_FLOORS = 4, 25  # springs that are drawn wide; stories with thick floors
+_AT_REST = "#c9ced6"
+HEAD, FOOT, EDGE = 34.0, 40.0, 8.0  # points above, below and beside the structures
+MIN_SPRING, MAX_SPRING = 14.0, 60.0  # points of a spring that is unloaded
+_MAX_FRAMES_SEARCHED = 200  # of which the extent of a structure is taken
+_ASIDE = 1.8  # reach to one side over that to the other, beyond which a structure is not drawn in the middle
+_INK = "#404040"
+_FADING = 0.62  # opacity of white over times after the cursor
 Picture = NDArray[np.uint8]
 """Red, green and blue of every pixel, shape (height, width, 3)."""
 
 INCHES = 9.6  # width of the figure: letters grow with the number of pixels
-BESIDE = 2  # structures that are drawn to the left of the histories; more are drawn above them
-_LETTERS = 110  # in a row of the legend
+MAX_BESIDE = 2  # structures that are drawn to the left of the histories; more are drawn above them
 
 
-class Scene:
-    """The figure of an animation and what moves in it."""
+def coil(length: float, half: float) -> list[Polyline]:
+    """Return a coil spring of a length, `half` wide to either side, as lines of (across, along)."""
+    turns = [(0.0 if i in (0, 5) else half * (-1.0) ** i, share * length)
+             for i, share in enumerate((0.12, 0.24, 0.4, 0.56, 0.72, 0.88))]  # fmt: skip
+    return [[(0.0, 0.0), *turns, (0.0, length)]]
+
+
+def strokes(kind: str, length: float) -> list[Polyline]:
+    """Return the lines of an element of a class and a length, as lines of (across, along) in points."""
+    if kind == "YieldingDissipator":  # a bar, thick where it is held and narrow where it yields
+        side = [(3.0, 0.0), (3.0, 0.26), (1.0, 0.36), (1.0, 0.64), (3.0, 0.74), (3.0, 1.0)]
+        outline = [(-x, y) for x, y in side] + side[::-1]
+        return [[(x, y * length) for x, y in outline]]
+    if kind == "ViscousDamper":  # a piston in a cylinder
+        cylinder = [(-4.0, 0.75), (-4.0, 0.2), (4.0, 0.2), (4.0, 0.75)]
+        parts = [[(0.0, 0.0), (0.0, 0.2)], cylinder, [(-2.6, 0.5), (2.6, 0.5)], [(0.0, 0.5), (0.0, 1.0)]]
+        return [[(x, y * length) for x, y in part] for part in parts]
+    if kind == "FrictionDamper":  # two plates with the bolt that clamps them
+        plates = [[(-1.4, 0.0), (-1.4, 0.68)], [(1.4, 0.32), (1.4, 1.0)], [(-5.0, 0.5), (5.0, 0.5)]]
+        return [[(x, y * length) for x, y in plate] for plate in plates]
+    return [[(0.0, 0.0), (0.0, length)]]
+
+
+def laid_between(lines: Sequence[Polyline], start: Array, end: Array) -> tuple[Array, Array]:
+    """Return x and y of lines of (across, along) laid from one point to another, with gaps between them."""
+    direction = end - start
+    along = direction / (float(np.hypot(*direction)) or 1.0)
+    across = np.array([along[1], -along[0]])
+    return joined([start + np.outer([u for u, _ in line], across) + np.outer([v for _, v in line], along)
+                   for line in lines])  # fmt: skip
+
+
+def joined(lines: Sequence[Array]) -> tuple[Array, Array]:
+    """Return x and y of several lines, each of shape (k, 2), with gaps between them."""
+    if not lines:
+        return np.empty(0), np.empty(0)
+    gap = np.full((1, 2), np.nan)
+    points = np.concatenate([part for line in lines for part in (line, gap)])
+    return points[:, 0], points[:, 1]
+
+
+def state_text(curve: Curve, poses: Poses, frame: int, time: float) -> tuple[str, str]:
+    """Return the state of a structure in a frame, such as "uplifted", and the colour of the words."""
+    end = float(curve.history.time[-1])
+    if curve.overturned and time >= end:
+        return f"overturned at {end:.2f} s", DARK_RED
+    if curve.falls and time >= float(curve.history.time[curve.before_fall][-1]):
+        return "falling", DARK_RED
+    if time > end:
+        return f"ends at {end:.2f} s", GRAY
+    if not poses.lifts:
+        return "fixed base", GRAY
+    if poses.sprung and poses.rise[frame].min() > 0.0:
+        return "off the ground", BLUE
+    if poses.impact[frame] and not poses.uplifted[frame]:
+        return "impact", RED
+    texts = [word for word, holds in (("uplifted", poses.uplifted[frame]), ("sliding", poses.sliding[frame])) if holds]
+    return (", ".join(texts), BLUE) if texts else ("in contact", GRAY)
+
+
+class ToPoints(NamedTuple):
+    """From metres to the points of the stage: middle of the cell, level of the base at rest, ground, points per m."""
+
+    middle: float
+    level: float
+    ground: float
+    zoom: float
+
+    def __call__(self, points: tuple[Array, Array]) -> tuple[Array, Array]:
+        """Return x and y in points."""
+        return self.middle + self.zoom * points[0], self.level + self.zoom * points[1]
+
+
+class StructureArtists:
+    """The artists of one structure; `show` moves them to a frame."""
+
+    def __init__(self, axes: Axes, poses: Poses, curve: Curve, here: ToPoints, amplification: float) -> None:
+        self._poses, self._here, self._by = poses, here, amplification
+        self._elements = curve.history.model.properties.elements if poses.lifts else ()
+        color = curve.style.color
+        block = poses.outline.kind == "block"
+        self._draw_at_rest(axes)
+        self._gap = _area(axes, facecolor=RED, alpha=0.25, linewidth=0.0)
+        self._free = _line(axes, SPRING_FREE, 1.0)
+        self._pressed = _line(axes, SPRING, 1.2)
+        self._block = _area(axes, facecolor=SHADE, edgecolor=color, linewidth=2.0, visible=block)
+        thick = 3.6 if poses.outline.kind == "column" else 2.0
+        self._columns = _line(axes, color, thick)
+        self._floors = _line(axes, color, 1.0 if poses.outline.heights.size > _MAX_THICK_FLOORS else 2.6)
+        self._base = _line(axes, color, 4.0, capstyle="butt")
+        self._mass = _line(axes, color, 0.0, marker="s", markersize=11.0)
+        kinds = sorted({type(each).__name__ for each in self._elements})
+        self._element_lines = {kind: _line(axes, ELEMENT_COLORS[kind], 1.3) for kind in kinds}
+        self._impacts = _line(axes, RED, 0.0, marker="o", markersize=11.0, markerfacecolor="none", markeredgewidth=1.8)
+
+    @property
+    def moving(self) -> list[Artist]:
+        """Artists that are redrawn in each frame, from the back to the front."""
+        parts = (self._gap, self._free, self._pressed, self._block, self._columns, self._floors, self._mass, self._base)
+        return [*parts, *self._element_lines.values(), self._impacts]
+
+    def show(self, frame: int) -> None:
+        """Move the lines to where they are in a frame."""
+        poses, by = self._poses, self._by
+        base = poses.base(frame, by)
+        self._base.set_data(*self._here(base))
+        self._show_body(frame)
+        if poses.sprung:
+            self._show_springs(frame)
+        else:
+            gap = self._here((np.append(base[0], base[0][::-1]), np.append(base[1], [0.0, 0.0])))
+            self._gap.set_xy(np.column_stack(gap))
+        self._show_elements(frame)
+        edges = self._here((np.array([poses.outline.left, poses.outline.right]) + by * poses.slip[frame], np.zeros(2)))
+        self._impacts.set_data(*(edges if poses.impact[frame] else ([], [])))
+
+    def _lines(self, frame: int | None) -> tuple[list[Array], list[Array], Array]:
+        """Return the columns, the floors and the top in points, in a frame or at rest."""
+        poses = self._poses
+        o = poses.outline
+
+        def bent(x: float) -> Array:
+            if frame is None:
+                return np.column_stack(self._here((np.full(o.heights.size, x), o.heights)))
+            return np.column_stack(self._here(poses.bent(frame, x, self._by)))
+
+        if o.kind == "block":
+            low, high = bent(o.left), bent(o.right)
+            return [np.concatenate((low, high[::-1]))], [], high[-1]
+        if o.kind == "frame":
+            half = COLUMN_OFFSET * min(-o.left, o.right)
+            low, high = bent(-half), bent(half)
+            return [low, high], [np.array(pair) for pair in zip(low[1:], high[1:], strict=True)], high[-1]
+        axis = bent(0.0)
+        return [axis], [], axis[-1]
+
+    def _show_body(self, frame: int) -> None:
+        columns, floors, top = self._lines(frame)
+        if self._poses.outline.kind == "block":
+            self._block.set_xy(columns[0])
+            return
+        self._columns.set_data(*joined(columns))
+        self._floors.set_data(*joined(floors))
+        if self._poses.outline.kind == "mast":
+            self._mass.set_data(top[:1], top[1:])
+
+    def _draw_at_rest(self, axes: Axes) -> None:
+        """Draw the structure at rest, faintly."""
+        columns, floors, _ = self._lines(None)
+        closed = [np.vstack((line, line[:1])) for line in columns] if self._poses.outline.kind == "block" else columns
+        axes.plot(*joined([*closed, *floors]), color=_AT_REST, linewidth=0.8)
+
+    def _show_springs(self, frame: int) -> None:
+        """Draw the springs from the ground to the base; without contact they have their full length and are lighter."""
+        poses, (middle, rest, ground, zoom) = self._poses, self._here
+        half = 2.2 if poses.springs.size > _MAX_WIDE_SPRINGS else 4.0
+        ends = poses.place(frame, poses.springs, np.zeros(poses.springs.size), self._by)
+        across, up = middle + zoom * ends[0], rest + zoom * ends[1]
+        lines: dict[bool, list[Array]] = {False: [], True: []}
+        for x, y in zip(across, up, strict=True):
+            free = bool(y > rest)
+            (turns,) = coil(max((rest if free else y) - ground, 1.0), half)
+            lines[free].append(np.array(turns) + np.array([x, ground]))
+        self._pressed.set_data(*joined(lines[False]))
+        self._free.set_data(*joined(lines[True]))
+
+    def _show_elements(self, frame: int) -> None:
+        """Draw tendons from below the ground into the structure, and the others up to a bracket on the base."""
+        poses, here = self._poses, self._here
+        top, sunk = poses.outline.top, (here.level - here.ground) / here.zoom
+        parts: dict[str, list[Array]] = {kind: [] for kind in self._element_lines}
+        for element in self._elements:
+            kind, x = type(element).__name__, np.array([element.position])
+            reach = TENDON_REACH * top if kind == "Tendon" else min(BRACKET_REACH / here.zoom, 0.4 * top)
+            below = sunk + (0.02 * top if kind == "Tendon" else 0.0)
+            start = np.concatenate(here((x, np.array([-below]))))
+            end = np.concatenate(here(poses.place(frame, x, np.array([reach]), self._by)))
+            length = float(np.hypot(*(end - start)))
+            parts[kind].append(np.column_stack(laid_between(strokes(kind, length), start, end)))
+        for kind, lines in parts.items():
+            self._element_lines[kind].set_data(*joined(lines))
+
+
+def _line(axes: Axes, color: str, width: float, *, capstyle: Any = "round", **more: Any) -> Line2D:
+    """Return an empty line that is drawn anew in each frame."""
+    style: dict[str, Any] = {
+        "solid_capstyle": capstyle,
+        "solid_joinstyle": "round",
+        "linestyle": "-" if width else "none",
+    }
+    (line,) = axes.plot([], [], color=color, linewidth=width or 1.0, animated=True, **(style | more))
+    return line
+
+
+def _area(axes: Axes, **style: Any) -> Polygon:
+    """Return an area that is drawn anew in each frame."""
+    area = Polygon(np.zeros((4, 2)), animated=True, **style)
+    axes.add_patch(area)
+    return area
+
+
+class StructurePanel:
+    """One cell for each response over a common ground; the axes' coordinates are points of 1/72 inch."""
 
     def __init__(
-        self, curves: list[Curve], poses: Sequence[Poses], quantities: Sequence[Quantity], clock: Clock,
+        self, axes: Axes, curves: Sequence[Curve], poses: Sequence[Poses], timing: Timing, amplification: float
+    ) -> None:
+        self._timing, self._curves, self._poses = timing, curves, poses
+        width, height = np.asarray(axes.get_window_extent().size) * (72.0 / axes.figure.dpi)
+        axes.set(xlim=(0.0, width), ylim=(0.0, height))
+        cell = width / len(curves)
+        extents = [_extent(each, amplification) for each in poses]
+        sprung = any(each.sprung for each in poses)
+        zoom, depth = _zoom(extents, cell - 2.0 * EDGE, height - HEAD - FOOT, sprung=sprung)
+        self._structures: list[StructureArtists] = []
+        self._texts: list[tuple[Artist, Artist]] = []
+        for place, (curve, each, extent) in enumerate(zip(curves, poses, extents, strict=True)):
+            middle = cell * (place + 0.5)
+            _draw_ground(axes, middle - 0.5 * cell + EDGE, middle + 0.5 * cell - EDGE)
+            here = ToPoints(middle - zoom * extent.middle, FOOT + (depth if each.sprung else 0.0), FOOT, zoom)
+            self._structures.append(StructureArtists(axes, each, curve, here, amplification))
+            axes.text(
+                middle, height - HEAD + 8.0, curve.label, color=curve.style.color, ha="center", weight="bold",
+                fontsize=9.0, wrap=False,
+            )  # fmt: skip
+            state = axes.text(middle, 17.0, "", ha="center", fontsize=8.0, animated=True)
+            number = axes.text(middle, 5.0, "", ha="center", fontsize=SMALL, color=_INK, animated=True)
+            self._texts.append((state, number))
+        self._time = axes.text(EDGE, height - 10.0, "", fontsize=9.0, color="black", animated=True)
+        axes.text(
+            width - EDGE, height - 10.0, _scales(amplification, timing.speed), ha="right", fontsize=8.0, color=_INK
+        )
+
+    @property
+    def moving(self) -> list[Artist]:
+        """Artists that are redrawn in each frame, from the back to the front."""
+        texts = [each for pair in self._texts for each in pair]
+        return [part for structure in self._structures for part in structure.moving] + texts + [self._time]
+
+    def show(self, frame: int) -> None:
+        """Move everything to where it is in a frame."""
+        time = float(self._timing.times[frame])
+        self._time.set(text=f"t = {time:.2f} s")
+        for structure, curve, poses, (state, number) in zip(
+            self._structures, self._curves, self._poses, self._texts, strict=True
+        ):
+            structure.show(frame)
+            text, color = state_text(curve, poses, frame, time)
+            state.set(text=text, color=color)
+            rotation = f"{1e3 * poses.rotation[frame]:.2f}".replace("-", "−")
+            number.set(text=f"θ = {rotation} mrad" if poses.lifts else "")
+
+
+def _scales(amplification: float, speed: float) -> str:
+    """Say how displacements and time are enlarged."""
+    size = "true displacements" if amplification == 1.0 else f"displacements × {amplification:g}"
+    return size if speed == 1.0 else f"{size}, speed × {speed:g}"
+
+
+class _Extent(NamedTuple):
+    """Extent of a structure in m: to the left and right of its axis, upwards, and below its unloaded springs."""
+
+    left: float
+    right: float
+    up: float
+    sunk: float
+
+    @property
+    def middle(self) -> float:
+        """Middle of the cell: the axis of the masses, unless the structure falls to one side."""
+        aside = max(self.left, self.right) > _ASIDE * min(self.left, self.right)
+        return 0.5 * (self.right - self.left) if aside else 0.0
+
+    @property
+    def width(self) -> float:
+        """Width about the middle."""
+        return 2.0 * max(self.right - self.middle, self.left + self.middle)
+
+
+def _zoom(extents: Sequence[_Extent], width: float, height: float, *, sprung: bool) -> tuple[float, float]:
+    """Return the points per metre that keep everything in its cell, and the points below the unloaded springs."""
+    up = max(extent.up for extent in extents)
+    zoom = min(width / max(extent.width for extent in extents), height / up)
+    if not sprung:
+        return zoom, 0.0
+    depth = min(MAX_SPRING, MIN_SPRING + zoom * max(extent.sunk for extent in extents))
+    return min(zoom, (height - depth) / up), depth
+
+
+def _extent(poses: Poses, amplification: float) -> _Extent:
+    """Return the room that a structure needs in all frames."""
+    o, frames = poses.outline, np.unique(np.linspace(0, poses.rotation.size - 1, _MAX_FRAMES_SEARCHED).astype(int))
+    extreme = [int(each) for each in (poses.rotation.argmax(), poses.rotation.argmin())]
+    extreme += [int(each) for each in (poses.slip.argmax(), poses.slip.argmin())]
+    across, up = [1.4 * o.right, 1.4 * o.left, 0.12 * o.top, -0.12 * o.top], [1.03 * o.top]
+    for frame in [*frames, *extreme]:
+        for x in (o.left, o.right):
+            there, above = poses.bent(frame, x if o.kind in ("block", "frame") else 0.3 * x, amplification)
+            beside, _ = poses.base(frame, amplification)
+            across += [*there, *beside]
+            up.append(float(above.max()))
+    sunk = float(np.maximum(-poses.rise, 0.0).max()) * amplification
+    return _Extent(-1.05 * float(min(across)), 1.05 * float(max(across)), 1.03 * float(max(up)), sunk)
+
+
+def _draw_ground(axes: Axes, left: float, right: float) -> None:
+    axes.plot([left, right], [FOOT - 1.5] * 2, color=GRAY, linewidth=1.0)
+    for x in np.arange(left + 6.0, right, 7.0):
+        axes.plot([x, x - 4.0], [FOOT - 2.0, FOOT - 6.5], color=GRAY, linewidth=0.7)
+
+
+class HistoryPanels:
+    """One panel for each quantity; times after the cursor are faded, and dots mark the values at it."""
+
+    def __init__(self, grid: list[Axes], quantities: Sequence[Quantity], curves: list[Curve], timing: Timing) -> None:
+        self._timing = timing
+        self.handles: list[Artist] = []
+        self.names = [curve.label for curve in curves]
+        for axes, quantity in zip(grid, quantities, strict=True):
+            self.handles, _ = draw_curves(axes, quantity, curves)
+        uplifts = shade_uplifts(grid, curves)
+        self.handles, self.names = [*self.handles, *uplifts.values()], [*self.names, *uplifts]
+        grid[-1].set_xlabel("time [s]")
+        self._end = float(timing.times[-1])
+        grid[-1].set_xlim(float(timing.times[0]), self._end)
+        self._future = [_fading(axes) for axes in grid]
+        self._cursors = [axes.axvline(0.0, color="black", linewidth=0.9, animated=True) for axes in grid]
+        self._dots: list[tuple[Line2D, Array]] = []
+        for axes, quantity in zip(grid, quantities, strict=True):
+            factor, _, _ = axis_scale(quantity, curves)
+            for curve in curves:
+                self._dots.append(_dot(axes, curve, _values(quantity, curve, timing) / factor))
+
+    @property
+    def moving(self) -> list[Artist]:
+        """Artists that are redrawn in each frame, from the back to the front."""
+        return [*self._future, *self._cursors, *(dot for dot, _ in self._dots)]
+
+    def show(self, frame: int) -> None:
+        """Move the cursor to the time of a frame."""
+        time = float(self._timing.times[frame])
+        for cover in self._future:
+            cover.set(x=time, width=max(self._end - time, 0.0))
+        for cursor in self._cursors:
+            cursor.set_xdata([time, time])
+        for dot, values in self._dots:
+            dot.set_data(np.full(values.shape[1], time), values[frame])
+
+
+def _values(quantity: Quantity, curve: Curve, timing: Timing) -> Array:
+    """Return a quantity at the frames, shape (k, n); after the end of the response it has no value."""
+    known = curve.history.time
+    values = quantity.of(curve.history.at(np.clip(timing.times, known[0], known[-1])))
+    return np.where((timing.times <= known[-1])[:, None], values.reshape(timing.times.size, -1), np.nan)
+
+
+def _fading(axes: Axes) -> Rectangle:
+    shape = Rectangle(
+        (0.0, 0.0), 1.0, 1.0, transform=axes.get_xaxis_transform(), facecolor="white", alpha=_FADING, linewidth=0.0,
+        animated=True,
+    )  # fmt: skip
+    axes.add_patch(shape)
+    return shape
+
+
+def _dot(axes: Axes, curve: Curve, values: Array) -> tuple[Line2D, Array]:
+    (dot,) = axes.plot([], [], "o", color=curve.style.color, markersize=4.5, markeredgecolor="white",
+                       markeredgewidth=0.6, animated=True)  # fmt: skip
+    return dot, values
+
+
+class AnimatedFigure:
+    """The figure of an animation, with its still and its moving artists."""
+
+    def __init__(
+        self, curves: list[Curve], poses: Sequence[Poses], quantities: Sequence[Quantity], timing: Timing,
         amplification: float, title: str | None, width: int,
     ) -> None:  # fmt: skip
         with styled():
             self._figure, axes, grid = _layout(len(curves), len(quantities), width)
-            chart = Chart(grid, quantities, curves, clock)
-            add_key(self._figure, curves, chart.handles, chart.names, title, _LETTERS)
+            histories = HistoryPanels(grid, quantities, curves, timing)
+            add_legend(self._figure, curves, histories.handles, histories.names, title)
             self._canvas = FigureCanvasAgg(self._figure)
             self._figure.draw_without_rendering()  # so that the places are known
             self._figure.set_layout_engine("none")
-            stage = Stage(axes, curves, poses, clock, amplification)
-            self._parts = stage, chart
+            structures = StructurePanel(axes, curves, poses, timing, amplification)
+            self._parts = structures, histories
             self._moving: list[tuple[Axes, Artist]] = [
                 (_axes(each), each) for part in self._parts for each in part.moving
             ]
@@ -76,8 +468,8 @@ def _axes(artist: Artist) -> Axes:
 
 
 def _layout(models: int, panels: int, width: int) -> tuple[Figure, Axes, list[Axes]]:
-    """Return a figure, the axes of the stage and those of the panels; both numbers of pixels are even, for H.264."""
-    beside = models <= BESIDE
+    """Return a figure, the axes of the structures and of the panels; width and height in pixels are even, for H.264."""
+    beside = models <= MAX_BESIDE
     inches = max(4.8, 1.35 * panels + 1.1) if beside else 3.3 + 1.2 * panels + 0.9
     dpi = width / INCHES
     pixels = 2 * (width // 2), 2 * round(0.5 * inches * dpi)
@@ -85,15 +477,15 @@ def _layout(models: int, panels: int, width: int) -> tuple[Figure, Axes, list[Ax
     figure.set_dpi(dpi)
     if beside:
         cells = figure.add_gridspec(panels, 2, width_ratios=(0.42, 0.58) if models == 1 else (0.5, 0.5))
-        stage, places = figure.add_subplot(cells[:, 0]), [cells[row, 1] for row in range(panels)]
+        structures, places = figure.add_subplot(cells[:, 0]), [cells[row, 1] for row in range(panels)]
     else:
         cells = figure.add_gridspec(panels + 1, 1, height_ratios=(3.3, *([1.2] * panels)))
-        stage, places = figure.add_subplot(cells[0, 0]), [cells[row + 1, 0] for row in range(panels)]
+        structures, places = figure.add_subplot(cells[0, 0]), [cells[row + 1, 0] for row in range(panels)]
     grid: list[Axes] = []
     for place in places:
         grid.append(figure.add_subplot(place, sharex=grid[0] if grid else None))
     for axes in grid[:-1]:
         axes.tick_params(labelbottom=False)
-    stage.set_axis_off()
+    structures.set_axis_off()
     figure.align_ylabels(grid)
-    return figure, stage, grid
+    return figure, structures, grid

@@ -6,19 +6,15 @@ from dataclasses import dataclass
 from functools import partial
 
 from rockflex._errors import InputError, SolverError
-from rockflex.models import SpringModel
-from rockflex.report.run._base import ground_friction
-from rockflex.report.run._given import Given
-from rockflex.report.run._numbers import rounded
-from rockflex.report.run._sides import overturning_margin
-from rockflex.report.run._start import starts_uplifted
-from rockflex.report.run._table import Cell, Table, shows
-from rockflex.response import BALANCED, IMPACT_WINDOW, History, Response
+from rockflex._numbers import rounded
+from rockflex.report.run._runs import ReportedRuns
+from rockflex.report.run._tables import Cell, Table, ground_friction, overturning_margin, starts_uplifted, value_cell
+from rockflex.response import BALANCED, IMPACT_WINDOW, History, Response, springs_of
 
-OMITTED = "not computed"
-CLOSED, TILTED = 1e-9, 1e-4  # rad
-PATIENCE = 5.0  # s of computing, for a base to come to rest
-MOST = 2_000_000  # states times springs times modes: energies and friction of more take minutes
+NOT_COMPUTED = "not computed"
+MAX_CLOSED_ROTATION, MAX_TILT = 1e-9, 1e-4  # rad
+MAX_SETTLING_TIME = 5.0  # s of computing, for a base to come to rest
+MAX_WORK = 2_000_000  # states times springs times modes: energies and friction of more take minutes
 
 
 @dataclass(frozen=True)
@@ -30,43 +26,43 @@ class Run:
     history: History
     friction: float | None
     long: bool
-    """Whether to compute what takes long: its energies and the friction that it requires."""
+    """Whether to compute its energies and required friction, which may take minutes."""
 
 
-def long_runs(about: Given) -> set[str]:
-    """Return the labels of runs whose energies and friction would take minutes: those on many stiff springs."""
+def long_runs(report: ReportedRuns) -> set[str]:
+    """Return the labels of runs whose energies and friction would take minutes: runs on many stiff springs."""
     return {
-        label
-        for label, history in zip(about.labels, about.histories, strict=True)
-        if isinstance(history.model, SpringModel) and _work_of(history, history.model.springs.n) > MOST
+        label for label, history in zip(report.labels, report.histories, strict=True) if _work_of(history) > MAX_WORK
     }
 
 
-def _work_of(history: History, n_springs: int) -> int:
-    return history.time.size * n_springs * max(history.model.properties.n_modes, 1)
+def _work_of(history: History) -> int:
+    springs = springs_of(history.model)
+    return 0 if springs is None else history.time.size * springs.n * max(history.model.properties.n_modes, 1)
 
 
-def is_bedded(history: History) -> bool:
+def has_bearing_area(history: History) -> bool:
     """Return whether the base stands on springs with an area."""
-    return isinstance(history.model, SpringModel) and history.model.springs.area is not None
+    springs = springs_of(history.model)
+    return springs is not None and springs.area is not None
 
 
-def check_table(about: Given, friction: float | None, omitted: Collection[str]) -> Table:
+def check_table(report: ReportedRuns, friction: float | None, omitted: Collection[str]) -> Table:
     """Return the checks, a row for each run; long ones are left out for the labels in `omitted`."""
     runs = [
         Run(label, response, history, friction, label not in omitted)
-        for label, response, history in zip(about.labels, about.responses, about.histories, strict=True)
+        for label, response, history in zip(report.labels, report.responses, report.histories, strict=True)
     ]
     columns = [
         (("uplift", ""), _uplift),
-        (("overturning", ""), partial(_overturning, about)),
+        (("overturning", ""), partial(_overturning, report)),
         (("contact", ""), _contact),
         (("friction", ""), _friction),
     ]
-    if about.properties.tendons:
+    if report.properties.tendons:
         columns.append((("tendons", ""), _tendons))
-    if about.properties.elements:
-        columns.append((("re-centring", ""), partial(_residual, about)))
+    if report.properties.elements:
+        columns.append((("re-centring", ""), partial(_residual, report)))
     columns.append((("energy balance", ""), _energy))
     return Table(
         [("model", ""), *(head for head, _ in columns)],
@@ -85,7 +81,7 @@ def _uplift(run: Run) -> Cell:
     return Cell(f"{start}; {first}" if start else first, float(times[0]), "first_uplift")
 
 
-def _overturning(about: Given, run: Run) -> Cell:
+def _overturning(report: ReportedRuns, run: Run) -> Cell:
     """Compare the rotation to either side with the nominal limit θ_nom of Section 3.3."""
     if not run.history.model.lifts:
         return Cell("–")
@@ -93,15 +89,15 @@ def _overturning(about: Given, run: Run) -> Cell:
         return Cell(f"overturned at {rounded(run.response.end_time)} s", run.response.end_time, "end_time", True)
     if run.response.max_rotation == 0.0:
         return Cell("no rotation", 0.0, "max_rotation")
-    margin = overturning_margin(about.properties, run.response, run.history)
+    margin = overturning_margin(report.properties, run.response, run.history)
     sign = "<" if run.response.nominal_overturning else "≥"
     return Cell(f"{rounded(margin)} {sign} 1", margin, "overturning_margin", run.response.nominal_overturning)
 
 
 def _contact(run: Run) -> Cell:
     least = run.response.min_vertical_reaction
-    if isinstance(run.history.model, SpringModel):
-        if not (run.long and is_bedded(run.history)):
+    if springs_of(run.history.model) is not None:
+        if not (run.long and has_bearing_area(run.history)):
             return Cell("springs only push", least, "min_vertical_reaction")
         bearing, soil = (float(q.max()) for q in (run.history.bearing_pressure, run.history.soil_pressure))
         words = f"q {rounded(bearing / 1e3)} kPa, {rounded(soil / 1e3)} at a spring"
@@ -118,12 +114,12 @@ def _friction(run: Run) -> Cell:
         moved = run.response.max_slip
         return Cell(f"slides {rounded(1e3 * moved)} mm" if moved else "does not slide", moved, "max_slip")
     if not run.long:
-        return Cell(OMITTED)
+        return Cell(NOT_COMPUTED)
     try:
         whole = run.history.required_friction
         needed = run.history.required_friction_excluding_impacts()
     except InputError:
-        return Cell(OMITTED)
+        return Cell(NOT_COMPUTED)
     spikes = "" if math.isclose(whole, needed, rel_tol=5e-3) else f" ({rounded(whole)} with impacts)"
     if run.friction is None:
         return Cell(f"μ ≥ {rounded(needed)}{spikes}", needed, "required_friction")
@@ -143,9 +139,9 @@ def _tendons(run: Run) -> Cell:
     return Cell(f"F/F_y = {rounded(used)} {sign} 1{words}", used, "tendon_utilisation", used > 1.0)
 
 
-def _residual(about: Given, run: Run) -> Cell:
-    """Tell what rotation is left once the base is at rest, and λ at |θ| → 0 and at the largest rotation."""
-    p, response = about.properties, run.response
+def _residual(report: ReportedRuns, run: Run) -> Cell:
+    """Residual rotation of the base at rest, and λ at |θ| → 0 and at the largest rotation."""
+    p, response = report.properties, run.response
     if not run.history.model.lifts or response.status == "overturned":
         return Cell("–")
     ratios = ""
@@ -159,10 +155,10 @@ def _residual(about: Given, run: Run) -> Cell:
         return Cell(f"not settled, θ = {now} mrad{ratios}", response.residual_rotation, "residual_rotation")
     if math.isnan(left):
         return Cell(f"overturns after the run{ratios}", None, "settled_rotation", True)
-    if abs(left) < CLOSED:
+    if abs(left) < MAX_CLOSED_ROTATION:
         return Cell(f"closes{ratios}", left, "settled_rotation")
     # On springs fuses that yielded tilt a base that is closed.
-    wrong = abs(left) > TILTED or not isinstance(run.history.model, SpringModel)
+    wrong = abs(left) > MAX_TILT or springs_of(run.history.model) is None
     return Cell(f"θ = {rounded(1e3 * left)} mrad left{ratios}", left, "settled_rotation", wrong)
 
 
@@ -171,7 +167,7 @@ def _settled_rotation(run: Run) -> float | None:
     if run.response.settled:
         return run.response.residual_rotation
     try:
-        return run.history.settled_rotation(PATIENCE) if run.long else None
+        return run.history.settled_rotation(MAX_SETTLING_TIME) if run.long else None
     except (InputError, SolverError):
         return None
 
@@ -179,14 +175,14 @@ def _settled_rotation(run: Run) -> float | None:
 def _energy(run: Run) -> Cell:
     """Show the error of the energy balance over the input."""
     if not run.long:
-        return Cell(OMITTED)
+        return Cell(NOT_COMPUTED)
     try:
         error = run.history.energy.closing_error
     except InputError:
-        return Cell(OMITTED)
+        return Cell(NOT_COMPUTED)
     if error <= BALANCED:
         return Cell(f"closes to {_power(error)}", error, "closing_error")
-    return shows(error, "closing_error", wrong=True)
+    return value_cell(error, "closing_error", wrong=True)
 
 
 def _power(value: float) -> str:
@@ -205,7 +201,7 @@ def legend(
     bedded: bool,
     impacts: bool,
 ) -> list[str]:
-    """Return what the columns mean, in sentences; `slides` and `stays` tell whether some base can slide, or cannot.
+    """Return the legend of the columns; `slides` and `stays` tell whether some base can slide, or cannot.
 
     `sided` tells whether the limit differs between the sides, `held` whether elements hold the base, and `impacts`
     whether some run follows an impact law.
@@ -229,5 +225,5 @@ def legend(
             "ground that rebounds V_b of flexural structures may be larger."
         )
     if omitted:
-        lines.append(f"{OMITTED.capitalize()}: energies and friction of a run that would take too long here.")
+        lines.append(f"{NOT_COMPUTED.capitalize()}: energies and friction of a run that would take too long here.")
     return lines

@@ -1,53 +1,73 @@
-"""The page: everything that a report shows, put together and written as HTML."""
+"""The page of a run: its contents put together, laid out on one sheet, and written as HTML."""
 
+import dataclasses
+import hashlib
 import math
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from datetime import date as Date  # noqa: N812
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
-from rockflex._shown import counted, shortened
+import numpy as np
+
+from rockflex._errors import InputError
+from rockflex._files import path_of, write_whole
+from rockflex._shown import counted, shortened, shown
 from rockflex._versions import versions_of
-from rockflex.report._svg import inline
-from rockflex.report.run._base import assumption_lines, element_table, follows_law
-from rockflex.report.run._checks import check_table, ground_friction, is_bedded, legend, long_runs
-from rockflex.report.run._given import Given
-from rockflex.report.run._inputs import fingerprint
-from rockflex.report.run._peaks import FELL, peak_table
-from rockflex.report.run._record import Record, record_of
-from rockflex.report.run._room import (
-    FIGURE,
-    HEIGHT,
-    LINE,
-    SMALL,
-    SMALLEST,
-    WIDTH,
-    height_above,
-    height_beside,
-    height_of_table,
-    lines_of,
-    part,
+from rockflex.motion import GroundMotion
+from rockflex.report._write import inline, templates_in
+from rockflex.report.run._checks import check_table, ground_friction, has_bearing_area, legend, long_runs
+from rockflex.report.run._runs import ReportedRuns, checked_runs
+from rockflex.report.run._tables import (
+    DAGGER,
+    Fact,
+    Record,
+    Table,
+    assumption_lines,
+    element_table,
+    follows_law,
+    kind_of,
+    mode_table,
+    peak_table,
+    record_of,
+    structure_facts,
 )
-from rockflex.report.run._structure import kind_of, mode_table, structure_facts
-from rockflex.report.run._table import Fact, Table
-from rockflex.response import warnings_of
+from rockflex.response import Response, friction_coefficient, springs_of, warnings_of
 
-if TYPE_CHECKING:
-    from jinja2 import Environment
-
+WIDTH, HEIGHT = 186.0, 272.0  # of a sheet of A4 within its margins, in mm
+FIGURE_HEIGHTS = (58.0, 160.0)  # least and largest height of the figure in mm
+MIN_SCALE = 0.75  # of the usual size of the type, on a sheet that is full
+ROW = 3.4  # height of a line of text in mm
+ROW_LETTERS = 130  # in a line over the whole width
 TEMPLATES = Path(__file__).parent / "templates"
-LONGEST = {"title": 110, "name": 70, "source": 110, "warning": 400}  # letters
-WARNINGS = 4  # texts
-_NOTES = 6  # of more, each does not have a line of its own
+MAX_LETTERS = {"title": 110, "name": 70, "source": 110, "warning": 400}  # letters
+MAX_WARNINGS = 4  # texts
+_MAX_NOTE_LINES = 6  # of more, each does not have a line of its own
 _STRIP = (65.0, 22.0)  # mm
-_DOWN, _UP = re.compile(r"([^\W\d_]\*?)_([\w*–]+)"), re.compile(r"\^(−?\d+)")
+_SUBSCRIPT, _SUPERSCRIPT = re.compile(r"([^\W\d_]\*?)_([\w*–]+)"), re.compile(r"\^(−?\d+)")
+SUFFIXES = (".html", ".htm")
+MAX_NOTES = 800  # letters of all notes
+
+
+def rows_of(text: str) -> int:
+    """Return about how many lines a text takes."""
+    return math.ceil(len(text) / ROW_LETTERS)
+
+
+def table_rows(table: Table | None) -> int:
+    """Return about how many lines a table takes with its heading."""
+    if table is None:
+        return 0
+    cells = [[name for name, _ in table.heads], *([cell.text for cell in row] for row in table.rows)]
+    across = sum(1 + max(map(len, column)) for column in zip(*cells, strict=True))
+    return 3 + len(table.rows) * math.ceil(across / ROW_LETTERS)
 
 
 @dataclass(frozen=True, eq=False)
 class Page:
-    """What a page shows; see the template."""
+    """Contents of a page, in the order of the template."""
 
     title: str
     date: str
@@ -66,52 +86,29 @@ class Page:
     inputs: str
 
     @property
-    def needed(self) -> float:
-        """Height in mm of all but the figure, the warnings and the notes."""
-        record = self.record
-        above = height_above(self.facts, self.modes, shortened(self.kind, LONGEST["name"]))
-        source = shortened(record.source, LONGEST["source"])
-        beside = height_beside(record.facts, shortened(record.name, LONGEST["name"]), source)
-        base = sum(LINE * lines_of(f"{head}. {text}") for head, text in self.lines)
-        return (
-            5.2 * lines_of(self.title, WIDTH - 40.0, 1.75) + 3.0
-            + max(above, beside) + 1.5
-            + (part(base, height_of_table(self.elements)) if self.lines or self.elements else 0.0)
-            + part(height_of_table(self.peaks, units=True))
-            + part(height_of_table(self.checks), LINE * lines_of(" ".join(self.legend), size=SMALL))
-            + LINE * lines_of(self.versions, WIDTH - 40.0, SMALL) + 4.0
-        )  # fmt: skip
+    def height(self) -> float:
+        """About the height in mm of all but the figure: the browser makes the layout, and the figure takes the rest."""
+        structure = len(self.facts) / 2 + (0 if self.modes is None else 2 + len(self.modes.rows))
+        record = 8 + len(self.record.facts)
+        lines = sum(rows_of(f"{head} {text}") for head, text in self.lines)
+        tables = table_rows(self.elements) + table_rows(self.peaks) + table_rows(self.checks)
+        texts = rows_of(" ".join(self.legend)) + sum(map(rows_of, (*self.warnings, *self.notes)))
+        return ROW * (8 + rows_of(self.title) + max(structure, record) + lines + tables + texts)
 
     @property
     def scale(self) -> float:
-        """Size of everything on the sheet: 1, or less where that makes room for the warnings and notes."""
-        told = LINE * sum(self.lines_of_texts(10**6)) + 3.0
-        return min(1.0, max(SMALLEST, HEIGHT / (self.needed + FIGURE[0] + told)))
+        """Size of everything on the sheet: 1, or less to make room for all texts."""
+        return min(1.0, max(MIN_SCALE, HEIGHT / (self.height + FIGURE_HEIGHTS[0])))
 
     @property
-    def held(self) -> list[int]:
-        """Lines of each warning and then of each note, which are cut off after these."""
-        return self.lines_of_texts(max(0, math.floor((HEIGHT / self.scale - self.needed - FIGURE[0] - 3.0) / LINE)))
-
-    @property
-    def room(self) -> float:
-        """Height in mm that is left for the figure, before it is scaled."""
-        left = HEIGHT / self.scale - self.needed - LINE * sum(self.held) - 3.0
-        return min(max(left, FIGURE[0]), FIGURE[1])
-
-    def lines_of_texts(self, most: int) -> list[int]:
-        """Return the lines that each warning and each note has, one at least, if there is room for `most` lines."""
-        lines: list[int] = []
-        texts = [*(f"Warning. {each}" for each in self.warnings), *self.notes]
-        for place, text in enumerate(texts):
-            after = len(texts) - place - 1
-            lines.append(max(1, min(lines_of(text, WIDTH - 2.0), most - after)))
-            most -= lines[-1]
-        return lines
+    def figure_height(self) -> float:
+        """Height in mm for which the figure is drawn, before it is scaled."""
+        low, high = FIGURE_HEIGHTS
+        return min(max(HEIGHT / self.scale - self.height, low), high)
 
 
 def page_of(
-    about: Given,
+    report: ReportedRuns,
     *,
     title: str | None,
     date: str,
@@ -120,59 +117,62 @@ def page_of(
     notes: Sequence[str],
     omitted: Collection[str] = (),
 ) -> Page:
-    """Put together what a page shows; for the labels in `omitted` nothing is computed that takes long."""
-    left_out = long_runs(about).union(omitted)
-    known = about.properties if about.structure is None else about.structure
-    record, kind = record_of(about), kind_of(known)
+    """Collect the contents of a page, without energies and friction of the labels in `omitted`."""
+    left_out = long_runs(report).union(omitted)
+    known = report.properties if report.structure is None else report.structure
+    record, kind = record_of(report), kind_of(known)
     if not title:
         title = f"{kind} under {record.name or 'a ground motion'}"
-    fell = any(run.status == "overturned" for run in about.responses)
-    own = [f"{FELL} The values of a run that overturned include its fall."] * fell
-    sliding = [ground_friction(each.model) is not None for each in about.histories]
-    told = legend(
-        friction, sided=about.properties.eccentricity != 0.0, slides=any(sliding), stays=not all(sliding),
-        omitted=bool(left_out), held=bool(about.properties.elements), bedded=any(map(is_bedded, about.histories)),
-        impacts=any(follows_law(each.model) for each in about.histories),
+    fell = any(run.status == "overturned" for run in report.responses)
+    own = [f"{DAGGER} The values of a run that overturned include its fall."] * fell
+    sliding = [ground_friction(each.model) is not None for each in report.histories]
+    texts = legend(
+        friction, sided=report.properties.eccentricity != 0.0, slides=any(sliding), stays=not all(sliding),
+        omitted=bool(left_out), held=bool(report.properties.elements),
+        bedded=any(map(has_bearing_area, report.histories)),
+        impacts=any(follows_law(each.model) for each in report.histories),
     )  # fmt: skip
     return Page(
-        title=shortened(title, LONGEST["title"]),
+        title=shortened(title, MAX_LETTERS["title"]),
         date=date,
         kind=kind,
-        facts=structure_facts(about.properties),
-        modes=mode_table(about.properties),
+        facts=structure_facts(report.properties),
+        modes=mode_table(report.properties),
         record=record,
-        lines=assumption_lines(about),
-        elements=element_table(about),
-        peaks=peak_table(about),
-        checks=check_table(about, friction, left_out),
-        legend=[*own, *told],
-        warnings=_few([*warnings, *_warnings(about, left_out)]),
+        lines=assumption_lines(report),
+        elements=element_table(report),
+        peaks=peak_table(report),
+        checks=check_table(report, friction, left_out),
+        legend=[*own, *texts],
+        warnings=_first_warnings([*warnings, *_warnings(report, left_out)]),
         notes=_run_together(notes),
         versions=", ".join(f"{name} {version}" for name, version in _versions().items()),
-        inputs=fingerprint(about, record),
+        inputs=fingerprint(report, record),
     )
 
 
-def html_of(page: Page, about: Given) -> str:
+def html_of(page: Page, report: ReportedRuns) -> str:
     """Return a page as HTML with its figures."""
     from markupsafe import Markup
 
     from rockflex.plot import record_strip, run_sheet, svg_of
 
-    sheet = run_sheet(about.responses, about.labels, width=WIDTH / page.scale, height=page.room)
+    sheet = run_sheet(report.responses, report.labels, width=WIDTH / page.scale, height=page.figure_height)
     strip = record_strip(page.record.time, page.record.acceleration, width=_STRIP[0], height=_STRIP[1])
     drawings = {
         "sheet": Markup(inline(svg_of(sheet), "sheet", "Histories and loops of all models")),
         "strip": Markup(inline(svg_of(strip), "strip", "Ground acceleration")),
     }
-    template = _environment().get_template("run.html.jinja")
-    return template.render(page=page, longest=LONGEST, **drawings)
+    templates = templates_in(TEMPLATES)
+    templates.filters |= {"symbols": _symbols, "shortened": shortened}
+    template = templates.get_template("run.html.jinja")
+    return template.render(page=page, max_letters=MAX_LETTERS, **drawings)
 
 
-def _warnings(about: Given, omitted: Collection[str]) -> list[str]:
-    """Return the warnings of the runs, each with its models; for the labels in `omitted` those of the peaks only."""
+def _warnings(report: ReportedRuns, omitted: Collection[str]) -> list[str]:
+    """Return the warnings of the runs, each with its models; of the peaks only for the labels in `omitted`."""
     found: dict[str, list[str]] = {}
-    for label, run in zip(about.labels, about.responses, strict=True):
+    for label, run in zip(report.labels, report.responses, strict=True):
         for text in warnings_of(run.model, run.peaks()) if label in omitted else run.warnings:
             found.setdefault(text, []).append(label)
     return [f"{', '.join(labels)}: {text}" for text, labels in found.items()]
@@ -181,13 +181,13 @@ def _warnings(about: Given, omitted: Collection[str]) -> list[str]:
 def _run_together(notes: Sequence[str]) -> list[str]:
     """Return the notes without breaks of lines; many of them as one paragraph."""
     texts = [text for text in (" ".join(note.split()) for note in notes) if text]
-    return texts if len(texts) <= _NOTES else [" • ".join(texts)]
+    return texts if len(texts) <= _MAX_NOTE_LINES else [" • ".join(texts)]
 
 
-def _few(texts: Sequence[str]) -> list[str]:
-    rest = len(texts) - WARNINGS
+def _first_warnings(texts: Sequence[str]) -> list[str]:
+    rest = len(texts) - MAX_WARNINGS
     return [
-        *(shortened(text, LONGEST["warning"]) for text in texts[:WARNINGS]),
+        *(shortened(text, MAX_LETTERS["warning"]) for text in texts[:MAX_WARNINGS]),
         *([f"and {counted(rest, 'more warning')}; see the responses"] if rest > 0 else []),
     ]
 
@@ -198,22 +198,208 @@ def _versions() -> dict[str, str]:
     return found | {"Python": python}
 
 
-@lru_cache(maxsize=1)
-def _environment() -> "Environment":
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    made = Environment(
-        loader=FileSystemLoader(TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
-        lstrip_blocks=True, keep_trailing_newline=True,
-    )  # fmt: skip
-    made.filters["symbols"] = _symbols
-    made.filters["shortened"] = shortened
-    return made
-
-
 def _symbols(text: str) -> str:
-    """Set what follows "_" as an index and what follows "^" as an exponent."""
+    """Write "_" as a subscript and "^" as a superscript."""
     from markupsafe import Markup, escape
 
-    lowered = _DOWN.sub(r"\1<sub>\2</sub>", str(escape(text)))
-    return Markup(_UP.sub(r"<sup>\1</sup>", lowered))
+    lowered = _SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text)))
+    return Markup(_SUPERSCRIPT.sub(r"<sup>\1</sup>", lowered))
+
+
+def write_report(
+    responses: Response | Iterable[Response],
+    path: str | Path,
+    *,
+    structure: Any = None,
+    motion: GroundMotion | None = None,
+    title: str | None = None,
+    date: str | Date | None = None,
+    friction: float | None = None,
+    notes: str | Iterable[str] = (),
+) -> Path:
+    """Write the response of a structure to one record on one sheet of A4, as HTML that needs no other file.
+
+    The page has the parameters of the structure and its modes, the record, what is assumed, the histories and the loop
+    of base moment and rotation of every model, their largest values, checks with their warnings, and the versions
+    that computed them. Any browser prints it on exactly one sheet.
+
+    The checks compare the rotation with the nominal limit of overturning, 0.7 atan(B/h*_1) (Section 3.3), the vertical
+    reaction with zero, the friction that each run requires (Eqs. 20-22) with `friction`, the forces of tendons with
+    those at which they yield, and the balance of the energies with zero. Friction and energies of a run on many stiff
+    springs would take minutes; they are left out, and the page says so.
+
+    Parameters
+    ----------
+    responses
+        Up to six responses of one structure to one record at one scale, each with its history.
+    path
+        The file to write, which ends in .html; an existing file is replaced. Missing folders are created.
+    structure
+        The structure, or its `RockingProperties`: it gives the page its kind, and all of its modes. Default: the
+        properties of the response with the most modes.
+    motion
+        The record, scaled or not: the page then has its origin, its measures and its scale, relative to the
+        record as `RecordInfo.scale` knows it. Default: the ground acceleration of the responses.
+    title
+        Heading. Default: the kind of the structure, and the record.
+    date
+        Date on the page. Default: today.
+    friction
+        Coefficient of friction between base and ground, to compare with the one that each run requires.
+    notes
+        A text, or several, to add to the page; up to 800 letters together.
+
+    Returns
+    -------
+    Path
+        The file written. It is written completely or not at all.
+
+    Raises
+    ------
+    InputError
+        If there are no responses or more than six, one has no history, they are not of one structure and one record, or
+        `structure` or `motion` are not theirs; if the path is a folder or has another suffix, or cannot be written to;
+        if the friction is not positive, or the notes are too long.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> pulse = rf.ricker_pulse(4.0, 0.6)
+    >>> runs = [rf.simulate(frame, pulse, model, output="history") for model in ("2DOF-S", "MDOF-S", "fixed")]
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> rf.write_report(runs, folder / "report.html", structure=frame, motion=pulse, friction=0.5).name
+    'report.html'
+    """
+    target = checked_path("path", path)
+    text = report_html(
+        responses, structure=structure, motion=motion, title=title, date=date, friction=friction, notes=notes
+    )
+    try:
+        return write_whole(target, text.encode())
+    except OSError as error:
+        raise InputError(
+            f"Cannot write to {target}: {error.strerror or error}. Give a path that can be written to.", field="path"
+        ) from error
+
+
+def report_html(
+    responses: Response | Iterable[Response],
+    *,
+    structure: Any = None,
+    motion: GroundMotion | None = None,
+    title: str | None = None,
+    date: str | Date | None = None,
+    friction: float | None = None,
+    notes: str | Iterable[str] = (),
+    omitted: Collection[str] = (),
+) -> str:
+    """Return the page of `write_report` as text; no energies and no friction of the models in `omitted`."""
+    heading, day = _heading(title), _day(date)
+    coefficient = None if friction is None else _coefficient(friction)
+    texts = _notes(notes)
+    report = checked_runs(responses, structure, motion)
+    page = page_of(
+        report,
+        title=heading,
+        date=day,
+        friction=coefficient,
+        warnings=_structure_warnings(report.properties if structure is None else structure),
+        notes=texts,
+        omitted=omitted,
+    )
+    return html_of(page, report)
+
+
+def checked_path(name: str, path: str | Path) -> Path:
+    """Return the path of a report.
+
+    Raises
+    ------
+    InputError
+        If it is a folder, or has another suffix than .html.
+    """
+    target = path_of(name, path)
+    if target.is_dir():
+        raise InputError(
+            f"{name} {target} is a folder. Give a file in it, such as {target / 'report.html'}.", field="path"
+        )
+    if target.suffix.lower() not in SUFFIXES:
+        raise InputError(
+            f"A report is a page of HTML, but the {name} {shown(str(target))} ends in {shown(target.suffix)}. Let it "
+            "end in .html; a browser prints the page, also as PDF.",
+            field="path",
+        )
+    return target
+
+
+def _heading(title: Any) -> str | None:
+    if title is None or isinstance(title, str):
+        return title
+    raise InputError(f"title must be a text, but {shown(title)} was given.", field="title")
+
+
+def _day(date: Any) -> str:
+    if isinstance(date, str):
+        return date
+    if date is None or isinstance(date, Date):
+        return (date or Date.today()).strftime("%Y-%m-%d")
+    raise InputError(f"date must be a text or a datetime.date, but {shown(date)} was given.", field="date")
+
+
+def _coefficient(friction: float) -> float:
+    try:
+        return friction_coefficient(friction)
+    except InputError as error:
+        raise InputError(str(error).replace("mu must", "friction must"), field="friction") from None
+
+
+def _notes(notes: Any) -> list[str]:
+    texts: list[Any] = [notes] if isinstance(notes, str) else list(notes) if isinstance(notes, Iterable) else [notes]
+    for text in texts:
+        if not isinstance(text, str):
+            raise InputError(f"notes must be texts, but {shown(text)} was given.", field="notes")
+    size = sum(map(len, texts))
+    if size > MAX_NOTES:
+        raise InputError(
+            f"The page has room for notes of {MAX_NOTES} letters, but {size} were given. Shorten them.", field="notes"
+        )
+    return texts
+
+
+def _structure_warnings(structure: Any) -> tuple[str, ...]:
+    from rockflex.structure import structure_warnings
+
+    return structure_warnings(structure)
+
+
+def fingerprint(report: ReportedRuns, record: Record) -> str:
+    """Return a hash of structure, ground and record, and of the assumptions and the initial state of each run."""
+    p = report.properties
+    numbers: list[Any] = [record.time, record.acceleration, record.vertical]
+    numbers += [p.omega, p.effective_mass, p.effective_height, p.zeta, p.top_ordinate]
+    numbers.append([p.i_theta, p.l0r, p.m_tot, p.half_width, p.translational_inertia, p.eccentricity])
+    texts = [repr((p.elements, report.labels))]
+    for history in report.histories:
+        model = history.model
+        # Initial states that follow from the input, such as rest on springs, have rounding errors.
+        numbers += [[float(f"{value:.6g}") for value in history.states[0].tolist()], *_ground_numbers(model)]
+        texts += [_law_text(model), repr(model.bouc_wen), f"{float(history.time[-1]):.6g}"]
+    content = b"".join(np.asarray(each, dtype=np.float64).tobytes() for each in numbers)
+    return hashlib.sha256(content + "\n".join(texts).encode()).hexdigest()[:12]
+
+
+def _ground_numbers(model: Any) -> list[Any]:
+    friction = getattr(model, "friction", None)
+    known = [] if friction is None else [friction]
+    springs = springs_of(model)
+    return known if springs is None else [*known, springs.positions, springs.stiffness, springs.damping, model.inertia]
+
+
+def _law_text(model: Any) -> str:
+    # An object that is no dataclass is written with its address, which no two sessions share.
+    law = model.law
+    return repr(law) if dataclasses.is_dataclass(law) else type(law).__name__

@@ -1,4 +1,4 @@
-"""How well one mode represents all modes (Section 3.3), and what the second mode adds (Section 3.4)."""
+"""Agreement of one mode with all modes (Section 3.3), and the contribution of the second mode (Section 3.4)."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, SupportsIndex
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-FEWEST = 3  # pairs for a comparison
-SUMS = 6  # per comparison, from which slope and R² follow
-SHOWN = (
+MIN_PAIRS = 3  # pairs for a comparison
+N_SUMS = 6  # per comparison, from which slope and R² follow
+OUTLIER_COLUMNS = (
     *("pair", "behaviour", "n_stories", "period", "aspect_ratio", "base_mass_ratio", "motion", "pga", "pgv"),
     *("status_mdof", "status_2dof", "max_rotation_mdof", "max_rotation_2dof"),
     *("max_top_displacement_mdof", "max_top_displacement_2dof"),
@@ -193,15 +193,15 @@ def _compare(comparisons: list[_Comparison], confidence: float, resamples: int, 
     drawn = np.full((resamples, len(comparisons), 2), np.nan)
     for resample in drawn if n else ():
         weights = np.bincount(rng.integers(n, size=n), minlength=n).astype(float)
-        resample[:] = _estimates((weights @ terms).reshape(-1, SUMS))
+        resample[:] = _estimates((weights @ terms).reshape(-1, N_SUMS))
     tail = 0.5 * (1.0 - confidence)
-    best = _estimates(terms.sum(axis=0).reshape(-1, SUMS))
+    best = _estimates(terms.sum(axis=0).reshape(-1, N_SUMS))
     rows: list[dict[str, object]] = []
     for place, each in enumerate(comparisons):
         x, y = each.x[each.kept], each.y[each.kept]
         known = drawn[np.isfinite(drawn[:, place]).all(axis=1), place]
         (slope, r2), low, high = np.full((3, 2), np.nan)
-        if x.size >= FEWEST and len(known):
+        if x.size >= MIN_PAIRS and len(known):
             (slope, r2), (low, high) = best[place], np.quantile(known, (tail, 1.0 - tail), axis=0)
         spread = float(np.sum((y - y.mean()) ** 2)) if y.size else 0.0
         rows.append(
@@ -239,7 +239,7 @@ def _estimates(sums: Array) -> Array:
 
 def _outliers(solved: "pd.DataFrame", rocking: "pd.DataFrame", count: int) -> "pd.DataFrame":
     misses = (solved["max_rotation_mdof"] - solved["max_rotation_2dof"]).abs()
-    worst = solved.loc[misses.sort_values(ascending=False, kind="stable").index[:count], list(SHOWN)]
+    worst = solved.loc[misses.sort_values(ascending=False, kind="stable").index[:count], list(OUTLIER_COLUMNS)]
     total = float((misses[rocking.index] ** 2).sum())
     share = (misses**2 / total).where(misses.index.isin(rocking.index)) if total > 0.0 else misses * np.nan
     return worst.assign(difference=misses[worst.index], share=share[worst.index]).reset_index(drop=True)

@@ -2,8 +2,10 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, TypeVar
 
+import numpy as np
 from pydantic import Field
 
 from rockflex._checks import whole_number
@@ -12,22 +14,29 @@ from rockflex._errors import InputError, SolverError
 from rockflex.modal import RockingProperties
 from rockflex.models import LinearModel, modal_displacement
 from rockflex.motion import GroundMotion, Suite
-from rockflex.papers.silva_stojadinovic_2024.population._prototypes import STORY_MASS, Prototype, draw_prototype
 from rockflex.progress import ProgressChoice
 from rockflex.response import Response, respond
-from rockflex.study._arguments import WORK_LIMIT, free_vibration_time, work_limit_of
-from rockflex.study._case import Case, prepare_together
-from rockflex.study._modal_combination import SecondMode, combine, second_mode
+from rockflex.structure import Frame
+from rockflex.study import WORK_LIMIT, Case, SecondMode
+from rockflex.study._arguments import free_vibration_time, work_limit_of
+from rockflex.study._case import prepare_together
+from rockflex.study._modal_combination import combine, second_mode
 from rockflex.study._results import result_columns, results_of
 from rockflex.study._subjects import Motions, motions_of
 from rockflex.study._tables import Columns, Row, kinds_of
+from rockflex.study.plan import ChunkedPlan, Spec, run_plan
 from rockflex.study.plan._bench import record_columns, record_facts
-from rockflex.study.plan._chunked import ChunkedPlan, run_plan
-from rockflex.study.plan._spec import FreeVibration, Spec
+from rockflex.study.plan._spec import FreeVibration
 
 if TYPE_CHECKING:
     import pandas as pd
 
+STORIES = (2, 15)
+ASPECT_RATIOS = (5, 10)
+BASE_MASSES = (1.0, 1.5, 2.0, 2.5, 3.0)  # times the mass of a story
+SHEAR_COEFFICIENTS = (0.06, 0.095)  # a1 in T = a1 H^0.85
+FLEXURE_COEFFICIENTS = (0.0125, 0.05)  # a2 in T = a2 H
+STORY_HEIGHT, STORY_MASS, DAMPING_RATIO = 3.0, 40e3, 0.02  # m, kg
 BEHAVIOURS = ("shear", "flexure")
 DRAWN = "height period coefficient aspect_ratio base_mass_ratio stiffness_ratio damping_ratio"
 STRUCTURE = "nominal_limit structure_mass total_mass l0r_g uplift_acceleration"
@@ -37,8 +46,98 @@ COMBINED = "max_second_displacement_mdof srss_top_displacement srss_base_shear s
 
 Result = TypeVar("Result")
 
-TOGETHER = 64  # structures that are prepared together
-MOST = 2**32 - 1  # pairs with different random numbers
+BATCH_SIZE = 64  # structures that are prepared together
+MAX_PAIRS = 2**32 - 1  # pairs with different random numbers
+
+
+@dataclass(frozen=True)
+class Prototype:
+    """A random frame and its record (Silva & Stojadinović 2024, Section 3.3).
+
+    Attributes
+    ----------
+    n_stories
+        2 to 15.
+    aspect_ratio
+        h*_1/B, a whole number from 5 to 10.
+    base_mass_ratio
+        Mass of the base over the mass of a story: 1, 1.5, 2, 2.5 or 3.
+    stiffness_ratio
+        ρ: infinite for a shear building, 0 for a flexural one.
+    coefficient
+        a1 in T_1 = a1 H^0.85 of a shear building, from 0.06 to 0.095, or a2 in T_1 = a2 H of a flexural one, from
+        0.0125 to 0.05; s and m.
+    record
+        Index of the record in its suite.
+    """
+
+    n_stories: int
+    aspect_ratio: int
+    base_mass_ratio: float
+    stiffness_ratio: float
+    coefficient: float
+    record: int
+
+    @property
+    def height(self) -> float:
+        """H in m."""
+        return self.n_stories * STORY_HEIGHT
+
+    @property
+    def period(self) -> float:
+        """T_1 in s."""
+        return self.coefficient * (self.height**0.85 if math.isinf(self.stiffness_ratio) else self.height)
+
+    def frame(self) -> Frame:
+        """Return the structure: stories of 3 m and 40 t, with 2 % of critical damping."""
+        return Frame(
+            n_stories=self.n_stories,
+            story_height=STORY_HEIGHT,
+            story_mass=STORY_MASS,
+            base_mass=self.base_mass_ratio * STORY_MASS,
+            stiffness_ratio=self.stiffness_ratio,
+            period=self.period,
+            aspect_ratio=float(self.aspect_ratio),
+            damping_ratio=DAMPING_RATIO,
+        )
+
+
+def draw_prototype(seed: int, number: int, n_records: int) -> Prototype:
+    """Draw the prototype of a number. It depends only on the seed, the number and the count of records.
+
+    Every property is uniformly distributed and independent of the others.
+
+    Raises
+    ------
+    InputError
+        If an argument is not an integer in its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> drawn = rf.draw_prototype(seed=0, number=3, n_records=44)
+    >>> drawn.n_stories, drawn.aspect_ratio, drawn.record
+    (14, 10, 35)
+    """
+    start, place = whole_number("seed", seed, 0), whole_number("number", number, 0, 2**32 - 1)
+    records = whole_number("n_records", n_records, 1, 10**9)
+    bits = np.random.Philox(np.random.SeedSequence(start, spawn_key=(place,)))
+    draws = np.random.Generator(bits).random(6).tolist()
+    shear = draws[3] < 0.5
+    low, high = SHEAR_COEFFICIENTS if shear else FLEXURE_COEFFICIENTS
+    return Prototype(
+        n_stories=_whole(draws[0], *STORIES),
+        aspect_ratio=_whole(draws[1], *ASPECT_RATIOS),
+        base_mass_ratio=BASE_MASSES[_whole(draws[2], 0, len(BASE_MASSES) - 1)],
+        stiffness_ratio=math.inf if shear else 0.0,
+        coefficient=low + (high - low) * draws[4],
+        record=_whole(draws[5], 0, records - 1),
+    )
+
+
+def _whole(draw: float, low: int, high: int) -> int:
+    """The whole number from `low` to `high` for a draw from [0, 1)."""
+    return low + int(draw * (high - low + 1))
 
 
 class PopulationStudy(Spec):
@@ -55,7 +154,7 @@ class PopulationStudy(Spec):
 
     study: Literal["population"] = Field("population", description='"population"')
     pairs: int = Field(
-        1000, ge=1, le=MOST, description="the number of random structures, a whole number from 1 to 4294967295"
+        1000, ge=1, le=MAX_PAIRS, description="the number of random structures, a whole number from 1 to 4294967295"
     )
     seed: int = Field(0, ge=0, description="what the draws depend on, a whole number of at least 0")
     free_vibration: FreeVibration = 0.0
@@ -116,7 +215,9 @@ class PopulationPlan(ChunkedPlan):
 
     def rows(self, units: Sequence[int]) -> list[Row]:
         """Draw a structure a unit, and simulate it with both models; some at a time."""
-        return [row for first in range(0, len(units), TOGETHER) for row in self._rows(units[first : first + TOGETHER])]
+        return [
+            row for first in range(0, len(units), BATCH_SIZE) for row in self._rows(units[first : first + BATCH_SIZE])
+        ]
 
     def _rows(self, units: Sequence[int]) -> list[Row]:
         """Do each step for all structures before the next one, so that its code stays in the processor's cache."""
@@ -155,7 +256,7 @@ class PopulationPlan(ChunkedPlan):
 
 
 def _attempt(function: Callable[..., Result], *given: Any) -> "Result | InputError | SolverError":
-    """Return what a function returns, or the error that it raises."""
+    """Return the result of a function, or the error that it raises."""
     try:
         return function(*given)
     except (SolverError, InputError) as error:
@@ -261,7 +362,7 @@ def run_population(
     1     1          4   flexure     rocking     rocking
     2     2          3   flexure     rocking     rocking
     """
-    count, start = whole_number("pairs", pairs, 1, MOST), whole_number("seed", seed, 0)
+    count, start = whole_number("pairs", pairs, 1, MAX_PAIRS), whole_number("seed", seed, 0)
     suite = motions if isinstance(motions, Suite) else Suite(motions_of(motions))
     free, limit = free_vibration_time(free_vibration), work_limit_of(work_limit)
     return run_plan(PopulationPlan(suite, count, start, free, 32, limit), workers, progress)

@@ -1,0 +1,443 @@
+"""Modes: shapes over the height, and the frequencies of uplifted structures."""
+
+import math
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from string import ascii_uppercase
+from typing import TYPE_CHECKING, Protocol, SupportsIndex
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from rockflex._arrays import Array
+from rockflex._checks import positive, whole_number
+from rockflex._errors import InputError
+from rockflex._numbers import short
+from rockflex._shown import shown
+from rockflex.modal import (
+    ModalProperties,
+    PinnedBeam,
+    RockingProperties,
+    UpliftedModes,
+    frequency_equation,
+    uplifted_modes,
+)
+from rockflex.plot._study_tables import label_plainly, model_styles
+from rockflex.plot._style import (
+    BLUE,
+    GRAY,
+    SMALL,
+    LineStyle,
+    Size,
+    font_size,
+    is_narrow,
+    label_panel,
+    legend_above,
+    literal,
+    new_figure,
+    notes_beside,
+    styled,
+)
+from rockflex.study import RockingStructure, properties_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_PER_ROW, _PER_NARROW_ROW = 5, 3
+_POINTS = 300  # of a curve between two poles
+_NAMED_ROOTS = 2
+_BEYOND = 1.15  # of the last root that is named
+_SHARE = 75.0  # per cent of the curves' points that the panel holds
+Dashes = str | tuple[int, tuple[float, ...]]
+_DASHES: tuple[Dashes, ...] = ("-", (0, (5, 2)), (0, (1, 1)), (0, (6, 1, 1, 1)))
+_RATIO_COLUMNS = ("model", "aspect_ratio", "mode", "ratio")
+_MARGIN = 1.06
+
+
+class _HasModes(Protocol):
+    def modal(self, n_modes: int | None = None) -> ModalProperties: ...
+
+
+def plot_mode_shapes(
+    structure_or_modal: _HasModes | ModalProperties, n_modes: int | None = None, *, size: Size | None = None
+) -> Figure:
+    """Plot the mode shapes Γ_n φ_n over the height, one panel each.
+
+    The title of each panel gives T_n, m*_n and h*_n (Silva & Stojadinović 2024, Section 2.1, after Eq. 12), with m*_n
+    as a fraction of the mass above the base, or in kg if modes are missing and the fraction is unknown. Γ_n φ_n does
+    not depend on the normalisation of φ_n, and sums to 1 at every height over all modes.
+
+    Parameters
+    ----------
+    structure_or_modal
+        A structure with modes, such as a `Frame`, or its `ModalProperties`.
+    n_modes
+        Number of modes to show, the lowest first. Default: all.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes per mode, five per row; heights in m, Γ_n φ_n without unit.
+
+    Raises
+    ------
+    InputError
+        If the argument has no modes, or too few; or the size is unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> figure = rf.plot_mode_shapes(frame, n_modes=2)
+    >>> len(figure.axes), figure.axes[0].get_ylabel()
+    (2, 'height [m]')
+    """
+    modes = _modes_of(structure_or_modal)
+    # Γ_n φ_n sums to 1 at every height over all modes, and only over all of them.
+    complete = np.allclose(modes.shapes @ modes.participation, 1.0, rtol=0.0, atol=1e-6)
+    total = float(modes.effective_mass.sum()) if complete else None
+    shown = modes if n_modes is None else modes.truncated(n_modes)
+    with styled(size=size):
+        per_row = min(shown.n_modes, _PER_NARROW_ROW if is_narrow() else _PER_ROW)
+        rows = math.ceil(shown.n_modes / per_row)
+        figure = new_figure(max(1.26 * per_row, 2.6), 3.4 * rows)
+        grid = figure.subplots(rows, per_row, sharey=True, squeeze=False)
+        panels: list[Axes] = list(grid.flat)
+        for n, axes in enumerate(panels):
+            if n < shown.n_modes:
+                _draw_shape(axes, shown, n, total)
+            else:
+                axes.set_axis_off()
+        for row in grid:
+            row[0].set_ylabel("height [m]")
+        figure.supxlabel(r"$Γ_n\,φ_n$", fontsize="medium")
+    return figure
+
+
+def _modes_of(source: _HasModes | ModalProperties) -> ModalProperties:
+    if isinstance(source, ModalProperties):
+        return source
+    if not hasattr(source, "modal"):
+        raise InputError(
+            f"structure_or_modal must be a structure with modes, such as a Frame, or its ModalProperties, but "
+            f"{type(source).__name__} was given. Give the structure itself, or structure.modal()."
+        )
+    return source.modal()
+
+
+def _draw_shape(axes: Axes, modes: ModalProperties, n: int, total: float | None) -> None:
+    ordinates = np.concatenate(([0.0], modes.participation[n] * modes.shapes[:, n]))
+    heights = np.concatenate(([0.0], modes.heights))
+    axes.axvline(0.0, color=GRAY, linewidth=0.8)
+    few = heights.size <= 40
+    axes.plot(ordinates, heights, color=BLUE, linewidth=1.4, marker="o" if few else "", markersize=3.0)
+    largest = float(np.max(np.abs(ordinates))) or 1.0
+    tick = _rounded_down(largest)
+    axes.set_xlim(-1.25 * largest, 1.25 * largest)
+    axes.set_xticks([-tick, 0.0, tick], [f"−{tick:g}", "0", f"{tick:g}"])
+    axes.set_ylim(0.0, 1.04 * float(heights[-1]))
+    axes.set_title(_describe(modes, n, total), fontsize=font_size(8.0))
+
+
+def _rounded_down(value: float) -> float:
+    """First digit of a positive number."""
+    power = math.floor(math.log10(value))
+    return float(f"{math.floor(value / 10.0**power)}e{power}")
+
+
+def _describe(modes: ModalProperties, n: int, total: float | None) -> str:
+    mass, height = float(modes.effective_mass[n]), float(modes.effective_height[n])
+    if total is None:
+        share = rf"$m^*_{{{n + 1}}}$ = {short(mass)} kg"
+    else:
+        share = rf"$m^*_{{{n + 1}}}/Σm$ = {short(100.0 * mass / total)} %"
+    arm = f"{short(height)} m" if math.isfinite(height) else "none"
+    return f"$T_{{{n + 1}}}$ = {short(float(modes.period[n]))} s\n{share}\n" rf"$h^*_{{{n + 1}}}$ = {arm}"
+
+
+def plot_frequency_equation(
+    structures: "RockingStructure | RockingProperties | Mapping[str, RockingStructure | RockingProperties]",
+    n_modes: Sequence[SupportsIndex | None] = (1, 2, None),
+    *,
+    highest: float | None = None,
+    side: int | None = None,
+    size: Size | None = None,
+) -> Figure:
+    r"""Plot the frequency equation of an uplifted structure over ω, one curve per model, and mark its zeros.
+
+    The figure is that of Silva & Stojadinović 2024, Fig. 12. The ordinate is `frequency_equation` over I_θ ω_1², which
+    does not change the zeros. Dotted lines mark the fixed-base frequencies ω_n, where the equation has poles and the
+    curves are interrupted. The first two zeros of each model, ω*_n/ω_1, are listed beside the panel.
+
+    Parameters
+    ----------
+    structures
+        A structure or its `RockingProperties`, or several by name, one panel each.
+    n_modes
+        Numbers of modes, one curve each: 1 for 2DOF-S, 2 for 3DOF-S, None for all.
+    highest
+        Upper end of the axis, ω/ω_1. Default: beyond the second zero of every model.
+    side
+        1 for motion about the right edge of the base, -1 about the left one. Default: the edge about which the base
+        lifts first; both are equal if the structure is symmetric.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes per structure; no units.
+
+    Raises
+    ------
+    InputError
+        If there is no structure, one has too few modes, `highest` is not positive, or `side` is neither; or the size is
+        unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> figure = rf.plot_frequency_equation(frame)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$ω/ω_1$', 'frequency equation / $I_θ\\,ω_1^2$')
+    """
+    named = structures if isinstance(structures, Mapping) else {"": structures}
+    if not named or not len(n_modes):
+        raise InputError(
+            "There is nothing to plot. Give at least one structure, and one number of modes (None for all)."
+        )
+    end = None if highest is None else positive("highest", highest, "ω/ω_1")
+    models = {name: _models_of(each, n_modes, side) for name, each in named.items()}
+    styles = model_styles(label for each in models.values() for label in each)
+    with styled(size=size):
+        figure = new_figure(6.3, 0.5 + 2.4 * len(named))
+        panels: list[Axes] = list(figure.subplots(len(named), 1, squeeze=False).flat)
+        for axes, (name, each), mark in zip(panels, models.items(), ascii_uppercase, strict=False):
+            _draw_equation(axes, each, styles, end, side)
+            axes.set_title(literal(name))
+            label_panel(axes, mark)
+        panels[-1].set_xlabel(r"$ω/ω_1$")
+        handles = [
+            Line2D([], [], color=style.color, linestyle=style.dashes, linewidth=style.width, label=label)  # pyright: ignore[reportArgumentType]
+            for label, style in styles.items()
+        ]
+        handles.append(Line2D([], [], color=GRAY, linestyle=":", linewidth=0.9, label=r"$ω_n/ω_1$, fixed base"))
+        legend_above(figure, handles, handlelength=2.8)
+    return figure
+
+
+def _models_of(
+    structure: "RockingStructure | RockingProperties", n_modes: Sequence[SupportsIndex | None], side: int | None
+) -> dict[str, tuple[RockingProperties, UpliftedModes]]:
+    """Truncated properties and uplifted modes by the models' labels."""
+    full = properties_of(structure)
+    if full.n_modes == 0:
+        raise InputError("A structure without modes has no frequency equation to plot. Give one with modes.")
+    found: dict[str, tuple[RockingProperties, UpliftedModes]] = {}
+    for each in n_modes:
+        count = full.n_modes if each is None else whole_number("n_modes", each, 1, full.n_modes)
+        kept = full.truncated(count)
+        found["MDOF-S" if each is None else f"{count + 1}DOF-S"] = (kept, uplifted_modes(kept, side=side))
+    return found
+
+
+def _draw_equation(
+    axes: Axes,
+    models: dict[str, tuple[RockingProperties, UpliftedModes]],
+    styles: dict[str, LineStyle],
+    highest: float | None,
+    side: int | None,
+) -> None:
+    most = max((p for p, _ in models.values()), key=lambda p: p.n_modes)
+    first = float(most.omega[0])
+    named = max(float(modes.omega[:_NAMED_ROOTS][-1]) for _, modes in models.values()) / first
+    end = _BEYOND * named if highest is None else highest
+    for pole in most.omega[most.omega < end * first] / first:
+        axes.axvline(float(pole), color=GRAY, linestyle=":", linewidth=0.9, zorder=1.5, label="_pole")
+    axes.axhline(0.0, color="#404040", linewidth=0.8, zorder=1.6, label="_zero")
+    ordinates: list[Array] = []
+    notes = [(r"zeros, $ω^*_n/ω_1$", "#404040")]
+    for label, (p, modes) in models.items():
+        style = styles[label]
+        omega = _between_poles(p.omega, end * first)
+        inertia = p.weaker_pivot.i_theta if side is None else p.pivot(side).i_theta
+        ordinate = frequency_equation(p, omega, side=side) / (inertia * first**2)
+        ordinates.append(np.abs(ordinate[np.isfinite(ordinate)]))
+        axes.plot(
+            omega / first, ordinate, color=style.color, linestyle=style.dashes, linewidth=style.width,
+            label=label, zorder=2.5 - 0.1 * style.width,
+        )  # fmt: skip
+        roots = modes.omega[modes.omega < end * first] / first
+        axes.plot(
+            roots, np.zeros(roots.size), "o", color=style.color, markersize=3.0 + 1.5 * style.width,
+            markerfacecolor="white", markeredgewidth=1.1, zorder=3.5 - 0.1 * style.width, label=f"_{label}",
+        )  # fmt: skip
+        notes += [(label, style.color), *((f"   {root:.3f}", style.color) for root in roots[:_NAMED_ROOTS])]
+    limit = float(np.percentile(np.concatenate(ordinates), _SHARE))
+    axes.set(ylim=(-limit, limit), xlim=(0.0, end), ylabel=r"frequency equation / $I_θ\,ω_1^2$")
+    notes_beside(axes, notes, 10.5)
+
+
+def _between_poles(poles: Array, end: float) -> Array:
+    """Frequencies up to `end`, dense beside each pole and with the poles themselves, where the equation is NaN."""
+    inside = np.concatenate([[0.0], poles[poles < end], [end]])
+    share = 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, _POINTS)))
+    pieces = [low + (high - low) * share[1:-1] for low, high in pairwise(inside)]
+    return np.sort(np.concatenate([*pieces, inside[1:]]))
+
+
+def plot_frequency_ratios(
+    tables: "pd.DataFrame | Mapping[str, pd.DataFrame]",
+    limits: PinnedBeam | Mapping[str, PinnedBeam] | None = None,
+    *,
+    modes: Sequence[SupportsIndex] = (1, 2),
+    mark: float | None = 10.0,
+    size: Size | None = None,
+) -> Figure:
+    """Plot ω*_n/ω_n over the aspect ratio h*_1/B, one panel per mode.
+
+    The figure is that of Silva & Stojadinović 2024, Fig. 10. Models differ by colour, structures by dashes. A blue line
+    with its value is the frequency ratio of the pinned beam, which a structure of evenly distributed mass with all its
+    modes approaches as the base narrows; models with fewer modes exceed it.
+
+    Parameters
+    ----------
+    tables
+        A table of `frequency_ratios`, or up to four by name.
+    limits
+        Results of `pinned_beam`, by the same names.
+    modes
+        Modes to show, counted from 1.
+    mark
+        Aspect ratio of a vertical gray line; None for none.
+    size
+        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
+        inches. Default: what suits the number of panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes per mode, over a logarithmic axis; no units.
+
+    Raises
+    ------
+    InputError
+        If no mode is given, a table lacks a column or has no row of a mode, a limit belongs to no table or has too
+        few modes, or there are too many tables to distinguish; or the size is unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> table = rf.frequency_ratios(frame, [2.0, 4.0, 8.0])
+    >>> figure = rf.plot_frequency_ratios(table)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$h^*_1/B$', '$ω^*_{1}/ω_{1}$')
+    """
+    named: Mapping[str, pd.DataFrame] = tables if isinstance(tables, Mapping) else {"": tables}
+    bounds = limits if isinstance(limits, Mapping) else {} if limits is None else dict.fromkeys(named, limits)
+    shown = [whole_number("modes", mode, 1) for mode in modes]
+    _check_ratios(named, bounds, shown)
+    styles = model_styles(str(model) for table in named.values() for model in table["model"])
+    dashes = dict(zip(named, _DASHES, strict=False))
+    with styled(size=size):
+        rows = len(shown) if is_narrow() else 1
+        figure = new_figure(0.6 + 2.95 * len(shown) + 0.5 * (len(shown) == 1), 0.9 + 2.6 * rows)
+        panels: list[Axes] = list(figure.subplots(rows, len(shown) // rows, squeeze=False).flat)
+        for axes, mode, mark_of_panel in zip(panels, shown, ascii_uppercase, strict=False):
+            top = max(_draw_ratios(axes, table, mode, styles, dashes[name]) for name, table in named.items())
+            for name, beam in bounds.items():
+                value = float(beam.ratio[mode - 1])
+                _draw_limit(axes, value, dashes[name])
+                top = max(top, value)
+            if mark is not None:
+                axes.axvline(mark, color=GRAY, linewidth=1.2, zorder=1.5, label="_mark")
+            axes.set_xscale("log")
+            axes.margins(x=0.0)
+            if is_narrow():
+                label_plainly(axes.xaxis)
+            axes.set(
+                ylim=(1.0 - (_MARGIN - 1.0) * (top - 1.0), 1.0 + _MARGIN * (top - 1.0) + 1e-6), xlabel=r"$h^*_1/B$"
+            )
+            axes.set_ylabel(rf"$ω^*_{{{mode}}}/ω_{{{mode}}}$")
+            label_panel(axes, mark_of_panel)
+        handles = _ratio_handles(styles, dashes, bool(bounds), mark)
+        legend_above(figure, handles, max_columns=3)
+    return figure
+
+
+def _draw_ratios(axes: Axes, table: "pd.DataFrame", mode: int, styles: dict[str, LineStyle], dashes: Dashes) -> float:
+    """Draw one curve per model that has the mode; return the largest ordinate."""
+    top = 1.0
+    for model, style in styles.items():
+        rows = table[(table["model"] == model) & (table["mode"] == mode)].sort_values("aspect_ratio")
+        if len(rows):
+            ratio = rows["ratio"].to_numpy(dtype=float)
+            axes.plot(
+                rows["aspect_ratio"].to_numpy(dtype=float), ratio, color=style.color, linestyle=dashes,
+                linewidth=style.width, label=model, zorder=2.5 - 0.1 * style.width,
+            )  # fmt: skip
+            top = max(top, float(ratio.max()))
+    return top
+
+
+def _draw_limit(axes: Axes, value: float, dashes: Dashes) -> None:
+    axes.axhline(value, color=BLUE, linestyle=dashes, linewidth=0.8, zorder=1.6, label="_limit")
+    axes.annotate(
+        f"{value:.3f}", (0.02, value), xytext=(0, 2), xycoords=("axes fraction", "data"), textcoords="offset points",
+        color=BLUE, fontsize=SMALL, va="bottom",
+    )  # fmt: skip
+
+
+def _ratio_handles(
+    styles: dict[str, LineStyle], dashes: Mapping[str, Dashes], bounded: bool, mark: float | None
+) -> list[Line2D]:
+    handles = [Line2D([], [], color=style.color, linewidth=style.width, label=model) for model, style in styles.items()]
+    if list(dashes) != [""]:
+        handles += [
+            Line2D([], [], color="#606060", linestyle=dash, label=literal(name))  # pyright: ignore[reportArgumentType]
+            for name, dash in dashes.items()
+        ]
+    if bounded:
+        handles.append(Line2D([], [], color=BLUE, linewidth=0.8, label="pinned beam, no spring"))
+    if mark is not None:
+        handles.append(Line2D([], [], color=GRAY, linewidth=1.2, label=rf"$h^*_1/B$ = {mark:g}"))
+    return handles
+
+
+def _check_ratios(named: "Mapping[str, pd.DataFrame]", bounds: Mapping[str, PinnedBeam], modes: list[int]) -> None:
+    if not modes:
+        raise InputError("modes is empty. Give at least one mode, counted from 1.")
+    if not 1 <= len(named) <= len(_DASHES):
+        raise InputError(f"{len(named)} tables were given, but one figure can show from 1 to {len(_DASHES)}.")
+    for name, table in named.items():
+        lacking = [column for column in _RATIO_COLUMNS if column not in getattr(table, "columns", ())]
+        if lacking:
+            raise InputError(
+                f"The table {shown(name)} lacks {', '.join(lacking)}. Give what frequency_ratios returned."
+            )
+        absent = [mode for mode in modes if not (table["mode"] == mode).any()]
+        if absent:
+            raise InputError(
+                f"The table {shown(name)} has no row of mode {absent[0]}. Show modes that a model in it keeps."
+            )
+    for name, beam in bounds.items():
+        if name not in named:
+            raise InputError(
+                f"limits has the name {shown(name)}, which no table has: those have {', '.join(map(repr, named))}."
+            )
+        if beam.ratio.size < max(modes):
+            raise InputError(
+                f"The limit {shown(name)} has {beam.ratio.size} frequency ratios, but mode {max(modes)} is to be "
+                f"shown. Give pinned_beam(..., n_modes={max(modes)})."
+            )

@@ -1,0 +1,215 @@
+"""The runs of a report, checked: one structure under one record, by a few models, each with its history."""
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rockflex._arrays import Array, Bools
+from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex.modal import RockingProperties
+from rockflex.motion import GroundMotion
+from rockflex.response import History, Response
+
+MAX_RUNS = 6  # runs, for which a page has room
+_HOW = 'Give what simulate(..., output="history") returned, or several of these.'
+_COMPARED = ("m_tot", "half_width", "l0r", "i_theta", "eccentricity")
+_TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class ReportedRuns:
+    """The checked input of a report.
+
+    Attributes
+    ----------
+    responses, histories, labels
+        Of each run; labels are the models, numbered where one occurs twice.
+    properties
+        Of the structure, with all modes that are known.
+    structure
+        The structure itself, or None.
+    motion
+        The record before scaling, or None.
+    scale
+        Factor by which it acted on the structure; 1 without a record.
+    """
+
+    responses: tuple[Response, ...]
+    histories: tuple[History, ...]
+    labels: tuple[str, ...]
+    properties: RockingProperties
+    structure: Any
+    motion: GroundMotion | None
+    scale: float
+
+    @property
+    def widest(self) -> History:
+        """The history with the most modes, of a model that lifts if there is one."""
+        return max(self.histories, key=lambda h: (h.model.lifts, h.model.properties.n_modes))
+
+
+def checked_runs(responses: Response | Iterable[Response], structure: Any, motion: Any) -> ReportedRuns:
+    """Check the input of a report.
+
+    Raises
+    ------
+    InputError
+        If there are no responses or too many, one has no history, they are not of one structure and one record, or
+        `structure` or `motion` are not theirs.
+    """
+    runs = _runs(responses)
+    histories = tuple(_history(place, run) for place, run in enumerate(runs))
+    differing = _differing([run.motion for run in runs], histories)
+    if differing:
+        raise InputError(
+            f"A report is of one record at one scale, but the responses {differing}. Write a report of each.",
+            field="responses",
+        )
+    properties = _properties(structure, histories)
+    scale = 1.0 if motion is None else _scale(motion, histories[0], runs[0].motion)
+    counts, seen = Counter(run.model for run in runs), Counter[str]()
+    labels: list[str] = []
+    for run in runs:
+        seen[run.model] += 1
+        labels.append(run.model if counts[run.model] == 1 else f"{run.model} ({seen[run.model]})")
+    return ReportedRuns(runs, histories, tuple(labels), properties, structure, motion, scale)
+
+
+def _runs(responses: Any) -> tuple[Response, ...]:
+    if isinstance(responses, Response):
+        return (responses,)
+    if not isinstance(responses, Iterable) or isinstance(responses, str):
+        raise InputError(
+            f"responses must be one or several responses, but {shown(responses)} was given. {_HOW}", field="responses"
+        )
+    runs: tuple[Any, ...] = tuple(responses)
+    for place, run in enumerate(runs):
+        if not isinstance(run, Response):
+            raise InputError(
+                f"responses[{place}] must be a Response, but {type(run).__name__} was given. {_HOW}", field="responses"
+            )
+    if not runs:
+        raise InputError(f"There is no response to report. {_HOW}", field="responses")
+    if len(runs) > MAX_RUNS:
+        raise InputError(
+            f"A page has room for {MAX_RUNS} runs, but {len(runs)} were given. Choose the models that matter, or write "
+            "several reports.",
+            field="responses",
+        )
+    return runs
+
+
+def _history(place: int, run: Response) -> History:
+    if run.history is None:
+        raise InputError(
+            f"responses[{place}] ({run.model} under {shown(run.motion)}) keeps peaks only, but a report draws the "
+            'history. Simulate it with output="history".',
+            field="responses",
+        )
+    return run.history
+
+
+def _differing(motions: list[str], histories: tuple[History, ...]) -> str:
+    """Return in words how the ground of some runs differs; empty if it does not."""
+    names, (first, *others) = set(motions), histories
+    if len(names) > 1:
+        return f"are of {len(names)} records, {', '.join(shown(name) for name in sorted(names))}"
+    if not all(_same_ground(first, each) for each in others):
+        return "are of several scales"
+    if not all(_same_ground(first, each, "vertical_ground_acceleration") for each in others):
+        return "differ in the vertical acceleration of the ground"
+    return ""
+
+
+def _same_ground(one: History, other: History, of: str = "ground_acceleration") -> bool:
+    """Whether two runs had the same ground acceleration, or that named by `of`, while both lasted."""
+    jumps = one.time[~_without_jumps(one.time)]
+    kept = (other.time <= one.time[-1]) & _without_jumps(other.time) & ~np.isin(other.time, jumps)
+    there: Array = getattr(one, of)
+    here: Array = getattr(other, of)
+    return _equal(np.interp(other.time[kept], one.time, there), here[kept], float(np.max(np.abs(there))))
+
+
+def _equal(one: Array, other: Array, largest: float) -> bool:
+    return bool(np.max(np.abs(one - other), initial=0.0) <= _TOLERANCE * largest)
+
+
+def _without_jumps(time: Array) -> Bools:
+    """Return which instants have one row; where there are two, the acceleration may jump, as at the end of a record."""
+    double = np.diff(time) == 0.0
+    return ~(np.append(double, False) | np.append(False, double))
+
+
+def _properties(structure: Any, histories: tuple[History, ...]) -> RockingProperties:
+    """Return the properties of the structure, after comparing them with every run."""
+    known = max((each.model.properties for each in histories), key=lambda p: p.n_modes)
+    whole = known if structure is None else _rocking(structure)
+    for history in histories:
+        ran = history.model.properties
+        differing = [name for name in _COMPARED if not _close(getattr(ran, name), getattr(whole, name))]
+        modes = min(ran.n_modes, whole.n_modes)
+        if not np.allclose(ran.omega[:modes], whole.omega[:modes], rtol=_TOLERANCE, atol=0.0):
+            differing.append("omega")
+        if differing:
+            first = differing[0]
+            values = (
+                f"{history.model.label} was run with {first} = {shown(_plain(getattr(ran, first)))}, not "
+                f"{shown(_plain(getattr(whole, first)))}"
+            )
+            if structure is None:
+                message = f"A report is of one structure, but {values}. Write a report of each structure."
+            else:
+                message = f"structure is not that of the responses: {values}. Give the structure that was simulated."
+            raise InputError(message, field="responses" if structure is None else "structure")
+    return whole
+
+
+def _rocking(structure: Any) -> RockingProperties:
+    from rockflex.structure import structure_warnings
+
+    structure_warnings(structure)  # raises if it is no structure
+    return structure if isinstance(structure, RockingProperties) else structure.rocking()
+
+
+def _plain(value: Any) -> Any:
+    return value.tolist() if isinstance(value, np.ndarray) else value
+
+
+def _close(one: float, other: float) -> bool:
+    return bool(np.isclose(one, other, rtol=_TOLERANCE, atol=0.0))
+
+
+def _scale(motion: Any, history: History, name: str) -> float:
+    """Return the factor on the record that gives the ground acceleration of a run."""
+    if not isinstance(motion, GroundMotion):
+        raise InputError(
+            f"motion must be a GroundMotion, but {type(motion).__name__} was given. Give the one that was simulated.",
+            field="motion",
+        )
+    # At its end a record may jump to zero, and a run that ends there has one side of the jump only.
+    kept = (history.time < (1.0 - _TOLERANCE) * motion.duration) & _without_jumps(history.time)
+    time, ran = history.time[kept], history.ground_acceleration[kept]
+    record = np.interp(time, motion.time, motion.acceleration)
+    size = float(record @ record)
+    scale = float(record @ ran) / size if size > 0.0 else 1.0
+    if not _equal(ran, scale * record, float(np.max(np.abs(ran), initial=0.0))) or (size > 0.0 and scale == 0.0):
+        raise InputError(
+            f"motion is not that of the responses: {shown(motion.name)} at no scale is the ground acceleration of "
+            f"{shown(name)} during the run. Give the record that was simulated, scaled or not.",
+            field="motion",
+        )
+    rise = 0.0 * time if motion.vertical is None else scale * np.interp(time, motion.time, motion.vertical)
+    shook = history.vertical_ground_acceleration[kept]
+    if not _equal(shook, rise, float(np.max(np.abs(rise), initial=0.0))):
+        had, has = ("with" if np.any(each) else "without" for each in (shook, rise))
+        raise InputError(
+            f"motion is not that of the responses: they were run {had} vertical acceleration, but {shown(motion.name)} "
+            f"is {has} it{', or with another' if had == has else ''}. Give the record that was simulated, scaled or "
+            "not.",
+            field="motion",
+        )
+    return float(f"{scale:.9g}")
