@@ -150,9 +150,7 @@ def test_raw_counts(tmp_path):
     assert motion.acceleration == pytest.approx(expected, rel=1e-12)
     assert (motion.metadata.stated_pga, motion.metadata.processing) == (None, "mean subtracted")
     unknown = cosmos(samples=counts, form=(10, "I8"), integers={3: 50})
-    with pytest.raises(
-        rf.InputError, match=r"raw counts, .* what one count is \(places 22 and 42\)\. Download the corr"
-    ):
+    with pytest.raises(rf.InputError, match=r"raw counts, .* one count \(places 22 and 42\)\. Download the corr"):
         rf.read_motion(write(tmp_path, unknown, "b.V0"))
 
 

@@ -56,7 +56,7 @@ def test_other_formats(obspy, tmp_path, form):
 
 def test_refuses(obspy, tmp_path):
     file = write(obspy, tmp_path / "a.mseed", "HHE")
-    with pytest.raises(rf.InputError, match=r"channel HHE is that of a velocity sensor, .* accelerometer, such as HNE"):
+    with pytest.raises(rf.InputError, match=r"channel HHE belongs to a velocity sensor, .* accelerometer, such as HNE"):
         rf.read_motion(file, units="g")
     pieces = obspy.Stream([trace(obspy, "HNE"), trace(obspy, "HNE", start=1.0)])
     pieces.write(str(tmp_path / "gap.mseed"), format="MSEED")
