@@ -107,17 +107,17 @@ def _draw_soil(figure: Figure, axes: Axes, history: History, springs: Springs) -
         axes.legend(loc="upper right", ncols=places.size)
         axes.set_ylim(0.0, 1.25 * float(pushes.max()) / factor)
         return
-    kept = np.concatenate(([True], np.diff(history.time) > 0.0))
-    shown = np.ma.masked_less_equal(pushes[kept].T / factor, 0.0)
-    drawn = axes.pcolormesh(history.time[kept], places, shown, cmap="YlOrBr", shading="nearest", rasterized=True)
-    drawn.set_clim(0.0)
+    distinct = np.concatenate(([True], np.diff(history.time) > 0.0))
+    shown = np.ma.masked_less_equal(pushes[distinct].T / factor, 0.0)
+    mesh = axes.pcolormesh(history.time[distinct], places, shown, cmap="YlOrBr", shading="nearest", rasterized=True)
+    mesh.set_clim(0.0)
     axes.set_ylabel("x [m]")
     axes.grid(visible=False)
-    figure.colorbar(drawn, ax=axes, label=f"{name} [{unit}]", pad=0.01)
+    figure.colorbar(mesh, ax=axes, label=f"{name} [{unit}]", pad=0.01)
 
 
 def _draw_contact(axes: Axes, history: History, springs: Springs) -> None:
-    held = (history.spring_force > 0.0) @ tributary_shares(springs, history.model.properties)
-    axes.fill_between(history.time, 100.0 * held, color=GRAY, alpha=0.5, linewidth=0.0)
-    axes.plot(history.time, 100.0 * held, color=BLACK, linewidth=0.7)
+    contact_share = (history.spring_force > 0.0) @ tributary_shares(springs, history.model.properties)
+    axes.fill_between(history.time, 100.0 * contact_share, color=GRAY, alpha=0.5, linewidth=0.0)
+    axes.plot(history.time, 100.0 * contact_share, color=BLACK, linewidth=0.7)
     axes.set(ylim=(0.0, 104.0), ylabel="in contact [%]")

@@ -91,8 +91,8 @@ class BaseLoops:
     @property
     def moment(self) -> Array:
         """Resisting moment in N m, shape (n,)."""
-        held = self.weight + self.parts.sum(axis=1)
-        return held if self.springs is None else held + self.springs
+        moment = self.weight + self.parts.sum(axis=1)
+        return moment if self.springs is None else moment + self.springs
 
 
 def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> BaseLoops:
@@ -128,22 +128,22 @@ def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> B
             "The base of this response cannot lift, so it has no loops. Give the response of a model that rocks, such "
             'as "2DOF-S".'
         )
-    history, kept = curve.history, curve.before_fall
+    history, until_fall = curve.history, curve.before_fall
     title, elements = title_of(curves, None), history.model.properties.elements
     resistance = resistance_on_springs(history)
     if resistance is not None:
         return BaseLoops(
             title=title,
             elements=elements,
-            rotation=history.rotation[kept],
-            weight=resistance.weight[kept],
-            parts=resistance.elements[kept],
-            elongation=history.element_elongation[kept],
-            force=history.element_force[kept],
-            springs=resistance.springs[kept],
-            edges=history.edge_uplift[kept],
+            rotation=history.rotation[until_fall],
+            weight=resistance.weight[until_fall],
+            parts=resistance.elements[until_fall],
+            elongation=history.element_elongation[until_fall],
+            force=history.element_force[until_fall],
+            springs=resistance.springs[until_fall],
+            edges=history.edge_uplift[until_fall],
         )
-    rocking = np.flatnonzero(history.side[kept] != 0.0)
+    rocking = np.flatnonzero(history.side[until_fall] != 0.0)
     weight, parts = resistance_of(history)
     return BaseLoops(
         title=title,
@@ -151,8 +151,8 @@ def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> B
         rotation=history.rotation[rocking],
         weight=weight[rocking],
         parts=parts[rocking],
-        elongation=history.element_elongation[kept],
-        force=history.element_force[kept],
+        elongation=history.element_elongation[until_fall],
+        force=history.element_force[until_fall],
     )
 
 

@@ -245,8 +245,8 @@ def _models_of(
     found: dict[str, tuple[RockingProperties, UpliftedModes]] = {}
     for each in n_modes:
         count = full.n_modes if each is None else whole_number("n_modes", each, 1, full.n_modes)
-        kept = full.truncated(count)
-        found["MDOF-S" if each is None else f"{count + 1}DOF-S"] = (kept, uplifted_modes(kept, side=side))
+        truncated = full.truncated(count)
+        found["MDOF-S" if each is None else f"{count + 1}DOF-S"] = (truncated, uplifted_modes(truncated, side=side))
     return found
 
 

@@ -135,12 +135,12 @@ def largest_moment(curve: Curve) -> float:
 
 def _path(curve: Curve) -> tuple[Array, Array]:
     """Rotation and resisting moment while the base is off the ground."""
-    history, kept = curve.history, curve.before_fall
+    history, until_fall = curve.history, curve.before_fall
     on_springs = resistance_on_springs(history)
     if on_springs is not None:
-        return history.rotation[kept], on_springs.moment[kept]
+        return history.rotation[until_fall], on_springs.moment[until_fall]
     weight, parts = resistance_of(history)
-    rocking = np.flatnonzero(history.side[kept] != 0.0)
+    rocking = np.flatnonzero(history.side[until_fall] != 0.0)
     return history.rotation[rocking], (weight + parts.sum(axis=1))[rocking]
 
 

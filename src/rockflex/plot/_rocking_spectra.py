@@ -73,8 +73,8 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "", size: Size 
     _check_count(len(groups), "slendernesses")
     fell = table["overturned"].fillna(False).astype(bool)
     standing = [float(value) for value in table["relative_rotation"][~fell] if np.isfinite(value)]
-    room = 1.0 - _CROSSES * (len(groups) + 1)
-    limit = (1.05 * max(standing, default=0.0) or 1.0) / room
+    share = 1.0 - _CROSSES * (len(groups) + 1)
+    limit = (1.05 * max(standing, default=0.0) or 1.0) / share
     with styled(size=size):
         figure = new_figure(6.3, 3.6)
         axes = figure.subplots()

@@ -113,9 +113,9 @@ def _draw_loops(axes: Axes, curves: list[Curve], mark: str) -> None:
     largest = max(largest_moment(curves[0]), axis_scale(moment, curves)[2] * axis_scale(moment, curves)[0] / _MARGIN)
     factor, unit = prefixed(largest, "N m")
     for curve in curves:
-        kept = curve.before_fall
+        until_fall = curve.before_fall
         axes.plot(
-            curve.history.rotation[kept], curve.history.base_moment[kept] / factor, color=curve.style.color,
+            curve.history.rotation[until_fall], curve.history.base_moment[until_fall] / factor, color=curve.style.color,
             linestyle=curve.style.dashes, linewidth=0.8 * curve.style.width, zorder=curve.order,
         )  # fmt: skip
     line = resistance_line(curves[0], rotation, factor)

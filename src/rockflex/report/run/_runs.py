@@ -128,10 +128,10 @@ def _differing(motions: list[str], histories: tuple[History, ...]) -> str:
 def _same_ground(one: History, other: History, of: str = "ground_acceleration") -> bool:
     """Whether two runs had the same ground acceleration, or that named by `of`, while both lasted."""
     jumps = one.time[~_without_jumps(one.time)]
-    kept = (other.time <= one.time[-1]) & _without_jumps(other.time) & ~np.isin(other.time, jumps)
+    compared = (other.time <= one.time[-1]) & _without_jumps(other.time) & ~np.isin(other.time, jumps)
     there: Array = getattr(one, of)
     here: Array = getattr(other, of)
-    return _equal(np.interp(other.time[kept], one.time, there), here[kept], float(np.max(np.abs(there))))
+    return _equal(np.interp(other.time[compared], one.time, there), here[compared], float(np.max(np.abs(there))))
 
 
 def _equal(one: Array, other: Array, largest: float) -> bool:
@@ -191,8 +191,8 @@ def _scale(motion: Any, history: History, name: str) -> float:
             field="motion",
         )
     # At its end a record may jump to zero, and a run that ends there has one side of the jump only.
-    kept = (history.time < (1.0 - _TOLERANCE) * motion.duration) & _without_jumps(history.time)
-    time, ran = history.time[kept], history.ground_acceleration[kept]
+    compared = (history.time < (1.0 - _TOLERANCE) * motion.duration) & _without_jumps(history.time)
+    time, ran = history.time[compared], history.ground_acceleration[compared]
     record = np.interp(time, motion.time, motion.acceleration)
     size = float(record @ record)
     scale = float(record @ ran) / size if size > 0.0 else 1.0
@@ -203,7 +203,7 @@ def _scale(motion: Any, history: History, name: str) -> float:
             field="motion",
         )
     rise = 0.0 * time if motion.vertical is None else scale * np.interp(time, motion.time, motion.vertical)
-    shook = history.vertical_ground_acceleration[kept]
+    shook = history.vertical_ground_acceleration[compared]
     if not _equal(shook, rise, float(np.max(np.abs(rise), initial=0.0))):
         had, has = ("with" if np.any(each) else "without" for each in (shook, rise))
         raise InputError(
