@@ -361,7 +361,7 @@ def jump_table(jump: Array, most: int) -> Array:
     return np.concatenate([grouped(padded(each), most) for each in (jump, np.abs(jump))], axis=1)
 
 
-def padded(table: Array) -> Array:
+def padded(table: NDArray[Any]) -> NDArray[Any]:
     """The tables with zeros below, to a multiple of 8 rows."""
     *stack, rows, columns = table.shape
     full = np.zeros((*stack, up8(rows), columns), table.dtype)
@@ -369,7 +369,7 @@ def padded(table: Array) -> Array:
     return full
 
 
-def by_rows(rows: Array, matrix: Array) -> Array:
+def by_rows(rows: NDArray[Any], matrix: NDArray[Any]) -> NDArray[Any]:
     """The product of rows and a matrix, in which no row depends on how many there are.
 
     BLAS takes some rows at a time, and sums those that are left over in another order.
