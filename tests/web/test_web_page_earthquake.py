@@ -7,7 +7,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from test_web_folders import GIVEN
+from test_web_uploads import GIVEN
 
 import rockflex as rf
 

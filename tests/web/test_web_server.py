@@ -521,7 +521,8 @@ def served(*command: str) -> Iterator[tuple[subprocess.Popen[str], int]]:
         port = probe.getsockname()[1]
     with subprocess.Popen([*command, "--port", str(port)], stderr=subprocess.PIPE, text=True) as process:
         try:
-            for _ in range(200):
+            end = time.monotonic() + HANG
+            while time.monotonic() < end:
                 try:
                     assert b"rockflex" in page(port)
                     break

@@ -6,7 +6,7 @@ import zipfile
 import numpy as np
 import pandas as pd
 import pytest
-from test_web_folders import GIVEN, body_of, give
+from test_web_uploads import GIVEN, body_of, give
 
 import rockflex as rf
 from rockflex.solve import RunStoppedError, stopping_when
