@@ -258,8 +258,7 @@ class Flow:
         while i < last and self.peaks.work() < until:
             if v.shape[0] > 0:
                 rise, risen = v[i], v[i + 1]
-            self.reached = self.cross(place, a[i], a[i + 1], (rise, risen), 0.0, before + i)
-            if self.reached < 1.0:
+            if self.cross(place, a[i], a[i + 1], (rise, risen), 0.0, before + i) < 1.0:
                 self.peaks.look(True)
                 return i
             i += 1
@@ -270,7 +269,7 @@ class Flow:
         return i
 
     def cross(self, place, start, end, v, u, sample):
-        """Advance from the place u of a sample as far as nothing happens; the place reached, 1 at its end.
+        """Advance from the place u of a sample as far as nothing happens; the place `reached`, 1 at its end.
 
         The step in which something may happen is kept.
         """
@@ -280,6 +279,7 @@ class Flow:
         a: cython.double = start + (end - start) * u
         rise: cython.double = v[0] + (v[1] - v[0]) * u
         fresh: cython.bint = not self.told
+        self.reached = u
         if fresh:
             self.arrive(place, a, rise)
             self.look(place, a, rise, START, FIRST, OUTS)
@@ -298,7 +298,7 @@ class Flow:
             self.look_ahead(place)
             if self.peaks_hide(place) or self.curves_hide(place):
                 return u
-            u = u + part if part < 1.0 - u else 1.0
+            u = self.reached = u + part if part < 1.0 - u else 1.0
             self.accept()
             self.raise_to(ENDS, sample + u)
             for k in range(self.found.shape[1]):

@@ -282,6 +282,8 @@ class Run:
     def follow_all(self, batch: Batch, history: cython.bint) -> cython.int:
         """Do the runs of a batch, which share the start."""
         rested: cython.bint
+        outcome: cython.int
+        end: cython.double
         while batch.place < batch.count:
             self.begin()
             self.proceed(batch.scaled(), batch.scaled_vertical(), history)
@@ -292,16 +294,8 @@ class Run:
                     self.fading.decay.bring_to_rest(self.y)
             else:
                 self.coast_over(batch.free, history)
-            batch.close(
-                1 if self.ended else 2 if rested else 0,
-                self.now,
-                self.end if self.ended else self.passed * self.h,
-                self.h,
-                self.high,
-                self.when,
-                self.y,
-                self.journal,
-            )
+            outcome, end = 1 if self.ended else 2 if rested else 0, self.end if self.ended else self.passed * self.h
+            batch.close(outcome, self.now, end, self.h, self.high, self.when, self.y, self.journal)
         return 0
 
     @cython.cfunc
@@ -461,21 +455,20 @@ class Run:
     ) -> cython.int:
         """Advance over a sample in which something may happen."""
         u: cython.double = self.flow.reached if self.phases.nonlinear(self.now) else 0.0  # the part that has passed
-        reached: cython.double
         a: cython.double
         rise: cython.double
         part: cython.double
+        moves: cython.bint
         t: cython.double
         event: cython.int
         at_once: cython.int = 0
         in_sample: cython.int = 0
         while u < 1.0:
             self.look_up()
-            if self.phases.nonlinear(self.now) and not self.flow.tried:
-                reached = self.flow.cross(self.now, start, end, v, u, self.passed + i)
-                if reached > u:
-                    u, at_once = reached, 0
-                    continue
+            moves = self.phases.nonlinear(self.now) and not self.flow.tried
+            if moves and self.flow.cross(self.now, start, end, v, u, self.passed + i) > u:
+                u, at_once = self.flow.reached, 0
+                continue
             part = self.series.expand(self.now, start, end, v, u)
             if part < 0.0:
                 with cython.gil:
