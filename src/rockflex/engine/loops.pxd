@@ -106,9 +106,12 @@ cdef class Phases:
     cdef readonly int count
     cdef readonly int n, states
     cdef double[::1] one_sided
-    cdef list contents, offsets, shaken, fields, shook
+    cdef list contents, offsets, shaken, fields
+    cdef int[::1] known  # of each phase: 0 if its tables are forgotten, 2 if there are those for vertical acceleration
     cdef double[::1] room
 
+    cdef void release(self, int place) noexcept nogil
+    cdef bint knows(self, int place, bint shakes) noexcept nogil
     cdef int events(self, int place) noexcept nogil
     cdef int halvings(self, int place) noexcept nogil
     cdef int shift(self, int place, (double, double) v) noexcept nogil
