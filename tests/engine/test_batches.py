@@ -1,5 +1,7 @@
 """Batches of runs, and what the order of the states leaves unchanged."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -170,3 +172,30 @@ def test_a_phase_and_its_mirror_image_share_what_they_can():
         for shared, alone in zip(tables_of(phase, 0.02, mirrors), tables_of(phase, 0.02, []), strict=True):
             assert np.array_equal(shared, alone)
     assert len(mirrors) == MIRRORS
+
+
+@pytest.mark.parametrize("history", [False, True])
+def test_forgetting_phases_changes_no_bit(engine, history):
+    """With no memory for tables at all, every phase is prepared whenever it is met."""
+    run_of, batch_of = engine
+    system, found = shaken(), []
+    asked = dict.fromkeys([2**40, 0], 0)
+    for memory in asked:
+
+        def phase(key, memory=memory):
+            asked[memory] += 1
+            return system.phase(key)
+
+        run = run_of(replace(system, phase=phase), 0.02)
+        run.memory = memory
+        batch = batch_of(system, records(3), None, 10_000, True, ("yielding", "unloading"))
+        run.follow(batch, history=history)
+        size = run.size
+        run.restart()
+        run.advance(records(1)[0], records(1)[0][::-1])
+        found.append(
+            (batch.states.tolist(), batch.high.tolist(), batch.places.tolist(), run.events, run.state.tolist())
+        )
+        assert (run.size > 0) and (size > 0)
+    assert found[0] == found[1]
+    assert asked[0] > 5 * asked[2**40]

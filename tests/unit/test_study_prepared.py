@@ -90,9 +90,9 @@ def test_few_cases_are_kept(monkeypatch):
     for frame in frames:
         rf.simulate(frame, PULSE, "2DOF-S", output="peaks")
     assert len(_prepared._kept) == 3
-    monkeypatch.setattr(_prepared, "LARGEST", 10)
-    _prepared._kept.clear()
-    rf.simulate(frames[0], PULSE, "2DOF-S", output="peaks")
+    monkeypatch.setattr(_prepared, "LARGE", 10)  # so that the cases are weighed after every run
+    monkeypatch.setattr(_prepared, "TOGETHER", 10)
+    rf.simulate(frames[-1], PULSE, "2DOF-S", output="peaks")
     assert not _prepared._kept
 
 

@@ -74,9 +74,10 @@ class Journal:
 
     @property
     def events(self):
-        """Times of the events, places of the phases that they ended, and their numbers there."""
-        places, numbers = np.array(self.exits[: self.n_events]).T.tolist()
-        return np.array(self.times[: self.n_events]).tolist(), places, numbers
+        """Times of the events, places of the phases that they ended, and their names."""
+        places, numbers = np.array(self.exits[: self.n_events]).T
+        names, kinds = list(self.names), np.asarray(self.kinds)[places, numbers]
+        return np.array(self.times[: self.n_events]).tolist(), places.tolist(), [names[kind] for kind in kinds.tolist()]
 
     def count(self, kind):
         """How often events of a kind have happened."""

@@ -122,10 +122,13 @@ cdef class Phases:
     cdef readonly int count
     cdef readonly int n, states
     cdef double[::1] one_sided
-    cdef list contents, offsets, shaken, fields, shook
+    cdef list contents, offsets, shaken, fields
+    cdef int[::1] known  # of each phase: 0 if its tables are forgotten, 2 if there are those for vertical acceleration
     cdef Step step
     cdef readonly double[:, ::1] rows, found  # of a step: states and rates, outputs and conditions; see `tableau`
 
+    cdef void release(self, int place) noexcept nogil
+    cdef bint knows(self, int place, bint shakes) noexcept nogil
     cdef int events(self, int place) noexcept nogil
     cdef int halvings(self, int place) noexcept nogil
     cdef int shift(self, int place, (double, double) v) noexcept nogil

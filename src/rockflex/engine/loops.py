@@ -9,7 +9,6 @@ from cython.cimports.libc.stdlib import calloc, free, malloc, realloc
 from cython.cimports.rockflex.engine.field import Field, Jump
 
 from rockflex.engine import failures, tableau
-from rockflex.engine.shaken import shaken_of
 from rockflex.engine.system import up8
 from rockflex.engine.tables import grouped, jump_table
 
@@ -109,7 +108,7 @@ class Phases:
     def __init__(self, one_sided, states):
         self.one_sided, self.n, self.states = one_sided, states, up8(states + 2)
         self.contents, self.offsets, self.shaken, self.count = [], [], [], 0
-        self.fields, self.shook = [], []
+        self.fields, self.known = [], np.zeros(16, dtype=np.intc)
         self.rows, self.found = np.zeros((tableau.ROWS, self.states)), np.zeros((tableau.FOUND, one_sided.shape[0]))
         self.step.width, self.step.rates = self.states, cython.address(self.rows[0, 0])
         self.step.start, self.step.end = self.row(tableau.START), self.row(tableau.END)
@@ -119,15 +118,36 @@ class Phases:
     def __dealloc__(self):
         k: cython.int
         for k in range(self.count):
-            free(self.phases[k].jump)
-            free(self.phases[k].rest)
-            free(self.phases[k].following)
-            free(self.phases[k].leaps)
+            self.release(k)
         free(self.phases)
 
-    def add(self, tables, events, h):
-        """Take a phase; of each of its events it is not known yet what follows, or known to be the end, or asked."""
-        size: cython.Py_ssize_t = (self.count + 1) * cython.sizeof(Phase)
+    def release(self, place):
+        """Free the arrays of a phase."""
+        phase: cython.pointer(Phase) = cython.address(self.phases[place])
+        free(phase.jump)
+        free(phase.rest)
+        free(phase.following)
+        free(phase.leaps)
+        phase.jump = phase.rest = phase.following = phase.leaps = cython.NULL
+
+    def drop(self, place: cython.int):
+        """Forget the tables of a phase; the memory that this frees, in bytes."""
+        size = self.contents[place][0].nbytes + (self.shaken[place][0].nbytes if self.shaken[place] else 0)
+        self.contents[place] = self.offsets[place] = self.shaken[place] = None
+        self.known[place] = 0
+        self.release(place)
+        return size
+
+    def knows(self, place, shakes):
+        """Whether there are tables of a phase, and if it shakes, those for vertical acceleration."""
+        return self.known[place] > shakes
+
+    def add(self, place: cython.int, tables, events, h):
+        """Take a phase; of each of its events it is not known yet what follows, or known to be the end, or asked.
+
+        Returns the memory of its tables in bytes.
+        """
+        size: cython.Py_ssize_t = (place + 1) * cython.sizeof(Phase)
         count: cython.int = len(events)
         systems = tables.halvings.size
         outcomes = [outcome for event in events for outcome in (event, event.rest)]
@@ -141,12 +161,16 @@ class Phases:
             *(jump_table(J, LOOPS.group) for J in jumps if J is not None),
             *(conditions_of(rest) for rest in rests if rest is not None),
         ]
-        offsets = np.cumsum([0, *(up8(part.shape[1]) for part in parts)], dtype=np.intp)
-        content = aligned(systems, int(offsets[-1]))
-        for part, first in zip(parts, offsets[:-1], strict=True):
-            content[:, first : first + part.shape[1]] = part
-        self.phases = cython.cast(cython.pointer(Phase), realloc(self.phases, size))
-        phase: cython.pointer(Phase) = cython.address(self.phases[self.count])
+        content, offsets = joined(parts)
+        if place == self.count:
+            self.phases = cython.cast(cython.pointer(Phase), realloc(self.phases, size))
+            self.contents.append(None)
+            self.offsets.append(None)
+            self.shaken.append(None)
+            if place == self.known.shape[0]:
+                self.known = np.concatenate((self.known, np.zeros(place, dtype=np.intc)))
+            self.count += 1
+        phase: cython.pointer(Phase) = cython.address(self.phases[place])
         phase.tables.n, phase.tables.outputs, phase.tables.rows = self.n, tables.outputs, tables.rows
         phase.tables.shift = tables.shift
         phase.tables.parts, phase.tables.h = tables.bend.shape[2] - 2, h
@@ -172,34 +196,29 @@ class Phases:
         for k in range(count):
             if isinstance(events[k].jump, Jump):
                 phase.leaps[k] = cython.cast(cython.p_void, events[k].jump)
-        self.contents.append((content, tables.halvings, jumps, rests, events))
-        self.offsets.append(offsets)
-        self.shaken.append(None)
-        self.count += 1
+        self.contents[place], self.offsets[place] = (content, tables.halvings, jumps, rests, events), offsets
+        self.known[place] = 1
+        return content.nbytes
 
-    def shake_all(self, met, which, h):
-        """Prepare the phases of a run for vertical acceleration."""
-        while len(self.shook) < len(met):
-            place = len(self.shook)
-            self.shook.append(place)
-            self.shake(place, which, shaken_of(met[place][1], h))
+    def shake(self, place: cython.int, which, shaken):
+        """Take what a phase has under vertical acceleration, and point to what one system has; None if it has none.
 
-    def shake(self, place, which, shaken):
-        """Take what a phase has under vertical acceleration, and point to what one system has; None if it has none."""
-        if shaken is not None:
-            parts = [grouped(each, LOOPS.group) for each in shaken[3:]]
-            offsets = np.cumsum([0, *(up8(part.shape[1]) for part in parts)], dtype=np.intp)
-            content = aligned(parts[0].shape[0], int(offsets[-1]))
-            for part, first in zip(parts, offsets[:-1], strict=True):
-                content[:, first : first + part.shape[1]] = part
-            self.shaken[place] = content, offsets, np.array([*shaken.places, shaken.shift, shaken.nodes], dtype=np.intc)
-            self.point(place, which)
+        Returns its memory in bytes.
+        """
+        self.known[place] = 2
+        if shaken is None:
+            return 0
+        content, offsets = joined([grouped(each, LOOPS.group) for each in shaken[3:]])
+        self.shaken[place] = content, offsets, np.array([*shaken.places, shaken.shift, shaken.nodes], dtype=np.intc)
+        self.point(place, which)
+        return content.nbytes
 
     def select(self, which: cython.int):
         """Take the tables of one system of the stack."""
         place: cython.int
         for place in range(self.count):
-            self.point(place, which)
+            if self.known[place]:
+                self.point(place, which)
 
     def point(self, place: cython.int, which: cython.int):
         """Take the tables of one system for one phase."""
@@ -208,19 +227,13 @@ class Phases:
         row: cython.double[::1] = content[which]
         first: cython.p_double = cython.address(row[0])
         phase: cython.pointer(Phase) = cython.address(self.phases[place])
-        t: cython.pointer(Tables) = cython.address(phase.tables)
-        t.block, t.step, t.moves, t.now = first, first + offsets[1], first + offsets[2], first + offsets[3]
-        t.outs, t.slope, t.bend, t.cap = first + offsets[4], first + offsets[5], first + offsets[6], first + offsets[7]
-        t.centre, t.sway, t.jolt, t.direct = (
-            first + offsets[8],
-            first + offsets[9],
-            first + offsets[10],
-            first + offsets[11],
-        )
-        t.magnitude, t.most, t.one_sided = first + offsets[12], first + offsets[13], cython.address(self.one_sided[0])
+        tables: cython.pointer(cython.p_const_double) = cython.address(phase.tables.block)
+        k: cython.int
+        for k in range(14):  # from `block` to `most`, as in `march.h`
+            tables[k] = first + offsets[k]
+        phase.tables.one_sided = cython.address(self.one_sided[0])
         phase.scale, phase.halvings = first + offsets[14], halvings[which]
         part: cython.int = 15
-        k: cython.int
         for k in range(2 * phase.events):
             if jumps[k] is not None:
                 phase.jump[k] = first + offsets[part]
@@ -242,29 +255,13 @@ class Phases:
         s: cython.pointer(Shaken) = cython.address(self.phases[place].tables.shaken)
         s.fed, s.places = places.shape[0] - 2, cython.address(places[0])
         s.shift, s.nodes = places[s.fed], places[s.fed + 1]
-        s.now, s.outs, s.magnitude, s.most = first, first + offsets[1], first + offsets[2], first + offsets[3]
-        s.limit, s.times, s.known, s.given = (
-            first + offsets[4],
-            first + offsets[5],
-            first + offsets[6],
-            first + offsets[7],
-        )
-        s.feedback, s.rows, s.speeds, s.slope = (
-            first + offsets[8],
-            first + offsets[9],
-            first + offsets[10],
-            first + offsets[11],
-        )
-        s.direct, s.moves, s.bend, s.sway = (
-            first + offsets[12],
-            first + offsets[13],
-            first + offsets[14],
-            first + offsets[15],
-        )
-        s.jolt, s.loop = first + offsets[16], first + offsets[17]
-        order: cython.int
-        for order in range(4):
-            s.swell[order] = first + offsets[18 + order]
+        tables: cython.pointer(cython.p_const_double) = cython.address(s.now)
+        others: cython.pointer(cython.p_const_double) = cython.address(s.limit)
+        k: cython.int
+        for k in range(4):  # from `now` to `most`, as in `march.h`
+            tables[k] = first + offsets[k]
+        for k in range(4, 22):  # from `limit` to the last of `swell`
+            others[k - 4] = first + offsets[k]
 
     def lead(self, place, outcome, following):
         """Say which phase follows an outcome."""
@@ -481,8 +478,12 @@ def conditions_of(rest):
     return np.column_stack((rest.row, rest.direct, rest.constant, more, rest.direct_v))
 
 
-def aligned(rows, columns):
-    """Zeros that begin where a cache line does; so do all rows, whose length is a multiple of 8."""
-    room = np.zeros(rows * columns + 8)
+def joined(parts):
+    """The parts in one array, each from a line of the cache on; and where they begin."""
+    places, rows = np.cumsum([0, *(up8(part.shape[1]) for part in parts)], dtype=np.intp), len(parts[0])
+    room = np.zeros(rows * int(places[-1]) + 8)
     first = -(room.ctypes.data // 8) % 8
-    return room[first : first + rows * columns].reshape(rows, columns)
+    content = room[first : first + rows * int(places[-1])].reshape(rows, -1)
+    for part, place in zip(parts, places[:-1], strict=True):
+        content[:, place : place + part.shape[1]] = part
+    return content, places

@@ -7,7 +7,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex.engine.field import Field
-from rockflex.engine.shaken import ShakenTables, shaken_of
+from rockflex.engine.shaken import ShakenTables
 from rockflex.engine.steps_twin import Steps
 from rockflex.engine.system import Event, up8
 from rockflex.engine.tables import AHEAD, BLOCK, Tables
@@ -95,20 +95,29 @@ class Phases(Steps):
         super().__init__(states, one_sided.size)
         self.one_sided, self.which = one_sided > 0.0, 0
         self.phases: list[PhaseLoops] = []
+        self.known: list[int] = []  # of each phase: 0 if its tables are forgotten, 2 if it has those when shaken
 
-    def add(self, tables: Tables, events: Sequence[Event], h: float) -> None:
+    def add(self, place: int, tables: Tables, events: Sequence[Event], h: float) -> int:
         """Take a phase; of each of its events it is not known yet what follows, or known to be the end, or asked."""
-        self.phases.append(PhaseLoops(tables, events, h))
+        self.phases[place : place + 1] = [PhaseLoops(tables, events, h)]
+        self.known[place : place + 1] = [1]
+        return sum(each.nbytes for each in tables[4:])
 
-    def shake_all(self, met: list[Any], which: int, h: float) -> None:
-        """Prepare the phases of a run for vertical acceleration."""
-        for place, (_, phase) in enumerate(met):
-            self.shake(place, which, shaken_of(phase, h))
+    def drop(self, place: int) -> int:
+        """Forget the tables of a phase; the memory that this frees, in bytes."""
+        size = sum(each.nbytes for each in self.phases[place].tables[4:])
+        self.known[place] = 0
+        return size
 
-    def shake(self, place: int, which: int, shaken: ShakenTables | None) -> None:
+    def knows(self, place: int, shakes: bool) -> bool:
+        """Whether there are tables of a phase, and if it shakes, those for vertical acceleration."""
+        return self.known[place] > shakes
+
+    def shake(self, place: int, which: int, shaken: ShakenTables | None) -> int:
         """Take what a phase has under vertical acceleration; None if it has none."""
         del which
-        self.phases[place].shaken = shaken
+        self.phases[place].shaken, self.known[place] = shaken, 2
+        return 0
 
     def acts(self, place: int, v: Climb) -> ShakenTables | None:
         """What a phase has under a vertical acceleration and its change; None if that does not act."""

@@ -5,6 +5,7 @@ cimport cython
 cdef class Decay:
     cdef bint parted, swings  # whether the modes are independent; whether all that move oscillate
     cdef int n, outputs
+    cdef readonly Py_ssize_t size  # bytes
     cdef double fastest  # largest rate at which a mode fades, 1/s
     cdef double[:, ::1] A
     cdef double[::1] c, constants
@@ -29,4 +30,4 @@ cdef class Fading:
     cdef readonly Decay decay  # in the last phase that was taken, with its place and system
     cdef readonly int place, which
 
-    cpdef int take(self, phase, int place, int which) except -1
+    cpdef Py_ssize_t take(self, phase, int place, int which) except -1

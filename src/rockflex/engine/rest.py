@@ -46,6 +46,7 @@ class Decay:
         self.swings = bool((still | (roots.imag != 0.0)).all())
         self.fastest = max(float(-roots.real.min(initial=0.0)), SOON)
         self.rate, self.terms, self.parts = np.zeros(self.n), np.zeros(self.n), np.zeros((3, self.n))
+        self.size = rows.nbytes + 4 * seen.nbytes + 5 * inverse.nbytes
 
     def moves(self, kind):
         """Whether a mode that is held (0), or one that grows (4), moves by more than rounding."""
@@ -154,8 +155,14 @@ class Fading:
         self.known, self.place, self.which = {}, -1, -1
 
     def take(self, phase, place, which):
-        """Take a phase, and its place; look it up, or find how motion fades in it."""
-        if (place, which) not in self.known:
-            self.known[place, which] = Decay(phase.of(which))
-        self.decay, self.place, self.which = self.known[place, which], place, which
-        return 0
+        """Take a phase, and its place; look it up, or find how motion fades in it. Returns the memory for that."""
+        of_phase, more = self.known.setdefault(place, {}), 0
+        if which not in of_phase:
+            of_phase[which] = Decay(phase.of(which))
+            more = of_phase[which].size
+        self.decay, self.place, self.which = of_phase[which], place, which
+        return more
+
+    def drop(self, place):
+        """Forget a phase, and return the memory that this frees."""
+        return sum(decay.size for decay in self.known.pop(place, {}).values())

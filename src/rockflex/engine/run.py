@@ -2,7 +2,7 @@
 
 The march stops before a sample in which a condition may fail. There the motion is expanded in a power series, whose
 polynomials give the first event to rounding; then the state jumps, and the next phase takes over the rest of the
-sample.
+sample. Declarations: `run.pxd`.
 """
 
 from math import isfinite
@@ -13,6 +13,7 @@ import numpy as np
 from rockflex._errors import InputError
 from rockflex.engine import failures
 from rockflex.engine.rest import Fading
+from rockflex.engine.shaken import shaken_of
 from rockflex.engine.system import NonlinearPhase, acceleration, array, as_long, up8
 from rockflex.engine.tableau import START
 from rockflex.engine.tables import prepared
@@ -38,6 +39,7 @@ IN_SAMPLE = cython.declare(cython.int, 20000)  # events in one sample, at most
 CANDIDATES = cython.declare(cython.int, 64)  # samples that are kept for a closer look at their peaks
 STRETCH = cython.declare(cython.int, 1 << 25)  # samples, or what counts like them, without a look at Ctrl-C: some
 PER_SAMPLE = cython.declare(cython.int, 64)  # 50 ms; divided by this and by n²/8
+MEMORY = cython.declare(cython.longlong, 64_000_000)  # bytes of tables in a run, if it does not say otherwise
 QUIET = cython.declare(cython.int, 64)  # samples without excitation before it is asked whether all is at rest
 
 
@@ -57,7 +59,9 @@ class Run:
     Attributes
     ----------
     size
-        Memory of the tables of all phases met so far, bytes.
+        Memory of the tables of phases, bytes.
+    memory
+        Its limit: beyond it the phases that were not used for longest are forgotten, and prepared again if met again.
     ended
         Whether an event without a next phase has happened; otherwise the run stands at the end of a sample.
     failure : str
@@ -68,54 +72,11 @@ class Run:
         The `work` that the run may take.
     """
 
-    system = cython.declare(object, visibility="readonly")
-    h = cython.declare(cython.double, visibility="readonly")
-    which = cython.declare(cython.int, visibility="readonly")
-    size = cython.declare(cython.longlong, visibility="readonly")
-    ended = cython.declare(cython.bint, visibility="readonly")
-    watch = cython.declare(object, visibility="public")
-    limit = cython.declare(cython.longlong, visibility="public")
-    stretch: cython.int  # work without a look at Ctrl-C
-    pause: cython.longlong  # the work at which the run looks up next
-    failure = cython.declare(str, visibility="readonly")
-    failed: cython.bint
-    reached: cython.Py_ssize_t  # samples of this call of `advance` that have passed
-    met: list  # phases met so far: keys and phases
-    places: dict  # of the phases, by their keys
-    fading: Fading
-    mirrors: list  # of the last phases, see `tables_of`
-    phases: Phases
-    now: cython.int  # place of the present phase
-    n: cython.int
-    states: cython.int  # rows of the states in tables and series, a multiple of 8
-    outputs: cython.int
-    y: cython.double[::1]  # and room, to a multiple of 8; so in `sizes` and `before`
-    one_sided: cython.double[::1]
-    peaks_: Peaks
-    high: cython.double[::1]
-    when: cython.double[::1]
-    flow: Flow
-    series: Series
-    unbounded: cython.double[::1]  # of outputs whose highest values are not known
-    sizes: cython.double[::1]  # of the states: magnitudes of the terms that they were summed from
-    workspace: cython.double[::1]
-    scratch: cython.double[:, ::1]  # the states of a march, if there is a history
-    unkept: cython.double[:, ::1]  # of one row: none are kept
-    still: cython.double[::1]  # the vertical acceleration where there is none: empty
-    shakes: cython.bint  # whether there is one
-    quiet: cython.double[::1]
-    start: cython.double[::1]  # the state at time 0, and the place of its phase
-    first: cython.int
-    before: cython.double[::1]  # the state, while the motion in another sample is expanded
-    passed: cython.Py_ssize_t  # samples, before this call of `advance`
-    end: cython.double  # time of the last event
-    journal: Journal
-    n_searched: cython.int  # samples expanded for peaks
-
     def __init__(self, system, h, state=None, key=None, which: cython.int = 0):
         if not (h > 0.0 and isfinite(h)):
             raise InputError(f"The time step must be a positive number, but {h!r} was given.")
         self.system, self.h, self.met, self.places, self.mirrors = system, h, [], {}, []
+        self.used, self.clock, self.memory = np.zeros(16, dtype=np.int64), 0, MEMORY
         self.n, self.outputs, self.states = system.layout.size, len(system.outputs), up8(system.layout.size + 2)
         self.stretch = STRETCH // (PER_SAMPLE + self.n * self.n // 8)
         one_sided = np.zeros(up8(max(1, self.outputs)))
@@ -145,10 +106,7 @@ class Run:
         self.begin()
         self.now = self.first = self.enter(self.system.start if key is None else key)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def begin(self) -> cython.void:
+    def begin(self):
         """Begin anew from the same state."""
         self.pause = min(self.limit + 1, max(self.pause - self.peaks_.work(), 0))
         if self.failed:
@@ -193,8 +151,7 @@ class Run:
     @property
     def events(self):
         """Time, key of the phase that it ended, and name of every event."""
-        found = zip(*self.journal.events, strict=True)
-        return [(t, self.met[place][0], self.met[place][1].events[e].name) for t, place, e in found]
+        return [(t, self.met[place][0], name) for t, place, name in zip(*self.journal.events, strict=True)]
 
     def tally(self, *names):
         """Numbers of events of these names."""
@@ -221,28 +178,59 @@ class Run:
         """Keys of the phases met so far, by their places."""
         return [key for key, _ in self.met]
 
-    @cython.cfunc
-    @cython.exceptval(-1)
-    def enter(self, key) -> cython.int:
+    def enter(self, key):
         """Return the place of the phase of a key."""
         failures.check_key(key)
-        if key in self.places:
-            return self.places[key]
+        place: cython.int = self.places.get(key, -1)
+        if place < 0:
+            place = self.prepare(key, len(self.met))
+        self.load(place)
+        return place
+
+    def load(self, place):
+        """Use a phase that has been met, and prepare it if it was forgotten."""
+        self.clock += 1
+        self.used[place] = self.clock
+        if not self.phases.knows(place, self.shakes):
+            with cython.gil:
+                self.renew(place)
+        return 0
+
+    def renew(self, place):
+        """Prepare a phase, or what it lacks for vertical acceleration."""
+        if not self.phases.knows(place, False):
+            self.prepare(self.met[place][0], place)
+        if self.shakes:
+            self.size += self.phases.shake(place, self.which, shaken_of(self.met[place][1], self.h))
+        return 0
+
+    def prepare(self, key, place):
+        """Prepare a phase, and return its place."""
         phase, tables = prepared(self.system, key, self.h, self.mirrors)
-        place: cython.int = len(self.met)
-        self.phases.add(tables, phase.events, self.h)
+        if self.size > self.memory:
+            self.forget()
+        self.size += self.phases.add(place, tables, phase.events, self.h)
         if isinstance(phase, NonlinearPhase):
             self.phases.drive(place, phase.field, phase.scale, phase.counted)
             self.flow.know(phase, place)
         self.phases.point(place, self.which)
-        self.met.append((key, phase))
+        self.met[place : place + 1] = [(key, phase)]
         self.places[key] = place
-        self.size += sum(each.nbytes for each in tables[4:])
+        if place == self.used.shape[0]:
+            self.used = np.concatenate((self.used, np.zeros(place, dtype=np.int64)))
         self.series.widen(len(phase.events))
         self.journal.meet(place, phase.events)
-        if self.shakes:
-            self.phases.shake_all(self.met, self.which, self.h)
         return place
+
+    def forget(self):
+        """Forget the phases that were not used for longest, all but a half of the memory that they may take."""
+        place: cython.int
+        for place in np.argsort(self.used[: len(self.met)]).tolist():
+            if place != self.now and self.phases.knows(place, False) and not self.phases.nonlinear(place):
+                self.size -= self.phases.drop(place) + self.fading.drop(place)
+                self.met[place] = self.met[place][0], None
+            if self.size <= self.memory // 2:
+                break
 
     def advance(self, a, vertical=None, history: cython.bint = False):
         """Advance over the samples of an acceleration, of which the first is that of the present time.
@@ -276,10 +264,7 @@ class Run:
         with cython.nogil:
             self.follow_all(batch, history)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(-1)
-    def follow_all(self, batch: Batch, history: cython.bint) -> cython.int:
+    def follow_all(self, batch, history):
         """Do the runs of a batch, which share the start."""
         rested: cython.bint
         outcome: cython.int
@@ -298,12 +283,7 @@ class Run:
             batch.close(outcome, self.now, end, self.h, self.high, self.when, self.y, self.journal)
         return 0
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(-1)
-    def proceed(
-        self, ground: cython.const[cython.double][::1], rise: cython.const[cython.double][::1], history: cython.bint
-    ) -> cython.int:
+    def proceed(self, ground, rise, history):
         """Advance over the samples of an acceleration that has been checked."""
         i: cython.int
         k: cython.int
@@ -313,9 +293,7 @@ class Run:
                 raise failures.broken_off()
         self.failed = True
         self.shakes = rise.shape[0] > 0
-        if self.shakes:
-            with cython.gil:
-                self.phases.shake_all(self.met, self.which, self.h)
+        self.load(self.now)
         self.peaks_.pass_by(self.passed)
         if history and not self.ended:
             if self.scratch.shape[0] <= max(last, 1):
@@ -338,22 +316,14 @@ class Run:
         """Advance without excitation over so many samples, in the same pieces as `settle`."""
         self.coast_over(min(samples, 2**62), history)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(-1)
-    def coast_over(self, samples: cython.longlong, history: cython.bint) -> cython.int:
+    def coast_over(self, samples, history):
         """Advance without excitation."""
         while samples > 0 and not self.ended:
             self.proceed(self.quiet[: min(samples, QUIET) + 1], self.still, history)
             samples -= QUIET
         return 0
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(-1)
-    def advance_over(
-        self, a: cython.const[cython.double][::1], v: cython.const[cython.double][::1], states: cython.double[:, ::1]
-    ) -> cython.int:
+    def advance_over(self, a, v, states):
         """Advance over samples, with a history if there is room for their states; return how many have passed."""
         history: cython.bint = states.shape[0] > 1
         i: cython.int = 0
@@ -385,17 +355,11 @@ class Run:
         self.search(a, v, True)
         return i
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def rise_at(self, v: cython.const[cython.double][::1], i: cython.int) -> cython.double:
+    def rise_at(self, v, i):
         """The vertical acceleration at a sample."""
         return v[i] if v.shape[0] > 0 else 0.0
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(-1)
-    def look_up(self) -> cython.int:
+    def look_up(self):
         """After a stretch of work, see whether the run must end."""
         if self.peaks_.work() >= self.pause:
             with cython.gil:
@@ -415,10 +379,7 @@ class Run:
         """
         return bool(self.settle_over(min(most, 2**62), history))
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(-1)
-    def settle_over(self, most: cython.longlong, history: cython.bint) -> cython.int:
+    def settle_over(self, most, history):
         """Advance without excitation until nothing can follow: 1, or 0 after `most` samples."""
         start: cython.Py_ssize_t = self.passed
         n_events: cython.int = -1
@@ -432,7 +393,7 @@ class Run:
                 else:
                     if self.fading.place != self.now or self.fading.which != self.which:
                         with cython.gil:
-                            self.fading.take(self.met[self.now][1], self.now, self.which)
+                            self.size += self.fading.take(self.met[self.now][1], self.now, self.which)
                     wait = self.fading.decay.time_to_rest(self.y, self.high, self.one_sided)
                 if wait == 0.0:
                     return 1
@@ -442,17 +403,7 @@ class Run:
             self.proceed(self.quiet, self.still, history)
         return 0
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(-1)
-    def traverse(
-        self,
-        i: cython.int,
-        start: cython.double,
-        end: cython.double,
-        v: tuple[cython.double, cython.double],
-        history: cython.bint,
-    ) -> cython.int:
+    def traverse(self, i, start, end, v, history):
         """Advance over a sample in which something may happen."""
         u: cython.double = self.flow.reached if self.phases.nonlinear(self.now) else 0.0  # the part that has passed
         a: cython.double
@@ -499,10 +450,7 @@ class Run:
             self.journal.keep(self.passed + i + 1, end, v[1], self.y, self.now)
         return 0
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(-1)
-    def leave(self, event: cython.int, sample: cython.double, a: cython.double, v: cython.double) -> cython.int:
+    def leave(self, event, sample, a, v):
         """Jump to the phase that follows an event."""
         outcome: cython.int = 2 * event
         chosen: cython.int = self.phases.leap(self.now, event, self.y, a, v)
@@ -531,14 +479,13 @@ class Run:
         if following == ENDS:
             self.ended = True
         else:
+            self.load(following)
             self.now = following
         return 0
 
     # What needs the interpreter's lock stands apart: a function with Python objects of its own takes it when it ends.
 
-    @cython.cfunc
-    @cython.exceptval(-1)
-    def meet(self, event: cython.int, outcome: cython.int) -> cython.int:
+    def meet(self, event, outcome):
         """Return the place of the phase that follows an outcome for the first time."""
         left = self.met[self.now][1].events[event]
         other = left.other if left.rest is None else left.rest.target
@@ -546,28 +493,22 @@ class Run:
         self.phases.lead(self.now, outcome, following)
         return following
 
-    @cython.cfunc
-    def refuse(self, event: cython.int, sample: cython.double):
+    def refuse(self, event, sample):
         """Raise the error of events that accumulate."""
         self.failure = "accumulation"
         raise failures.accumulation(*self.met[self.now], event, sample * self.h)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def take(self, outcome: cython.int) -> cython.void:
+    def take(self, outcome):
         """Multiply the state by the matrix of an outcome."""
         if self.phases.jump(self.now, outcome, False, self.y, self.workspace):
             self.phases.jump(self.now, outcome, True, self.sizes, self.workspace)
 
-    @cython.cfunc
-    def stall(self, sample: cython.double):
+    def stall(self, sample):
         """Raise the error of a motion for which no step is short enough."""
         self.failure = "stall"
         raise failures.stall(*self.met[self.now], sample * self.h)
 
-    @cython.cfunc
-    def ask(self, event: cython.int, a: cython.double, v: cython.double):
+    def ask(self, event, a, v):
         """Let a function say what follows an event."""
         y, sizes = np.asarray(self.y)[: self.n], np.asarray(self.sizes)[: self.n]
         y[:], target = self.met[self.now][1].events[event].ask(y, a, v)
@@ -577,12 +518,7 @@ class Run:
         else:
             self.now = self.enter(target)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(-1)
-    def search(
-        self, a: cython.const[cython.double][::1], v: cython.const[cython.double][::1], finish: cython.bint
-    ) -> cython.int:
+    def search(self, a, v, finish):
         """Search the samples that may have higher peaks: at the end, or if there is no room for more."""
         r: cython.int
         i: cython.int
@@ -592,6 +528,7 @@ class Run:
         self.before[:] = self.y
         for r in range(kept):
             i = self.series.candidate(r)
+            self.load(self.series.phase_of(r))
             self.n_searched += 1
             self.look_up()
             self.series.search(r, a[i], a[i + 1], (self.rise_at(v, i), self.rise_at(v, i + 1)), self.passed + i)

@@ -7,6 +7,7 @@ from rockflex.engine.system import Key, System
 class Run:
     watch: Callable[[], object] | None
     limit: int
+    memory: int
 
     def __init__(
         self, system: System, h: float, state: Array | None = None, key: Key | None = None, which: int = 0

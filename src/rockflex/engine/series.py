@@ -169,6 +169,10 @@ class Series:
         """The number of a sample that may have higher peaks."""
         return cython.cast(cython.int, self.peaks.candidates[r, 1])
 
+    def phase_of(self, r):
+        """The place of its phase."""
+        return cython.cast(cython.int, self.peaks.candidates[r, 0])
+
     def search(self, r, start, end, v, sample):
         """Raise the peaks to those within such a sample; the state is changed."""
         u: cython.double = 0.0
@@ -176,7 +180,7 @@ class Series:
         rows: cython.double[:, ::1] = self.peaks.candidates
         self.y[: self.n] = rows[r, 2 : 2 + self.n]
         while u < 1.0:
-            part = self.expand(cython.cast(cython.int, rows[r, 0]), start, end, v, u)
+            part = self.expand(self.phase_of(r), start, end, v, u)
             self.raise_peaks(1.0, sample + u, rows[r, 2 + self.n :])
             self.skip()
             u = u + part if part < 1.0 - u else 1.0

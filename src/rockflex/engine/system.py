@@ -4,6 +4,7 @@ from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 from dataclasses import field as initially
 from inspect import Parameter, signature
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -401,17 +402,23 @@ def up8(count: int) -> int:
 
 def stacked(name: str, values: Any, shape: tuple[int, ...], count: int, *, finite: bool = True) -> Array:
     """Return a copy as `array` does, with a first axis for the systems of a stack, for all of which it may be given."""
+    if type(values) is float and not shape and isfinite(values):
+        return np.full(count, values)
     if np.ndim(values) == len(shape) + 1:
         return array(name, values, (count, *shape), finite=finite)
-    return np.repeat(array(name, values, shape, finite=finite)[None], count, axis=0)
+    found = array(name, values, shape, finite=finite)[None]
+    return found if count == 1 else np.repeat(found, count, axis=0)
 
 
 def array(name: str, values: Any, shape: tuple[int, ...], *, finite: bool = True) -> Array:
     """Return a copy in double precision, and refuse what has another shape or is not finite."""
-    try:
-        found = np.array(values, dtype=complex if np.iscomplexobj(values) else float).astype(float, casting="safe")
-    except (TypeError, ValueError) as error:
-        raise InputError(f"{name} must consist of real numbers.") from error
+    if type(values) is np.ndarray and values.dtype == float:
+        found = values.copy()
+    else:
+        try:
+            found = np.array(values, dtype=complex if np.iscomplexobj(values) else float).astype(float, casting="safe")
+        except (TypeError, ValueError) as error:
+            raise InputError(f"{name} must consist of real numbers.") from error
     if found.shape != shape:
         raise InputError(f"{name} must have the shape {shape}, but {found.shape} was given.")
     if finite and not np.isfinite(found).all():

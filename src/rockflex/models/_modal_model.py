@@ -32,6 +32,9 @@ from rockflex.models._phase import Arrow, Border, Key
 JAMMED = 1e-12  # relative: determinant below which the base has no inertia against a motion
 
 
+MOST_PHASES = 1000  # whose equations of motion are kept
+
+
 class ModalModel(Value):
     """N modes on a base that may uplift: the equations of motion in each phase, as arrows and as rows.
 
@@ -142,6 +145,8 @@ class ModalModel(Value):
         """Return the equations of motion of a linear phase (Eq. 15 or 23)."""
         known = self._arrows.get(key)
         if known is None:
+            if len(self._arrows) >= MOST_PHASES:
+                self._arrows.clear()
             known = self._arrows[key] = self._new_arrow(key)
         return known
 
@@ -218,6 +223,8 @@ class ModalModel(Value):
         """Return D'' of every mode and q'' of the base, θ'' first, in a phase: read-only rows, shape (N + b, C)."""
         known = self._accelerations.get(key)
         if known is None:
+            if len(self._accelerations) >= MOST_PHASES:
+                self._accelerations.clear()
             known = self._accelerations[key] = self._new_accelerations(key)
             known.setflags(write=False)
         return known

@@ -41,6 +41,7 @@ SHARE = 0.5  # of the estimated time of a sample that one takes here
 STEP = 12.0  # samples that a step of a nonlinear model counts like
 STACK = 64  # systems in one stack, at most
 MEMORY = 64_000_000  # bytes of the tables of one stack
+MANY = 10_000  # phases that a solver has met, from which on it is given up: their keys take memory, too
 COUNTED = ("uplift", "impact")
 OUTCOMES = np.array(  # for fixed times, and until settled
     [[Status.ENDED, Status.OVERTURNED, Status.SETTLED], [Status.UNSETTLED, Status.OVERTURNED, Status.SETTLED]]
@@ -70,7 +71,7 @@ class Stack:
     @property
     def size(self) -> int:
         """Memory of the tables of all solvers that are not in use, bytes."""
-        return sum(solver.size for solvers in self._solvers.values() for solver in solvers)
+        return sum(solver.size for solvers in list(self._solvers.values()) for solver in list(solvers))
 
     def taken(self, dt: float) -> Run:
         """Return a solver that no other thread uses."""
@@ -82,7 +83,8 @@ class Stack:
 
     def returned(self, solver: Run) -> None:
         """Keep a solver for the next run."""
-        self._solvers[solver.h].append(solver)
+        if solver.counts[0] < MANY:
+            self._solvers[solver.h].append(solver)
 
 
 class Engine:
@@ -279,6 +281,8 @@ class Engine:
 
     def _of_model(self, keys: Sequence[Key], places: Integers, states: Array, *, history: bool = False) -> Array:
         """The states of the model, from those of the engine."""
+        known, places = np.unique(places, return_inverse=True)
+        keys = [keys[place] for place in known.tolist()]
         if isinstance(self.model, NonlinearModel):
             return with_marks(self.model, keys, places, states)
         return states if self.base is None else self.base.states_of_model(keys, places, states, history=history)

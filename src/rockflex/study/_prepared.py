@@ -18,7 +18,7 @@ from rockflex.study._case import Case
 from rockflex.study._run_options import RunOptions
 
 MOST = 32  # cases kept
-LARGEST, TOGETHER = 64_000_000, 256_000_000  # bytes of the tables of a case, and of all
+LARGE, TOGETHER = 8_000_000, 256_000_000  # bytes of the tables of a case that matter, and of all
 FIXED = (VVELSimplified, VVELComplete, Restitution, SidedRestitution)  # impact laws that cannot change
 
 _kept: OrderedDict[Hashable, tuple[Case, RockingProperties, RunOptions]] = OrderedDict()
@@ -36,8 +36,8 @@ def run_prepared(
     """Run a motion on a structure, with the case of an earlier run if everything but the motion is the same.
 
     The structure and the ground are the same only if they are the same objects, which cannot change; a user-defined
-    impact law can. A case is kept only for the time step of its run, and not if its run failed or its tables are
-    expensive, so that no run depends on those before it.
+    impact law can. A case is kept only for the time step of its run, and not if its run failed, so that no run depends
+    on those before it.
 
     Raises
     ------
@@ -49,12 +49,10 @@ def run_prepared(
     rest = (options.bouc_wen, options.free_vibration, options.work_limit, history, motion.dt)
     key = (id(properties), id(options.ground), id(options.initial), model, options.impact, *rest)
     keeps = options.impact is None or type(options.impact) in FIXED
-    case = _known(key) if keeps else None
-    if case is not None:
-        return case.run(motion)
-    case = options.case(model, properties, history=history, floors=history)
+    known = _known(key) if keeps else None
+    case = known or options.case(model, properties, history=history, floors=history)
     response = case.run(motion)
-    if keeps and case.engine.size <= LARGEST:
+    if keeps and (known is None or case.engine.size > LARGE):
         with _lock:
             # What a key identifies is kept with it, so that no later object can have its place in memory.
             _kept[key] = case, properties, options
