@@ -1,6 +1,7 @@
-"""``rockflex motion``: what is in a record or a suite."""
+"""`rockflex motion` and `rockflex survey`, and motions by name."""
 
 import csv
+import hashlib
 import json
 
 import numpy as np
@@ -8,7 +9,10 @@ import pytest
 from typer.testing import CliRunner
 
 import rockflex as rf
+from record_samples import at2, cosmos, knet
+from rockflex import InputError, RecordWarning, load_suite, read_motion
 from rockflex.cli import app
+from rockflex.cli._find_motions import embedded_suites, find_motions
 
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]
 
@@ -38,7 +42,7 @@ def test_measures_are_those_of_the_motion():
     assert found["options"] == {"periods": [0.5, 2.0], "damping_ratio": 0.02}
 
 
-def at2(folder, name, component, peak):
+def record_at2(folder, name, component, peak):
     """A record file of four samples."""
     text = f"Event, 1/1/2001, Station, {component}\nUNITS OF G\nNPTS= 4, DT= .1\n0 {peak} -.2 0\n"
     (folder / name).write_text(text)
@@ -46,7 +50,7 @@ def at2(folder, name, component, peak):
 
 
 def test_vertical_component(tmp_path):
-    along, upwards = at2(tmp_path, "A-000.AT2", "0", 0.4), at2(tmp_path, "A-UP.AT2", "UP", 0.3)
+    along, upwards = record_at2(tmp_path, "A-000.AT2", "0", 0.4), record_at2(tmp_path, "A-UP.AT2", "UP", 0.3)
     motion = rf.read_motion(along, vertical=upwards)
     for options in ([along, "--vertical", upwards], [tmp_path, "--vertical", "pair"]):
         result = invoke(*options, "--period", 0.5, "--damping", 0.02, "--json", "--out", tmp_path / "out", "--force")
@@ -134,3 +138,252 @@ def test_bad_input(arguments, said, tmp_path):
     assert result.stdout == ""
     assert said in result.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+ACCELERATION = 0.1 * np.sin(np.arange(50))
+
+
+@pytest.fixture
+def record(tmp_path):
+    path = tmp_path / "record.csv"
+    np.savetxt(path, ACCELERATION)
+    return path
+
+
+def names(found):
+    return [item.motion.name for item in found]
+
+
+def test_suites_records_and_files_in_order(record):
+    found = find_motions(["fema-p695-far-field/FF-12-a", "el-centro-1940", str(record)], "g", 0.01)
+    assert names(found) == ["FF-12-a", "EL-CENTRO-1940-NS", "record"]
+    assert [item.origin for item in found] == ["fema-p695-far-field", "el-centro-1940", str(record)]
+    np.testing.assert_allclose(found[2].motion.acceleration, 9.81 * ACCELERATION, rtol=1e-15)
+    assert found[2].motion.dt == 0.01
+
+
+def test_whole_suite():
+    assert names(find_motions(["fema-p695-near-field-pulse"])) == list(load_suite("fema-p695-near-field-pulse").names)
+
+
+def test_directory(tmp_path):
+    for name, factor in (("b", 1.0), ("a", 2.0)):
+        np.savetxt(tmp_path / f"{name}.txt", np.column_stack((0.02 * np.arange(50), factor * ACCELERATION)))
+    assert names(find_motions([str(tmp_path)], units="m/s2")) == ["a", "b"]
+
+
+def test_named_twice_is_taken_once():
+    assert names(find_motions(["el-centro-1940", "el-centro-1940/EL-CENTRO-1940-NS"])) == ["EL-CENTRO-1940-NS"]
+
+
+def test_checksum_is_of_the_samples():
+    found = find_motions(["el-centro-1940"])[0]
+    samples = found.motion.acceleration.astype("<f8").tobytes()
+    assert found.describe()["sha256"] == hashlib.sha256(samples).hexdigest()
+    assert found.describe()["pga"] == found.motion.pga
+
+
+def test_embedded_suites():
+    rows = embedded_suites()
+    assert rows[0] == {"suite": "fema-p695-far-field", "motions": 44, "first": "FF-1-a", "last": "FF-22-b"}
+    assert [row["motions"] for row in rows] == [44, 28, 28, 1]
+
+
+def test_two_motions_of_one_name(tmp_path, record):
+    other = tmp_path / "other"
+    other.mkdir()
+    np.savetxt(other / "record.csv", 2 * ACCELERATION)
+    with pytest.raises(InputError, match=r"hold different motions, both named 'record'\. Rename one of the files\."):
+        find_motions([str(record), str(other / "record.csv")], "g", 0.01)
+
+
+def test_unknown_names():
+    with pytest.raises(
+        InputError, match=r"'el-centro' is neither a suite \(fema.*\), nor a record in one.*el-centro-1940\?"
+    ):
+        find_motions(["el-centro"])
+    with pytest.raises(InputError, match=r"No motion of the suite 'el-centro-1940' is named 'EW'"):
+        find_motions(["el-centro-1940/EW"])
+
+
+def test_nothing_given():
+    with pytest.raises(InputError, match=r"No ground motion was given\. Name a suite \(fema-p695-far-field, "):
+        find_motions([])
+
+
+def test_structure_among_motions():
+    with pytest.raises(InputError, match=r"other\.toml is a structure file, and one structure is simulated at a time"):
+        find_motions(["el-centro-1940", "other.toml"])
+
+
+def test_units_without_a_file():
+    with pytest.raises(InputError, match="--units, --dt and --on-error are for record files, but no file was given"):
+        find_motions(["el-centro-1940"], units="g")
+
+
+def test_missing_unit_and_step_name_the_options(record):
+    for units, dt in ((None, 0.01), ("g", None)):
+        with pytest.raises(InputError, match=r"On the command line these are --units and --dt\.$"):
+            find_motions([str(record)], units, dt)
+
+
+def test_other_faults_of_a_file_are_told_as_they_are(tmp_path):
+    for name in ("empty.csv", "units=g, dt=0.01.csv"):
+        path = tmp_path / name
+        path.touch()
+        with pytest.raises(InputError, match=r"\.csv is empty\.$"):
+            find_motions([str(path)])
+
+
+def test_options_are_named_where_one_of_several_files_lacks_its_unit(tmp_path, record):
+    (tmp_path / "empty.csv").touch()
+    told = r"2 of 2 files .*is empty\. .*unit of its acceleration.* On the command line these are --units and --dt\.$"
+    with pytest.raises(InputError, match=told) as caught:
+        find_motions([str(tmp_path / "empty.csv"), str(record)], dt=0.01)
+    assert caught.value.field == "units"
+
+
+def plain_at2(folder, name, component):
+    """A record file of four samples."""
+    file = folder / name
+    file.write_text(f"Event, 1/1/2001, Station, {component}\nUNITS OF G\nNPTS= 4, DT= .1\n0 .3 -.2 0\n")
+    return str(file)
+
+
+def test_vertical_components_of_a_list_of_files_are_left_out(tmp_path):
+    files = [plain_at2(tmp_path, name, name[2:-4]) for name in ("a-000.at2", "a-090.at2", "a-UP.at2")]
+    for given in (files, [str(tmp_path)]):
+        with pytest.warns(RecordWarning, match=r"^Left out: 1 vertical component, a-UP\.at2\.$"):
+            assert names(find_motions(given)) == ["a-000", "a-090"]
+    with pytest.raises(InputError, match=r"No horizontal component was given, only 1 vertical component: a-UP\.at2\."):
+        find_motions(files[2:])
+
+
+def test_all_files_that_cannot_be_read_are_told(tmp_path):
+    bad = [tmp_path / name for name in ("b.at2", "c.at2")]
+    for file in bad:
+        file.write_text("no record")
+    files = [plain_at2(tmp_path, "a.at2", "90"), *map(str, bad)]
+    with pytest.raises(
+        InputError, match=r"2 of 3 files .*b\.at2: no .*c\.at2: no .*--on-error skip continues with the other files"
+    ) as caught:
+        find_motions(files)
+    assert "on_error" not in str(caught.value)
+    with pytest.warns(RecordWarning, match=r"^Left out: 2 of 3 files cannot be read\."):
+        assert names(find_motions(files, on_error="skip")) == ["a"]
+    with pytest.raises(InputError, match="--units, --dt and --on-error are for record files"):
+        find_motions(["el-centro-1940"], on_error="skip")
+
+
+def test_a_vertical_file_belongs_to_one_motion(tmp_path):
+    along, upwards = plain_at2(tmp_path, "a-000.at2", "0"), plain_at2(tmp_path, "a-UP.at2", "UP")
+    (found,) = find_motions([along], vertical=upwards)
+    assert found.motion == read_motion(along, vertical=upwards)
+    assert found.describe()["pva"] == found.motion.pva
+    assert "pva" not in find_motions([along])[0].describe()
+    other = plain_at2(tmp_path, "a-090.at2", "90")
+    with pytest.raises(
+        InputError, match=r"a-UP\.at2 is the vertical component of one motion, but 2 were given\. Name one"
+    ):
+        find_motions([along, other], vertical=upwards)
+    paired = find_motions([along, other, upwards], vertical="pair")
+    assert [item.motion.vertical.tolist() for item in paired] == [found.motion.vertical.tolist()] * 2
+
+
+def test_a_suite_with_a_vertical_file_of_columns(tmp_path):
+    np.savetxt(tmp_path / "up.txt", ACCELERATION)
+    with pytest.warns(
+        RecordWarning, match=r"The motion 'EL-CENTRO-1940-NS' lasts 31\.18 s, and its vertical component 0"
+    ):
+        (found,) = find_motions(["el-centro-1940"], "m/s2", 0.02, vertical=str(tmp_path / "up.txt"))
+    assert found.motion.vertical[:50].tolist() == ACCELERATION.tolist()
+    with pytest.raises(InputError, match=r"On the command line these are --units and --dt\.$"):
+        find_motions(["el-centro-1940"], "m/s2", vertical=str(tmp_path / "up.txt"))
+
+
+def test_motions_that_differ_only_vertically_are_two(tmp_path):
+    for folder, peak in (("x", 1.0), ("y", 2.0)):
+        (tmp_path / folder).mkdir()
+        text = f"time (s),acc (m/s2),vertical (m/s2)\n0,0,0\n1,1,{peak}\n2,0,0\n"
+        (tmp_path / folder / "a.csv").write_text(text)
+    with pytest.raises(InputError, match="hold different motions, both named 'a'"):
+        find_motions([str(tmp_path / "x"), str(tmp_path / "y")])
+
+
+def invoke_survey(*arguments, command="survey", columns=160):
+    return CliRunner().invoke(app, [command, *map(str, arguments)], env={"COLUMNS": str(columns)})
+
+
+@pytest.fixture
+def folder(tmp_path):
+    folder = tmp_path / "mixed"
+    folder.mkdir()
+    for name, component in (("RSN7_A090", "90"), ("RSN7_A180", "180"), ("RSN7_A-UP", "UP")):
+        (folder / f"{name}.AT2").write_text(at2(component))
+    (folder / "table.csv").write_text("RSN,Magnitude,Rrup (km),Vs30 (m/s)\n7,6.5,12.5,360\n")
+    (folder / "MYG002.EW").write_text(knet("E-W"))
+    (folder / "notes.txt").write_text("Downloaded in spring\n")
+    return folder
+
+
+def test_table_and_reasons(folder):
+    result = invoke_survey(folder)
+    assert result.exit_code == 0
+    rows = [line.split() for line in result.stdout.splitlines()]
+    assert ["RSN7_A090.AT2", "AT2", "Some", "Station", "90", "yes", "0.1", "3", "0.1000", "6.5", "12.5", "360"] in rows
+    assert ["MYG002.EW", "K-NET", "MYG002", "E-W", "yes", "0.1", "10", "0.0001551", "5.7", "-", "-"] in rows
+    assert (
+        "3 taken, 3 left out; 2 recordings: 1 with a horizontal pair, 1 with a vertical component, 1 with both"
+        in result.stdout
+    )
+    assert "  RSN7_A-UP.AT2: vertical component\n" in result.stdout
+    assert "  table.csv: a table about the records\n" in result.stdout
+    assert "  notes.txt: notes.txt holds no numbers" in result.stdout
+    paired = invoke_survey(folder, "--vertical", "pair").stdout
+    assert "4 taken, 2 left out" in paired
+    assert "Taken, but:\n  MYG002.EW: without a vertical component\n" in paired
+
+
+def test_many_files_of_one_reason_are_counted(tmp_path):
+    for k in range(9):
+        (tmp_path / f"note-{k}.md").write_text("nothing")
+    (tmp_path / "A090.AT2").write_text(at2("90"))
+    said = invoke_survey(tmp_path).stdout
+    assert "note-4.md, note-5.md and 3 more: no record, by suffix and beginning\n" in said
+
+
+def test_json(folder):
+    found = json.loads(invoke_survey(folder, "--json").stdout)
+    assert len(found["entries"]) == 6
+    entry = next(each for each in found["entries"] if each["file"] == "RSN7_A180.AT2")
+    assert (entry["taken"], entry["magnitude"], entry["pga"]) == (True, 6.5, 0.1 * 9.81)
+    assert found["stations"] == [
+        {"name": "NIED MYG002 2006-01-18 23:25", "horizontal": ["MYG002-EW"], "vertical": None},
+        {"name": "RSN7", "horizontal": ["RSN7_A090", "RSN7_A180"], "vertical": "RSN7_A-UP"},
+    ]
+
+
+def test_files_and_units(folder):
+    (folder / "lab.txt").write_text("0\n0.1\n0\n")
+    result = invoke_survey(folder / "lab.txt", folder / "RSN7_A090.AT2", "--units", "g", "--dt", "0.1")
+    assert "2 taken, 0 left out" in result.stdout
+    both = invoke_survey(folder, folder / "lab.txt")
+    assert both.exit_code == 2
+    assert "One folder or several files are expected, but" in both.stderr
+    assert "Survey one folder at a time." in both.stderr
+    assert invoke_survey(folder / "none").exit_code == 2
+
+
+def test_motion_reads_what_survey_takes(folder):
+    (folder / "notes.txt").unlink()
+    (folder / "CE.v2c").write_text(cosmos(90) + cosmos(360) + cosmos(400))
+    result = invoke_survey(folder, "--json", "--vertical", "pair", command="motion")
+    found = {row["name"]: row for row in json.loads(result.stdout)["motions"]}
+    assert set(found) == {"CE-090", "CE-360", "MYG002-EW", "RSN7_A090", "RSN7_A180"}
+    assert found["RSN7_A090"]["metadata"]["distance_km"] == 12.5
+    assert found["CE-360"]["metadata"]["vertical_source"] == "CE-UP"
+    one = invoke_survey(folder / "RSN7_A090.AT2", folder / "table.csv", "--json", command="motion")
+    assert json.loads(one.stdout)["motions"][0]["metadata"]["vs30"] == 360
+    with pytest.warns(rf.RecordWarning, match="Without a vertical component: 1 of 5 records, MYG002-EW"):
+        suite = rf.read_suite(folder, vertical="pair")
+    assert suite["CE-090"].pva == found["CE-090"]["pva"]

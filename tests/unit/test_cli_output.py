@@ -1,17 +1,25 @@
-"""JSON, and results as files: whole or not at all."""
+"""The command line: its entry, its help, its tables and its files."""
 
 import json
 import math
 import os
+import re
+import subprocess
+import sys
+import tomllib
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+import rockflex
 from rockflex import InputError
-from rockflex.cli import _console
+from rockflex.cli import _console, app
 from rockflex.cli._output import check_folder, file_stems, staged, to_json, versions
+from rockflex.progress import _lines
 
 
 def contents(folder):
@@ -179,3 +187,167 @@ def test_numbers_in_tables(value, text):
 @pytest.mark.parametrize(("largest", "unit"), [(9.99e6, "kN m"), (1e7, "MN m")])
 def test_unit_of_moments(largest, unit):
     assert _console.moment_unit(largest)[0] == unit
+
+
+ROOT = Path(__file__).parents[2]
+HEAVY = ("matplotlib", "numba", "numpy", "pandas", "scipy")
+
+
+def python(*arguments, **variables):
+    environment = {**os.environ, "COLUMNS": "80", **variables}
+    return subprocess.run(
+        [sys.executable, *arguments], capture_output=True, text=True, encoding="utf-8", env=environment, check=False
+    )
+
+
+HELPS = [
+    ["--help"],
+    ["run", "--help"],
+    ["modes", "-h"],
+    ["motion", "-h"],
+    ["cloud", "-h"],
+    ["figures", "-h"],
+    ["reproduce", "-h"],
+    ["--version"],
+]
+
+
+@pytest.mark.parametrize("arguments", HELPS)
+def test_help_imports_nothing_heavy(arguments):
+    code = f"""
+import sys
+from rockflex.cli import main
+sys.argv = ["rockflex", *{arguments!r}]
+try:
+    main()
+except SystemExit as end:
+    assert not end.code
+print("\\nimported:", *[name for name in {HEAVY!r} if name in sys.modules])
+"""
+    done = python("-c", code)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[-1] == "imported:"
+
+
+def test_module_and_version():
+    done = python("-m", "rockflex", "--version")
+    assert done.stdout == f"rockflex {rockflex.__version__}\n"
+    assert done.returncode == 0
+
+
+def test_entry_point_is_main():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    assert project["scripts"]["rockflex"] == "rockflex.cli:main"
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        ([], ["run", "modes", "motion", "Examples", "rockflex modes structure.toml", "Exit codes"]),
+        (["run"], ["--free-vibration", "--strict", "Examples", "rockflex run structure.toml el-centro-1940"]),
+        (["run"], ["--impact", "--restitution", "--yield-displacement", "(Eqs. 37-38)", "--friction 0.5"]),
+        (["run"], ["2DOF-C-SI", "1DOF-fixed-BW", "rigid-C", "--initial-rotation"]),
+        (["modes"], ["--modes", "--stiffness-ratio", "Examples", "rockflex modes structure.toml --modes 3 --json"]),
+        (["motion"], ["--period", "Examples", "rockflex motion record.csv --units g --dt 0.01 --json"]),
+    ],
+)
+def test_help_explains_and_gives_examples(command, words):
+    result = CliRunner().invoke(app, [*command, "--help"], env={"COLUMNS": "100", "TERMINAL_WIDTH": "100"})
+    assert result.exit_code == 0
+    for word in words:
+        assert word in result.stdout
+
+
+def test_input_error_is_one_paragraph_without_traceback():
+    done = python("-m", "rockflex", "modes", "nowhere.toml")
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.startswith("Error: The structure file nowhere.toml does not exist (working directory: ")
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_piped_output_has_no_escape_codes_and_no_bar(tmp_path):
+    done = python("-m", "rockflex", "run", str(ROOT / "examples/structure_1.toml"), "el-centro-1940")
+    assert done.returncode == 0
+    assert "\x1b" not in done.stdout
+    assert done.stderr == ""
+    assert max(map(len, done.stdout.splitlines())) <= 80
+
+
+def test_terminal_without_greek_letters():
+    done = python("-m", "rockflex", "modes", str(ROOT / "examples/structure_1.toml"), PYTHONIOENCODING="ascii")
+    assert done.returncode == 0
+    assert "Total mass with the base" in done.stdout
+    assert done.stdout.isascii()
+
+
+STUDY = """
+study = "cloud"
+name = "towers"
+models = ["2DOF-S"]
+scales = [0.5, 1.0]
+runs_per_chunk = 4
+records = {suites = ["fema-p695-far-field"], include = ["FF-1*"]}
+
+[[structures]]
+[structures.frame]
+n_stories = 5
+story_height = 3.0
+story_mass = 40e3
+base_mass = 40e3
+stiffness_ratio = inf
+period = 1.0
+aspect_ratio = 10
+damping_ratio = 0.02
+"""
+LINE = re.compile(r"^(.*): (\d+) of (\d+) \(\d+ %\), [\d.]+ s elapsed(?:, about [\d.]+ s left)?(?:, [\d.]+ rows/s)?$")
+
+
+@pytest.fixture
+def study(tmp_path):
+    file = tmp_path / "study.toml"
+    file.write_text(STUDY, "utf-8")
+    return file
+
+
+@pytest.fixture
+def impatient(monkeypatch):
+    """Lines that wait for a tenth more, but not for half a minute."""
+    monkeypatch.setattr(_lines, "SOON", 0.0)
+
+
+def lines_of(*arguments: object) -> list[re.Match[str]]:
+    """The lines of progress that a command writes to stderr."""
+    done = CliRunner().invoke(app, [str(each) for each in arguments])
+    assert done.exit_code == 0, done.output
+    assert "\x1b" not in done.stderr
+    assert not any(map(LINE.match, done.stdout.splitlines()))
+    return list(filter(None, map(LINE.match, done.stderr.splitlines())))
+
+
+def test_a_study_writes_a_line_for_each_tenth(study, tmp_path, impatient):
+    lines = lines_of("cloud", study, "--out", tmp_path / "out")
+    done = [int(line[2]) for line in lines]
+    assert {line[1] for line in lines} == {"towers"}
+    assert {int(line[3]) for line in lines} == {11}
+    assert done == sorted(set(done))
+    assert len(done) <= 11
+    assert all(later - sooner > 1 for sooner, later in pairwise(done))
+    assert "left" in lines[0][0]
+    assert "rows/s" in lines[0][0]
+
+
+def test_a_share_of_a_study_does_so_too(study, tmp_path, impatient):
+    assert {int(line[3]) for line in lines_of("cloud", study, "--out", tmp_path / "out", "--share", "1/2")} == {6}
+
+
+def test_many_runs_and_the_paper_do_so_too(tmp_path, impatient):
+    lines = lines_of("run", ROOT / "examples" / "wall.toml", "fema-p695-far-field", "--model", "2DOF-S,MDOF-S")
+    assert {(line[1], int(line[3])) for line in lines} == {("Simulating", 88)}
+    lines = lines_of("reproduce", "figure-12", "--out", tmp_path / "paper")
+    assert {line[1] for line in lines} <= {"Computing", "Drawing"}
+    assert lines
+
+
+def test_what_is_short_writes_none(study, tmp_path):
+    assert lines_of("cloud", study, "--out", tmp_path / "out") == []

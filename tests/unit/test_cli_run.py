@@ -1,8 +1,9 @@
-"""``rockflex run``: what is printed and written agrees with the library."""
+"""`rockflex run`: its tables, files and report."""
 
 import csv
 import io
 import json
+import sys
 from itertools import product
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.cli import _run_output, _simulations, app
+from rockflex.cli import _batch, _run_results, app
 from rockflex.cli._console import Styled, grid, number
 from rockflex.response import PEAKS
 from rockflex.study import Case
@@ -109,7 +110,7 @@ def test_many_runs_are_those_done_one_by_one(monkeypatch, workers):
         *workers,
     ]
     many = document(*arguments)["runs"]
-    monkeypatch.setattr(_simulations, "FEW", 10**6)
+    monkeypatch.setattr(_batch, "MAX_TIMED_RUNS", 10**6)
     few = document(*arguments)["runs"]
     assert len(many) == len(few) == 112
     assert {row.pop("run_time") for row in many} == {None}
@@ -289,7 +290,7 @@ def test_nothing_is_written_when_a_figure_fails(tmp_path, monkeypatch):
 
 def test_full_folder_is_refused_before_anything_runs(tmp_path, monkeypatch):
     (tmp_path / "notes.txt").touch()
-    monkeypatch.setattr(_simulations, "perform", lambda _: pytest.fail("must not run"))
+    monkeypatch.setattr(_batch, "run_batch", lambda _: pytest.fail("must not run"))
     result = invoke(STRUCTURE, "el-centro-1940", "--out", tmp_path)
     assert result.exit_code == 2
     assert "is not empty. Give another one, or --force" in result.stderr
@@ -395,7 +396,7 @@ def test_bad_usage():
 
 def test_units_cover_every_number_of_a_run():
     dimensionless = {"scale", "n_uplifts", "n_impacts", "tendon_utilisation", "balance_ratio"}
-    named = {name.removesuffix("*") for name in _run_output.UNITS}
+    named = {name.removesuffix("*") for name in _run_results.UNITS}
     row = document(STRUCTURE, "el-centro-1940", "--model", "fixed")["runs"][0]
     for name, value in row.items():
         if isinstance(value, int | float) and not isinstance(value, bool) and name not in dimensionless:
@@ -498,3 +499,81 @@ def test_a_run_that_fails_has_no_forces(fused, monkeypatch):
     result = invoke(fused, "el-centro-1940", "--model", "2DOF-S,MDOF-S", "--scale", 2)
     rows = [line.split() for line in result.stdout.splitlines()]
     assert ["EL-CENTRO-1940-NS", "2", "2DOF-S", "-", "-"] in rows
+
+
+RUN = ["run", *FLAGS, "el-centro-1940"]
+
+
+def invoke_report(*arguments):
+    return CliRunner().invoke(app, [*RUN, *map(str, arguments)], env={"COLUMNS": "200"})
+
+
+def refused(words, *arguments):
+    result = invoke_report(*arguments)
+    assert result.exit_code == 2
+    assert words in " ".join(result.stderr.split())
+
+
+def test_the_page_has_the_peaks_of_the_runs(tmp_path, monkeypatch):
+    page = tmp_path / "new" / "run.html"
+    arguments = ["--scale", "1.5", "--model", "2DOF-S,fixed", "--friction", "0.4", "--report", str(page)]
+    monkeypatch.setattr(sys, "argv", ["rockflex", *RUN, *arguments])
+    result = invoke_report(*arguments)
+    assert result.exit_code == 0, result.output
+    assert f"Written to {page}" in result.stderr
+    text = page.read_text("utf-8")
+    motion = rf.load_suite("el-centro-1940")[0].scaled(1.5)
+    for model in ("2DOF-S", "fixed"):
+        response = rf.simulate(make_frame(), motion, model)
+        assert f'data-of="max_base_moment" data-value="{response.max_base_moment}"' in text
+        assert f'data-of="required_friction" data-value="{response.required_friction_excluding_impacts()}"' in text
+    assert "<title>5-story frame under EL-CENTRO-1940-NS × 1.5</title>" in text
+    assert "Command: rockflex run --stories 5" in text
+    assert "≤ 0.4" in text or "&gt; 0.4" in text
+
+
+def test_a_page_that_cannot_be_written_does_not_cost_the_results(tmp_path):
+    (tmp_path / "file").write_text("no folder")
+    result = invoke_report("--model", "2DOF-S", "--report", tmp_path / "file" / "run.html")
+    assert result.exit_code == 2
+    assert "EL-CENTRO-1940-NS" in result.stdout
+    assert "Cannot write to" in result.stderr
+
+
+def test_with_out_each_has_its_own_files(tmp_path):
+    page, out = tmp_path / "run.html", tmp_path / "out"
+    assert invoke_report("--report", page, "--out", out, "--figures", "0").exit_code == 0
+    assert page.is_file()
+    assert sorted(each.name for each in out.iterdir()) == ["results.csv", "summary.json"]
+
+
+def test_an_earlier_page_stays_without_force(tmp_path):
+    page = tmp_path / "run.html"
+    page.write_text("mine")
+    refused(f"--report {page} exists. Give another name, or --force to replace it.", "--report", page)
+    assert page.read_text() == "mine"
+    assert invoke_report("--report", page, "--force").exit_code == 0
+    assert page.read_text("utf-8").startswith("<!DOCTYPE html>")
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        (["--scale", "1", "--scale", "2"], "but there are 1 motion at 2 scales. Name one record, such as SUITE/NAME"),
+        (["fema-p695-far-field/FF-1-a"], "but there are 2 motions at 1 scale."),
+        (
+            ["--model", "2DOF-S,3DOF-S,4DOF-S,5DOF-S,MDOF-S,fixed,rigid"],
+            "--report has room for 6 models, but there are 7. Choose the ones that matter with --model.",
+        ),
+    ],
+)
+def test_what_does_not_fit_on_a_page(more, words, tmp_path):
+    refused(words, *more, "--report", tmp_path / "run.html")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_path_that_is_no_page(tmp_path):
+    refused("the --report", "--report", tmp_path / "run.pdf")
+    refused("is a folder. Give a file in it", "--report", tmp_path)
+    refused("--force was given without --out", "--force")
+    assert list(tmp_path.iterdir()) == []

@@ -11,7 +11,7 @@ import rockflex as rf
 from builders import make_frame
 from rockflex.models import LinearModel, _label
 from rockflex.structure.file import Table, checked
-from rockflex.study._ground_table import GroundTable
+from rockflex.study._option_tables import GroundTable
 
 FRAME = make_frame(n_stories=2, period=0.5, aspect_ratio=8.0)
 PROPERTIES = FRAME.rocking()

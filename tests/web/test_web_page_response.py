@@ -8,7 +8,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.web._presets import PRESETS
+from rockflex.web._forms import PRESETS
 
 pytestmark = pytest.mark.web
 

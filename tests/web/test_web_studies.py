@@ -10,8 +10,8 @@ import pytest
 import rockflex as rf
 from builders import make_frame
 from rockflex.study.design import TendonLevel, smallest_width
-from rockflex.web._jobs import KEPT, Job, Jobs
-from rockflex.web._presets import PRESETS
+from rockflex.web._forms import PRESETS
+from rockflex.web._jobs import MAX_STUDIES, Job, Jobs
 from rockflex.web._refusal import Refusal
 
 HANG = 120.0  # s: a guard against what never ends, not a measure of speed
@@ -186,7 +186,7 @@ def ended(job, seconds=5.0):
 
 
 def test_a_job_that_nobody_looks_at_ends(monkeypatch) -> None:
-    monkeypatch.setattr("rockflex.web._jobs.FORGOTTEN", 0.05)
+    monkeypatch.setattr("rockflex.web._jobs.ABANDONED_AFTER", 0.05)
     job = Job(Plan(), "cloud")
     job.compute()
     assert job.status == "cancelled"
@@ -204,7 +204,7 @@ def test_a_failure_is_told_without_a_traceback(caplog) -> None:
 
 
 def test_jobs_are_many_but_limited() -> None:
-    jobs = Jobs("studies", KEPT)
+    jobs = Jobs("studies", MAX_STUDIES)
     tokens = [jobs.start(Job(Plan(), "cloud")) for _ in range(12)]
     with pytest.raises(Refusal, match="busy with other studies"):
         jobs.start(Job(Plan(), "cloud"))

@@ -10,8 +10,8 @@ from test_web_folders import GIVEN, body_of, give
 
 import rockflex as rf
 from rockflex.solve import RunStoppedError, stopping_when
+from rockflex.web._selection import selection_view
 from rockflex.web._state import parse_state
-from rockflex.web._target import selection_view
 from rockflex.web._uploads import Uploads
 
 SUITE = rf.load_suite("fema-p695-far-field")

@@ -7,6 +7,8 @@ import typer
 
 from rockflex._errors import InputError
 from rockflex.cli import _options as options
+from rockflex.cli._console import note, warn
+from rockflex.progress import bar
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -104,21 +106,18 @@ def animate(
     """
     if out is None:
         raise InputError("An animation is a file. Give its path by --out, such as --out run.gif or --out run.mp4.")
-    from rockflex.cli._console import note, warn
-    from rockflex.cli._flags import naming
-    from rockflex.cli._preparation import Asked, prepare
-    from rockflex.cli._run_tables import print_failures, print_warnings
-    from rockflex.cli._simulations import perform
+    from rockflex.cli._batch import RunArguments, prepare, run_batch
+    from rockflex.cli._options import naming
+    from rockflex.cli._run_results import print_failures, print_warnings
     from rockflex.plot._style import literal
     from rockflex.plot.animation import animate as draw
     from rockflex.plot.animation import file_of
-    from rockflex.progress import bar
 
     with naming(FLAGS):
         target, _ = file_of(out)
     if target.exists() and not force:
         raise InputError(f"The file {target} exists. Give another one by --out, or --force to replace it.")
-    asked = Asked(
+    asked = RunArguments(
         arguments=arguments or [], structure=structure, motion=motion, model=model, scale=[repr(scale)],
         free_vibration=free_vibration, work_limit=work_limit, units=units, dt=dt, vertical=vertical,
     )  # fmt: skip
@@ -130,7 +129,7 @@ def animate(
             f"An animation shows one ground motion, but {len(batch.motions)} were given. Name one of them, such as "
             f"{first.motion.name} of {first.origin}."
         )
-    runs = perform(batch)
+    runs = run_batch(batch)
     responses = [run.response for run in runs if run.response is not None]
     title = None if scale == 1.0 else f"{literal(batch.motions[0].name)} × {scale:g}"
     with naming(FLAGS), bar("Frames", transient=True) as show:

@@ -1,6 +1,7 @@
 """The application: its commands, its version and its exit codes."""
 
 import sys
+from contextlib import suppress
 from typing import Annotated, Any
 
 import typer
@@ -8,10 +9,40 @@ from typer.core import TyperGroup
 
 from rockflex import __version__
 from rockflex._errors import InputError, SolverError
-from rockflex.cli import _animate, _figures, _modes, _motion, _reproduce, _run, _select, _serve, _study, _survey
+from rockflex.cli import _animate, _modes, _motion, _reproduce, _run, _select, _study, _survey
 from rockflex.cli._console import complain, note, remarks
-from rockflex.cli._flags import FrameCommand, RunCommand
+from rockflex.cli._options import FrameCommand, RunCommand
 from rockflex.kinds import KINDS
+
+SERVE_EPILOG = """[bold]Examples[/bold]
+
+rockflex serve
+
+rockflex serve --port 9000 --open"""
+
+
+def serve(
+    port: Annotated[int, typer.Option("--port", "-p", help="TCP port.")] = 8080,
+    host: Annotated[
+        str,
+        typer.Option(help="Address to listen on. The default accepts only this machine."),
+    ] = "127.0.0.1",
+    name: Annotated[
+        list[str] | None,
+        typer.Option(help="Another name by which the page is reached; may be repeated.", show_default=False),
+    ] = None,
+    open_browser: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
+) -> None:
+    """Serve the web page: structure, earthquake, response, fragility and design."""
+    from rockflex.web import serve as start
+    from rockflex.web._hosts import address_of, is_loopback
+
+    if not is_loopback(host):
+        note(f"Everyone who can reach {host} can use the page: it has no passwords.")
+    note(f"{address_of(host, port)} (stop with Ctrl-C)")
+    with suppress(KeyboardInterrupt):  # the usual way to stop it
+        start(port, host, names=name or (), open_browser=open_browser)
+
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -69,8 +100,8 @@ app.command("survey", epilog=_survey.EPILOG, no_args_is_help=True)(_survey.surve
 app.command("select", epilog=_select.EPILOG, no_args_is_help=True)(_select.select)
 for kind in KINDS.values():
     app.command(kind.command, epilog=_study.epilog(kind.command), no_args_is_help=True)(_study.command_of(kind))
-app.command("figures", epilog=_figures.EPILOG, no_args_is_help=True)(_figures.figures)
-app.command("serve", epilog=_serve.EPILOG)(_serve.serve)
+app.command("figures", epilog=_study.FIGURES_EPILOG, no_args_is_help=True)(_study.figures)
+app.command("serve", epilog=SERVE_EPILOG)(serve)
 app.command("reproduce", epilog=_reproduce.EPILOG)(_reproduce.reproduce)
 
 

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Self
 
 from rockflex._errors import RecordWarning
+from rockflex.progress import bar, counter
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -95,8 +96,6 @@ def grid(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1
 @contextmanager
 def progress(title: str, total: int) -> Generator[Callable[[int], None]]:
     """Show a bar on stderr, or lines if it is no terminal; the yielded function advances it by a number of steps."""
-    from rockflex.progress import bar, counter
-
     with bar(title, transient=True) as show:
         yield counter(lambda done, total: show(done, total, ""), total)
 

@@ -7,14 +7,17 @@ import typer
 from rockflex._errors import InputError
 from rockflex._schema import FrameFlags
 from rockflex.cli import _options as options
-from rockflex.cli._flags import given
+from rockflex.cli._console import grid, moment_unit, note, number, output, show, warn
+from rockflex.cli._options import flag_values
+from rockflex.cli._output import check_folder, staged, to_json, versions
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
     from pathlib import Path
 
     from rockflex.cli._structures import LoadedStructure
-    from rockflex.modal import Adequacy, RockingProperties
+    from rockflex.modal import Adequacy, Pivot, RockingProperties
+
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -73,17 +76,13 @@ def modes(
 ) -> None:
     """Print the modes of a structure on a fixed base, and its rocking parameters."""
     from rockflex._checks import whole_number
-    from rockflex.cli._console import warn
-    from rockflex.cli._elements import UNITS as ELEMENT_UNITS
-    from rockflex.cli._modes_tables import print_modes
-    from rockflex.cli._output import check_folder, to_json, versions
-    from rockflex.cli._structures import describe_properties, load_structure, split_arguments
+    from rockflex.cli._structures import ELEMENT_UNITS, describe_properties, load_structure, split_arguments
 
     check_folder(out, force=force)
     path, rest = split_arguments(structure, [] if file is None else [file])
     if rest:
         raise InputError(f"{file} is not a structure file: a name that ends in .toml is expected.")
-    loaded = load_structure(path, given(context, FrameFlags))
+    loaded = load_structure(path, flag_values(context, FrameFlags))
     properties = loaded.properties
     if n_modes is not None:
         properties = properties.truncated(whole_number("n_modes", n_modes, 1, properties.n_modes))
@@ -117,7 +116,7 @@ def _rows(loaded: "LoadedStructure", properties: "RockingProperties") -> list[di
     """One row per mode, in SI units; the share refers to the mass above the base if known, else to the total mass."""
     import math
 
-    return _table(
+    return _rows_of(
         mode=range(1, properties.n_modes + 1),
         period=2.0 * math.pi / properties.omega,
         omega=properties.omega,
@@ -139,7 +138,7 @@ def _uplifted_rows(properties: "RockingProperties") -> list[dict[str, Any]]:
     for pivot in properties.pivots:
         found = uplifted_modes(properties, side=pivot.side)
         about = {} if properties.symmetric else {"side": SIDES[pivot.side]}
-        found = _table(
+        found = _rows_of(
             mode=range(1, properties.n_modes + 1),
             period=2.0 * math.pi / found.omega,
             omega=found.omega,
@@ -150,7 +149,7 @@ def _uplifted_rows(properties: "RockingProperties") -> list[dict[str, Any]]:
     return rows
 
 
-def _table(**columns: "Iterable[Any]") -> list[dict[str, Any]]:
+def _rows_of(**columns: "Iterable[Any]") -> list[dict[str, Any]]:
     return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
@@ -165,14 +164,13 @@ def _describe_adequacy(need: "Adequacy") -> dict[str, Any]:
     from dataclasses import asdict
 
     of_rows = ("base_moment", "base_moment_left", "base_shear", "base_shear_left", "frequency_error")
-    rows = _table(modes=range(1, need.n_modes + 1), **{name: getattr(need, name) for name in of_rows})
+    rows = _rows_of(modes=range(1, need.n_modes + 1), **{name: getattr(need, name) for name in of_rows})
     head = {name: getattr(need, name) for name in ("model", "model_for_shear", "reason")}
     rest = {name: getattr(need, name) for name in ("reference_error", "mass", "base_known")}
     return {**head, "rows": rows, **rest, "tolerance": asdict(need.tolerance)}
 
 
 def _print_adequacy(need: "Adequacy") -> None:
-    from rockflex.cli._console import grid, number, output, show
 
     console = output()
     mass = "m*_n/Σm" if need.base_known else "m*_n/m_tot"
@@ -194,8 +192,6 @@ def _print_adequacy(need: "Adequacy") -> None:
 def _write(folder: "Path", document: dict[str, Any], loaded: "LoadedStructure", n_modes: int, *, force: bool) -> None:
     import pandas as pd
 
-    from rockflex.cli._console import note
-    from rockflex.cli._output import staged
     from rockflex.modal import RockingProperties
 
     built = loaded.built
@@ -209,3 +205,109 @@ def _write(folder: "Path", document: dict[str, Any], loaded: "LoadedStructure", 
 
             save_figure(plot_mode_shapes(built.modal(), n_modes=n_modes), stage / "mode-shapes.png")
     note(f"Written to {folder}" + ("" if drawn else f"; no figure, because [{loaded.kind}] has no mode shapes"))
+
+
+Rows = list[dict[str, Any]]
+
+
+def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "RockingProperties") -> None:
+    """Print the modes on a fixed base and while uplifted, and the rocking parameters, for each edge if they differ."""
+    console = output()
+    console.print(f"{loaded.title}\n", markup=False, soft_wrap=True)
+    share = "m*_n/m_tot" if loaded.base_mass is None else "m*_n/Σm"
+    headings = ("mode", "T_n [s]", "ω_n [rad/s]", share, "h*_n [m]", "Γ_n φ_top", "ζ_n")
+    keys = ("period", "omega", "mass_share", "effective_height", "top_ordinate", "zeta")
+    if rows:
+        show(console, grid(headings, _mode_cells(rows, keys)))
+        headings, keys = ("mode", "T*_n [s]", "ω*_n [rad/s]", "ω*_n/ω_n", "ζ*_n"), ("period", "omega", "ratio", "zeta")
+        for side in ("",) if p.symmetric else ("right", "left"):
+            about = f" about the {side} edge" if side else ""
+            note = "" if side == "left" else "; with fewer (--modes) ζ*_n differs"
+            console.print(f"\nWhile uplifted{about}, with these modes{note}", markup=False)
+            kept = [row for row in lifted if row.get("side", "") == side]
+            show(console, grid(headings, _mode_cells(kept, keys)))
+        console.print()
+    total = [(f"Sum of {share}", number(sum(float(row["mass_share"]) for row in rows)), "")] if rows else []
+    inertia = ("Moment of inertia about a pivot, I_θ", number(p.i_theta), "kg m²")
+    values = (
+        *total,
+        *([inertia] if p.symmetric else []),
+        ("First moment of mass, L_0^r", number(p.l0r), "kg m"),
+        ("Total mass with the base, m_tot", number(p.m_tot), "kg"),
+        ("Half width of the base, B", number(p.half_width), "m"),
+        *([("Masses to the right of its middle, e", number(p.eccentricity), "m")] if p.eccentricity else []),
+        *([("Initial force of the tendons, P", number(p.prestress / 1e3), "kN")] if p.tendons else []),
+        *(_of_both_pivots(p) if p.symmetric else []),
+    )
+    show(console, grid(("Rocking", "", ""), values))
+    if not p.symmetric:
+        console.print()
+        show(console, grid(("About the edge", "right", "left", ""), _of_each_pivot(p)))
+    if p.elements:
+        from rockflex.cli._structures import elements_table
+
+        console.print("\nBetween base and ground, x to the right of the masses", markup=False)
+        show(console, elements_table(p.elements))
+
+
+def _of_both_pivots(p: "RockingProperties") -> list[tuple[str, str, str]]:
+    """The parameters that are the same about both pivots."""
+    unit, size = moment_unit(p.resisting_moment)
+    stiffness = ("Their stiffness while rocking", number(p.tendon_stiffness / size), f"{unit}/rad")
+    weight = "(m_tot g + P)" if p.tendons else "m_tot g"
+    return [
+        *([stiffness] if p.tendons else []),
+        (f"Resisting moment, M_r = {weight} B", number(p.resisting_moment / size), unit),
+        ("Static uplift at a_lift = M_r/L_0^r", number(p.uplift_acceleration), "m/s²"),
+        *((name, values[0], unit) for name, values, unit in _self_centring_rows(p, size, unit)),
+        (f"Nominal limit, 0.7 atan({_slope(p, 'B')})", number(p.nominal_overturning_rotation), "rad"),
+    ]
+
+
+def _of_each_pivot(p: "RockingProperties") -> list[tuple[str, str, str, str]]:
+    """The parameters that differ between the pivots."""
+    unit, size = moment_unit(p.resisting_moment)
+    sides = (p.pivot(1), p.pivot(-1))
+
+    def row(name: str, values: tuple[float, ...], unit: str) -> tuple[str, str, str, str]:
+        return (name, number(values[0]), number(values[1]), unit)
+
+    stiffness = tuple(each.tendon_stiffness / size for each in sides)
+    nominal = tuple(each.nominal_overturning_rotation for each in sides)
+    return [
+        row("Distance from the masses, b", tuple(each.arm for each in sides), "m"),
+        row("Moment of inertia, I_θ", tuple(each.i_theta for each in sides), "kg m²"),
+        *([row("Stiffness of the tendons", stiffness, f"{unit}/rad")] if p.tendons else []),
+        row("Resisting moment, M_r", tuple(each.resisting_moment / size for each in sides), unit),
+        row("Static uplift at a_lift", tuple(each.uplift_acceleration for each in sides), "m/s²"),
+        *((name, *values, unit) for name, values, unit in _self_centring_rows(p, size, unit)),
+        row(f"Nominal limit, 0.7 atan({_slope(p, 'b')})", nominal, "rad"),
+    ]
+
+
+def _self_centring_rows(p: "RockingProperties", size: float, unit: str) -> list[tuple[str, tuple[str, str], str]]:
+    """Rows about the dissipators: the name, the values about the right and the left pivot, the unit."""
+    right, left = p.pivot(1), p.pivot(-1)
+    if not right.dissipator_moment and not left.dissipator_moment:
+        return []
+
+    def both(of: "Callable[[Pivot], str]") -> tuple[str, str]:
+        return of(right), of(left)
+
+    def least(pivot: "Pivot") -> str:
+        return number(max(pivot.resisting_moment - pivot.dissipator_moment, 0.0) / size)
+
+    return [
+        ("Moment of the dissipators, M_d", both(lambda pivot: number(pivot.dissipator_moment / size)), unit),
+        ("Re-centring ratio, M_r/M_d", both(lambda pivot: number(pivot.recentring_ratio)), ""),
+        ("Least moment that lifts it after yielding, M_r - M_d", both(least), unit),
+        ("Self-centring", both(lambda pivot: "yes" if pivot.self_centring else "no: it may stay open"), ""),
+    ]
+
+
+def _slope(p: "RockingProperties", width: str) -> str:
+    return f"{width}/h*_1" if p.n_modes else f"{width} m_tot/L_0^r"
+
+
+def _mode_cells(rows: Rows, keys: tuple[str, ...]) -> list[list[str]]:
+    return [[str(row["mode"]), *(number(float(row[key])) for key in keys)] for row in rows]

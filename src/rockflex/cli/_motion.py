@@ -8,13 +8,15 @@ import typer
 
 from rockflex._shown import counted
 from rockflex.cli import _options as options
+from rockflex.cli._console import fits, grid, note, number, output, show
+from rockflex.cli._output import check_folder, file_stems, staged, to_json, versions
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from rich.table import Table
 
-    from rockflex.cli._motions import FoundMotion
+    from rockflex.cli._find_motions import FoundMotion
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -59,8 +61,7 @@ def motion(
     vertical: options.Vertical = None,
 ) -> None:
     """Print the data and the intensity measures of ground motions; without a name, list the embedded suites."""
-    from rockflex.cli._motions import embedded_suites, find_motions
-    from rockflex.cli._output import check_folder, to_json, versions
+    from rockflex.cli._find_motions import embedded_suites, find_motions
 
     check_folder(out, force=force)
     # With a folder or a unit, motions are expected, and an empty list of names is an error.
@@ -127,7 +128,6 @@ def _measures(item: "FoundMotion", periods: Sequence[float], damping: float) -> 
 
 
 def _print_suites(suites: Sequence[dict[str, Any]]) -> None:
-    from rockflex.cli._console import grid, output, show
 
     console = output()
     spans = [" ... ".join(dict.fromkeys((row["first"], row["last"]))) for row in suites]
@@ -138,7 +138,6 @@ def _print_suites(suites: Sequence[dict[str, Any]]) -> None:
 
 def _print(rows: Sequence[dict[str, Any]], periods: Sequence[float], damping: float) -> None:
     from rockflex._constants import GRAVITY
-    from rockflex.cli._console import fits, grid, number, output, show
     from rockflex.motion import record_measures
 
     console = output()
@@ -171,7 +170,6 @@ def _print(rows: Sequence[dict[str, Any]], periods: Sequence[float], damping: fl
 
 def _vertical_table(rows: Sequence[dict[str, Any]], periods: Sequence[float]) -> "Table":
     from rockflex._constants import GRAVITY
-    from rockflex.cli._console import grid, number
 
     cells: list[list[str]] = []
     for row in rows:
@@ -189,9 +187,6 @@ def _write(
     from dataclasses import asdict
 
     import pandas as pd
-
-    from rockflex.cli._console import note
-    from rockflex.cli._output import file_stems, staged
 
     few = len(found) <= figures
     with staged(folder, document, force=force) as stage:

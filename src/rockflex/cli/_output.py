@@ -11,7 +11,6 @@ from typing import Any
 from rockflex import __version__
 from rockflex._errors import InputError
 from rockflex._files import check_regular
-from rockflex._json import plain
 from rockflex._versions import versions_of
 
 SUMMARY = "summary.json"
@@ -19,6 +18,8 @@ SUMMARY = "summary.json"
 
 def to_json(document: dict[str, Any], *, ascii_only: bool = True) -> str:
     """Return strictly valid JSON: NaN becomes null, and an infinity the string "inf" or "-inf"."""
+    from rockflex._json import plain
+
     return json.dumps(plain(document), indent=2, ensure_ascii=ascii_only, allow_nan=False)
 
 

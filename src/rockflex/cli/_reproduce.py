@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rockflex.cli import _options as options
+from rockflex.cli._console import grid, note, output, progress, show
+from rockflex.cli._output import check_folder, staged, versions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -79,8 +81,6 @@ def reproduce(
         for target in paper.TARGETS:
             typer.echo(f"{target:10}  {paper.title_of(target)}")
         return
-    from rockflex.cli._console import note, progress
-    from rockflex.cli._output import check_folder
 
     check_folder(out, force=force)
     wanted = targets or list(paper.TARGETS)
@@ -101,8 +101,6 @@ def reproduce(
 
 
 def _write(results: "list[Result]", records: "Records", out: Path, *, force: bool) -> None:
-    from rockflex.cli._console import progress
-    from rockflex.cli._output import staged, versions
     from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
     from rockflex.report import Document, write_document
 
@@ -122,7 +120,6 @@ def _write(results: "list[Result]", records: "Records", out: Path, *, force: boo
 
 
 def _print_numbers(results: "Sequence[Result]") -> None:
-    from rockflex.cli._console import grid, output, show
 
     console = output()
     for result in results:
@@ -139,7 +136,6 @@ def _print_numbers(results: "Sequence[Result]") -> None:
 
 
 def _print_counts(results: "Sequence[Result]") -> None:
-    from rockflex.cli._console import grid, output, show
     from rockflex.papers.silva_stojadinovic_2024 import Verdict
 
     rows = [(r.name, *(str(r.count(verdict)) for verdict in Verdict)) for r in results]

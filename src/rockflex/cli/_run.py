@@ -5,6 +5,8 @@ from typing import Annotated, Any
 import typer
 
 from rockflex.cli import _options as options
+from rockflex.cli._console import warn
+from rockflex.cli._output import check_folder, to_json, versions
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -66,19 +68,23 @@ def run(
     """
     from time import perf_counter
 
-    from rockflex.cli._console import warn
-    from rockflex.cli._flags import naming
-    from rockflex.cli._output import check_folder, to_json, versions
-    from rockflex.cli._preparation import FLAGS, Asked, prepare
-    from rockflex.cli._run_output import UNITS, write_runs
-    from rockflex.cli._run_report import check_page, check_runs, write_page
-    from rockflex.cli._run_tables import print_failures, print_runs, print_warnings
-    from rockflex.cli._simulations import perform
+    from rockflex.cli._batch import FLAGS, RunArguments, prepare, run_batch
+    from rockflex.cli._options import naming
+    from rockflex.cli._run_results import (
+        UNITS,
+        check_page,
+        check_runs,
+        print_failures,
+        print_runs,
+        print_warnings,
+        write_page,
+        write_runs,
+    )
     from rockflex.cli._structures import describe_properties
 
     check_folder(out, force=force and (out is not None or report is None))
     page = None if report is None else check_page(report, force=force)
-    asked = Asked(
+    asked = RunArguments(
         arguments=arguments or [], structure=structure, motion=motion, model=model, scale=scale,
         free_vibration=free_vibration, work_limit=work_limit, workers=workers, friction=friction, units=units, dt=dt,
         on_error=on_error, vertical=vertical,
@@ -90,7 +96,7 @@ def run(
         check_runs(batch)
     start = perf_counter()
     with naming(FLAGS):
-        runs = perform(batch)
+        runs = run_batch(batch)
     elapsed = perf_counter() - start
     document: dict[str, Any] = {
         "versions": versions(),

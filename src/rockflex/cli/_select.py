@@ -1,16 +1,155 @@
 """``rockflex select``: records chosen and scaled for a target spectrum."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from rockflex._errors import InputError
-from rockflex._shown import counted
+from rockflex._shown import counted, shown
 from rockflex.cli import _options as options
+from rockflex.cli._console import grid, note, number, output, show
+from rockflex.cli._output import check_folder, file_stems, staged, to_json, versions
 
 if TYPE_CHECKING:
-    from rockflex.motion import Combination, Selection
+    from rockflex.motion import Combination, Selection, TargetSpectrum
+
+
+WORDS = {"yes": True, "no": False}
+Reader = Callable[[str, str], Any]
+
+
+def parse_target(text: str, damping: float | None) -> "TargetSpectrum":
+    """Return the target of ``ec8:ag=0.25g,ground=C``, ``ec8-2024:...``, ``asce7:sds=1g,sd1=0.6g,tl=8`` or of a file.
+
+    `damping` is the damping ratio of a target from a file; None means 5 %.
+
+    Raises
+    ------
+    InputError
+        If a code or a key is unknown, a key is missing or repeated, a value is no number or has no unit, or the file
+        cannot be read.
+    """
+    from rockflex.motion import (
+        asce7_site_spectrum,
+        asce7_spectrum,
+        ec8_second_spectrum,
+        ec8_spectrum,
+        read_target,
+    )
+
+    code, colon, rest = text.partition(":")
+    if not colon or code not in ("ec8", "ec8-2024", "asce7"):
+        if not Path(text).exists():
+            raise InputError(
+                f"--target {shown(text)} is neither a file nor a code. Write ec8:ag=0.25g,ground=C, or "
+                "ec8-2024:s_alpha=0.6g,s_beta=0.2g,site=C, or asce7:sds=1g,sd1=0.6g,tl=8, or "
+                'asce7:ss=1.5g,s1=0.6g,site=D,tl=8, or name a file with the columns "period (s), sa (g)".'
+            )
+        return read_target(text, damping_ratio=0.05 if damping is None else damping)
+    if damping is not None:
+        raise InputError(
+            "--damping is for a target from a file. Write ec8:...,damping=0.02; ASCE 7 has 5 %: leave --damping out."
+        )
+    items = _items(code, rest)
+    if code == "ec8":
+        given = _read_items(code, items, {"ag": _acceleration}, {
+            "ground": _text, "type": _number, "importance": _number, "damping": _number,
+        })  # fmt: skip
+        return ec8_spectrum(**_renamed(given))
+    if code == "ec8-2024":
+        given = _read_items(code, items, {"s_alpha": _acceleration, "s_beta": _acceleration}, {
+            "site": _text, "f_alpha": _number, "f_beta": _number, "topography": _number, "damping": _number,
+        })  # fmt: skip
+        factors = [given.pop(key, None) for key in ("f_alpha", "f_beta")]
+        if (factors[0] is None) != (factors[1] is None):
+            raise InputError(f"--target {code}:...: give both f_alpha and f_beta, or neither.")
+        amplification = None if factors[0] is None else tuple(factors)
+        return ec8_second_spectrum(**_renamed(given), amplification=amplification)
+    if "ss" in items or "s1" in items or "site" in items:
+        needed: dict[str, Reader] = {"ss": _acceleration, "s1": _acceleration, "site": _text, "tl": _number}
+        return asce7_site_spectrum(**_read_items(code, items, needed, {"mce": _yes}))
+    needed = {"sds": _acceleration, "sd1": _acceleration, "tl": _number}
+    return asce7_spectrum(**_read_items(code, items, needed, {"mce": _yes}))
+
+
+def _renamed(given: dict[str, Any]) -> dict[str, Any]:
+    names = {"type": "kind", "damping": "damping_ratio"}
+    return {names.get(key, key): value for key, value in given.items()}
+
+
+def numbers(flag: str, text: str, least: int, most: int | None = None) -> list[float]:
+    """Return numbers separated by commas.
+
+    Raises
+    ------
+    InputError
+        If one is not a number, or there are too few or too many.
+    """
+    values = [_number(flag, part.strip()) for part in text.split(",")]
+    if len(values) < least or (most is not None and len(values) > most):
+        count = f"{least}" if most == least else f"at least {least}"
+        raise InputError(f"{flag} needs {count} numbers separated by commas, but {shown(text)} was given.")
+    return values
+
+
+def _items(code: str, rest: str) -> dict[str, str]:
+    items: dict[str, str] = {}
+    for part in filter(None, (part.strip() for part in rest.split(","))):
+        key, equals, value = (each.strip() for each in part.partition("="))
+        if not equals or not value or key in items:
+            reason = "occurs twice" if key in items else "has no value"
+            raise InputError(
+                f"--target {code}:...: {shown(key)} {reason}. Write each key once, as in {code}:key=value,..."
+            )
+        items[key] = value
+    return items
+
+
+def _read_items(
+    code: str, items: dict[str, str], needed: dict[str, Reader], optional: dict[str, Reader]
+) -> dict[str, Any]:
+    readers = needed | optional
+    unknown, missing = [key for key in items if key not in readers], [key for key in needed if key not in items]
+    if unknown or missing:
+        what = f"{shown(unknown[0])} is not known" if unknown else f"{missing[0]} is missing"
+        raise InputError(
+            f"--target {code}:...: {what}. The keys are {', '.join(needed)}"
+            + (f", and {', '.join(optional)} if wanted." if optional else ".")
+        )
+    return {key: readers[key](f"--target {code}: {key}", value) for key, value in items.items()}
+
+
+def _acceleration(name: str, text: str) -> float:
+    from rockflex.motion import UNITS, acceleration_in
+
+    value = acceleration_in(text)
+    if value is None:
+        raise InputError(
+            f"{name} must be a number with its unit, such as 0.25g or 2.45m/s2, but {shown(text)} was given. The units "
+            f"are {', '.join(UNITS)}."
+        )
+    return value
+
+
+def _number(name: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f"{name} must be a number, but {shown(text)} was given.") from None
+
+
+def _text(name: str, text: str) -> str:
+    del name
+    return text
+
+
+def _yes(name: str, text: str) -> bool:
+    if text not in WORDS:
+        raise InputError(f"{name} must be yes or no, but {shown(text)} was given.")
+    return WORDS[text]
+
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -35,7 +174,7 @@ A file with the columns "period (s), sa (g)".
 
 Accelerations A are written with their unit, such as 0.25g or 2.45m/s2."""
 
-CHOICE, WRITTEN = "Choice", "Results"
+CHOICE = "Choice"
 _MEASURES: "dict[str, Combination]" = {
     "component": "component",
     "geometric-mean": "geometric mean",
@@ -112,9 +251,7 @@ def select(
     vertical: options.Vertical = None,
 ) -> None:
     """Choose the records whose mean spectrum fits a target best, and scale each by one factor."""
-    from rockflex.cli._motions import find_motions
-    from rockflex.cli._output import check_folder, to_json, versions
-    from rockflex.cli._targets import numbers, parse_target
+    from rockflex.cli._find_motions import find_motions
     from rockflex.motion import Suite
 
     if out is not None or records is None:
@@ -165,7 +302,6 @@ def select(
 
 
 def _check_records(folder: Path, out: Path | None, *, force: bool) -> None:
-    from rockflex.cli._output import check_folder
 
     if out is not None and folder.absolute() == out.absolute():
         raise InputError(
@@ -186,7 +322,6 @@ def _records(chosen: "Selection[Any]") -> list[dict[str, Any]]:
 
 
 def _print(chosen: "Selection[Any]") -> None:
-    from rockflex.cli._console import grid, number, output, show
 
     console = output()
     rows = [
@@ -217,8 +352,6 @@ def _print(chosen: "Selection[Any]") -> None:
 
 
 def _write(folder: Path, document: dict[str, Any], chosen: "Selection[Any]", *, force: bool) -> None:
-    from rockflex.cli._console import note
-    from rockflex.cli._output import staged
     from rockflex.plot import plot_selection, save_figure
 
     with staged(folder, document, force=force) as stage:
@@ -229,8 +362,6 @@ def _write(folder: Path, document: dict[str, Any], chosen: "Selection[Any]", *, 
 
 
 def _write_records(folder: Path, document: dict[str, Any], chosen: "Selection[Any]", *, force: bool) -> None:
-    from rockflex.cli._console import note
-    from rockflex.cli._output import file_stems, staged
     from rockflex.motion import record_csv
 
     with staged(folder, document, force=force) as stage:

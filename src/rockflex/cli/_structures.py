@@ -1,26 +1,85 @@
-"""A structure from a TOML file, or a frame from flags."""
+"""A structure from a TOML file or flags, and the tables and documents that describe it."""
 
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rockflex._errors import InputError
 from rockflex._schema import FrameFlags, FrameKeys
 from rockflex._shown import counted
-from rockflex.cli._elements import describe_elements
-from rockflex.cli._flags import flags_of, naming
-from rockflex.modal import RockingProperties
+from rockflex.cli._console import grid, number
+from rockflex.cli._options import flags_of, naming
+from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.structure import Eccentric, Frame, Restrained, structure_warnings
-from rockflex.structure.file import KINDS, Built, StructureEntry, build_in, checked, read_toml
-from rockflex.study.assumed import Assumed
+from rockflex.structure.file import ELEMENTS, KINDS, Built, StructureEntry, build_in, checked, read_toml
+from rockflex.study._option_tables import RunOptionKeys
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+
+ELEMENT_UNITS = {
+    "position": "m",
+    "initial_force": "N",
+    "stiffness": "N/m",
+    "yield_force": "N",
+    "rupture_elongation": "m",
+    "coefficient": "N s/m",
+    "force": "N",
+}
+_ELEMENT_HEADINGS = (
+    "no.",
+    "element",
+    "x [m]",
+    "k [kN/m]",
+    "c [kN s/m]",
+    "F_0 [kN]",
+    "strength [kN]",
+    "α",
+    "breaks at [m]",
+)
+_WORDS = 2  # columns of words
+
+
+def describe_elements(elements: Sequence[BaseElement]) -> list[dict[str, Any]]:
+    """Return the kind and the values of each element, for a document."""
+    return [{"kind": _kind(each), **asdict(each)} for each in elements]
+
+
+def elements_table(elements: Sequence[BaseElement]) -> "Table":
+    """Return the table of elements, without the columns that none of them needs."""
+    rows = [(str(place), *_element_row(each)) for place, each in enumerate(elements, start=1)]
+    kept = [k for k in range(len(_ELEMENT_HEADINGS)) if k < _WORDS or any(row[k] != "-" for row in rows)]
+    return grid([_ELEMENT_HEADINGS[k] for k in kept], ([row[k] for k in kept] for row in rows), _WORDS)
+
+
+def _element_row(element: BaseElement) -> tuple[str, ...]:
+    stiffness = damping = prestress = strength = ratio = breaks = None
+    if isinstance(element, Tendon | YieldingDissipator):
+        stiffness, strength = element.stiffness / 1e3, element.yield_force and element.yield_force / 1e3
+        ratio, breaks = element.post_yield_ratio, element.rupture_elongation
+    if isinstance(element, Tendon):
+        prestress = element.initial_force / 1e3
+    elif isinstance(element, ViscousDamper):
+        damping = element.coefficient / 1e3
+    elif isinstance(element, FrictionDamper):
+        strength = element.force / 1e3
+    only = ", tension only" if isinstance(element, YieldingDissipator) and element.tension_only else ""
+    values = (element.position, stiffness, damping, prestress, strength, ratio, breaks)
+    return (_kind(element).replace("_", " ") + only, *map(number, values))
+
+
+def _kind(element: BaseElement) -> str:
+    return next(kind for kind, table in ELEMENTS.items() if table.makes is type(element))
+
 
 FLAGS = flags_of(FrameFlags)
 
 
-class StructureFile(Assumed, StructureEntry):
-    """A structure file: one structure, optionally a name and elements, and the assumptions of ``rockflex run``."""
+class StructureFile(RunOptionKeys, StructureEntry):
+    """A structure file: one structure, optionally a name and elements, and options of ``rockflex run``."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +90,7 @@ class LoadedStructure:
     kind: str
     values: dict[str, Any]
     built: Built
-    assumed: dict[str, Any] = field(default_factory=dict[str, Any])
+    run_options: dict[str, Any] = field(default_factory=dict[str, Any])
     """`impact`, `restitution`, `bouc_wen` and `ground`, as far as the file has them."""
 
     @property
@@ -68,12 +127,12 @@ class LoadedStructure:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What looks like a wrong unit."""
+        """Warnings about values that may be in another unit."""
         return structure_warnings(self.built)
 
     def describe(self) -> dict[str, Any]:
         """Return the values that it was built from, for a document."""
-        return {"name": self.name, "kind": self.kind, **self.values, **self.assumed}
+        return {"name": self.name, "kind": self.kind, **self.values, **self.run_options}
 
 
 def split_arguments(option: Path | None, arguments: Sequence[str]) -> tuple[Path | None, list[str]]:
@@ -103,14 +162,14 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
     if file is None:
         return _from_flags(flags)
     if flags:
-        raise InputError(f"The structure was given by {file} and by {_flags(flags)}. Give one or the other.")
+        raise InputError(f"The structure was given by {file} and by {_flag_names(flags)}. Give one or the other.")
     content = read_toml(file, "structure")
     if "study" in content:
         raise _study_given(file, content["study"])
     document = checked(StructureFile, content, str(file))
-    assumed = document.model_dump(include=set(Assumed.model_fields), exclude_unset=True)
+    run_options = document.model_dump(include=set(RunOptionKeys.model_fields), exclude_unset=True)
     built = build_in(file, document)
-    return LoadedStructure(document.name or file.stem, document.kind, document.describe(), built, assumed)
+    return LoadedStructure(document.name or file.stem, document.kind, document.describe(), built, run_options)
 
 
 def _study_given(file: Path, name: object) -> InputError:
@@ -145,9 +204,9 @@ def _from_flags(given: dict[str, Any]) -> LoadedStructure:
     needed = flags_of(FrameKeys)
     missing = [name for name in needed if name not in given]
     if missing:
-        lack = f"The frame lacks {_flags(missing)}." if given else "No structure was given."
+        lack = f"The frame lacks {_flag_names(missing)}." if given else "No structure was given."
         raise InputError(
-            f"{lack} Give a structure file, such as structure.toml, or all the flags of a frame: {_flags(needed)}."
+            f"{lack} Give a structure file, such as structure.toml, or all the flags of a frame: {_flag_names(needed)}."
         )
     with naming(FLAGS):
         frame = Frame(**{name: value for name, value in given.items() if name in needed})
@@ -155,5 +214,5 @@ def _from_flags(given: dict[str, Any]) -> LoadedStructure:
     return LoadedStructure(f"{frame.n_stories}-story frame", "frame", given, built)
 
 
-def _flags(names: Iterable[str]) -> str:
+def _flag_names(names: Iterable[str]) -> str:
     return ", ".join(FLAGS[name] for name in names)

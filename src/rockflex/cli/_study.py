@@ -1,19 +1,27 @@
-"""The commands that run studies from a TOML file, one for each kind of study."""
+"""The commands of studies: one that runs each kind from a TOML file, and one that draws its figures."""
 
+import math
 from collections.abc import Callable
+from numbers import Integral, Number
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
-from rockflex._errors import InputError
-from rockflex._shown import counted
+from rockflex._errors import InputError, SolverError
+from rockflex._shown import counted, shown
 from rockflex.cli import _options as options
-from rockflex.kinds import StudyKind
+from rockflex.cli._console import complain, grid, note, number, output, show
+from rockflex.cli._output import check_folder, staged, to_json, versions
+from rockflex.kinds import KINDS, Findings, StudyKind, kind_named
+from rockflex.progress import bar, duration, pace
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from rockflex.progress import Progress
     from rockflex.study.plan import Spec
+
 
 Result = TypeVar("Result")
 
@@ -91,11 +99,8 @@ def command_of(kind: StudyKind) -> Callable[..., None]:
                 study, out, workers=workers, dask=dask, any_version=any_version, progress=progress
             ),
         )
-        from rockflex.cli._study_summary import summarise
 
         if out is not None:
-            from rockflex.cli._console import note
-
             note(f"Stored in {out}; rockflex figures {out} draws it")
         failed, unfitted = summarise(kind, study, table, seconds, json=json)
         if strict and (failed or unfitted):
@@ -114,16 +119,14 @@ def _load(kind: StudyKind, file: Path, work_limit: str | None) -> "Spec":
         raise InputError(f'The file {file} has study = "{study.kind}". Use rockflex {right} {file}.')
     if work_limit is None:
         return study
-    from rockflex.cli._choices import parse_work_limit
+    from rockflex.cli._run_options import parse_work_limit
 
     return study.model_copy(update={"work_limit": parse_work_limit(work_limit) or "none"})
 
 
 def _announce(study: "Spec", file: Path, workers: int | None, *, json: bool) -> None:
     """Print how many runs a study has and about how long it takes."""
-    from rockflex.cli._output import to_json
     from rockflex.kinds import estimate_time
-    from rockflex.progress import duration
 
     plan = study.plan()
     seconds = estimate_time(study, workers)
@@ -150,7 +153,6 @@ def _store_share(
     study: "Spec", file: Path, out: Path, share: str, dask: str | None, workers: int | None, *, any_version: bool
 ) -> None:
     """Store one share of a study."""
-    from rockflex.cli._console import note
     from rockflex.kinds import fill_study
 
     place, stroke, count = share.partition("/")
@@ -179,9 +181,7 @@ def _watched(
     """Return the result of `work` and the time that it took in s; a terminal shows a progress bar."""
     from time import perf_counter
 
-    from rockflex.cli._console import note
     from rockflex.parallel import ClusterError
-    from rockflex.progress import bar, pace
 
     last: list[Progress] = []
     start = perf_counter()
@@ -200,8 +200,137 @@ def _watched(
         note(f"Stopped. {done}{'; the same command resumes it' if out else ', because no --out was given'}.")
         raise typer.Exit(130) from stop
     except ClusterError as error:
-        from rockflex.cli._console import complain
-
         complain(str(error))
         raise typer.Exit(1) from error
     return result, perf_counter() - start
+
+
+Tables = dict[str, list[dict[str, Any]]]
+
+
+def summarise(kind: StudyKind, study: "Spec", table: "pd.DataFrame", seconds: float, *, json: bool) -> tuple[int, int]:
+    """Print the summary of a study; return the number of failed runs and of failed fits."""
+    from rockflex.study.plan import pivot_lifts
+
+    found = Findings()
+    try:
+        kind.report(study, table, found)
+    except (InputError, SolverError) as error:  # the runs are stored, whatever can be derived from them
+        found.unfitted.append(str(error))
+    tables: Tables = {
+        title: [{str(key): _plain_value(value) for key, value in row.items()} for row in rows]
+        for title, rows in found.tables.items()
+    }
+    lifts = pivot_lifts(kind.runs(table))
+    failed = int(table["error"].notna().sum())
+    if json:
+        document = {"versions": versions(), "study": study.document(), "rows": len(table), "failed": failed}
+        document |= {"elapsed": seconds, "unfitted": found.unfitted}
+        typer.echo(to_json(document | {"pivot_lifts": [each._asdict() for each in lifts], **tables}))
+    else:
+        _print_tables(tables)
+        for text in (text for each in lifts for text in each.warnings):
+            typer.echo(f"\n{text}")
+        typer.echo(f"\n{counted(len(table), 'row')} in {duration(seconds)}")
+    for remark in found.remarks:
+        note(remark)
+    for reason in dict.fromkeys(found.unfitted):
+        note(f"No fit: {reason}")
+    if failed:
+        first = table.loc[table["error"].notna(), "error"].iloc[0]
+        note(f"{counted(failed, 'row has', 'rows have')} an error, the first: {first}")
+    return failed, len(found.unfitted)
+
+
+def _plain_value(value: Any) -> Any:
+    """A number or a text; None for what is missing."""
+    if isinstance(value, Number):
+        return None if isinstance(value, float) and math.isnan(value) else value
+    return None if value is None else str(value)
+
+
+def _print_tables(tables: Tables) -> None:
+    console = output()
+    for place, (title, rows) in enumerate(tables.items()):
+        if not rows:
+            continue
+        console.print(("\n" if place else "") + title, style="bold", markup=False)
+        words = sum(isinstance(value, str) for value in rows[0].values())
+        show(console, grid(list(rows[0]), ([_cell(value) for value in row.values()] for row in rows), n_left=words))
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    if value is None:
+        return "-"
+    return str(int(value)) if isinstance(value, Integral) else number(float(value))
+
+
+FIGURES_EPILOG = """[bold]Examples[/bold]
+
+rockflex cloud study.toml --out results
+
+rockflex figures results
+
+rockflex figures results --measure sa_t1 --format pdf --out manuscript"""
+
+FORMATS = ("png", "svg", "pdf")
+*OTHERS, LAST = (kind.name for kind in KINDS.values() if kind.measured)
+
+
+def figures(
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="Folder of a study, finished or not.", show_default=False)
+    ],
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", metavar="DIR", help="Where to. Default: FOLDER/figures.")
+    ] = None,
+    measure: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help=f"Intensity measure of {', '.join(OTHERS)} or {LAST} studies, such as sa_t1_5. Default: pgv.",
+        ),
+    ] = None,
+    form: Annotated[str, typer.Option("--format", metavar="|".join(FORMATS), help="Format of the files.")] = "png",
+    force: options.Force = False,
+) -> None:
+    """Draw the results of a study: fragility curves, clouds, capacities, designs, or the agreement of models."""
+    if form not in FORMATS:
+        raise InputError(f"--format must be one of {', '.join(FORMATS)}, but {shown(form)} was given.")
+    from rockflex.store import StudyFolder
+
+    target = folder / "figures" if out is None else out
+    check_folder(target, force=force)
+    study = StudyFolder.load(folder)
+    kind = kind_named(study.spec.get("study"))
+    if measure is not None and not kind.measured:
+        raise InputError(
+            f"--measure is for {', '.join(OTHERS)} and {LAST} studies, but the study in {folder} is of kind "
+            f"{kind.name}. Leave it out."
+        )
+    missing = len(study.missing())
+    table = study.frame(partial=True)
+    if missing:
+        note(f"{missing} of {study.n_chunks} parts are missing: the figures show the others")
+    document: dict[str, Any] = {
+        "versions": versions(),
+        "study": study.spec,
+        "parts": study.n_chunks,
+        "missing_parts": missing,
+    }
+    from rockflex.plot import save_figure
+
+    undrawn: list[str] = []
+    with staged(target, document, force=force) as stage:
+        for stem, draw in kind.figures(study.spec, table, measure or "pgv", note):
+            try:
+                save_figure(draw(), stage / f"{stem}.{form}")
+            except (InputError, SolverError) as error:
+                undrawn.append(f"{stem}: {error}")
+        if not any(stage.iterdir()):
+            raise InputError(f"No figure of {folder} can be drawn. {' '.join(undrawn)}")
+    for reason in undrawn:
+        note(f"No figure {reason}")
+    note(f"Written to {target}")

@@ -1,4 +1,4 @@
-"""``rockflex survey``: what a folder of records holds, and what of it is taken."""
+"""``rockflex survey``: the records in a folder, and which of them are taken."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -9,6 +9,8 @@ import typer
 from rockflex._errors import InputError
 from rockflex._shown import counted
 from rockflex.cli import _options as options
+from rockflex.cli._console import grid, number, output, show
+from rockflex.cli._output import to_json, versions
 
 if TYPE_CHECKING:
     from rockflex.motion import RecordSurvey, SurveyEntry
@@ -21,7 +23,7 @@ rockflex survey records --vertical pair --json
 
 rockflex survey *.AT2 flatfile.csv"""
 
-NAMED = 6  # files that share a reason and are named; of more, the number is told
+MAX_NAMED_FILES = 6  # files that share a reason and are named; of more, the number is told
 
 
 def survey(
@@ -42,7 +44,6 @@ def survey(
     ] = None,
 ) -> None:
     """Say of each record file what it holds, whether it is taken, and why not."""
-    from rockflex.cli._output import to_json, versions
     from rockflex.motion import survey_records
 
     folders = [path for path in paths if path.is_dir()]
@@ -75,7 +76,6 @@ def survey(
 
 def _print(found: "RecordSurvey") -> None:
     from rockflex._constants import GRAVITY
-    from rockflex.cli._console import grid, number, output, show
 
     def cells(entry: "SurveyEntry") -> list[str]:
         words = [entry.file, entry.format, entry.station, entry.component]
@@ -123,5 +123,5 @@ def _by_reason(entries: "Iterable[SurveyEntry]") -> dict[str, list[str]]:
 
 
 def _named(names: list[str]) -> str:
-    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
-    return ", ".join(names[:NAMED]) + more
+    more = f" and {len(names) - MAX_NAMED_FILES} more" if len(names) > MAX_NAMED_FILES else ""
+    return ", ".join(names[:MAX_NAMED_FILES]) + more

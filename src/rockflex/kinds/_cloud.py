@@ -1,4 +1,4 @@
-"""The cloud: its outcomes and regressions, its fragility curves and its page."""
+"""The cloud: its outcomes and regressions, and its fragility curves."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -78,5 +78,4 @@ CLOUD = StudyKind(
     report=report,
     figures=figures,
     measured=True,
-    page="_cloud",
 )

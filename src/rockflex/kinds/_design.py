@@ -1,4 +1,4 @@
-"""The design of a base: the probability of each design, the least width, and its page."""
+"""The design of a base: the probability of each design, and the least width."""
 
 from collections.abc import Mapping
 from typing import Any, Literal
@@ -139,5 +139,4 @@ DESIGN = StudyKind(
     report=_report,
     figures=_figures,
     runs=_runs,
-    page="_design",
 )

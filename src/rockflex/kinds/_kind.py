@@ -63,8 +63,6 @@ class StudyKind:
         Whether the intensity measure of the figures can be chosen.
     runs : callable
         Returns the study's table with one row a run, and in `structure` the name under which runs are counted.
-    page : str
-        Module of `rockflex.web` that shows it on the page; empty if none does.
     """
 
     name: str
@@ -75,7 +73,6 @@ class StudyKind:
     figures: Callable[[Document, Runs, str, Remark], Figures]
     measured: bool = False
     runs: Callable[[Runs], Runs] = _as_they_are
-    page: str = ""
 
     def spec(self) -> "type[Spec]":
         """Return the class of such a study."""

@@ -11,7 +11,6 @@ from rockflex._shown import shown
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import GroundMotion, check_horizontal
-from rockflex.study._initial import InitialState
 
 Output = Literal["history", "peaks"]
 
@@ -140,30 +139,11 @@ def ground_under(properties: RockingProperties, ground: GroundChoice) -> Ground 
     return found
 
 
-def case_options(
-    output: str, free_vibration: float | Literal["settle"], initial: InitialState | None, work_limit: float | None
-) -> dict[str, Any]:
-    """Return the arguments of a `Case` other than its model.
-
-    Raises
-    ------
-    InputError
-        If one of them is out of range or of the wrong kind.
-    """
+def wants_history(output: str) -> bool:
+    """Return whether a run keeps its history; raise an InputError if `output` is neither "history" nor "peaks"."""
     if not one_of(output, get_args(Output)):
         raise InputError(f'output must be "history" or "peaks", but {shown(output)} was given.')
-    if not isinstance(initial, InitialState | None):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise InputError(
-            f"initial must be an InitialState or None, but {shown(initial)} was given. "
-            "Write InitialState(rotation=...)."
-        )
-    return {
-        "free_vibration": free_vibration_time(free_vibration),
-        "initial": initial,
-        "work_limit": work_limit_of(work_limit),
-        "history": output == "history",
-        "floors": output == "history",
-    }
+    return output == "history"
 
 
 def check_motion(motion: GroundMotion) -> None:

@@ -23,14 +23,11 @@ from rockflex.study._arguments import (
     GroundChoice,
     RockingStructure,
     check_motion,
-    check_options,
     described,
-    ground_under,
     positive_numbers,
     properties_of,
-    work_limit_of,
 )
-from rockflex.study._case import Case
+from rockflex.study._run_options import RunOptions
 from rockflex.study._runs import in_order
 
 if TYPE_CHECKING:
@@ -217,13 +214,13 @@ def _runner(
     work_limit: float | None,
     ground: GroundChoice,
 ) -> Run:
-    check_options(None, impact, ground)
-    limit = work_limit_of(work_limit)
-    properties = properties_of(structure)
-    tied = parse_model(model).of(properties, impact, ground=ground_under(properties, ground))
-    if not tied.lifts:
-        raise InputError(f"{tied.label} has a base that cannot lift, so nothing overturns it. Give a model that rocks.")
-    return Case(tied, None, work_limit=limit).run
+    options = RunOptions.of("settle", impact=impact, ground=ground, work_limit=work_limit)
+    properties, choice = properties_of(structure), parse_model(model)
+    if not choice.lifts:
+        raise InputError(
+            f"{choice.label} has a base that cannot lift, so nothing overturns it. Give a model that rocks."
+        )
+    return options.case(choice, properties).run
 
 
 def _search(run: Run, motion: GroundMotion, scales: list[float], width: float) -> OverturningScales:

@@ -3,12 +3,9 @@
 from collections import OrderedDict
 from collections.abc import Hashable
 from threading import Lock
-from typing import Any
 
-from rockflex.modal import Ground, RockingProperties
+from rockflex.modal import RockingProperties
 from rockflex.models import (
-    BoucWen,
-    ImpactLaw,
     Model,
     Restitution,
     SidedRestitution,
@@ -18,23 +15,23 @@ from rockflex.models import (
 from rockflex.motion import GroundMotion
 from rockflex.response import Response
 from rockflex.study._case import Case
+from rockflex.study._run_options import RunOptions
 
 MOST = 32  # cases kept
 LARGEST, TOGETHER = 64_000_000, 256_000_000  # bytes of the tables of a case, and of all
 FIXED = (VVELSimplified, VVELComplete, Restitution, SidedRestitution)  # impact laws that cannot change
 
-_kept: OrderedDict[Hashable, tuple[Case, RockingProperties, Ground | None]] = OrderedDict()
+_kept: OrderedDict[Hashable, tuple[Case, RockingProperties, RunOptions]] = OrderedDict()
 _lock = Lock()
 
 
 def run_prepared(
     model: Model,
     properties: RockingProperties,
-    impact: ImpactLaw | None,
-    bouc_wen: BoucWen | None,
-    ground: Ground | None,
+    options: RunOptions,
     motion: GroundMotion,
-    options: dict[str, Any],
+    *,
+    history: bool,
 ) -> Response:
     """Run a motion on a structure, with the case of an earlier run if everything but the motion is the same.
 
@@ -49,18 +46,18 @@ def run_prepared(
     SolverError
         If the run cannot be solved.
     """
-    rest = (options["free_vibration"], options["work_limit"], options["history"], motion.dt)
-    key = (id(properties), id(ground), id(options["initial"]), model, impact, bouc_wen, *rest)
-    keeps = impact is None or type(impact) in FIXED
+    rest = (options.bouc_wen, options.free_vibration, options.work_limit, history, motion.dt)
+    key = (id(properties), id(options.ground), id(options.initial), model, options.impact, *rest)
+    keeps = options.impact is None or type(options.impact) in FIXED
     case = _known(key) if keeps else None
     if case is not None:
         return case.run(motion)
-    case = Case(model.of(properties, impact, bouc_wen, ground), **options)
+    case = options.case(model, properties, history=history, floors=history)
     response = case.run(motion)
     if keeps and case.engine.size <= LARGEST:
         with _lock:
             # What a key identifies is kept with it, so that no later object can have its place in memory.
-            _kept[key] = case, properties, ground
+            _kept[key] = case, properties, options
             while len(_kept) > MOST or sum(each.engine.size for each, *_ in _kept.values()) > TOGETHER:
                 _kept.popitem(last=False)
     return response

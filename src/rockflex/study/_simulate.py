@@ -1,5 +1,6 @@
 """One structure, one motion, one model."""
 
+from dataclasses import replace
 from typing import Literal
 
 from rockflex.modal import RockingProperties
@@ -11,14 +12,14 @@ from rockflex.study._arguments import (
     GroundChoice,
     Output,
     RockingStructure,
-    case_options,
     check_motion,
-    check_options,
     ground_under,
     properties_of,
+    wants_history,
 )
 from rockflex.study._initial import InitialState
 from rockflex.study._prepared import run_prepared
+from rockflex.study._run_options import RunOptions
 
 
 def simulate(
@@ -96,9 +97,11 @@ def simulate(
     >>> response.status, round(response.max_rotation, 4)
     ('rocking', 0.0198)
     """
-    options = case_options(output, free_vibration, initial, work_limit)
-    check_options(bouc_wen, impact, ground)
+    history = wants_history(output)
+    options = RunOptions.of(
+        free_vibration, impact=impact, bouc_wen=bouc_wen, ground=ground, initial=initial, work_limit=work_limit
+    )
     properties = properties_of(structure)
     choice, below = parse_model(model), ground_under(properties, ground)
     check_motion(motion)
-    return run_prepared(choice, properties, impact, bouc_wen, below, motion, options)
+    return run_prepared(choice, properties, replace(options, ground=below, all_yield=True), motion, history=history)

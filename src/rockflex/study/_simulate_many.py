@@ -16,20 +16,18 @@ from rockflex.study._arguments import (
     WORK_LIMIT,
     GroundChoice,
     Output,
-    case_options,
-    check_options,
     factors_of,
-    ground_under,
     properties_of,
+    wants_history,
 )
 from rockflex.study._case import Case, prepare_together
 from rockflex.study._initial import InitialState
 from rockflex.study._peaks import Peaks, Scaled, peaks_among, peaks_of
 from rockflex.study._results import RESULTS
+from rockflex.study._run_options import RunOptions
 from rockflex.study._runs import in_order
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
 from rockflex.study._tables import Sheet
-from rockflex.study._yielding import hysteresis_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -113,25 +111,26 @@ def simulate_many(
     2  MDOF-S    0.5  rocking
     3  MDOF-S    1.0  rocking
     """
-    options = case_options(output, free_vibration, initial, work_limit)
-    check_options(bouc_wen, impact, ground)
+    history = wants_history(output)
+    options = RunOptions.of(
+        free_vibration, impact=impact, bouc_wen=bouc_wen, ground=ground, initial=initial, work_limit=work_limit
+    )
     everything, names = structures_of(structures)
     records = motions_of(motions)
     check_horizontal(*records)
     chosen = models_of(models)
-    yielding = hysteresis_of(chosen, bouc_wen)
+    options = options.among(chosen)
     factors = factors_of(scales, max(records, key=lambda motion: motion.pga))
     shape = (len(everything), len(records), len(chosen), len(factors))
     inner = len(chosen) * len(factors)  # runs of one structure under one motion
     each = len(records) * inner
-    responses = np.full(len(everything) * each if options["history"] else 0, None, dtype=object)
+    responses = np.full(len(everything) * each if history else 0, None, dtype=object)
 
     def case_of(index: int, which: int) -> Case | str:
         """Return the case of a structure and a model, or the reason why there is none."""
         try:
             properties = properties_of(everything[index])
-            below = ground_under(properties, ground)
-            return Case(chosen[which].of(properties, impact, yielding[which], below), **options)
+            return options.case(chosen[which], properties, history=history, floors=history)
         except InputError as error:
             return str(error)
 

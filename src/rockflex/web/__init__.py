@@ -1,4 +1,4 @@
-"""The web page: a stateless server of JSON, and the page that draws what it answers."""
+"""The web page: a stateless server of JSON, and a page that draws its answers."""
 
 from rockflex.web._serve import make_app, serve
 

@@ -20,33 +20,39 @@ from starlette.staticfiles import StaticFiles
 from rockflex._errors import InputError, SolverError
 from rockflex._json import plain
 from rockflex.solve import RunStoppedError, stopping_when
-from rockflex.web._animation import animation
-from rockflex.web._download import KINDS_OF_FILES, download, study_file
-from rockflex.web._exchange import file_answer, file_of, question_of, state_of, step_of
-from rockflex.web._folder_requests import folder_routes
-from rockflex.web._forms import forms
-from rockflex.web._headers import Headers, Hosts
-from rockflex.web._jobs import FILES as FILES_KEPT
-from rockflex.web._jobs import KEPT, FileJob, Job, Jobs
-from rockflex.web._limit_states import limit_states
-from rockflex.web._limits import DURATION, FILE, FILES, FOLDER, FREEDOMS, MODELS, MOST_ELEMENTS, RUNS
-from rockflex.web._measures import measures
-from rockflex.web._pages import PAGES
-from rockflex.web._presets import PRESETS
-from rockflex.web._records import PULSES, record_view, suite_view, suites
+from rockflex.web._downloads import MEDIA_TYPES, animation, download, study_file
+from rockflex.web._earthquake import PULSES, record_view, suite_view, suites
+from rockflex.web._folders import FIELD, MAX_LIST_BYTES, read_folder, unpacked
+from rockflex.web._forms import PRESETS, forms
+from rockflex.web._jobs import MAX_FILES, MAX_STUDIES, FileJob, Job, Jobs
+from rockflex.web._limits import (
+    MAX_DURATION,
+    MAX_ELEMENTS,
+    MAX_FILE_BYTES,
+    MAX_FOLDER_BYTES,
+    MAX_FOLDER_FILES,
+    MAX_FREEDOMS,
+    MAX_MODELS,
+    MAX_STUDY_RUNS,
+)
+from rockflex.web._protection import KnownHosts, SecurityHeaders
 from rockflex.web._refusal import Refusal
+from rockflex.web._requests import file_answer, file_of, state_and_content, state_of, step_of
 from rockflex.web._response import response_view
-from rockflex.web._state import State
-from rockflex.web._structures import build, structure_view
-from rockflex.web._studies import planned
-from rockflex.web._target_requests import target_routes
+from rockflex.web._selection import factor_view, selection_view
+from rockflex.web._state import State, limit_states, measures
+from rockflex.web._structure import build, structure_view
+from rockflex.web._studies import PAGES, study_plan
 from rockflex.web._uploads import Uploads, read_matrices, read_record, read_vertical
 
-LOOK = 0.2  # s between checks whether a visitor still waits
+WATCH_INTERVAL = 0.2  # s between checks whether a visitor still waits
 STATIC = Path(__file__).parent / "static"
-THREADS = 4  # answers computed at once: the engine releases the lock, and short answers must not wait for long ones
-WRITTEN = 2  # files written at once: they take long and mostly hold the lock
-LONGEST = 1000  # characters of a message: some repeat an input
+MAX_ANSWERS = 4  # answers computed at once: the engine releases the lock, and short answers must not wait for long ones
+MAX_FILES_WRITTEN = 2  # files written at once: they take long and mostly hold the lock
+MAX_FOLDERS_READ = 1  # folders read at once: each may need some hundred megabytes
+MAX_FOLDERS_RECEIVED = 3  # folders in memory that are received, or wait to be read: each may have 80 MB
+MAX_SELECTIONS_COMPUTED = 1  # selections at once: each may take some seconds
+MAX_MESSAGE_LETTERS = 1000  # of a message: some repeat an input
 Answer = Callable[[], Any]
 
 
@@ -55,25 +61,26 @@ class Server:
 
     def __init__(self) -> None:
         self.uploads = Uploads()
-        self.jobs, self.files = Jobs[Job]("studies", KEPT), Jobs[FileJob]("files", FILES_KEPT)
+        self.jobs, self.files = Jobs[Job]("studies", MAX_STUDIES), Jobs[FileJob]("files", MAX_FILES)
         self._ready = Event()
+        self._folders_received = asyncio.Semaphore(MAX_FOLDERS_RECEIVED)
         self._limiters: dict[int, anyio.CapacityLimiter] = {}
 
     def warm_up(self) -> None:
-        """Import what answers need, before the first visitor needs it."""
+        """Import the modules and prepare the engine before the first visitor needs them."""
         pulse = {"source": "pulse", "pulse": {"shape": "one_sine", "amplitude": 5.0, "period": 0.5}}
         content = {"structure": PRESETS[0]["structure"], "record": pulse, "free_vibration": 0.0}
         state = State.model_validate(content | {"models": ["MDOF-S", "2DOF-S", "2DOF-C", "fixed"]})
         response_view(state, self.uploads)
         self._ready.set()
 
-    async def answer(self, work: Answer, most: int = THREADS) -> Any:
+    async def answer(self, work: Answer, most: int = MAX_ANSWERS) -> Any:
         """Compute outside the event loop, with a limited number of answers at once."""
         if most not in self._limiters:
             self._limiters[most] = anyio.CapacityLimiter(most)
         return await anyio.to_thread.run_sync(work, limiter=self._limiters[most], abandon_on_cancel=True)
 
-    async def run(self, request: Request, work: Answer, most: int = THREADS) -> Any:
+    async def run(self, request: Request, work: Answer, most: int = MAX_ANSWERS) -> Any:
         """Compute as `answer` does, and stop its runs when the visitor no longer waits for them."""
         gone = Event()
 
@@ -83,7 +90,7 @@ class Server:
 
         async def watch() -> None:
             while not await request.is_disconnected():
-                await anyio.sleep(LOOK)
+                await anyio.sleep(WATCH_INTERVAL)
             gone.set()
 
         watching = asyncio.create_task(watch())
@@ -128,7 +135,7 @@ class Server:
 
     async def response(self, request: Request) -> Response:
         """Response tab."""
-        state, content = await question_of(request)
+        state, content = await state_and_content(request)
         asked = content.get("focus"), content.get("element")
         return JSONResponse(await self.run(request, lambda: response_view(state, self.uploads, *asked)))
 
@@ -149,6 +156,40 @@ class Server:
 
         return JSONResponse(await self.answer(work))
 
+    async def folder(self, request: Request) -> Response:
+        """Records from a folder."""
+        async with self._folders_received:  # others wait with their files on their own machines
+            body, query = (
+                await file_of(request, MAX_FOLDER_BYTES + MAX_LIST_BYTES, MAX_FOLDER_BYTES),
+                request.query_params,
+            )
+            units, dt = query.get("units") or None, step_of(query.get("dt", ""), FIELD)
+
+            def work() -> dict[str, Any]:
+                files = unpacked(body)
+                folder = read_folder(files, units, dt)
+                token = self.uploads.folders.add(folder, files, f"{units} {dt}")
+                return {"folder": token, **folder.report}
+
+            return JSONResponse(await self.answer(work, MAX_FOLDERS_READ))
+
+    async def folder_report(self, request: Request) -> Response:
+        """Report on a folder that the server has."""
+        token = request.path_params["token"]
+        return JSONResponse({"folder": token, **self.uploads.folders.get(token).report})
+
+    async def selection(self, request: Request) -> Response:
+        """Records selected for a target spectrum."""
+        state = await state_of(request)
+        return JSONResponse(
+            await self.run(request, lambda: selection_view(state, self.uploads), MAX_SELECTIONS_COMPUTED)
+        )
+
+    async def factor(self, request: Request) -> Response:
+        """Scale factor of the record for a target spectrum."""
+        state, content = await state_and_content(request)
+        return JSONResponse(await self.run(request, lambda: factor_view(state, self.uploads, content.get("period"))))
+
     async def matrices(self, request: Request) -> Response:
         """Matrices from a file."""
         body, query = await file_of(request), request.query_params
@@ -159,7 +200,7 @@ class Server:
         """A file of the results on the page."""
         state = await state_of(request)
         what = request.path_params["what"]
-        return file_answer(*await self.run(request, lambda: download(state, what, self.uploads), WRITTEN))
+        return file_answer(*await self.run(request, lambda: download(state, what, self.uploads), MAX_FILES_WRITTEN))
 
     async def start(self, request: Request) -> Response:
         """Start a study."""
@@ -167,7 +208,7 @@ class Server:
         state = await state_of(request)
 
         def work() -> dict[str, str]:
-            return {"token": self.jobs.start(Job(planned(PAGES[kind].study(state, self.uploads), kind), kind))}
+            return {"token": self.jobs.start(Job(study_plan(PAGES[kind].study(state, self.uploads), kind), kind))}
 
         return JSONResponse(await self.answer(work))
 
@@ -182,7 +223,7 @@ class Server:
         kind, job = self._job(request)
         state = await state_of(request)
         what = request.path_params["what"]
-        return file_answer(*await self.answer(lambda: study_file(PAGES[kind], job, state, what), WRITTEN))
+        return file_answer(*await self.answer(lambda: study_file(PAGES[kind], job, state, what), MAX_FILES_WRITTEN))
 
     async def cancel(self, request: Request) -> Response:
         """Stop a study."""
@@ -209,7 +250,7 @@ class Server:
         if job.file is None:
             raise Refusal("The file is not finished.", 404)
         name, content = job.file
-        return file_answer(name, KINDS_OF_FILES[Path(name).suffix], content)
+        return file_answer(name, MEDIA_TYPES[Path(name).suffix], content)
 
     async def unmake(self, request: Request) -> Response:
         """Stop to make a file."""
@@ -231,7 +272,7 @@ def _kind(request: Request) -> str:
 
 
 def create(host: str, names: Sequence[str]) -> Starlette:
-    """Return the application for a host name; it answers to that and to some others (`Hosts`)."""
+    """Return the application for a host name; it answers to that and to some others (`KnownHosts`)."""
     server = Server()
 
     @asynccontextmanager
@@ -242,8 +283,8 @@ def create(host: str, names: Sequence[str]) -> Starlette:
         server.files.close()
 
     middleware = [
-        Middleware(Headers),
-        Middleware(Hosts, host=host, names=names),
+        Middleware(SecurityHeaders),
+        Middleware(KnownHosts, host=host, names=names),
         Middleware(GZipMiddleware, minimum_size=1000, compresslevel=3),
     ]
     routes = [
@@ -255,8 +296,10 @@ def create(host: str, names: Sequence[str]) -> Starlette:
         Route("/api/record", server.record, methods=["POST"]),
         Route("/api/response", server.response, methods=["POST"]),
         Route("/api/upload", server.upload, methods=["POST"]),
-        *folder_routes(server.answer, server.uploads.folders),
-        *target_routes(server.run, server.uploads),
+        Route("/api/folder", server.folder, methods=["POST"]),
+        Route("/api/folder/{token}", server.folder_report),
+        Route("/api/selection", server.selection, methods=["POST"]),
+        Route("/api/factor", server.factor, methods=["POST"]),
         Route("/api/matrices", server.matrices, methods=["POST"]),
         Route("/api/download/{what}", server.download, methods=["POST"]),
         Route("/api/study/{kind}", server.start, methods=["POST"]),
@@ -287,14 +330,14 @@ def _about() -> dict[str, Any]:
     usual = ("amplitude", "period")
     pulses = {name: {"title": each.title, "fields": (*usual, *each.fields)} for name, each in PULSES.items()}
     limits = {
-        "file": FILE,
-        "files": FILES,
-        "folder": FOLDER,
-        "freedoms": FREEDOMS,
-        "duration": DURATION,
-        "models": MODELS,
-        "runs": RUNS,
-        "elements": MOST_ELEMENTS,
+        "file": MAX_FILE_BYTES,
+        "files": MAX_FOLDER_FILES,
+        "folder": MAX_FOLDER_BYTES,
+        "freedoms": MAX_FREEDOMS,
+        "duration": MAX_DURATION,
+        "models": MAX_MODELS,
+        "runs": MAX_STUDY_RUNS,
+        "elements": MAX_ELEMENTS,
     }
     first = State.model_validate({"structure": PRESETS[0]["structure"]})
     return forms() | {
@@ -309,12 +352,12 @@ def _about() -> dict[str, Any]:
 
 async def _refused(_: Request, error: Exception) -> Response:
     assert isinstance(error, Refusal)
-    errors = {path[:200]: text[:LONGEST] for path, text in error.errors.items()}
+    errors = {path[:200]: text[:MAX_MESSAGE_LETTERS] for path, text in error.errors.items()}
     return JSONResponse({"errors": errors}, status_code=error.status)
 
 
 async def _unusable(_: Request, error: Exception) -> Response:
-    return JSONResponse({"errors": {"": str(error)[:LONGEST]}}, status_code=422)
+    return JSONResponse({"errors": {"": str(error)[:MAX_MESSAGE_LETTERS]}}, status_code=422)
 
 
 async def _gone(_: Request, __: Exception) -> Response:

@@ -1,33 +1,231 @@
-"""Sets of records that visitors give: read in a temporary folder, reported on, and kept in memory under a checksum."""
+"""Folders of records that visitors send: unpacked, read, reported on, and kept in memory under a checksum."""
 
 import hashlib
+import io
+import re
 import warnings
-from collections import OrderedDict
-from collections.abc import Sequence
+import zipfile
+import zlib
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
-from threading import Lock
 from typing import Any
 
 from rockflex._errors import InputError, RecordWarning
 from rockflex._json import plain
-from rockflex.motion import GroundMotion, RecordSurvey, Suite, SurveyEntry, survey_plain
+from rockflex.motion import GroundMotion, RecordSurvey, Suite, SurveyEntry, record_csv, survey_plain
 from rockflex.motion._direction import told_apart
-from rockflex.web._limits import FILE, SAMPLES_KEPT, SAMPLES_TOGETHER, check_motion
+from rockflex.web._cache import Cache
+from rockflex.web._limits import (
+    MAX_CACHED_SAMPLES,
+    MAX_FILE_BYTES,
+    MAX_FOLDER_BYTES,
+    MAX_FOLDER_FILES,
+    MAX_FOLDER_SAMPLES,
+    check_motion,
+)
 from rockflex.web._refusal import Refusal
-from rockflex.web._unpacking import FIELD, GivenFile
+from rockflex.web._state import parse_json
 
-GONE = (
+FIELD = "record.folder"  # of the messages
+MAX_STEM_LETTERS, MAX_SUFFIX_LETTERS = 70, 12  # letters of a name that are kept
+MAX_NAME_BYTES = 200  # of them, because file systems count bytes: most take 255 with the suffix
+MAX_LIST_BYTES = 500_000  # bytes of the list
+FORBIDDEN = re.compile(r'[<>:"|?*\x00-\x1f\x7f-\x9f]')
+ZIP_ENTRY = b"PK\x01\x02"  # before each name in the list of an archive
+DAMAGED = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError, OSError)
+
+
+@dataclass(frozen=True)
+class SentFile:
+    """A file of a visitor; without content if it is too large, with its size in bytes."""
+
+    name: str
+    content: bytes | None
+    size: int
+
+
+def unpacked(body: bytes) -> list[SentFile]:
+    """Return the files in a request.
+
+    Parameters
+    ----------
+    body
+        A line of JSON, ``[{"name": "folder/a.AT2", "size": 120, "sent": true}, ...]``, and the contents in this order;
+        a file that was too large to be sent has ``"sent": false`` and no content.
+
+    Raises
+    ------
+    Refusal
+        If the list does not fit the contents, there are too many or too large files, a name points out of the folder,
+        or an archive cannot be unpacked.
+    """
+    paths, found, work = list[str](), list[tuple[bytes | None, int]](), 0
+    for path, content, size in _listed(body):
+        if content is not None and path.lower().endswith(".zip"):
+            inside = _archived(path, content, MAX_FOLDER_BYTES - work)
+        else:
+            inside = [(path, content, size)]
+        for name, each, length in inside:
+            paths.append(name)
+            found.append((each, length))
+            work += _unpacked_bytes(each)
+            if work > MAX_FOLDER_BYTES:
+                raise _too_large()
+            if len(paths) > MAX_FOLDER_FILES:
+                raise _refused(
+                    f"there are more than {MAX_FOLDER_FILES} files, which is more than the page takes. Choose fewer."
+                )
+    if not paths:
+        raise _refused("there is no file in it.")
+    return [SentFile(name, *each) for name, each in zip(flat_names(paths), found, strict=True)]
+
+
+def _listed(body: bytes) -> Iterator[tuple[str, bytes | None, int]]:
+    head, end, _ = body[:MAX_LIST_BYTES].partition(b"\n")
+    if not end:
+        raise Refusal("The list of files does not end.", 400)
+    place, entries = len(head) + 1, parse_json(head)
+    for entry in entries if isinstance(entries, list) else [None]:
+        name, size, sent = _listed_file(entry)
+        content = body[place : place + size] if sent else None
+        if content is not None and len(content) < size:
+            raise Refusal("The request ends before its files do.", 400)
+        yield _checked(name), content, size
+        place += size if sent else 0
+    if place < len(body):
+        raise Refusal("The request holds more than the files of its list.", 400)
+
+
+def _listed_file(entry: Any) -> tuple[str, int, bool]:
+    known = isinstance(entry, dict) and isinstance(entry.get("name"), str) and type(entry.get("size")) is int
+    if not known or entry["size"] < 0 or not isinstance(entry.get("sent"), bool):
+        raise Refusal("A list of files with name, size and sent is expected before their contents.", 400)
+    large = entry["size"] > MAX_FILE_BYTES and not entry["name"].lower().endswith(".zip")
+    return entry["name"], entry["size"], entry["sent"] and not large
+
+
+def _archived(path: str, content: bytes, room: int) -> Iterator[tuple[str, bytes | None, int]]:
+    """Yield the files of an archive, of which no more than `room` bytes are unpacked."""
+    shown = flat_names([path])[0]
+    if content.count(ZIP_ENTRY) > 2 * MAX_FOLDER_FILES:  # opening it would take an object for each
+        raise _refused(
+            f"{shown} holds more than {MAX_FOLDER_FILES} files, which is more than the page takes. Pack fewer."
+        )
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            entries = [each for each in archive.infolist() if not each.is_dir()]
+            if len(entries) > MAX_FOLDER_FILES:
+                raise _refused(
+                    f"{shown} holds {len(entries)} files, but the page takes {MAX_FOLDER_FILES} at most. Pack fewer."
+                )
+            for each in entries:
+                inner = _checked(each.filename)
+                if each.file_size > MAX_FILE_BYTES:
+                    yield inner, None, each.file_size
+                    continue
+                with archive.open(each) as file:
+                    data = file.read(min(MAX_FILE_BYTES, room) + 1)  # whatever the archive says of its size
+                room -= len(data)
+                if room < 0:
+                    raise _too_large()
+                yield (inner, data, len(data)) if len(data) <= MAX_FILE_BYTES else (inner, None, len(data))
+    except DAMAGED as error:
+        locked = isinstance(error, RuntimeError) and "password" in str(error)
+        reason = "is protected by a password" if locked else "is a damaged archive, or packed in an unknown way"
+        raise _refused(f"{shown} {reason}. Unpack it, and give the folder instead.") from error
+
+
+def _unpacked_bytes(content: bytes | None) -> int:
+    """Return the number of bytes read from a file; a workbook is an archive, so its unpacked size counts."""
+    if content is None or not content.startswith(b"PK"):
+        return len(content or b"")
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            return sum(each.file_size for each in archive.infolist())
+    except DAMAGED:
+        return len(content)
+
+
+def _checked(path: str) -> str:
+    """Return a path within the folder of a visitor.
+
+    Raises
+    ------
+    Refusal
+        If it points out of the folder.
+    """
+    parts = re.split(r"[/\\]", path)
+    if ".." in parts or not parts[0] or re.match(r"[A-Za-z]:", path):
+        raise _refused(f"the name {path[:80]!r} points out of its folder. Pack the records anew, without such names.")
+    return path
+
+
+def flat_names(paths: Iterable[str]) -> list[str]:
+    """Return a different name for each path: its last part, with its folders only where two are equal."""
+    names: list[str] = []
+    used: set[str] = set()
+    for path in paths:
+        parts = [part for each in re.split(r"[/\\]", path) if (part := _clean(each))] or ["file"]
+        name = _short(parts[-1])
+        if name.casefold() in used:
+            name = _short("_".join(parts[1:] if len(parts) > 2 else parts))
+        plain, count = PurePosixPath(name), 1
+        while name.casefold() in used:
+            count += 1
+            name = f"{plain.stem}-{count}{plain.suffix}"
+        used.add(name.casefold())
+        names.append(name)
+    return names
+
+
+def _clean(part: str) -> str:
+    text = FORBIDDEN.sub("_", part.encode("utf-8", "replace").decode()).strip()
+    return "" if text in (".", "..") else text
+
+
+def _short(name: str) -> str:
+    path = PurePosixPath(name)
+    stem = path.stem[:MAX_STEM_LETTERS].encode()[:MAX_NAME_BYTES].decode("utf-8", "ignore")
+    return f"{stem}{path.suffix[:MAX_SUFFIX_LETTERS]}"
+
+
+def _too_large() -> Refusal:
+    message = (
+        f"the files have more than {MAX_FOLDER_BYTES / 1e6:g} MB, which is more than the page takes. Choose fewer."
+    )
+    return _refused(message, 413)
+
+
+def _refused(message: str, status: int = 422) -> Refusal:
+    return Refusal({FIELD: message}, status)
+
+
+ZIP_DATE = (1980, 1, 1, 0, 0, 0)  # the same records give the same archive
+
+
+def packed_records(motions: Iterable[GroundMotion]) -> bytes:
+    """Return a ZIP archive with a CSV file of each motion and its metadata."""
+    members = list(motions)
+    names = flat_names(f"{motion.name.replace('/', '_')}.csv" for motion in members)
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED, compresslevel=3) as archive:
+        for name, motion in zip(names, members, strict=True):
+            archive.writestr(zipfile.ZipInfo(name, ZIP_DATE), record_csv(motion), zipfile.ZIP_DEFLATED)
+    return packed.getvalue()
+
+
+FOLDER_LOST = (
     "the server no longer has these records: it was restarted, or others gave newer ones. Give the folder again on "
     "the Earthquake tab; a link does not contain it."
 )
-NONE = "no records were given yet. Choose a folder on the Earthquake tab first."
+NO_FOLDER = "no records were given yet. Choose a folder on the Earthquake tab first."
 
 
 @dataclass(frozen=True, eq=False)
 class Folder:
-    """Records of a visitor, and what the page reports of them.
+    """Records of a visitor, and the report of them on the page.
 
     Attributes
     ----------
@@ -59,10 +257,9 @@ class Folders:
     """
 
     def __init__(self) -> None:
-        self._kept: OrderedDict[str, Folder] = OrderedDict()
-        self._lock = Lock()
+        self._folders = Cache[Folder](lambda: MAX_CACHED_SAMPLES, lambda folder: folder.samples)
 
-    def add(self, folder: Folder, files: Sequence[GivenFile], options: str) -> str:
+    def add(self, folder: Folder, files: Sequence[SentFile], options: str) -> str:
         """Keep a set, and return its checksum."""
         digest = hashlib.sha256(options.encode())
         for each in sorted(files, key=lambda file: file.name):
@@ -70,11 +267,7 @@ class Folders:
             digest.update(f"\0{each.name}\0{each.size}\0{len(content)}\0".encode())
             digest.update(content)
         token = digest.hexdigest()
-        with self._lock:
-            self._kept[token] = folder
-            self._kept.move_to_end(token)
-            while len(self._kept) > 1 and sum(each.samples for each in self._kept.values()) > SAMPLES_KEPT:
-                self._kept.popitem(last=False)
+        self._folders.put(token, folder)
         return token
 
     def get(self, token: str) -> Folder:
@@ -85,16 +278,13 @@ class Folders:
         Refusal
             If it is not, or no longer, kept.
         """
-        with self._lock:
-            found = self._kept.get(token)
-            if found is not None:
-                self._kept.move_to_end(token)
+        found = self._folders.get(token)
         if found is None:
-            raise Refusal({FIELD: GONE if token else NONE}, 410)
+            raise Refusal({FIELD: FOLDER_LOST if token else NO_FOLDER}, 410)
         return found
 
 
-def read_folder(files: Sequence[GivenFile], units: str | None, dt: float | None) -> Folder:
+def read_folder(files: Sequence[SentFile], units: str | None, dt: float | None) -> Folder:
     """Read the files of a visitor, as `survey_records` does, without ObsPy.
 
     Raises
@@ -106,7 +296,7 @@ def read_folder(files: Sequence[GivenFile], units: str | None, dt: float | None)
         SurveyEntry(
             file=each.name,
             taken=False,
-            reason=f"it has {each.size / 1e6:.1f} MB, but the page takes files of {FILE / 1e6:g} MB at most",
+            reason=f"it has {each.size / 1e6:.1f} MB, but the page takes files of {MAX_FILE_BYTES / 1e6:g} MB at most",
         )
         for each in files
         if each.content is None
@@ -115,8 +305,8 @@ def read_folder(files: Sequence[GivenFile], units: str | None, dt: float | None)
         warnings.simplefilter("always", RecordWarning)
         along, both = _surveys(files, units, dt)
     samples = sum(motion.acceleration.size for motion in along.motions)
-    if samples > SAMPLES_TOGETHER:
-        message = f"the records have {samples} samples together, but the page takes {SAMPLES_TOGETHER} at most."
+    if samples > MAX_FOLDER_SAMPLES:
+        message = f"the records have {samples} samples together, but the page takes {MAX_FOLDER_SAMPLES} at most."
         raise Refusal({FIELD: f"{message} Choose fewer."}, 413)
     refused = {place: text for place, motion in enumerate(along.motions) if (text := _too_long(motion))}
     kept = [place for place in range(len(along.motions)) if place not in refused]
@@ -131,7 +321,7 @@ def read_folder(files: Sequence[GivenFile], units: str | None, dt: float | None)
     return Folder(plain(report), suites[0], suites[1] if paired else suites[0])
 
 
-def _surveys(files: Sequence[GivenFile], units: str | None, dt: float | None) -> tuple[RecordSurvey, RecordSurvey]:
+def _surveys(files: Sequence[SentFile], units: str | None, dt: float | None) -> tuple[RecordSurvey, RecordSurvey]:
     try:
         with TemporaryDirectory() as folder:
             for each in files:

@@ -14,14 +14,14 @@ from rockflex.solve import RunStoppedError, check_interruption, stopping_when
 from rockflex.study.plan import ChunkedPlan
 from rockflex.web._refusal import Refusal
 
-KEPT = 40  # studies that are remembered
-FILES = 4  # files
-WAITING = 12  # jobs of a kind that may wait or run at the same time
-FORGOTTEN = 30.0  # s without a request after which a job stops, because its page was closed
+MAX_STUDIES = 40  # studies that are remembered
+MAX_FILES = 4  # files
+MAX_WAITING = 12  # jobs of a kind that may wait or run at the same time
+ABANDONED_AFTER = 30.0  # s without a request after which a job stops, because its page was closed
 
 
 class Work:
-    """What one thread computes and others watch.
+    """Work of one thread whose progress others read.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class Work:
         raise NotImplementedError
 
     def _unwanted(self) -> bool:
-        return self.cancelled.is_set() or monotonic() - self.seen > FORGOTTEN
+        return self.cancelled.is_set() or monotonic() - self.seen > ABANDONED_AFTER
 
 
 class Job(Work):
@@ -134,7 +134,7 @@ class Jobs(Generic[AnyWork]):
             If too many jobs are waiting.
         """
         with self._lock:
-            if sum(not each.over for each in self._jobs.values()) >= WAITING:
+            if sum(not each.over for each in self._jobs.values()) >= MAX_WAITING:
                 raise Refusal(f"The server is busy with other {self._what}. Try again in a minute.", 503)
             token = secrets.token_urlsafe(18)
             self._jobs[token] = job

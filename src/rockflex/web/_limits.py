@@ -1,4 +1,4 @@
-"""The limits of what one visitor may request: the same for forms, links and files."""
+"""Limits of the requests of one visitor, the same for forms, links and files."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,35 +14,33 @@ from rockflex.motion import GroundMotion
 from rockflex.solve import Task
 from rockflex.structure.file import ELEMENTS, ElementTable, Table, expected, inner_table, key_of, parts
 from rockflex.study import Case
-from rockflex.study._arguments import ground_under
-from rockflex.study._yielding import labelled_hysteresis
 from rockflex.web._refusal import Refusal, refusing
 
 if TYPE_CHECKING:
     from rockflex.study.cloud import CloudPlan
 
-FILE = 5_000_000  # bytes of an upload
-BODY = 6_000_000  # bytes of any request, except one with a folder
-FILES = 500  # of a folder
-FOLDER = 80_000_000  # bytes of its files, unpacked
-FREEDOMS = 200  # stories, masses, rows of a matrix
-MOST_ELEMENTS = 20  # between the base and the ground: each can change its branch at every turn of the base
-SAMPLES = 200_000
-DURATION = 300.0  # s of a record
-SAMPLES_TOGETHER = 8_000_000  # of the records of a folder
-SAMPLES_KEPT = 30_000_000  # of all folders in memory, 240 MB
-MODELS = 4  # at once
-RUNS = 20_000  # of a study
-RUN = 1.5  # s of estimated computing time of one run (`rockflex.solve.Pace`)
-STOP = 5.0  # s of computing after which a run is stopped: hard runs take three times their estimate
-TOGETHER = 3.0  # s of estimated computing time of the runs of one answer
-STUDY = 180.0  # s of estimated computing time of all runs of a study
+MAX_FILE_BYTES = 5_000_000  # bytes of an upload
+MAX_BODY_BYTES = 6_000_000  # bytes of any request, except one with a folder
+MAX_FOLDER_FILES = 500  # of a folder
+MAX_FOLDER_BYTES = 80_000_000  # bytes of its files, unpacked
+MAX_FREEDOMS = 200  # stories, masses, rows of a matrix
+MAX_ELEMENTS = 20  # between the base and the ground: each can change its branch at every turn of the base
+MAX_SAMPLES = 200_000
+MAX_DURATION = 300.0  # s of a record
+MAX_FOLDER_SAMPLES = 8_000_000  # of the records of a folder
+MAX_CACHED_SAMPLES = 30_000_000  # of all folders in memory, 240 MB
+MAX_MODELS = 4  # at once
+MAX_STUDY_RUNS = 20_000  # of a study
+MAX_RUN_COST = 1.5  # s of estimated computing time of one run (`rockflex.solve.Pace`)
+RUN_WORK_LIMIT = 5.0  # s of computing after which a run is stopped: hard runs take three times their estimate
+MAX_ANSWER_COST = 3.0  # s of estimated computing time of the runs of one answer
+MAX_STUDY_COST = 180.0  # s of estimated computing time of all runs of a study
 
-LARGEST = 1e15
+MAX_NUMBER = 1e15
 
 
 def check_numbers(path: str, value: Any, table: type[Table]) -> None:
-    """Refuse what `errors_of_numbers` finds."""
+    """Raise the errors of `errors_of_numbers` as a refusal."""
     if errors := errors_of_numbers(path, value, table):
         raise Refusal(errors)
 
@@ -62,14 +60,14 @@ def errors_of_numbers(path: str, value: Any, table: type[Table]) -> dict[str, st
             errors[place] = f"it holds {len(each)} values, but the page takes {_most(each)} at most."
         elif isinstance(each, int | float) and not isinstance(each, bool):
             key = Key("") if field is None else key_of(field)
-            low, high = (-LARGEST if key.low is None else key.low), (LARGEST if key.high is None else key.high)
+            low, high = (-MAX_NUMBER if key.low is None else key.low), (MAX_NUMBER if key.high is None else key.high)
             if not low <= each <= high:  # NaN, too
                 errors[place] = f"it must be from {low:g} to {high:g}, but {each:g} was given."
     return errors
 
 
 def wanted(field: FieldInfo) -> str:
-    """Say what a field of a form must be."""
+    """Return the condition on the value of a field, for a message."""
     return key_of(field).page or expected(field)
 
 
@@ -117,15 +115,15 @@ def _leaves(
 
 def _most(values: Sequence[Any]) -> int:
     """Return how many values or tables a list may have."""
-    return MOST_ELEMENTS if isinstance(values[0], Mapping) else FREEDOMS
+    return MAX_ELEMENTS if isinstance(values[0], Mapping) else MAX_FREEDOMS
 
 
 def check_motion(motion: GroundMotion, path: str) -> None:
     """Refuse records that are too long."""
-    if motion.acceleration.size > SAMPLES or motion.duration > DURATION:
+    if motion.acceleration.size > MAX_SAMPLES or motion.duration > MAX_DURATION:
         message = (
             f"the record has {motion.acceleration.size} samples over {motion.duration:.6g} s, but the page takes "
-            f"{SAMPLES} samples and {DURATION:g} s at most. Cut it, or use the library."
+            f"{MAX_SAMPLES} samples and {MAX_DURATION:g} s at most. Cut it, or use the library."
         )
         raise Refusal({path: message})
 
@@ -133,7 +131,7 @@ def check_motion(motion: GroundMotion, path: str) -> None:
 def check_together(cases: Sequence[Case], motion: GroundMotion) -> None:
     """Refuse runs that take too long, individually or together."""
     together = sum(_checked_work(case.task(motion), "models") for case in cases)
-    if together > TOGETHER:
+    if together > MAX_ANSWER_COST:
         message = "these models take too long together for a page. Choose fewer of them, or a shorter record."
         raise Refusal({"models": message})
 
@@ -141,7 +139,7 @@ def check_together(cases: Sequence[Case], motion: GroundMotion) -> None:
 def _checked_work(task: Task, path: str) -> float:
     """Return the estimated computing time of a run in s; refuse one that takes too long."""
     work = task.work().total
-    if work > RUN:
+    if work > MAX_RUN_COST:
         modes = counted(task.pace.modes, "mode")
         message = (
             f"{task.model.label} with {modes} over {task.record.size} samples takes too long for a page. Choose a "
@@ -153,16 +151,14 @@ def _checked_work(task: Task, path: str) -> float:
 
 def _check_model(plan: "CloudPlan", properties: RockingProperties, label: str, path: str) -> None:
     """Refuse a model that the structure cannot have, such as one with modes for a rigid block."""
-    assumptions, model = plan.bench.assumptions, parse_model(label)
-    (bouc_wen,) = labelled_hysteresis([model], assumptions.bouc_wen)
     with refusing(path):
-        model.of(properties, assumptions.impact, bouc_wen, ground_under(properties, assumptions.ground))
+        plan.bench.options.tied(parse_model(label), properties)
 
 
 def check_runs(plan: "CloudPlan", path: str) -> None:
     """Refuse a study whose runs are impossible, too many, or too long."""
-    if plan.n_runs > RUNS:
-        message = f"it has {plan.n_runs} runs, but the page takes {RUNS} at most. Use the command line."
+    if plan.n_runs > MAX_STUDY_RUNS:
+        message = f"it has {plan.n_runs} runs, but the page takes {MAX_STUDY_RUNS} at most. Use the command line."
         raise Refusal({path: message})
     bench = plan.bench
     largest = max(plan.scales, key=abs)
@@ -174,6 +170,6 @@ def check_runs(plan: "CloudPlan", path: str) -> None:
                 task = bench.task(structure, record, model, largest)
                 if task is not None:
                     work += len(plan.scales) * _checked_work(task, path)
-    if work > STUDY:
+    if work > MAX_STUDY_COST:
         message = "it takes too long for a page. Choose models with fewer modes, or use the command line."
         raise Refusal({path: message})

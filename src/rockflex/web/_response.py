@@ -8,27 +8,72 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._json import plain
-from rockflex.modal import RockingProperties
+from rockflex.modal import RockingProperties, Tendon, YieldingDissipator
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.response import History, Response, warnings_of, warnings_of_energy
 from rockflex.solve import pace_of
 from rockflex.study import Case
-from rockflex.study._yielding import labelled_hysteresis
-from rockflex.web._elements import chosen_element, elements_view, self_centring
-from rockflex.web._ground import base_curves, ground_of, ground_view
-from rockflex.web._limits import STOP, check_together
-from rockflex.web._packing import envelope, pack
-from rockflex.web._records import motion_of
+from rockflex.web._earthquake import motion_of
+from rockflex.web._encoding import envelope, pack
+from rockflex.web._limits import check_together
 from rockflex.web._refusal import Refusal, refusing
 from rockflex.web._state import State
-from rockflex.web._structures import Built, build, outline
+from rockflex.web._structure import Built, build, ground_of, ground_view, outline
 from rockflex.web._uploads import Uploads
 
-POINTS = 2000  # of a history, events aside
-EVENTS = 600  # nodes of events that are retained, at most
-SENT = ("rotation", "top_displacement", "base_moment", "base_shear")
-LEDGER = 1.0  # s of estimated computing time of the energies, see `rockflex.solve.Pace`
+
+def chosen_element(asked: object, p: RockingProperties) -> int | None:
+    """Return the element whose loop is drawn: the one asked for, or the first; None if there are none."""
+    if not p.elements:
+        return None
+    return asked if type(asked) is int and 0 <= asked < len(p.elements) else 0
+
+
+def elements_view(p: RockingProperties, response: Response, *, energies: bool) -> dict[str, Any]:
+    """Return the peaks of every element in a model that lifts; their energies, which take longer, if wanted."""
+    dissipated = response.element_energy.tolist() if energies else [None] * len(p.elements)
+    prestress = iter(response.remaining_prestress.tolist())
+    columns = (response.max_element_force, response.max_element_elongation, response.element_yielded)
+    rows = [
+        {
+            "force": force,
+            "elongation": elongation,
+            "energy": energy,
+            "yielded": yielded,
+            "broken": _breaks_at(element) <= elongation,
+            "prestress": next(prestress) if isinstance(element, Tendon) else None,
+        }
+        for element, force, elongation, yielded, energy in zip(
+            p.elements, *(column.tolist() for column in columns), dissipated, strict=True
+        )
+    ]
+    return {"label": response.model, "rows": rows}
+
+
+def _breaks_at(element: object) -> float:
+    """Return the elongation in m at which an element breaks; infinite if it never does."""
+    found = element.rupture_elongation if isinstance(element, Tendon | YieldingDissipator) else None
+    return float("inf") if found is None else found
+
+
+def self_centring(p: RockingProperties, rotation: float) -> list[dict[str, Any]]:
+    """Return whether weight and prestress close the base about each edge, where dissipators keep it open.
+
+    `ratio` is λ at a vanishing rotation, and `at` that at a rotation in rad, the smaller of both edges.
+    """
+    at = p.recentring_ratio_at(rotation) if rotation > 0.0 and p.elements else None
+    return [
+        {"side": pivot.side, "closes": pivot.self_centring, "ratio": pivot.recentring_ratio, "at": at}
+        for pivot in p.pivots
+        if pivot.dissipator_moment > 0.0
+    ]
+
+
+MAX_HISTORY_POINTS = 2000  # of a history, events aside
+MAX_EVENT_NODES = 600  # nodes of events that are retained, at most
+CURVES = ("rotation", "top_displacement", "base_moment", "base_shear")
+MAX_ENERGY_COST = 1.0  # s of estimated computing time of the energies, see `rockflex.solve.Pace`
 
 
 def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list[Response]]:
@@ -41,14 +86,12 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
     """
     built = build(state.structure)
     motion = motion_of(state.record, uploads).scaled(state.scale)
-    law, cases, found = state.law(), dict[str, Case](), list[Response]()
-    models = [parse_model(label) for label in state.models]
-    given, ground = labelled_hysteresis(models, state.hysteresis()), ground_of(state.ground, built.properties)
-    for label, model, bouc_wen in zip(state.models, models, given, strict=True):
+    options, cases = state.run_options(ground_of(state.ground, built.properties)), dict[str, Case]()
+    for label in state.models:
         with refusing("models", f"{label}: "):
-            tied = model.of(built.properties, law, bouc_wen, ground)
-            cases[label] = Case(tied, state.free_vibration, work_limit=STOP, history=True, floors=True)
+            cases[label] = options.case(parse_model(label), built.properties, history=True, floors=True)
     check_together(list(cases.values()), motion)
+    found = list[Response]()
     for label, case in cases.items():
         with refusing("models", f"{label}: "):
             found.append(case.run(motion))
@@ -76,7 +119,7 @@ def response_view(state: State, uploads: Uploads, focus: object = "", element: o
             "models": curves,
             "ground": ground_view(ground_of(state.ground, p), p),
             "element": drawn,
-            "held": _held(p, motion, main, found, state),
+            "held": _element_peaks(p, motion, main, found, state),
             "self_centring": self_centring(
                 p, max((r.max_rotation for r in found if r.status == "rocking"), default=0.0)
             ),
@@ -101,7 +144,7 @@ def _curves(built: Built, response: Response, element: int | None) -> dict[str, 
     assert history is not None  # asked for in `responses`
     pulled = None if element is None or not history.model.lifts else history.element_force[:, element]
     base = base_curves(history)
-    kept = _kept(history, pulled, list(base.values()))
+    kept = _thinned(history, pulled, list(base.values()))
     modal = history.modal_displacement[kept]
     points = modal @ built.shapes[:, : modal.shape[1]].T
     known = history.model.properties.top_height is not None
@@ -112,10 +155,10 @@ def _curves(built: Built, response: Response, element: int | None) -> dict[str, 
         "warnings": warnings_of(response.model, response.peaks()),  # the energies of one model only are computed
         "lifts": history.model.lifts,
         "fall_time": _fall_time(history),
-        "uplift_times": history.uplift_times[:EVENTS],
-        "impact_times": history.impact_times[:EVENTS],
+        "uplift_times": history.uplift_times[:MAX_EVENT_NODES],
+        "impact_times": history.impact_times[:MAX_EVENT_NODES],
         "t": pack(history.time[kept]),
-        **{name: pack(getattr(history, name)[kept]) for name in SENT},
+        **{name: pack(getattr(history, name)[kept]) for name in CURVES},
         "total_top_displacement": pack(history.total_top_displacement[kept]) if known else None,
         **{name: pack(values[kept]) for name, values in base.items()},
         "uplifted": pack(history.uplifted[kept]),
@@ -125,20 +168,35 @@ def _curves(built: Built, response: Response, element: int | None) -> dict[str, 
     }
 
 
-def _kept(history: History, pulled: Array | None, base: list[Array]) -> NDArray[np.intp]:
+def base_curves(history: History) -> dict[str, Array]:
+    """Return how the base of a history moves on its ground, in m, shapes (n_states,); none on rigid ground.
+
+    The slip if it can slide, and on springs the heave and the rise of the edges.
+    """
+    curves: dict[str, Array] = {}
+    layout = history.model.layout
+    if layout.slip >= 0:
+        curves["slip"] = history.slip
+    if layout.heave >= 0:
+        left, right = history.edge_uplift.T
+        curves |= {"heave": history.heave, "left_edge": left, "right_edge": right}
+    return curves
+
+
+def _thinned(history: History, pulled: Array | None, base: list[Array]) -> NDArray[np.intp]:
     """Return the nodes that are sent: the extremes of every interval, and both sides of the events.
 
     `pulled` is the force of an element in N, if one is drawn, and `base` how the base moves on its ground.
     """
     curves = [history.rotation, history.top_displacement, history.base_moment, history.base_shear, *base]
-    points = POINTS
+    points = MAX_HISTORY_POINTS
     if pulled is not None:  # loops need more points than curves over time
         curves.append(pulled)
         points *= 2
     if history.model.properties.top_height is not None:
         curves.append(history.total_top_displacement)
     kept = envelope(curves, points)
-    events = np.flatnonzero(np.diff(history.time) == 0.0)[: EVENTS // 2]
+    events = np.flatnonzero(np.diff(history.time) == 0.0)[: MAX_EVENT_NODES // 2]
     return np.unique(np.concatenate((kept, events, events + 1)))
 
 
@@ -152,7 +210,7 @@ def _fall_time(history: History) -> float | None:
     return float(history.time[inside[-1] + 1])
 
 
-def _held(
+def _element_peaks(
     p: RockingProperties, motion: GroundMotion, main: Response, found: list[Response], state: State
 ) -> dict[str, Any] | None:
     """Return the peaks of the elements in the model `main`, or in the first that lifts; None if nothing is held."""
@@ -172,7 +230,7 @@ def check_energy(response: Response, motion: GroundMotion, state: State) -> None
     model = response.history.model
     samples = motion.acceleration.size + state.free_vibration / motion.dt
     work = pace_of(model, 1).energy(samples, motion.dt) * (1.0 + 0.5 * len(model.elements))  # more branches to follow
-    if work > LEDGER:
+    if work > MAX_ENERGY_COST:
         message = "the energy is not computed here for so many or such fast modes over so long a time."
         raise Refusal({"energy": message})
 
@@ -198,7 +256,7 @@ def _energy(motion: GroundMotion, response: Response, state: State) -> dict[str,
     curves["gravity"] = curves["gravity"] + sunk  # from the deepest position of a base on springs
     curves["input"] = curves["input"] + float(ledger.stored[0]) + held + sunk
     kept = envelope([curves["kinetic"], curves["strain"]], 1000)
-    kept = np.unique(np.concatenate((kept, np.flatnonzero(np.diff(ledger.lost) != 0.0)[:EVENTS] + 1)))
+    kept = np.unique(np.concatenate((kept, np.flatnonzero(np.diff(ledger.lost) != 0.0)[:MAX_EVENT_NODES] + 1)))
     return {
         "label": response.model,
         "t": pack(history.time[kept]),

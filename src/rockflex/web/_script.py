@@ -11,14 +11,13 @@ from rockflex.fragility import NOMINAL, ROCKING
 from rockflex.modal import BaseElement
 from rockflex.structure import LumpedMasses, Section
 from rockflex.structure.file import StructureEntry
-from rockflex.study._ground_table import BedTable, GroundTable, SpringsTable
-from rockflex.study._yielding import yielding
+from rockflex.study._option_tables import BedTable, GroundTable, SpringsTable
+from rockflex.study._run_options import yielding
 from rockflex.study.cloud import CloudStudy
 from rockflex.study.design import DesignStudy
-from rockflex.web._given import FOLDER, OWN
-from rockflex.web._limit_states import ROTATION
-from rockflex.web._records import PULSES
-from rockflex.web._state import PulseChoice, State
+from rockflex.web._earthquake import PULSES
+from rockflex.web._selection import RECORDS_FOLDER, VISITOR_SUITES
+from rockflex.web._state import ROTATION, PulseChoice, State
 
 
 def response_script(state: State, upload_name: str = "record") -> str:
@@ -165,11 +164,11 @@ def _program(state: State, motions: list[str], lines: list[str], *, yields: bool
 
 
 def _motions(suites: Sequence[str]) -> str:
-    embedded = [f"list(rf.load_suite({name!r}))" for name in suites if name not in OWN]
+    embedded = [f"list(rf.load_suite({name!r}))" for name in suites if name not in VISITOR_SUITES]
     if len(embedded) == len(suites):
         return f"motions = {' + '.join(embedded)}"
-    note = f"# unpacked from {FOLDER}.zip, which the page saves beside this program: Records (ZIP)"
-    return f"motions = {' + '.join([*embedded, f'list(rf.read_suite({FOLDER!r}))'])}  {note}"
+    note = f"# unpacked from {RECORDS_FOLDER}.zip, which the page saves beside this program: Records (ZIP)"
+    return f"motions = {' + '.join([*embedded, f'list(rf.read_suite({RECORDS_FOLDER!r}))'])}  {note}"
 
 
 def _structure(entry: StructureEntry) -> list[str]:

@@ -67,7 +67,7 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (
 
     import uvicorn
 
-    from rockflex.web._connection import PATIENCE, Connection
+    from rockflex.web._protection import REQUEST_TIMEOUT, Connection
 
     listener = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -79,7 +79,7 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (
             f"The page cannot listen on {host}, port {number}: {error.strerror or error}. Choose another --port."
         ) from error
     config = uvicorn.Config(
-        app, log_level="warning", http=Connection, ws="none", timeout_keep_alive=PATIENCE, limit_concurrency=500,
+        app, log_level="warning", http=Connection, ws="none", timeout_keep_alive=REQUEST_TIMEOUT, limit_concurrency=500,
         timeout_graceful_shutdown=GRACE, server_header=False,
     )  # fmt: skip
     server = uvicorn.Server(config)

@@ -1,32 +1,161 @@
-"""The state of the page as one value, which a link holds."""
+"""The state of the page as one value, which a link holds, and the choices that it offers."""
 
 import json
 import math
-from collections.abc import Sequence
-from typing import Annotated, Any, Literal
+from collections.abc import Callable, Container, Sequence
+from typing import Annotated, Any, Literal, NamedTuple
 
-from pydantic import AliasChoices, Field, StringConstraints, ValidationError
+from pydantic import AfterValidator, AliasChoices, Field, StringConstraints, ValidationError
+from pydantic_core import PydanticCustomError
 
 from rockflex._errors import InputError
+from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKED, ROCKING, LimitState, beyond
+from rockflex.modal import Ground
+from rockflex.motion import Combination, Measure, intensities
 from rockflex.structure.file import StructureEntry, Table, spot_of
-from rockflex.study._ground_table import GroundTable
-from rockflex.study._yielding import yielding
-from rockflex.study.assumed import Assumed, BoucWenTable
-from rockflex.web._limit_states import DesignLimit, LimitName
-from rockflex.web._limits import MODELS, check_numbers, errors_of_numbers, unclear, wanted
-from rockflex.web._measures import MeasureName, SameForAll
+from rockflex.study._option_tables import BoucWenTable, GroundTable, RunOptionKeys
+from rockflex.study._run_options import RunOptions, yielding
+from rockflex.web._limits import MAX_MODELS, RUN_WORK_LIMIT, check_numbers, errors_of_numbers, unclear, wanted
 from rockflex.web._refusal import Refusal, refusing
-from rockflex.web._target_choice import TargetChoice
+
+
+def among(known: Callable[[], Container[str]]) -> AfterValidator:
+    """Return the check that a text is one of some names."""
+
+    def checked(name: str) -> str:
+        if name not in known():
+            raise PydanticCustomError("unknown_name", "unknown name")
+        return name
+
+    return AfterValidator(checked)
+
+
+class LimitStateChoice(NamedTuple):
+    """The labels of a limit state."""
+
+    name: str
+    clause: str  # in the list "Limit state"
+    noun: str  # in the design tab; empty if it does not offer this limit
+
+
+NOMINAL_LIMIT = f"the nominal limit {NOMINAL.label.replace('_1', '₁')}"
+ROTATION = "rotation"  # whose size the visitor chooses
+LIMIT_STATE_CHOICES = (
+    LimitStateChoice(ROCKING.name, f"it rocks (uplift with θ > {1e3 * ROCKED:g} mrad)", ""),
+    LimitStateChoice(ROTATION, "the rotation exceeds …", "a rotation"),
+    LimitStateChoice(NOMINAL.name, NOMINAL_LIMIT, NOMINAL_LIMIT),
+    LimitStateChoice(OVERTURNING.name, "it overturns", OVERTURNING.label),
+)
+
+
+LimitName = Annotated[str, among(lambda: [each.name for each in LIMIT_STATE_CHOICES])]
+DesignLimit = Annotated[str, among(lambda: [each.name for each in LIMIT_STATE_CHOICES if each.noun])]
+
+
+def limit_state(name: str, rotation: float) -> LimitState:
+    """Return a limit by its name on the page; `rotation` in rad belongs to the limit "rotation"."""
+    return beyond(rotation) if name == ROTATION else LIMIT_STATES[name]
+
+
+def limit_states() -> list[dict[str, Any]]:
+    """Return the labels of all limit states."""
+    return [each._asdict() for each in LIMIT_STATE_CHOICES]
+
+
+FIRST_MEASURES = ("pgv", "pga", "pgd", "sa_t1_5", "sa_t1", "sd_t1")  # in the list; the others follow in their own order
+
+
+MeasureName = Annotated[str, among(lambda: [measure.name for measure in _offered_measures()])]
+SameForAll = Annotated[
+    str, among(lambda: [measure.name for measure in _offered_measures() if measure.of_what != "base"])
+]
+"""A measure that does not depend on the base, so that one level means the same motion for every width."""
+
+
+def measures() -> list[dict[str, Any]]:
+    """Return the labels of each measure, and whether a search for a width can use it."""
+    return [
+        {
+            "name": measure.name,
+            "title": measure.title,
+            "unit": measure.unit,
+            "axis": measure.with_unit(measure.label),
+            "of_base": measure.of_what == "base",
+        }
+        for measure in sorted(_offered_measures(), key=_list_order)
+    ]
+
+
+def _offered_measures() -> list[Measure]:
+    """The measures of the suites that the page has, which hold no vertical components."""
+    return [measure for measure in intensities() if measure.of_what != "vertical"]
+
+
+def _list_order(measure: Measure) -> int:
+    return FIRST_MEASURES.index(measure.name) if measure.name in FIRST_MEASURES else len(FIRST_MEASURES)
+
+
+MAX_TABLE_LETTERS = 20_000  # letters of a table
+MAX_SELECTED = 60  # records that can be chosen
+Source = Annotated[str, StringConstraints(max_length=120, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
+Pasted = Annotated[
+    str, StringConstraints(max_length=MAX_TABLE_LETTERS, pattern=r"^[^\x00-\x08\x0b\x0c\x0e-\x1f\x7f]*$")
+]
+InG = Annotated[float, Field(ge=0.001, le=5.0)]
+Seconds = Annotated[float, Field(ge=0.01, le=100.0)]
+
+
+class TargetChoice(Table):
+    """A target spectrum, and how records are chosen for it. Accelerations are in g, as codes and maps give them."""
+
+    shown: bool = Field(False, description="true or false")
+    kind: Literal["ec8", "ec8_second", "asce7", "asce7_site", "table"] = Field(
+        "ec8", description='"ec8", "ec8_second", "asce7", "asce7_site" or "table"'
+    )
+    ag: InG = Field(0.25, description="a_gR in g, from 0.001 to 5")
+    ground: Literal["A", "B", "C", "D", "E"] = Field("C", description="a ground type from A to E")
+    type: Literal["1", "2"] = Field("1", description='"1" or "2"')
+    importance: float = Field(1.0, ge=0.1, le=5.0, description="the importance factor, from 0.1 to 5")
+    damping: float = Field(0.05, ge=0.005, le=0.5, description="a damping ratio from 0.005 to 0.5")
+    s_alpha: InG = Field(0.5, description="S_α,RP in g, from 0.001 to 5")
+    s_beta: InG = Field(0.15, description="S_β,RP in g, from 0.001 to 5")
+    category: Literal["A", "B", "C", "D"] = Field("B", description="a site category from A to D")
+    sds: InG = Field(1.0, description="S_DS in g, from 0.001 to 5")
+    sd1: InG = Field(0.6, description="S_D1 in g, from 0.001 to 5")
+    ss: InG = Field(1.5, description="S_S in g, from 0.001 to 5")
+    s1: InG = Field(0.6, description="S_1 in g, from 0.001 to 5")
+    site: Literal["A", "B", "C", "D", "default", "E"] = Field("C", description='a site class from A to E, or "default"')
+    tl: Seconds = Field(8.0, description="T_L in s, from 0.01 to 100")
+    mce: bool = Field(False, description="true or false")
+    table: Pasted = Field("", description=f"a table of at most {MAX_TABLE_LETTERS} letters")
+    units: Literal["", "g", "m/s2", "cm/s2"] = Field("", description='"g", "m/s2", "cm/s2", or nothing')
+
+    source: Source = Field("fema-p695-far-field", description='the name of a suite, or "given"')
+    count: int = Field(7, ge=1, le=MAX_SELECTED, description=f"how many records, from 1 to {MAX_SELECTED}")
+    shortest: Seconds = Field(0.2, description="a period in s, from 0.01 to 100")
+    longest: Seconds = Field(2.0, description="a period in s, from 0.01 to 100")
+    measure: Combination = Field("component", description='"component", "geometric mean", "rotd50" or "rotd100"')
+    smallest: float = Field(0.25, ge=0.01, le=1e3, description="the smallest factor, from 0.01 to 1000")
+    largest: float = Field(4.0, ge=0.01, le=1e3, description="the largest factor, from 0.01 to 1000")
+    per_event: int | None = Field(
+        None, ge=1, le=MAX_SELECTED, description=f"how many records, from 1 to {MAX_SELECTED}, or nothing"
+    )
+    per_station: int | None = Field(
+        None, ge=1, le=MAX_SELECTED, description=f"how many records, from 1 to {MAX_SELECTED}, or nothing"
+    )
+    record_weight: float = Field(0.0, ge=0.0, le=1.0, description="a weight from 0 to 1")
+    least_ratio: float | None = Field(None, ge=0.1, le=2.0, description="a ratio from 0.1 to 2, or nothing")
+
 
 Name = Annotated[str, StringConstraints(max_length=120, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
 Scale = Annotated[float, Field(ge=0.01, le=20.0, description="a number from 0.01 to 20")]
-Labels = Annotated[list[Name], Field(min_length=1, max_length=MODELS, description="a list of one to four models")]
+Labels = Annotated[list[Name], Field(min_length=1, max_length=MAX_MODELS, description="a list of one to four models")]
 Checksum = Annotated[str, StringConstraints(pattern=r"^([0-9a-f]{64})?$")]
 Suites = Annotated[list[Name], Field(min_length=1, max_length=4, description="a list of one to four suites")]
 
 
-NODES = 150_000  # values in a state: three matrices of 200 freedoms, and some room
-TOLD = 50  # messages in one answer
+MAX_STATE_VALUES = 150_000  # values in a state: three matrices of 200 freedoms, and some room
+MAX_MESSAGES = 50  # messages in one answer
 
 
 class PulseChoice(Table):
@@ -103,7 +232,7 @@ class DesignChoice(Table):
     target: float = Field(0.25, ge=1e-4, le=0.99, description="a probability from 0.0001 to 0.99")
 
 
-class State(Assumed):
+class State(RunOptionKeys):
     """The state of the whole page."""
 
     tab: Literal["structure", "earthquake", "response", "fragility", "design"] = Field(
@@ -120,7 +249,19 @@ class State(Assumed):
     design: DesignChoice = Field(default_factory=lambda: DesignChoice.model_validate({}), description="a table")
     target: TargetChoice = Field(default_factory=lambda: TargetChoice.model_validate({}), description="a table")
 
-    def assumed(self, labels: Sequence[str]) -> dict[str, Any]:
+    def run_options(self, ground: Ground | None) -> RunOptions:
+        """Return the options of the runs of the Response tab, on the ground of the structure.
+
+        Raises
+        ------
+        InputError
+            If a value is out of range.
+        """
+        return RunOptions.of(
+            self.free_vibration, impact=self.law(), bouc_wen=self.hysteresis(), ground=ground, work_limit=RUN_WORK_LIMIT
+        )
+
+    def option_keys(self, labels: Sequence[str]) -> dict[str, Any]:
         """Return the impact law, the ground, and the hysteresis if one of the models yields, as keys of a study."""
         names = {"impact", "restitution", "ground", *(["bouc_wen"] if yielding(labels) else [])}
         return self.model_dump(include=names, exclude_none=True)
@@ -151,14 +292,16 @@ def parse_state(content: Any) -> State:
     if not isinstance(content, dict):
         raise Refusal("The link does not hold a state of the page.")
     try:
-        if _size(content) > NODES:
-            raise Refusal(f"The link holds more than {NODES} values, which is more than the page takes.", 413)
+        if _size(content) > MAX_STATE_VALUES:
+            raise Refusal(
+                f"The link holds more than {MAX_STATE_VALUES} values, which is more than the page takes.", 413
+            )
         content = _with_elements(content)
         state = State.model_validate(_infinite(content))
     except ValidationError as error:
         structure = _infinite(content.get("structure"))
         ranges = errors_of_numbers("structure", structure, StructureEntry) if isinstance(structure, dict) else {}
-        raise Refusal(dict([*(ranges | _messages(error, content)).items()][:TOLD])) from error
+        raise Refusal(dict([*(ranges | _messages(error, content)).items()][:MAX_MESSAGES])) from error
     except RecursionError as error:
         raise Refusal("The link is nested too deep.") from error
     try:
@@ -167,7 +310,7 @@ def parse_state(content: Any) -> State:
         raise Refusal({"structure.name": "it contains a character that cannot be encoded."}) from error
     check_numbers("structure", state.structure.model_dump(), StructureEntry)
     _check_models(state)
-    _check_assumed(state)
+    _check_run_options(state)
     return state
 
 
@@ -186,7 +329,7 @@ def _check_models(state: State) -> None:
             raise Refusal({path: message})
 
 
-def _check_assumed(state: State) -> None:
+def _check_run_options(state: State) -> None:
     with refusing("restitution"):
         state.law()
     if state.ground is not None:
@@ -233,7 +376,7 @@ def _infinite(value: Any) -> Any:
 def _messages(error: ValidationError, content: dict[str, Any]) -> dict[str, str]:
     """Return a sentence for each field at fault."""
     found: dict[str, str] = {}
-    for problem in error.errors(include_url=False)[:TOLD]:
+    for problem in error.errors(include_url=False)[:MAX_MESSAGES]:
         spot = spot_of(problem["loc"], content, State)
         needed = "something else" if spot.field is None else wanted(spot.field)
         if problem["type"] == "extra_forbidden":

@@ -1,26 +1,49 @@
-"""What the studies of the page share: structure and assumptions, limits, and the table of their runs."""
+"""The studies of the page: the cloud of the Fragility tab, and the search for a width of the Design tab."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, cast
 
+import numpy as np
+
+from rockflex._arrays import Array
+from rockflex._errors import InputError, SolverError
+from rockflex._json import plain
+from rockflex._shown import counted
+from rockflex.fragility import (
+    NOMINAL,
+    OVERTURNING,
+    ROCKING,
+    CloudFits,
+    fit_each_cloud,
+    fit_outcomes,
+    observed_fractions,
+    recordings_of,
+)
+from rockflex.kinds import KINDS
 from rockflex.motion import MEASURES
-from rockflex.study._yielding import yielding
+from rockflex.study._run_options import yielding
 from rockflex.study.cloud import CloudPlan, CloudStudy
-from rockflex.study.design import DesignStudy
-from rockflex.study.plan import to_frame
+from rockflex.study.design import DesignStudy, design_table, smallest_width
+from rockflex.study.plan import pivot_lifts, to_frame
 from rockflex.web._jobs import Job
-from rockflex.web._limits import RUN, check_runs
+from rockflex.web._limits import MAX_RUN_COST, check_runs
 from rockflex.web._refusal import Refusal, refusing
-from rockflex.web._state import State
-from rockflex.web._suites import records_of
+from rockflex.web._script import cloud_script, design_script
+from rockflex.web._selection import records_of
+from rockflex.web._state import ROTATION, CloudChoice, DesignChoice, State, limit_state
+from rockflex.web._structure import build
 from rockflex.web._uploads import Uploads
 
 if TYPE_CHECKING:
     import pandas as pd
 
-PER_CHUNK = 24  # runs between two checks whether to continue
-CALM = 10.0  # s of free vibration of yielding models: when a hysteretic spring is at rest is not known
+
+RUNS_PER_CHUNK = 24  # runs between two checks whether to continue
+YIELDING_FREE_VIBRATION = (
+    10.0  # s of free vibration of yielding models: when a hysteretic spring is at rest is not known
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +71,7 @@ class StudyPage:
     figure_name: str
 
 
-def shared(
+def common_content(
     state: State, uploads: Uploads, kind: Literal["cloud", "design"], labels: Sequence[str], name: str
 ) -> dict[str, Any]:
     """Return the content that both kinds of study share; `name` is used for a structure without a name.
@@ -65,13 +88,13 @@ def shared(
         "records": records_of(state, choice.suites, uploads, f"{kind}.suites"),
         "models": list(labels),
         "scales": list(choice.scales),
-        "free_vibration": CALM if yielding(labels) else "settle",
-        "runs_per_chunk": PER_CHUNK,
-        **state.assumed(labels),
+        "free_vibration": YIELDING_FREE_VIBRATION if yielding(labels) else "settle",
+        "runs_per_chunk": RUNS_PER_CHUNK,
+        **state.option_keys(labels),
     }
 
 
-def planned(study: CloudStudy | DesignStudy, path: str) -> CloudPlan:
+def study_plan(study: CloudStudy | DesignStudy, path: str) -> CloudPlan:
     """Return the runs of a study, divided into small chunks.
 
     Raises
@@ -81,7 +104,7 @@ def planned(study: CloudStudy | DesignStudy, path: str) -> CloudPlan:
     """
     with refusing(path):
         plan = cast("CloudPlan", study.plan())  # the page has no design study with a search
-    plan.bench = plan.bench.limited(RUN)
+    plan.bench = plan.bench.limited(MAX_RUN_COST)
     check_runs(plan, path)
     return plan
 
@@ -124,3 +147,212 @@ def none_solved(job: Job, runs: "pd.DataFrame") -> dict[str, str]:
     if not job.over or runs["status"].notna().any():
         return {}
     return {"status": "failed", "message": f"no run could be solved. {runs['error'].dropna().iloc[0]}"}
+
+
+CURVE_POINTS = 60  # points of a curve
+MIN_RUNS_FITTED = 12  # runs before a curve is fitted
+OBSERVED_BINS = 8  # groups of the observed fractions
+
+
+def cloud_study(state: State, uploads: Uploads) -> CloudStudy:
+    """Return the study of a state, as `rockflex cloud` runs it; `uploads` are the records of visitors.
+
+    Raises
+    ------
+    Refusal
+        If the state does not describe a valid study.
+    """
+    build(state.structure)  # for its messages, which are shown next to the fields
+    content = common_content(state, uploads, "cloud", state.cloud.models, "Cloud")
+    with refusing("cloud"):
+        return CloudStudy(**content)
+
+
+def cloud_view(job: Job, state: State) -> dict[str, Any]:
+    """Return progress, points and curves for the chosen measure and limit state."""
+    choice = state.cloud
+    view = progress(job, choice.measure)
+    runs = runs_of(job)
+    if runs is None:
+        return view
+    view |= none_solved(job, runs)
+    solved = runs[runs["status"].notna() & runs[choice.measure].notna()]
+    failed = len(runs) - len(solved)
+    if failed:
+        first = runs["error"].dropna()
+        view["notes"].append(f"{counted(failed, 'run')} could not be solved. {first.iloc[0] if len(first) else ''}")
+    view["notes"] += [text for each in pivot_lifts(solved) for text in each.warnings]
+    if len(solved) < MIN_RUNS_FITTED:
+        return plain(view)
+    im = solved[choice.measure].to_numpy(dtype=float)
+    if not (im > 0.0).all() or im.min() == im.max():
+        view["notes"].append("All runs so far have the same intensity.")
+        return plain(view)
+    grid = np.geomspace(im.min(), im.max(), CURVE_POINTS)
+    fits, reasons = fit_each_cloud(solved, choice.measure, nominal=choice.limit == NOMINAL.name)
+    view["notes"] += [f"{model}: {reason}" for (_, model), reason in reasons.items()]
+    for fit in fits:
+        part = solved[solved["model"].astype(str) == fit.model]
+        view["curves"].append(_curve(fit, part, choice, grid, view["notes"]))
+    return plain(view)
+
+
+def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Array, notes: list[str]) -> dict[str, Any]:
+    im, rotation = (part[name].to_numpy(dtype=float) for name in (choice.measure, "max_rotation"))
+    over = limit_state(choice.limit, choice.rotation).exceeded(part).to_numpy(dtype=bool)
+    found: dict[str, Any] = {
+        "model": fit.model,
+        "n": len(part),
+        "n_exceeding": int(over.sum()),
+        "im": grid,
+        "point_im": im,
+        "point_rotation": np.minimum(rotation, 0.5 * math.pi),
+        "point_over": over.astype(int),
+        "observed": observed_fractions(im, over, OBSERVED_BINS),
+        "median": None,
+        "p": None,
+        "low": None,
+        "high": None,
+    }
+    notes += [f"{fit.model}: {note}" for note in fit.outcomes.notes]
+    if choice.limit == ROTATION:
+        try:
+            # On springs bases turn without uplift too, so a rotation is not one of rocking runs only.
+            fallen = OVERTURNING.exceeded(part).to_numpy(dtype=bool)
+            turned = fit_outcomes(im, rotation, fallen, recordings_of(part)).curve(choice.rotation)
+            found["p"] = turned.probability(grid)
+            found["median"] = _median(grid, found["p"])
+            found["low"], found["high"] = turned.band(grid, choice.confidence)
+        except (InputError, SolverError) as error:
+            notes.append(f"{fit.model}: {error}")
+        return found
+    curve = fit.outcomes.initiation if choice.limit == ROCKING.name else fit.outcomes.overturning
+    low, high = curve.band(grid, choice.confidence)
+    median = getattr(curve, "median", None)
+    note = getattr(curve, "note", "")
+    if note:
+        notes.append(f"{fit.model}: {note}")
+    return found | {"p": curve.probability(grid), "low": low, "high": high, "median": median}
+
+
+def _median(grid: Array, p: Array) -> float | None:
+    """Return the lowest intensity at which the probability reaches one half, interpolated; None if it does not."""
+    above = np.flatnonzero(p >= 0.5)
+    if not above.size or above[0] == 0:
+        return None
+    k = int(above[0])
+    share = (0.5 - p[k - 1]) / (p[k] - p[k - 1])
+    return float(np.exp(np.log(grid[k - 1]) + share * np.log(grid[k] / grid[k - 1])))
+
+
+def _cloud_table(job: Job, _: State) -> "pd.DataFrame":
+    return some_runs_of(job)
+
+
+def _cloud_figure(job: Job, state: State) -> Any:
+    from rockflex.plot import plot_fragility
+
+    choice = state.cloud
+    fits, reasons = fit_each_cloud(some_runs_of(job), choice.measure, nominal=choice.limit == NOMINAL.name)
+    if not fits:
+        reason = " ".join(f"{model}: {why}" for (_, model), why in reasons.items())
+        raise Refusal(f"There is no curve to draw. {reason}")
+    return plot_fragility(fits, confidence=choice.confidence, overturning=True)
+
+
+CLOUD_PAGE = StudyPage(
+    study=cloud_study,
+    view=cloud_view,
+    table=_cloud_table,
+    figure=_cloud_figure,
+    script=cloud_script,
+    table_name="runs",
+    figure_name="fragility",
+)
+
+
+def limit_of(choice: DesignChoice) -> float | str:
+    """Return the limit in the form that the library expects."""
+    return choice.rotation if choice.limit == ROTATION else choice.limit
+
+
+def design_study(state: State, uploads: Uploads) -> DesignStudy:
+    """Return the study of a state, as `rockflex design` runs it; `uploads` are the records of visitors.
+
+    Raises
+    ------
+    Refusal
+        If the state does not describe a valid study.
+    """
+    choice = state.design
+    present = build(state.structure).properties
+    if choice.widest <= choice.narrowest:
+        message = f"it must be more than the narrowest, {choice.narrowest:g}, but {choice.widest:g} was given."
+        raise Refusal({"design.widest": message})
+    widths = np.linspace(choice.narrowest, choice.widest, choice.widths) * present.half_width
+    levels: list[dict[str, Any]] = []
+    if not present.elements:  # else the structure keeps its own, which levels of tendons would replace
+        for force in dict.fromkeys(choice.tendons):
+            name = f"F₀ = {force:g} W" if force else "no tendon"
+            stiffness = choice.stiffness if force else 0.0
+            levels.append({"prestress_ratio": force, "stiffness_ratio": stiffness, "name": name})
+    content: dict[str, Any] = common_content(state, uploads, "design", [choice.model], "Design") | {
+        "half_widths": [float(f"{width:.6g}") for width in widths],
+        "tendons": levels,
+        "measure": choice.measure,
+        "level": choice.at,
+        "limits": [limit_of(choice)],
+        "target": choice.target,
+    }
+    with refusing("design"):
+        return DesignStudy(**content)
+
+
+def _design_table(job: Job, state: State) -> "pd.DataFrame":
+    """Return the table of designs from the runs so far, one row per design."""
+    runs, choice = some_runs_of(job), state.design
+    with refusing("design"):
+        return design_table(runs, limit_of(choice), measure=choice.measure, at=choice.at)
+
+
+def design_view(job: Job, state: State) -> dict[str, Any]:
+    """Return progress, the probability against the half width for every tendon, and the smallest width."""
+    choice = state.design
+    present = build(state.structure).properties.half_width
+    view: dict[str, Any] = progress(job, choice.measure) | {"present": present, "answers": []}
+    runs = runs_of(job)
+    lost = {} if runs is None else none_solved(job, runs)
+    if runs is None or lost:
+        return plain(view | lost)
+    table = _design_table(job, state)
+    for tendon, part in table.groupby("tendon", observed=True, sort=False):
+        names = ("half_width", "aspect_ratio", "probability", "low", "high", "median_base_moment", "n_runs")
+        view["curves"].append({"tendon": str(tendon), **{name: part[name].to_numpy(dtype=float) for name in names}})
+        view["notes"] += [f"{tendon}: {note}" for note in dict.fromkeys(part["note"]) if note]
+    view["notes"] += [text for each in pivot_lifts(KINDS["design"].runs(runs)) for text in each.warnings]
+    answers = smallest_width(table, choice.target)
+    view["answers"] = answers[["tendon", "half_width", "half_width_upper", "outcome", "monotone", "note"]].to_dict(
+        "records"
+    )
+    return plain(view)
+
+
+def _design_figure(job: Job, state: State) -> Any:
+    from rockflex.plot import plot_design
+
+    return plot_design(_design_table(job, state), state.design.target)
+
+
+DESIGN_PAGE = StudyPage(
+    study=design_study,
+    view=design_view,
+    table=_design_table,
+    figure=_design_figure,
+    script=design_script,
+    table_name="design",
+    figure_name="design",
+)
+
+
+PAGES = {"cloud": CLOUD_PAGE, "design": DESIGN_PAGE}
+"""The kinds of study that the page shows, by their names."""

@@ -4,44 +4,38 @@ import hashlib
 import io
 import re
 import zipfile
-from collections import OrderedDict
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from threading import Lock
 from typing import Any
 
 import numpy as np
 
 from rockflex._errors import InputError
 from rockflex.motion import GroundMotion, RecordInfo, direction_of, is_vertical, read_plain
+from rockflex.web._cache import Cache
 from rockflex.web._folders import Folders
-from rockflex.web._limits import FILE, FREEDOMS, check_motion
+from rockflex.web._limits import MAX_FILE_BYTES, MAX_FREEDOMS, check_motion
 from rockflex.web._refusal import Refusal, refusing
 
-KEPT = 64  # records in memory
+MAX_RECORDS = 64  # in memory
 MATRICES = ("mass", "stiffness", "heights", "rotations")
 
 
 class Uploads:
-    """Records by the checksum of their file; the latest `KEPT` of all visitors. `folders` holds sets of records.
+    """Records by the checksum of their file; the latest `MAX_RECORDS` of all visitors. `folders` holds sets of records.
 
     The checksum is known only to those who have the file or a link with it.
     """
 
     def __init__(self) -> None:
-        self._kept: OrderedDict[str, GroundMotion] = OrderedDict()
-        self._lock = Lock()
+        self._records = Cache[GroundMotion](lambda: MAX_RECORDS)
         self.folders = Folders()
 
     def add(self, motion: GroundMotion, content: bytes, options: str) -> str:
         """Store a record, and return its checksum."""
         key = hashlib.sha256(content + b"\0" + options.encode()).hexdigest()
-        with self._lock:
-            self._kept[key] = motion
-            self._kept.move_to_end(key)
-            while len(self._kept) > KEPT:
-                self._kept.popitem(last=False)
+        self._records.put(key, motion)
         return key
 
     def get(self, key: str) -> GroundMotion:
@@ -52,10 +46,7 @@ class Uploads:
         Refusal
             If it is not, or no longer, stored.
         """
-        with self._lock:
-            motion = self._kept.get(key)
-            if motion is not None:
-                self._kept.move_to_end(key)
+        motion = self._records.get(key)
         if motion is None:
             message = (
                 "the record of this link was an uploaded file, which a link does not contain. Choose the file again."
@@ -140,8 +131,8 @@ def clean_name(name: str) -> str:
 
 
 def _check_size(name: str, content: bytes, field: str) -> None:
-    if len(content) > FILE:
-        message = f"{name} has {len(content) / 1e6:.1f} MB, but the page takes {FILE / 1e6:g} MB at most."
+    if len(content) > MAX_FILE_BYTES:
+        message = f"{name} has {len(content) / 1e6:.1f} MB, but the page takes {MAX_FILE_BYTES / 1e6:g} MB at most."
         raise Refusal({field: message}, 413)
 
 
@@ -192,9 +183,9 @@ def _from_npz(name: str, content: bytes) -> dict[str, Any]:
                 version = np.lib.format.read_magic(file)
                 read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
                 shape, _, kind = read(file)
-            if kind.kind not in "fiu" or len(shape) > 2 or max(shape, default=0) > FREEDOMS:
+            if kind.kind not in "fiu" or len(shape) > 2 or max(shape, default=0) > MAX_FREEDOMS:
                 message = (
-                    f"{name}: {part} is an array {shape} of {kind}, but numbers for up to {FREEDOMS} freedoms are "
+                    f"{name}: {part} is an array {shape} of {kind}, but numbers for up to {MAX_FREEDOMS} freedoms are "
                     "expected."
                 )
                 raise Refusal({"structure": message})
@@ -207,11 +198,11 @@ def _from_npz(name: str, content: bytes) -> dict[str, Any]:
 
 
 def _numbers(name: str, part: str, array: Any) -> Any:
-    """Return what a state of the page holds of an array: numbers, or heights by the indices of their freedoms."""
+    """Return an array as the state of the page stores it: numbers, or heights by the indices of their freedoms."""
     values = np.asarray(array, dtype=np.float64)
     blank = np.isnan(values) & (part == "heights")
-    if not (np.isfinite(values) | blank).all() or blank.all() or max(values.shape) > FREEDOMS:
-        message = f"{name}: {part} must hold finite numbers for up to {FREEDOMS} freedoms."
+    if not (np.isfinite(values) | blank).all() or blank.all() or max(values.shape) > MAX_FREEDOMS:
+        message = f"{name}: {part} must hold finite numbers for up to {MAX_FREEDOMS} freedoms."
         raise Refusal({"structure": message})
     if part == "heights" and values.ndim == 2 and values.shape[1] == 2 and len(values) > 1:
         found = {str(_index(name, part, each)): height for each, height in values.tolist()}

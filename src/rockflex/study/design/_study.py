@@ -171,7 +171,7 @@ class DesignPlan(CloudPlan):
         check_lifts(bench, "a fixed base, so the base width has no effect")
         self._tendons = list(dict.fromkeys(design.tendon for design in designs))
         self._facts = [self._facts_of(design) for design in designs]
-        made = Bench({each.name: each.properties for each in designs}, bench.motions, bench.assumptions)
+        made = Bench({each.name: each.properties for each in designs}, bench.motions, bench.options)
         super().__init__(made, scales, per_chunk)
 
     def _facts_of(self, design: Design) -> Row:

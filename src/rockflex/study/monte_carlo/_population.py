@@ -9,7 +9,7 @@ from rockflex._errors import InputError
 from rockflex.modal import Ground, RockingProperties
 from rockflex.structure.file import StructureEntry, Table, checked, label_of
 from rockflex.study._arguments import properties_of
-from rockflex.study._ground_table import GroundTable
+from rockflex.study._option_tables import GroundTable
 from rockflex.study.monte_carlo._formula import is_formula, names_of, value_of
 from rockflex.study.monte_carlo._variables import Variables, check_known
 

@@ -158,7 +158,7 @@ class MonteCarloPlan(ChunkedPlan):
             )
         self.scales = factors_of(study.scales, max(motions, key=lambda motion: motion.pga))
         first = self._first(study.count)
-        self.bench = Bench({study.name or "random structures": first}, motions, study.assumptions())
+        self.bench = Bench({study.name or "random structures": first}, motions, study.study_options())
         runs = self._per_structure * len(self.bench.labels) * len(self.scales)
         super().__init__(motions, study.count, max(1, study.runs_per_chunk // runs))
 

@@ -17,18 +17,14 @@ from rockflex.solve import Task, WorkLimitError
 from rockflex.study._arguments import (
     WORK_LIMIT,
     GroundChoice,
-    check_options,
-    free_vibration_time,
-    ground_under,
     properties_of,
-    work_limit_of,
 )
 from rockflex.study._case import Case, prepare_together
 from rockflex.study._peaks import peaks_of
 from rockflex.study._results import result_columns, results_of
+from rockflex.study._run_options import RunOptions
 from rockflex.study._subjects import Models, Motions, Structures, models_of, motions_of, structures_of
 from rockflex.study._tables import Columns, Row, kinds_of
-from rockflex.study._yielding import hysteresis_of
 from rockflex.study.plan._demands import Demands, checked_demands, derived
 from rockflex.study.plan._intensity import intensity_measures, scaled_measures
 from rockflex.study.plan._records import record_groups
@@ -38,22 +34,16 @@ Run = tuple[int, int, int, float]  # the places of a structure, a record and a m
 BRIEF = 3  # samples of a record that a rehearsal runs
 
 
-@dataclass(frozen=True)
-class Assumptions:
+@dataclass(frozen=True, kw_only=True)
+class StudyOptions(RunOptions):
     """The options that all runs of a study share.
 
-    `free_vibration` in s, None until settled. `bouc_wen` applies to the models whose label ends in "-BW", or to all if
-    there are none. `work_limit` is that of each run in s, None for no limit. `ground` is that of all structures, or a
-    function that returns the ground of each.
+    `models` are those of every structure; `friction` tells whether the friction that each run requires is computed, and
+    `demands` are functions of each response by the names of their columns.
     """
 
-    models: tuple[Model, ...]
-    free_vibration: float | None = 0.0
-    impact: ImpactLaw | None = None
-    bouc_wen: BoucWen | None = None
+    models: tuple[Model, ...] = ()
     friction: bool = False
-    work_limit: float | None = WORK_LIMIT
-    ground: GroundChoice = None
     demands: Demands = field(default_factory=dict[str, Any])
 
     @property
@@ -68,18 +58,17 @@ class Bench:
     A pickle holds no engines, so that it is small; they are rebuilt where it is loaded.
     """
 
-    def __init__(self, structures: Mapping[str, RockingProperties], motions: Suite, assumptions: Assumptions) -> None:
+    def __init__(self, structures: Mapping[str, RockingProperties], motions: Suite, options: StudyOptions) -> None:
         self.names, self.structures = list(structures), list(structures.values())
-        self.motions, self.assumptions = motions, assumptions
-        self.labels = [model.label for model in assumptions.models]
+        self.motions, self.options = motions, options.among(options.models)
+        self.labels = [model.label for model in options.models]
         check_different("models", self.labels)
-        if assumptions.bouc_wen is not None and assumptions.free_vibration is None:
+        if options.bouc_wen is not None and options.free_vibration is None:
             raise InputError(
                 'free_vibration="settle" cannot tell when a hysteretic spring is at rest. Give the free vibration in '
                 "seconds."
             )
         self._facts = record_facts(motions)
-        self._yielding = hysteresis_of(assumptions.models, assumptions.bouc_wen)
         self._cases: dict[tuple[int, int], Case | str] = {}
         self._measures: dict[tuple[int, int], dict[str, float]] = {}
 
@@ -89,13 +78,13 @@ class Bench:
     def limited(self, work_limit: float | None) -> "Bench":
         """Return the same bench with another work limit for each run."""
         given = dict(zip(self.names, self.structures, strict=True))
-        return Bench(given, self.motions, replace(self.assumptions, work_limit=work_limit))
+        return Bench(given, self.motions, replace(self.options, work_limit=work_limit))
 
     def with_structure(self, properties: RockingProperties, ground: Ground | None) -> "Bench":
         """Return a bench of the same records and models with another structure and ground in place of the only one."""
         other = copy(self)
         other.structures, other._cases, other._measures = [properties], {}, {}
-        other.assumptions = replace(self.assumptions, ground=ground)
+        other.options = replace(self.options, ground=ground)
         return other
 
     @property
@@ -105,13 +94,13 @@ class Bench:
         found |= record_columns(self.motions)
         found |= {"model": self.labels, "scale": float}
         found |= dict.fromkeys((measure.name for measure in intensities()), float)
-        found |= result_columns(self.structures, grounded=self.assumptions.ground is not None) | {
+        found |= result_columns(self.structures, grounded=self.options.ground is not None) | {
             "nominal_limit": float,
             "zeta_1": float,
         }
-        if self.assumptions.friction:
+        if self.options.friction:
             found["required_friction"] = float
-        return found | dict.fromkeys(self.assumptions.demands, float) | {"error": str}
+        return found | dict.fromkeys(self.options.demands, float) | {"error": str}
 
     def measures(self, structure: int, record: int) -> dict[str, float]:
         """Intensity measures of a record at the scale 1; computed once."""
@@ -151,7 +140,7 @@ class Bench:
         properties = case.model.properties
         limit = {"nominal_limit": properties.nominal_overturning_rotation}
         limit["zeta_1"] = float(properties.zeta[0]) if properties.n_modes else math.nan
-        if not self.assumptions.history:
+        if not self.options.history:
             return [row if "error" in row else row | limit for row in peaks_of(case, scaled).rows()]
         found = [case.attempt(*each) for each in scaled]
         return [
@@ -160,7 +149,7 @@ class Bench:
         ]
 
     def _derived(self, response: Response) -> Row:
-        return derived(response, self.assumptions.demands, friction=self.assumptions.friction)
+        return derived(response, self.options.demands, friction=self.options.friction)
 
     def task(self, structure: int, record: int, model: int, scale: float) -> Task | None:
         """Return the task of a run, from which its work is estimated; None if the structure cannot have the model."""
@@ -175,7 +164,7 @@ class Bench:
             if task is None:
                 return
             try:
-                task.check(self.assumptions.work_limit)
+                task.check(self.options.work_limit)
             except WorkLimitError as error:
                 first = first or error
             else:
@@ -195,12 +184,10 @@ class Bench:
         return [self._case(structure, model) for model in range(len(self.labels))]
 
     def _new_case(self, structure: int, model: int) -> Case | str:
-        given = self.assumptions
         try:
-            properties = self.structures[structure]
-            ground = ground_under(properties, given.ground)
-            tied = given.models[model].of(properties, given.impact, self._yielding[model], ground)
-            return Case(tied, given.free_vibration, work_limit=given.work_limit, history=given.history)
+            return self.options.case(
+                self.options.models[model], self.structures[structure], history=self.options.history
+            )
         except InputError as error:
             return str(error)
 
@@ -214,7 +201,7 @@ def check_different(name: str, values: Sequence[str]) -> None:
 
 def check_lifts(bench: Bench, what: str) -> None:
     """Raise an InputError if the base of a model cannot lift; `what` it has, and why the study is not for it."""
-    for model in bench.assumptions.models:
+    for model in bench.options.models:
         if not model.lifts:
             raise InputError(f"models: {model.label} has {what}. Leave it out.")
 
@@ -264,15 +251,14 @@ def bench_of(
         If a label is unknown, a sequence is empty or holds something else, two motions have the same name, or an
         option is out of range.
     """
-    check_options(bouc_wen, impact, ground)
     instance("friction", friction, bool)
     chosen = tuple(models_of(models))
-    free = free_vibration_time(free_vibration)
+    options = StudyOptions.of(free_vibration, impact=impact, bouc_wen=bouc_wen, ground=ground, work_limit=work_limit)
     suite = motions if isinstance(motions, Suite) else Suite(motions_of(motions))
     listed, names = structures_of(structures)
     names = names or [f"S{place}" for place in range(1, len(listed) + 1)]
     named = {name: properties_of(each) for name, each in zip(names, listed, strict=True)}
-    assumptions = Assumptions(chosen, free, impact, bouc_wen, friction, work_limit_of(work_limit), ground)
-    bench = Bench(named, suite, assumptions)
+    options = replace(options, models=chosen, friction=friction)
+    bench = Bench(named, suite, options)
     own = checked_demands(demands, bench.columns)
-    return Bench(named, suite, replace(assumptions, demands=own)) if own else bench
+    return Bench(named, suite, replace(options, demands=own)) if own else bench

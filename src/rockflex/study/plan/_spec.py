@@ -1,6 +1,7 @@
 """The specification of a study: the keys that all kinds share."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -9,12 +10,12 @@ from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 from rockflex._errors import InputError
 from rockflex._json import plain
 from rockflex._shown import shown
-from rockflex.modal import Ground, RockingProperties
+from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.structure.file import StructureEntry, Table, problems
 from rockflex.study._arguments import WORK_LIMIT, free_vibration_time, properties_of, work_limit_of
-from rockflex.study.assumed import Assumed
-from rockflex.study.plan._bench import Assumptions, Bench, check_different
+from rockflex.study._option_tables import RunOptionKeys
+from rockflex.study.plan._bench import Bench, StudyOptions, check_different
 from rockflex.study.plan._chunked import ChunkedPlan
 from rockflex.study.plan._own_law import law_checksum, law_document
 from rockflex.study.plan._records import Records
@@ -92,7 +93,7 @@ class Spec(Table):
         return self
 
 
-class RunsSpec(Assumed, Spec):
+class RunsSpec(RunOptionKeys, Spec):
     """A study with models, and with the options of the runs."""
 
     models: Annotated[list[str], checked_by(lambda labels: [*map(parse_model, labels)])] = Field(
@@ -122,7 +123,7 @@ class RunsSpec(Assumed, Spec):
         """
         return {} if self.impact is None or isinstance(self.impact, str) else law_checksum(self.impact)
 
-    def assumptions(self, *, friction: bool = False) -> Assumptions:
+    def study_options(self, *, friction: bool = False) -> StudyOptions:
         """Return the options that all runs share.
 
         Raises
@@ -130,14 +131,11 @@ class RunsSpec(Assumed, Spec):
         InputError
             If they contradict each other.
         """
-        free = free_vibration_time(self.free_vibration)
-        models = tuple(map(parse_model, self.models))
-        limit = work_limit_of(self.work_limit)
-        return Assumptions(models, free, self.law(), self.hysteresis(), friction, limit, self.ground_rule())
-
-    def ground_rule(self) -> Callable[[RockingProperties], Ground] | None:
-        """Return the function that gives each structure its ground; None for rigid ground without sliding."""
-        return None if self.ground is None else self.ground.under
+        options = StudyOptions.of(
+            self.free_vibration, impact=self.law(), bouc_wen=self.hysteresis(), ground=self.ground_rule(),
+            work_limit=self.work_limit,
+        )  # fmt: skip
+        return replace(options, models=tuple(map(parse_model, self.models)), friction=friction)
 
 
 class StructuresSpec(RunsSpec):
@@ -180,4 +178,4 @@ class StructuresSpec(RunsSpec):
                 ) from error
             if self.ground is not None:
                 self.ground.under(built)  # before any run
-        return Bench(properties, self.records.load(self._folder), self.assumptions(friction=friction))
+        return Bench(properties, self.records.load(self._folder), self.study_options(friction=friction))

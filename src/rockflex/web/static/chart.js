@@ -1,8 +1,7 @@
 // A chart on a canvas: a cursor that moves without a redraw, zoom by dragging, both by keys as well.
 
 import { drawAxes, FONT, layout, line, ranges } from "./axes.js";
-import { color, context, h, number } from "./dom.js";
-import { redrawn } from "./printing.js";
+import { color, context, h, number, redrawn } from "./dom.js";
 import { drawMarks, drawReadout, drawStrip, drawTrails, readings } from "./marks.js";
 
 const KEYS = "ArrowLeft ArrowRight Home End + - Escape";

@@ -1,4 +1,4 @@
-// Elements, numbers and small tools that every tab uses.
+// Elements, numbers, canvases and small tools that every tab uses, and how a tab is printed.
 
 const PAPER = 3; // pixels of a canvas for each CSS pixel of a sheet
 
@@ -120,4 +120,37 @@ export function tableOf(head, rows, attributes = {}) {
 // A symbol with a subscript after an underscore.
 export function symbol(text) {
   return text.split(/(_[\w,θαβ]+)/).map((part) => (part.startsWith("_") ? h("sub", {}, part.slice(1)) : part));
+}
+
+const drawings = new WeakMap(); // what draws a canvas again
+
+export function redrawn(canvas, draw) {
+  drawings.set(canvas, draw);
+  return canvas;
+}
+
+// `heading` tells what a sheet is about.
+export function printing(heading) {
+  const root = document.documentElement;
+  const about = document.getElementById("printed");
+  let theme = null; // before printing
+  addEventListener("beforeprint", () => {
+    theme ??= root.dataset.theme;
+    root.dataset.theme = "light";
+    root.classList.add("printing");
+    about.textContent = heading();
+    about.hidden = false;
+    redraw();
+  });
+  addEventListener("afterprint", () => {
+    root.dataset.theme = theme ?? root.dataset.theme;
+    theme = null;
+    root.classList.remove("printing");
+    about.hidden = true;
+    redraw();
+  });
+}
+
+function redraw() {
+  for (const canvas of document.querySelectorAll("canvas")) drawings.get(canvas)?.();
 }

@@ -1,9 +1,8 @@
 // The page: its state, which is stored in the address, its tabs, and what they share.
 
 import { ask, attempt, file, get, Refusal } from "./api.js";
-import { clone, h, number, save } from "./dom.js";
+import { clone, h, number, printing, save } from "./dom.js";
 import { showErrors } from "./form.js";
-import { printing } from "./printing.js";
 
 const TABS = [
   ["structure", "Structure",

@@ -1,8 +1,7 @@
-// What a chart draws between its axes, and its legend.
+// The marks of a chart, their legend, and the looks of several models or designs: by colour, and by dashes for the colour-blind.
 
 import { interpolate, line } from "./axes.js";
-import { color, h, number } from "./dom.js";
-import { redrawn } from "./printing.js";
+import { color, h, number, redrawn } from "./dom.js";
 
 export function drawMarks(g, data, { box, range, px, py }, options) {
   g.save();
@@ -173,4 +172,26 @@ function drawSwatch(g, item) {
   g.globalAlpha = item.alpha ?? 1;
   g.setLineDash((item.dash ?? []).map((d) => 2 * d));
   line(g, 0, 6, 56, 6);
+}
+
+const LOOKS = [
+  { color: "c0", dash: [] },
+  { color: "c1", dash: [7, 3] },
+  { color: "c2", dash: [2, 2] },
+  { color: "c3", dash: [7, 2, 2, 2] },
+];
+const FIXED = [
+  { color: "fixed", dash: [4, 3] },
+  { color: "fixed2", dash: [10, 4] },
+  { color: "fixed", dash: [1, 3] },
+  { color: "fixed2", dash: [4, 2, 1, 2] },
+];
+
+export const look = (i) => LOOKS[i % LOOKS.length];
+
+// A look for each of several models; those on a fixed base have separate looks.
+export function looks(models) {
+  let lifting = 0;
+  let fixed = 0;
+  return models.map((model) => (model.lifts ? look(lifting++) : FIXED[fixed++ % FIXED.length]));
 }

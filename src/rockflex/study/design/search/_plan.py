@@ -66,7 +66,7 @@ class SearchPlan(ChunkedPlan):
         self.round, self.points = number, list(points)
         names = [f"design {self._first_unit(number) + place + 1}" for place in range(len(self.points))]
         built = {name: self.search.built(self.structure, point) for name, point in zip(names, self.points, strict=True)}
-        self._bench = Bench(built, self._empty.motions, self._empty.assumptions)
+        self._bench = Bench(built, self._empty.motions, self._empty.options)
 
     def _check_limits(self, point: Point, properties: RockingProperties) -> None:
         for each in self.requirements:

@@ -1,11 +1,10 @@
 // Design: how wide must the base be, and does a tendon help?
 
 import { Chart } from "../chart.js";
+import { measuresOf, unitOf } from "../choices.js";
 import { h, number, symbol, tableOf } from "../dom.js";
-import { look } from "../looks.js";
-import { legend } from "../marks.js";
-import { measuresOf, unitOf } from "../measures.js";
-import { assumed, choices, recordsOf, Remarks, Study } from "../study.js";
+import { assumed, choices, recordsOf, Remarks, Study } from "../jobs.js";
+import { legend, look } from "../marks.js";
 
 const MODELS = ["2DOF-S", "3DOF-S", "MDOF-S", "2DOF-C", "rigid"];
 const YIELDING = ["2DOF-S-BW", "2DOF-C-BW"];

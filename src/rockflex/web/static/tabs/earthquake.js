@@ -1,13 +1,12 @@
-// Earthquake: records of suites, pulses, files, and a scale factor.
+// Earthquake: a record of a suite, a pulse or a file, its history, spectrum and measures.
 
-import { get } from "../api.js";
+import { attempt, get } from "../api.js";
 import { Chart, overTime } from "../chart.js";
-import { decode, h, latest, number } from "../dom.js";
-import { folder } from "../earthquake/folder.js";
-import { records } from "../earthquake/records.js";
-import { target } from "../earthquake/target.js";
-import { uploading } from "../earthquake/upload.js";
-import { select, slider } from "../form.js";
+import { unitOf } from "../choices.js";
+import { decode, h, latest, number, svg } from "../dom.js";
+import { select, slider, trouble } from "../form.js";
+import { folder, uploading } from "./files.js";
+import { target } from "./target.js";
 
 const SOURCES = [["suite", "A recorded suite"], ["pulse", "A pulse"], ["upload", "Your own file"], ["folder", "Your folder of records"]];
 const MISSING = {
@@ -140,4 +139,41 @@ export default function earthquakeTab(app) {
     else load();
   }
   return { element, refresh };
+}
+
+const GRAVITY = 9.81;
+
+function records(app) {
+  const thumbs = h("div", { class: "thumbs", role: "group", "aria-label": "Records" });
+  let shown = "";
+
+  function thumb(suite, record) {
+    const place = [record.event, record.station].filter(Boolean).join(", ");
+    const strength = [`PGA ${number(record.pga / GRAVITY, 3)} g`, h("br"), `PGV ${number(record.pgv, 3)} ${unitOf(app.about, "pgv")}`];
+    return h("button", {
+      type: "button", "data-record": record.name, title: place,
+      onclick: () => app.change({ record: { source: "suite", suite, name: record.name } }),
+    }, h("b", {}, record.name), h("br"), record.event || "", picture(record), strength);
+  }
+
+  const refresh = latest(async () => {
+    const { suite, name } = app.state.record;
+    if (shown !== suite) {
+      // The query for the record itself reports an error.
+      const found = await attempt(() => get(`/api/suite/${encodeURIComponent(suite)}`), () => null);
+      if (!found) return;
+      thumbs.replaceChildren(...found.records.map((record) => thumb(suite, record)));
+      shown = suite;
+    }
+    for (const button of thumbs.children) button.setAttribute("aria-pressed", String(button.dataset.record === name));
+  });
+
+  return { element: h("div", { "data-path": "record.name" }, thumbs, trouble()), refresh };
+}
+
+function picture(record) {
+  const t = decode(record.t);
+  const a = decode(record.a);
+  const d = Array.from(t, (x, i) => `${i ? "L" : "M"}${(100 * x).toFixed(2)} ${(17 - 16 * a[i]).toFixed(2)}`).join("");
+  return svg("svg", { viewBox: "0 0 100 34", preserveAspectRatio: "none", "aria-hidden": "true" }, svg("path", { d }));
 }

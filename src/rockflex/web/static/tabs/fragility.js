@@ -1,13 +1,11 @@
 // Fragility: many records, and the probability of exceeding a limit, updated as runs finish.
 
 import { Chart } from "../chart.js";
+import { axisOf, measuresOf, models } from "../choices.js";
 import { h, number, tableOf } from "../dom.js";
 import { select } from "../form.js";
-import { look } from "../looks.js";
-import { legend } from "../marks.js";
-import { axisOf, measuresOf } from "../measures.js";
-import { models } from "../models.js";
-import { assumed, choices, recordsOf, Remarks, Study } from "../study.js";
+import { assumed, choices, recordsOf, Remarks, Study } from "../jobs.js";
+import { legend, look } from "../marks.js";
 
 const CONFIDENCES = [[0.68, "68 %"], [0.8, "80 %"], [0.9, "90 %"], [0.95, "95 %"]];
 const FOOT = 1.2e-5; // rad, where runs without rotation are drawn

@@ -1,19 +1,14 @@
-// Response: the rocking structure, animated with its response histories.
+// Response: the rocking structure, animated with its response histories, its peaks and its assumptions.
 
 import { bracket } from "../axes.js";
 import { overTime } from "../chart.js";
-import { decode, h, latest } from "../dom.js";
-import { select, slider } from "../form.js";
-import { looks } from "../looks.js";
-import { making } from "../making.js";
-import { legend } from "../marks.js";
-import { models } from "../models.js";
-import { assumptions } from "../response/assumptions.js";
-import { Elements } from "../response/elements.js";
-import { Energy } from "../response/energy.js";
-import { Loop } from "../response/loop.js";
-import { Player } from "../response/player.js";
-import { table, warnings, words } from "../response/table.js";
+import { models, yields } from "../choices.js";
+import { decode, h, latest, number, symbol, tableOf } from "../dom.js";
+import { select, slider, tableField, trouble } from "../form.js";
+import { making } from "../jobs.js";
+import { legend, looks } from "../marks.js";
+import { Player } from "../stage.js";
+import { Elements, Energy, Loop } from "./energy.js";
 
 const EDGES = [["left_edge", ", left"], ["right_edge", ", right"]];
 // Name, axis, factor, title, height, and the curves of each model where there are several.
@@ -113,7 +108,7 @@ export default function responseTab(app) {
     energy.set(view);
     keys.replaceChildren(legend(view.models.map((m) => ({ label: m.label, ...m.look }))));
     peaks.replaceChildren(...table(view));
-    verdict.textContent = words(view);
+    verdict.textContent = summary(view);
     warned.replaceChildren(...warnings(view));
     warned.hidden = !warned.children.length;
     player.set(view, view.models.map((m) => m.look.color));
@@ -204,4 +199,191 @@ function uplifts(model) {
   }
   if (start !== null) spans.push([start, model.t[model.t.length - 1]]);
   return spans;
+}
+
+// Name, heading, factor, and whether it may be compared with a fixed base. A displacement relative to the base may not:
+// it lacks the part due to the rotation.
+const PEAKS = [
+  ["max_rotation", "θ_max [mrad]", 1000, false],
+  ["max_top_displacement", "u_top,max relative to the base [m]", 1, false],
+  ["max_total_top_displacement", "u_top,max in total [m]", 1, true],
+  ["max_base_moment", "M_b,max [kN m]", 1e-3, true],
+  ["max_base_shear", "V_b,max [kN]", 1e-3, true],
+  ["max_horizontal_reaction", "ΣF_x,max [kN]", 1e-3, true],
+  ["min_vertical_reaction", "N_min [kN]", 1e-3, false],
+];
+const PEAKS_HELP = "In total: relative to the ground, including the part due to the rotation. ΣF_x: horizontal ground reaction; "
+  + "unlike V_b it includes the mass of the base and the damping. N_min: smallest vertical force between base and ground.";
+const SLIPS = [["max_slip", "slip_max [mm]", 1000], ["residual_slip", "slip_end [mm]", 1000]];
+const EDGE_PEAKS = [["max_edge_uplift", "Edge up [mm]", 1000], ["max_edge_settlement", "Edge down [mm]", 1000]];
+const ON_SPRINGS = " Edge up and down: how far an edge rises above the unloaded springs, and sinks below them.";
+const LEFT = " θ_res: rotation at the end of the run, from that at rest.";
+
+// The fixed-base model to compare with, if any; preferably one that yields too if the model does.
+function reference(view, model) {
+  const fixed = view.models.filter((m) => !m.lifts);
+  return fixed.find((m) => yields(m.label) === yields(model.label)) ?? fixed[0];
+}
+
+function named(fixed) {
+  return fixed.label === "fixed" ? "the same structure on a fixed base" : `the fixed base of ${fixed.label}`;
+}
+
+function table(view) {
+  const held = view.elements.length > 0;
+  const lifting = view.models.filter((m) => m.lifts);
+  const standing = lifting.filter((m) => m.status !== "overturned");
+  const fixed = [...new Set(standing.map((m) => reference(view, m)).filter(Boolean).map(named))];
+  const base = [...(view.ground?.slides ? SLIPS : []), ...(view.ground?.springs.length ? EDGE_PEAKS : [])];
+  const last = [...(held ? ["θ_res [mrad]"] : []), ...base.map(([, label]) => label)];
+  const meant = PEAKS_HELP + (held ? LEFT : "") + (view.ground?.springs.length ? ON_SPRINGS : "");
+  const head = ["Model", "Outcome", ...PEAKS.map(([, label]) => label), "Impacts", "θ_max/θ_nom", ...last];
+  return [
+    tableOf(head.map(symbol), view.models.map((m) => row(m, view, held, base))),
+    h("p", { class: "hint" }, ...symbol(meant), fixed.length ? ` In brackets: relative to ${fixed.join(" and to ")}.` : ""),
+  ];
+}
+
+function row(m, view, held, base) {
+  const fell = m.status === "overturned";
+  const fixed = reference(view, m);
+  const share = (name) => (fixed && m.lifts && !fell && fixed.peaks[name] > 0
+    ? ` (${number((100 * m.peaks[name]) / fixed.peaks[name], 3)} %)` : "");
+  const outcome = fell ? `overturned at ${number(m.peaks.end_time)} s` : m.lifts ? m.status.replace("_", " ") : "fixed base";
+  const cell = ([name, , factor, comparable]) => {
+    const value = m.peaks[name];
+    if (value === null || (name === "max_rotation" && fell)) return h("td", { "data-name": name }, "–");
+    const text = number(value * factor) + (comparable ? share(name) : "");
+    const title = `at ${number(m.peaks[`time_of_${name}`])} s`;
+    return h("td", { "data-name": name, "data-value": value, title, class: value < 0 ? "overturned" : null }, text);
+  };
+  return h("tr", { "data-model": m.label },
+    h("th", { scope: "row" }, m.label),
+    h("td", { class: m.status, "data-name": "status" }, outcome),
+    PEAKS.map(cell),
+    h("td", { "data-name": "n_impacts", "data-value": m.peaks.n_impacts }, String(m.peaks.n_impacts)),
+    h("td", {}, m.lifts && !fell ? `${number((100 * m.peaks.max_rotation) / view.nominal, 3)} %` : "–"),
+    held ? residual(m) : null,
+    base.map(([name, , factor]) => h("td", { "data-name": name, "data-value": m.peaks[name] }, number(m.peaks[name] * factor))));
+}
+
+// The rotation at the end of a run, which friction or a lack of weight can leave.
+function residual(m) {
+  const value = m.lifts ? m.peaks.residual_rotation : null;
+  return h("td", { "data-name": "residual_rotation", "data-value": value }, number(value === null ? null : 1000 * value));
+}
+
+// Demands on the ground or tendons that they cannot meet, one paragraph each.
+function warnings(view) {
+  return view.models.flatMap((m) => m.warnings.map((text) => h("p", { "data-model": m.label }, `${m.label}: ${text}`)));
+}
+
+// A sentence or two on the first model, and whether others overturn.
+function summary(view) {
+  const [first] = view.models;
+  const fixed = reference(view, first);
+  const p = first.peaks;
+  let text = `${first.label}: `;
+  if (!first.lifts) {
+    text += `on a fixed base the top moves by ${number(p.max_top_displacement, 3)} m and the base moment reaches `;
+    text += `${number(p.max_base_moment / 1000, 3)} kN m.`;
+  } else if (first.status === "overturned") {
+    text += `the structure overturns; it lies on its side at ${number(p.end_time, 3)} s.`;
+  } else if (first.status === "no_uplift") {
+    text += view.ground?.springs.length
+      ? `no edge of the base lifts; it turns by up to ${number(1000 * p.max_rotation, 3)} mrad on its springs.`
+      : "the base stays on the ground; the structure responds as on a fixed base.";
+  } else {
+    const event = view.ground?.springs.length ? "landing" : "impact";
+    const impacts = `${p.n_impacts} ${event}${p.n_impacts === 1 ? "" : "s"}`;
+    text += `the base rocks with up to ${number(1000 * p.max_rotation, 3)} mrad `;
+    text += `at ${number(p.time_of_max_rotation, 3)} s, with ${impacts}.`;
+    if (p.nominal_overturning) text += " This exceeds the nominal limit 0.7 atan(B/h*₁), but it did not overturn.";
+    if (p.max_total_top_displacement !== null) {
+      text += ` The top moves by up to ${number(p.max_total_top_displacement, 3)} m relative to the ground`;
+      text += fixed ? `, and ${number(fixed.peaks.max_total_top_displacement, 3)} m for ${named(fixed)}.` : ".";
+    }
+    if (p.max_slip > 0) text += ` The base slides by up to ${number(1000 * p.max_slip, 3)} mm.`;
+    if (fixed && fixed.peaks.max_base_moment > 0) {
+      const change = 100 * (p.max_base_moment / fixed.peaks.max_base_moment - 1);
+      text += ` The base moment is ${number(Math.abs(change), 3)} % ${change < 0 ? "smaller" : "larger"} than for ${named(fixed)}.`;
+    }
+  }
+  const fallen = view.models.filter((m) => m !== first && m.status === "overturned").map((m) => m.label);
+  if (fallen.length) text += ` With ${fallen.join(" and ")} it overturns.`;
+  return text;
+}
+
+const IMPACTS = [
+  ["", "default of each model"],
+  ["simplified", "simplified (Eq. 25)"],
+  ["complete", "complete (Eq. 19)"],
+  ["restitution", "restitution"],
+];
+const IMPACT_HELP = {
+  "": "The law sets the velocities after an impact.",
+  simplified: "Conserves the horizontal velocity of each mass; the rotation stops.",
+  complete: "Conserves the total horizontal kinetic energy; the rotation stops.",
+  restitution: "Conserves the horizontal velocity of each mass; part of the rotation continues about the other edge.",
+};
+const FORCES = "The impulse of an impact is not in the history of forces, and V_b and M_b are those of rigid ground: " +
+  "on stiff springs with little damping, V_b of a flexural frame may be larger.";
+const RESTITUTION = 0.8; // default
+const RANGE = "0: the base stays down until the next uplift; 1: it rocks on without loss";
+const YIELDING = ["2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW"];
+const DISPLACEMENT = 0.05; // m, if the server suggests none
+
+// `suggested` returns a yield displacement that suits the response shown.
+function assumptions(app, suggested) {
+  const impact = select("impact", "Impact law", IMPACTS, "", (value) => app.change({
+    impact: value || undefined,
+    restitution: value === "restitution" ? RESTITUTION : undefined,
+  }), { hint: `${IMPACT_HELP[""]} ${FORCES}` });
+  const restitution = slider("restitution", "Coefficient of restitution",
+    { low: 0, high: 1, step: 0.01, hint: RANGE }, RESTITUTION, (value) => app.change({ restitution: value }));
+  const tick = h("input", { type: "checkbox", id: "yields", onchange: () => (tick.checked ? begin() : end()) });
+  const fields = h("div");
+  const yielding = h("div", { "data-path": "bouc_wen" },
+    h("label", { class: "check" }, tick, "The superstructure yields (Bouc–Wen)"),
+    h("p", { class: "hint" }, "Only models with -BW in their label yield; the others stay elastic."),
+    fields, trouble());
+  let drawn = false;
+
+  function begin() {
+    const found = suggested() ?? DISPLACEMENT;
+    app.change({ bouc_wen: { yield_displacement: Number(found.toPrecision(3)) }, models: [...YIELDING] });
+  }
+
+  function end() {
+    const { state } = app.about; // the default state, whose models do not yield
+    const without = (labels, otherwise) => {
+      const left = labels.filter((label) => !yields(label));
+      return left.length ? left : [...otherwise];
+    };
+    app.change({
+      bouc_wen: undefined,
+      models: without(app.state.models, state.models),
+      cloud: { models: without(app.state.cloud.models, state.cloud.models) },
+      design: { model: without([app.state.design.model], [state.design.model])[0] },
+    });
+  }
+
+  function entry(spec) {
+    const change = (value) => app.change({ bouc_wen: { [spec.name]: value } });
+    return tableField(`bouc_wen.${spec.name}`, spec, app.state.bouc_wen[spec.name], change);
+  }
+
+  function refresh() {
+    const { state } = app;
+    impact.setValue(state.impact ?? "");
+    impact.querySelector(".hint").replaceChildren(...symbol(`${IMPACT_HELP[state.impact ?? ""]} ${FORCES}`));
+    restitution.hidden = state.impact !== "restitution";
+    restitution.setValue(state.restitution ?? RESTITUTION);
+    const on = state.bouc_wen !== undefined;
+    tick.checked = on;
+    fields.hidden = !on;
+    if (on && !drawn) fields.replaceChildren(...app.about.bouc_wen.map(entry));
+    drawn = on;
+  }
+  return { element: h("div", {}, impact, restitution, yielding), refresh };
 }

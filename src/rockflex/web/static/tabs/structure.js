@@ -1,14 +1,38 @@
 // Structure: a form, its modes, and how many of them are needed.
 
-import { clone, h, latest, number, symbol } from "../dom.js";
-import { field, select, tableField, tableGroup, trouble } from "../form.js";
-import { base } from "../structure/base.js";
-import { ground, without } from "../structure/ground.js";
-import { elements } from "../structure/elements.js";
-import { importing } from "../structure/matrices.js";
-import { pictures, table } from "../structure/modes.js";
-import { REPLACED, section } from "../structure/section.js";
-import { INNER, KINDS } from "../structure/starts.js";
+import { attempt, send } from "../api.js";
+import { clone, h, ink, latest, number, svg, symbol, tableOf, tooLarge } from "../dom.js";
+import { field, fileBox, select, tableField, tableGroup, trouble } from "../form.js";
+import { base, elements, ground, without } from "./base.js";
+
+// Default values of a form where no preset has the kind.
+const DEFAULTS = {
+  fish_bone: {
+    story_heights: [4, 3, 3], masses: 4e4, column_stiffness: 2e8, beam_stiffness: "inf",
+    base_mass: 4e4, half_width: 1, damping_ratio: 0.02,
+  },
+  beam: {
+    height: 20, mass: 5000, bending_stiffness: 2e10, half_width: 1.5, damping_ratio: 0.02, base_mass: 5e4,
+  },
+  matrices: {
+    mass: [4e4, 4e4], stiffness: [[2e7, -1e7], [-1e7, 1e7]], heights: [3, 6],
+    base_mass: 4e4, half_width: 0.8, damping_ratio: 0.02,
+  },
+  modes: {
+    omega: [9.771976, 25.583366], shapes: [[0.6180339887, -1.6180339887], [1, 1]], mass: [4e4, 4e4], heights: [3, 6],
+    base_mass: 4e4, half_width: 0.8, damping_ratio: 0.02,
+  },
+  properties: {
+    omega: [6.2832], effective_mass: [175906], effective_height: [10.54], top_ordinate: [1.2517],
+    i_theta: 20066620, l0r: 1800000, m_tot: 240000, half_width: 1.054, zeta: 0.02,
+  },
+  block: { slenderness: 0.2, half_diagonal: 3 },
+};
+
+// Tables nested in that of a structure, by name.
+const INNER = {
+  lumped_masses: (beam) => ({ heights: [beam.height], masses: [1e4] }),
+};
 
 export default function structureTab(app) {
   const { kinds, eccentricity, presets, limits } = app.about;
@@ -51,13 +75,13 @@ export default function structureTab(app) {
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       h("fieldset", {}, h("legend", {}, "Structure"), preset, kind, field("structure.name", "Name", name),
         h("div", { "data-path": "structure" }, fields, moved, trouble()), h("p", { class: "error foot", role: "alert" })),
-      held, below, importing(limits.file, current, (structure) => put(structure, true))),
+      held, below, importMatrices(limits.file, current, (structure) => put(structure, true))),
     results);
 
   // The first preset of a kind, or default values.
   function fresh(wanted) {
     const found = presets.find((p) => p.structure[wanted]);
-    return found ? clone(found.structure) : { name: "", [wanted]: clone(KINDS[wanted] ?? {}) };
+    return found ? clone(found.structure) : { name: "", [wanted]: clone(DEFAULTS[wanted] ?? {}) };
   }
 
   function form() {
@@ -70,7 +94,7 @@ export default function structureTab(app) {
     if (drawn) return;
     drawn = true;
     const values = structure[now];
-    const given = (spec) => !(values.section && REPLACED.includes(spec.name) && values[spec.name] === undefined);
+    const given = (spec) => !(values.section && SET_BY_SECTION.includes(spec.name) && values[spec.name] === undefined);
     const focused = fields.contains(document.activeElement) && document.activeElement.closest("[data-path]").dataset.path;
     fields.replaceChildren(...kinds[now].fields.filter(given).map((spec) => entry(now, spec, values)));
     if (focused) fields.querySelector(`[data-path="${CSS.escape(focused)}"]`)?.querySelector("input, select, button")?.focus();
@@ -107,7 +131,7 @@ export default function structureTab(app) {
     const facts = known[now] ?? [];
     const fact = (symbol, usual) => Number((facts.find((each) => each.symbol === symbol)?.value ?? usual).toPrecision(6));
     set(next[now], "section", value);
-    if (value) for (const name of REPLACED) delete next[now][name];
+    if (value) for (const name of SET_BY_SECTION) delete next[now][name];
     else Object.assign(next[now], { bending_stiffness: fact("EI", 2e10), [now === "beam" ? "mass" : "mass_per_length"]: fact("m", 5000) });
     put(next, anew);
   }
@@ -181,4 +205,188 @@ function tidy(value) {
   if (value === null || typeof value !== "object") return value;
   const entries = Object.entries(value).filter(([, each]) => !Array.isArray(each) || each.length);
   return Object.fromEntries(entries.sort().map(([key, each]) => [key, tidy(each)]));
+}
+
+const PARTS = ["mass", "stiffness", "heights", "rotations"];
+const REST = { base_mass: 0, half_width: 1, damping_ratio: 0.02 };
+
+// Matrices from a file of a finite element program: `structure` returns the present structure, `put` takes the new one.
+function importMatrices(limit, structure, put) {
+  const part = h("select", { id: "part" }, PARTS.map((name) => h("option", { value: name }, name)));
+  const input = fileBox(".npz,.csv", take, { "aria-label": "File of matrices" });
+  const said = trouble();
+
+  async function take(file) {
+    said.textContent = tooLarge(file, limit);
+    if (said.textContent) return;
+    await attempt(async () => {
+      const found = await send(`/api/matrices?name=${encodeURIComponent(file.name)}&part=${part.value}`, file);
+      const now = structure();
+      const name = now.matrices ? now.name : file.name.replace(/\.\w+$/, "");
+      const kept = { ...(now.matrices ?? REST) };
+      if (found.stiffness && /\.npz$/i.test(file.name)) for (const each of PARTS) delete kept[each]; // of another structure
+      put({ name, matrices: { ...kept, ...found } });
+    }, (error) => {
+      said.textContent = Object.values(error.errors).join(" ");
+    });
+  }
+
+  return h("fieldset", { "data-path": "import" }, h("legend", {}, "Import matrices"),
+    h("p", { class: "help" }, "From any finite element program: a .npz file with the arrays mass, stiffness, heights and, if there",
+      " are any, rotations, or one CSV file for each. Units: kg, N/m, m, rad; fixed base."),
+    h("p", { class: "hint" }, "heights: one for each degree of freedom, nan for those that do not move sideways; or rows of an",
+      " index and a height. rotations: the indices of the rotations in the plane, counted from 0; they need no height. Degrees",
+      " of freedom without mass are condensed out."),
+    h("div", { class: "buttons" }, h("label", { for: "part" }, "CSV contains"), part), input, said);
+}
+
+const SHAPES = [
+  ["", "none: EI and mass are given"], ["rectangle", "rectangle"], ["box", "hollow box"], ["circle", "circle"],
+  ["tube", "hollow circle"], ["composite", "composite of several parts"],
+];
+// New sizes in m by shape.
+const SIZES = {
+  rectangle: { width: 1, depth: 1.5 }, box: { width: 2, depth: 2, wall: 0.25 }, circle: { diameter: 1.5 }, tube: { diameter: 1.5, wall: 0.2 },
+};
+const MATERIALS = [
+  ["concrete", { elastic_modulus: 3e10, density: 2500 }], ["steel", { elastic_modulus: 2.1e11, density: 7850 }],
+  ["timber", { elastic_modulus: 1.1e10, density: 450 }], ["masonry", { elastic_modulus: 5e9, density: 1900 }],
+];
+const [CONCRETE, STEEL] = MATERIALS.map(([, values]) => values);
+const OF_MATERIAL = ["elastic_modulus", "density"];
+const MOST = 20; // parts
+
+const SET_BY_SECTION = ["bending_stiffness", "mass", "mass_per_length"]; // what a section gives
+
+// `current` returns the present section; `change(section, anew)` takes another one, or undefined for none; `anew` if other
+// fields are needed then.
+function section(about, path, spec, current, change) {
+  const drawn = current();
+  const shape = drawn?.shape ?? "";
+  const partSpecs = about.section_part;
+  const choose = select(`${path}.shape`, "Cross-section", SHAPES, shape, (name) => change(turned(name), true),
+    { hint: "in place of bending stiffness and mass" });
+
+  // The same material in another shape.
+  function turned(name) {
+    if (!name) return undefined;
+    if (name === "composite") {
+      const core = { shape: "circle", diameter: 0.96, ...CONCRETE, offset: 0 };
+      return { shape: name, parts: [{ shape: "tube", diameter: 1, wall: 0.02, ...STEEL, offset: 0 }, core] };
+    }
+    const value = current();
+    const now = value?.shape === "composite" ? value.parts[0] : value;
+    const kept = Object.fromEntries(OF_MATERIAL.map((key) => [key, now?.[key] ?? CONCRETE[key]]));
+    const factor = value?.stiffness_factor === undefined ? {} : { stiffness_factor: value.stiffness_factor };
+    return { shape: name, ...SIZES[name], ...kept, ...factor };
+  }
+
+  // `get` returns the present table of the field.
+  const field = (place, specs, name, get, put) => {
+    const found = specs.find((each) => each.name === name);
+    const needed = name !== "stiffness_factor" && name !== "offset";
+    const { shape: of, [name]: value } = get();
+    return tableField(`${place}.${name}`, { ...found, required: needed }, value, (next) => {
+      const table = get();
+      if (table?.shape === of) put(with_(table, name, next)); // a field that is removed reports a change begun in it
+    });
+  };
+
+  // A list that fills in the material.
+  function material(get, put) {
+    const same = MATERIALS.find(([, values]) => OF_MATERIAL.every((key) => values[key] === get()[key]));
+    const names = [...MATERIALS.map(([name]) => [name, name]), ["", "own values"]];
+    return select("section.material", "Material", names, same?.[0] ?? "", (name) => {
+      const found = MATERIALS.find(([each]) => each === name);
+      if (found) put({ ...get(), ...found[1] }, true);
+    });
+  }
+
+  const fieldsOf = (place, specs, get, more, put) => [
+    ...Object.keys(SIZES[get().shape] ?? {}).map((name) => field(place, specs, name, get, put)),
+    material(get, put),
+    ...[...OF_MATERIAL, ...more].map((name) => field(place, specs, name, get, put)),
+  ];
+
+  function part(each, i) {
+    const place = `${path}.parts.${i}`;
+    const get = () => current()?.parts?.[i];
+    const parts = (next, anew) => change({ ...current(), parts: next }, anew);
+    const put = (next, anew) => parts(current().parts.with(i, next), anew);
+    const own = select(`${place}.shape`, "Shape", SHAPES.slice(1, -1), each.shape, (name) => {
+      const { elastic_modulus, density, offset } = get();
+      put({ shape: name, ...SIZES[name], elastic_modulus, density, offset }, true);
+    });
+    const remove = h("button", { type: "button", onclick: () => (
+      parts(current().parts.filter((_, j) => j !== i), true)) }, "Remove");
+    return h("fieldset", { class: "group", "data-path": place }, h("legend", {}, `Part ${i + 1}`), own,
+      fieldsOf(place, partSpecs, get, ["offset"], put), drawn.parts.length > 1 ? remove : null, trouble());
+  }
+
+  const inner = [];
+  if (shape === "composite") {
+    const add = h("button", { type: "button", disabled: drawn.parts.length >= MOST, onclick: () => {
+      const { parts } = current();
+      change({ ...current(), parts: [...parts, { ...parts.at(-1) }] }, true);
+    } }, "Add a part");
+    inner.push(...drawn.parts.map(part), add, field(path, spec.fields, "stiffness_factor", current, change));
+  } else if (shape) inner.push(...fieldsOf(path, spec.fields, current, ["stiffness_factor"], change));
+  return h("div", { class: "section", "data-path": path }, choose, inner, trouble());
+}
+
+function with_(table, name, next) {
+  const { [name]: _, ...rest } = table;
+  return next === undefined ? rest : { ...rest, [name]: next };
+}
+
+const [WIDTH, HEIGHT] = [110, 240];
+const SWAY = 38; // px
+const ROWS = 12;
+
+// The structure and its first modes, each drawn with its contribution to a unit displacement.
+function pictures(view) {
+  const shapes = view.shapes.length ? view.shapes : [view.heights.map(() => 0)];
+  return h("div", { class: "modes" }, shapes.map((shape, n) => picture(view, shape, n)),
+    view.shapes_known ? null
+      : h("p", { class: "hint" }, "The mode shapes are not known and drawn as straight lines."));
+}
+
+function picture(view, shape, n) {
+  const mode = view.modes[n];
+  const top = view.heights[view.heights.length - 1];
+  const tall = HEIGHT - 62;
+  const largest = Math.max(...shape.map(Math.abs)) || 1;
+  const x = (u) => WIDTH / 2 + (u / largest) * SWAY;
+  const y = (z) => HEIGHT - 40 - (z / top) * tall;
+  const b = Math.min(30, Math.max(6, (view.half_width / top) * tall));
+  const middle = x(0) - (view.eccentricity / view.half_width) * b;
+  const points = view.heights.map((z, i) => `${x(shape[i]).toFixed(1)},${y(z).toFixed(1)}`).join(" ");
+  const floors = view.heights.length < 26 ? view.heights.slice(1) : [];
+  const texts = mode ? [`Mode ${n + 1}`, `T = ${number(mode.period, 3)} s`] : [];
+  const name = mode ? `Mode ${n + 1}, period ${number(mode.period)} s` : "Outline of the rigid block";
+  return svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, width: WIDTH, height: HEIGHT, role: "img", "aria-label": name },
+    svg("line", { x1: x(0), x2: x(0), y1: y(0), y2: y(top), stroke: ink("control"), "stroke-dasharray": "4 3" }),
+    svg("line", { x1: middle - b, x2: middle + b, y1: y(0), y2: y(0), stroke: ink("structure"), "stroke-width": 4 }),
+    svg("polyline", { points, fill: "none", stroke: ink("c0"), "stroke-width": 2 }),
+    ...floors.map((z, i) => svg("circle", { cx: x(shape[i + 1]), cy: y(z), r: 2.6, fill: ink("c0") })),
+    ...texts.map((text, line) => svg("text", {
+      x: WIDTH / 2, y: HEIGHT - 20 + 14 * line, "text-anchor": "middle", "font-size": 12, fill: ink("text"),
+    }, text)));
+}
+
+function table(view) {
+  if (!view.modes.length)
+    return h("p", { class: "help" }, "A rigid block has no modes. Use the model “rigid”.");
+  const edges = view.modes[0].uplifted.length > 1 ? [", right edge", ", left edge"] : [""];
+  const head = ["Mode", "Period T [s]", "Mass m* [kg]", "Share of total mass", "Height h* [m]", "Damping",
+    ...edges.flatMap((edge) => [`Period while uplifted${edge} [s]`, `Damping while uplifted${edge}`])];
+  const value = (v) => h("td", { "data-value": v }, number(v));
+  const percent = (v) => h("td", {}, `${number(100 * v, 3)} %`);
+  const rows = view.modes.slice(0, ROWS).map((m, i) => h("tr", {},
+    h("th", { scope: "row" }, String(i + 1)),
+    value(m.period), value(m.effective_mass), percent(m.mass_share), value(m.effective_height), percent(m.damping),
+    m.uplifted.flatMap((each) => [value(each.period), percent(each.damping)])));
+  return h("div", {},
+    h("div", { class: "scroll" }, tableOf(head, rows, { id: "modes" })),
+    view.modes.length > ROWS ? h("p", { class: "hint" }, `and ${view.modes.length - ROWS} more`) : null);
 }

@@ -1,0 +1,263 @@
+"""The runs of one structure: prepared from the arguments of a command, and performed."""
+
+from collections.abc import Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass, field, replace
+from itertools import product
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import typer
+
+from rockflex._errors import SolverError
+from rockflex._schema import BedKeys, BoucWenKeys, FrameFlags, GroundKeys, ImpactKeys, InitialKeys
+from rockflex.cli._console import note, progress
+from rockflex.cli._find_motions import FoundMotion, find_motions, quiet_ground
+from rockflex.cli._options import flag_values, naming
+from rockflex.cli._run_options import (
+    choose_models,
+    describe_options,
+    make_run_options,
+    number_or_word,
+    parse_work_limit,
+)
+from rockflex.cli._structures import LoadedStructure, load_structure, split_arguments
+from rockflex.modal import RockingProperties
+from rockflex.models import parse_model
+from rockflex.motion import GroundMotion, OnError
+from rockflex.response import PEAKS, Response, friction_coefficient, warnings_of
+from rockflex.solve import WorkLimitError
+from rockflex.study import Case
+from rockflex.study._arguments import factors_of, free_vibration_time
+from rockflex.study._ranges import parsed
+from rockflex.study._run_options import RunOptions, yielding
+from rockflex.study._runs import map_runs
+
+MAX_TIMED_RUNS = 64  # runs; more are not timed one by one
+
+
+@dataclass(frozen=True)
+class Batch:
+    """The runs of one command: every motion at every scale with every model."""
+
+    properties: RockingProperties
+    motions: Sequence[GroundMotion]
+    scales: Sequence[float]
+    models: Sequence[str]
+    options: RunOptions = field(default_factory=RunOptions)
+    ground_values: dict[str, Any] = field(default_factory=dict[str, Any])
+    """The values of the ground as they were given."""
+    history: bool = False
+    workers: int | None = None
+    friction: float | None = None
+    """Coefficient of friction at which sliding is reported, or None."""
+
+    def case(self, model: str) -> Case:
+        """Return the case of one model, with its history where that is written or the friction is needed."""
+        whole = self.history or self.friction is not None
+        return self.options.case(parse_model(model), self.properties, history=whole, floors=whole)
+
+    def describe(self) -> dict[str, Any]:
+        """Return the options of the runs, for a document."""
+        free = "settle" if self.options.free_vibration is None else self.options.free_vibration
+        described = {"models": self.models, "scales": self.scales, "free_vibration": free}
+        friction = {} if self.friction is None else {"friction": self.friction}
+        return described | describe_options(self.options, self.ground_values) | friction
+
+    @property
+    def size(self) -> int:
+        """Number of runs."""
+        return len(self.motions) * len(self.scales) * len(self.models)
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run: its motion, scale and model, its peaks by name, and its outcome."""
+
+    motion: str
+    scale: float
+    model: str
+    status: str | None
+    error: str | None
+    peaks: dict[str, Any] = field(default_factory=dict[str, Any])
+    run_time: float | None = None
+    """Seconds; None where runs were shared among threads."""
+    response: Response | None = None
+    friction: dict[str, float | None] = field(default_factory=dict[str, float | None])
+    """Required friction and the time at which sliding would start, by name; empty unless requested."""
+    elements: dict[str, list[float]] = field(default_factory=dict[str, list[float]])
+    """Peaks of each element between base and ground, and its energy of a run with a history, by name."""
+    refused: bool = False
+    """Whether it was not started, because it would exceed the work limit."""
+
+    def row(self) -> dict[str, Any]:
+        """Return everything but the run time and the history, in the columns of `simulate_many`.
+
+        Columns of an element end in its number, from 1.
+        """
+        head = {"motion": self.motion, "scale": self.scale, "model": self.model}
+        elements = {f"{name}_{k}": each for name, values in self.elements.items() for k, each in enumerate(values, 1)}
+        return {**head, "status": self.status, "error": self.error, **self.peaks, **self.friction, **elements}
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Demands of the run that the ground or its tendons cannot meet; with a history also energies in imbalance."""
+        if self.response is not None:
+            return self.response.warnings
+        return () if self.error is not None else warnings_of(self.model, self.peaks)
+
+
+COLUMNS = tuple(name for name in PEAKS if name not in ("model", "motion", "status"))
+OF_ELEMENTS = ("max_element_force", "max_element_elongation")
+SLIDING = ("required_friction", "required_friction_excluding_impacts", "sliding_time")
+
+
+def run_batch(batch: Batch) -> list[Run]:
+    """Perform a batch, motions outermost, then scales, then models; one run that cannot be solved is not an error.
+
+    Raises
+    ------
+    InputError
+        If a value of the batch is out of range, or every run would exceed the work limit.
+    SolverError
+        If no run could be solved.
+    """
+    cases = {model: batch.case(model) for model in batch.models}
+    many = batch.size > MAX_TIMED_RUNS
+
+    def run(task: tuple[int, tuple[GroundMotion, float, str]]) -> tuple[int, Run]:
+        place, (motion, scale, model) = task
+        return place, _run_one(batch, cases[model], motion, scale, timed=not many)
+
+    tasks = enumerate(product(batch.motions, batch.scales, batch.models))
+    done: list[tuple[int, Run]] = []
+    with progress("Simulating", batch.size) if many else nullcontext() as advance:
+        for item in map_runs(run, tasks, batch.workers if many else batch.workers or 1):
+            done.append(item)
+            if advance is not None:
+                advance(1)
+    runs = [found for _, found in sorted(done, key=lambda item: item[0])]
+    failed = [found for found in runs if found.error is not None]
+    if len(failed) == len(runs):
+        first = failed[0]
+        if first.error is not None and all(found.refused for found in runs):
+            raise WorkLimitError(first.error)
+        raise SolverError(
+            f"None of the {len(runs)} runs could be solved; {first.model} under {first.motion}: {first.error}"
+        )
+    return runs
+
+
+def _run_one(batch: Batch, case: Case, motion: GroundMotion, scale: float, *, timed: bool) -> Run:
+    model = case.model.label
+    start = perf_counter()
+    try:
+        response = case.run(motion, scale)
+    except (SolverError, WorkLimitError) as error:
+        lost: dict[str, float | None] = {} if batch.friction is None else dict.fromkeys(SLIDING, None)
+        refused = isinstance(error, WorkLimitError)
+        return Run(motion.name, scale, model, None, str(error), dict.fromkeys(COLUMNS), friction=lost, refused=refused)
+    elapsed = perf_counter() - start if timed else None
+    peaks = {name: getattr(response, name) for name in COLUMNS}
+    kept = response if batch.history else None
+    friction, elements = _friction(batch, response), _elements(batch, response)
+    return Run(motion.name, scale, model, response.status, None, peaks, elapsed, kept, friction, elements)
+
+
+def _elements(batch: Batch, response: Response) -> dict[str, list[float]]:
+    """Return the peaks of the elements, and the energy that each dissipated if the history is known."""
+    if not batch.properties.elements:
+        return {}
+    names = OF_ELEMENTS if response.history is None else (*OF_ELEMENTS, "element_energy")
+    return {name: getattr(response, name).tolist() for name in names}
+
+
+def _friction(batch: Batch, response: Response) -> dict[str, float | None]:
+    """Return the friction of one run, if requested."""
+    if batch.friction is None:
+        return {}
+    values = (
+        response.required_friction,
+        response.required_friction_excluding_impacts(),
+        response.sliding_time(batch.friction),
+    )
+    return dict(zip(SLIDING, values, strict=True))
+
+
+FLAGS = {"free_vibration": "--free-vibration", "scales": "--scale", "mu": "--friction"}
+
+
+@dataclass(frozen=True)
+class RunArguments:
+    """The arguments of such a command as they were given; None of each was not given."""
+
+    arguments: Sequence[str]
+    structure: Path | None
+    motion: Sequence[str] | None
+    model: Sequence[str] | None
+    scale: Sequence[str]
+    free_vibration: str
+    work_limit: str | None = None
+    workers: int | None = None
+    friction: float | None = None
+    units: str | None = None
+    dt: float | None = None
+    on_error: OnError = "raise"
+    vertical: str | None = None
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A structure, the motions that were found, and the runs of one with the other."""
+
+    loaded: LoadedStructure
+    found: list[FoundMotion]
+    batch: Batch
+
+
+def prepare(context: typer.Context, arguments: RunArguments, *, histories: int) -> Prepared:
+    """Return the runs that the arguments and the generated flags of a command ask for.
+
+    Histories are kept of up to `histories` motions, each scale counted.
+
+    Raises
+    ------
+    InputError
+        If an argument, a file or a record cannot be used.
+    """
+    file, names = split_arguments(arguments.structure, arguments.arguments)
+    loaded = load_structure(file, flag_values(context, FrameFlags))
+    law, bouc_wen, initial = (flag_values(context, table) for table in (ImpactKeys, BoucWenKeys, InitialKeys))
+    ground = flag_values(context, GroundKeys) | flag_values(context, BedKeys)
+    options, ground_values = make_run_options(
+        file, loaded.run_options, law, bouc_wen, initial, ground, loaded.properties
+    )
+    models = choose_models(arguments.model, loaded.properties, options, by_flag=bool(bouc_wen))
+    if options.bouc_wen is not None and not yielding(models):
+        note(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was given")
+    names += arguments.motion or []
+    with naming(FLAGS):
+        free = number_or_word(arguments.free_vibration)
+        free_vibration_time(free)
+        mu = None if arguments.friction is None else friction_coefficient(arguments.friction)
+        if names or arguments.vertical or not initial:
+            found = find_motions(names, arguments.units, arguments.dt, arguments.on_error, arguments.vertical)
+        else:
+            found, free = quiet_ground(free)
+        given_scales = [factor for text in arguments.scale for factor in parsed(text)]
+        strongest = max((each.motion for each in found), key=lambda it: it.pga)
+        scales = list(dict.fromkeys(factors_of(given_scales, strongest)))
+        limit = parse_work_limit(arguments.work_limit)
+        batch = Batch(
+            properties=loaded.properties,
+            motions=[each.motion for each in found],
+            scales=scales,
+            models=models,
+            options=replace(options, free_vibration=free_vibration_time(free), work_limit=limit),
+            ground_values=ground_values,
+            history=len(found) * len(scales) <= histories,
+            workers=arguments.workers,
+            friction=mu,
+        )
+    return Prepared(loaded, found, batch)

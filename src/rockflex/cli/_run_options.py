@@ -1,0 +1,249 @@
+"""The options of ``rockflex run``, from its flags and the structure file."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rockflex._errors import InputError
+from rockflex._schema import BedKeys, BoucWenKeys, GroundKeys, ImpactKeys, InitialKeys
+from rockflex.cli._options import flags_of, naming
+from rockflex.modal import Ground, RockingProperties
+from rockflex.models import BoucWen, Restitution, parse_model
+from rockflex.structure.file import checked
+from rockflex.study import WORK_LIMIT, InitialState
+from rockflex.study._arguments import ground_under, work_limit_of
+from rockflex.study._option_tables import GroundTable, RunOptionKeys, name_of
+from rockflex.study._run_options import RunOptions, yielding
+
+_INERTIA = {"base_inertia", "mat_mass"}
+_FIELDS = {f"ground.{name}": (name, flag) for name, flag in flags_of(GroundKeys).items()} | {
+    f"ground.bed.{name}": (name, flag) for name, flag in flags_of(BedKeys).items()
+}
+
+
+def make_ground(
+    file: Path | None, in_file: dict[str, Any], flags: dict[str, Any], properties: RockingProperties
+) -> tuple[Ground | None, dict[str, Any]]:
+    """Combine the ground in a structure file with the ground given by flags, which take precedence.
+
+    Parameters
+    ----------
+    file, in_file
+        The structure file, and its table [ground]; empty without one.
+    flags
+        Values by flags, named as in `GroundKeys` and `BedKeys`.
+    properties
+        The structure on the ground.
+
+    Returns
+    -------
+    Ground or None, dict
+        The ground, None if it is rigid and the base cannot slide, and its values as given.
+
+    Raises
+    ------
+    InputError
+        If the values contradict each other or one is out of range.
+    """
+    if not in_file and not flags:
+        return None, {}
+    table = checked(GroundTable, _merged(in_file, flags))
+    try:
+        with naming({key: flag for key, (name, flag) in _FIELDS.items() if name in flags}):
+            return table.under(properties), table.model_dump(exclude_none=True)
+    except InputError as error:
+        if flags:
+            raise
+        raise InputError(f"{file}, {error}") from error
+
+
+def ground_lines(ground: Ground, properties: RockingProperties) -> list[str]:
+    """Return the ground under a structure in lines, for the head of a table."""
+    lines: list[str] = []
+    if ground.springs is not None:
+        springs = ground.springs
+        ratio = 0.5 * springs.total_damping / math.sqrt(springs.total_stiffness * properties.m_tot)
+        lines.append(
+            f"Ground: {springs.n} springs, Σk = {springs.total_stiffness:.4g} N/m, Σk x² = "
+            f"{springs.rotational_stiffness:.4g} N m/rad, Σc = {springs.total_damping:.4g} N s/m ({ratio:.3g} of "
+            f"critical in heave), I_b = {ground.base_inertia:.4g} kg m²"
+        )
+    if ground.friction is not None:
+        least, most = np.min(ground.friction), np.max(ground.friction)
+        lines.append(f"Friction: μ = {least:g}" + ("" if least == most else f" to {most:g}"))
+    return lines
+
+
+def _merged(in_file: dict[str, Any], flags: dict[str, Any]) -> dict[str, Any]:
+    own = {name: flags[name] for name in flags_of(GroundKeys) if name in flags}
+    bed = {name: flags[name] for name in flags_of(BedKeys) if name in flags}
+    replaced = _INERTIA if own.keys() & _INERTIA else set[str]()
+    merged = {name: value for name, value in in_file.items() if name not in replaced} | own
+    if not bed:
+        return merged
+    if "springs" in merged:
+        raise InputError(
+            "The ground of the structure file has springs, and the command line gives a bed "
+            f"({', '.join(flags_of(BedKeys)[name] for name in bed)}). Leave one of them out."
+        )
+    merged["bed"] = merged.get("bed", {}) | bed
+    if "breadth" not in merged["bed"]:
+        raise InputError("A bed of springs needs the breadth of the base. Give --breadth M in m.", field="breadth")
+    return merged
+
+
+USUAL = ("2DOF-S", "MDOF-S", "fixed")
+RIGID = ("rigid", "rigid-C")
+YIELDING = ("2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW")
+
+
+def describe_options(options: RunOptions, ground: dict[str, Any]) -> dict[str, Any]:
+    """Return the options that were given, for a document; `ground` has the values of the ground as they were given."""
+    described: dict[str, Any] = {}
+    if options.impact is not None:
+        values = asdict(options.impact) if isinstance(options.impact, Restitution) else {}
+        described["impact"] = {"law": name_of(options.impact), **values}
+    if options.bouc_wen is not None:
+        described["bouc_wen"] = asdict(options.bouc_wen)
+    if options.initial is not None:
+        described["initial_rotation"] = options.initial.rotation
+    return described | ({"ground": ground} if ground else {})
+
+
+def option_lines(options: RunOptions, properties: RockingProperties) -> list[str]:
+    """Return the options that were given in lines, for the head of a table of runs of a structure."""
+    lines: list[str] = []
+    if options.impact is not None:
+        e = f", e = {options.impact.e:g}" if isinstance(options.impact, Restitution) else ""
+        lines.append(f"Impact: {name_of(options.impact)}{e}")
+    if options.bouc_wen is not None:
+        b = options.bouc_wen
+        lines.append(
+            f"Hysteresis of -BW: D_y = {b.yield_displacement:g} m, α = {b.post_yield_ratio:g}, γ = {b.gamma:g}, "
+            f"β = {b.beta:g}, n = {b.exponent:g}"
+        )
+    if options.initial is not None:
+        lines.append(f"At rest at θ = {options.initial.rotation:g} rad at t = 0")
+    ground = ground_under(properties, options.ground)
+    return lines if ground is None else [*lines, *ground_lines(ground, properties)]
+
+
+def make_run_options(
+    file: Path | None,
+    in_file: dict[str, Any],
+    law: dict[str, Any],
+    bouc_wen: dict[str, Any],
+    initial: dict[str, Any],
+    ground: dict[str, Any],
+    properties: RockingProperties,
+) -> tuple[RunOptions, dict[str, Any]]:
+    """Combine the options in a structure file with those given by flags, which take precedence.
+
+    Parameters
+    ----------
+    file, in_file
+        The structure file, and its `impact`, `restitution`, `bouc_wen` and `ground` as far as it has them.
+    law, bouc_wen, initial, ground
+        Values by flags, named as in `ImpactKeys`, `BoucWenKeys`, `InitialKeys`, and in `GroundKeys` and `BedKeys`.
+    properties
+        The structure, whose base the ground is under.
+
+    Returns
+    -------
+    RunOptions, dict
+        The options, without free vibration; and the values of the ground as they were given, empty for none.
+
+    Raises
+    ------
+    InputError
+        If they contradict each other, or a value is out of range.
+    """
+    below = {} if "impact" in law else {name: in_file[name] for name in flags_of(ImpactKeys) if name in in_file}
+    with naming(flags_of(ImpactKeys)):
+        chosen = checked(RunOptionKeys, {**below, **law}).law()
+    with naming(flags_of(InitialKeys) | {"rotation": "--initial-rotation"}):
+        start = InitialState(rotation=initial["initial_rotation"]) if initial else None
+    hysteresis = _bouc_wen(file, in_file.get("bouc_wen", {}), bouc_wen)
+    base, values = make_ground(file, in_file.get("ground", {}), ground, properties)
+    return RunOptions(impact=chosen, bouc_wen=hysteresis, initial=start, ground=base), values
+
+
+def choose_models(
+    given: Sequence[str] | None, properties: RockingProperties, options: RunOptions, *, by_flag: bool
+) -> list[str]:
+    """Return the given labels, split at commas, or the usual ones, after checking that they suit the rest.
+
+    `by_flag` tells that the hysteresis was given on the command line, where a model must use it.
+
+    Raises
+    ------
+    InputError
+        If a label is unknown, needs more modes than there are, or contradicts the options.
+    """
+    if given is None:
+        usual = USUAL if properties.n_modes else RIGID
+        labels: list[str] = [*(usual if options.bouc_wen is None else YIELDING)]
+        ground = ground_under(properties, options.ground)
+        if ground is not None and not ground.rigid:
+            labels = [label for label in labels if (each := parse_model(label)).lifts and not each.complete]
+            labels = [label for label in labels if not parse_model(label).yields]
+        if options.initial is not None:
+            labels = [label for label in labels if parse_model(label).lifts]
+    else:
+        labels = list(dict.fromkeys(label.strip() for item in given for label in item.split(",") if label.strip()))
+    if not labels:
+        raise InputError("No model was given. Expected labels such as 2DOF-S,MDOF-S,fixed.")
+    models, yields = list(map(parse_model, labels)), yielding(labels)
+    if yields and options.bouc_wen is None:
+        raise InputError(
+            f"{yields[0]} needs its hysteresis. Give --yield-displacement, or [bouc_wen] in the structure file."
+        )
+    for model in models:
+        tied = options.tied(model, properties)
+        if options.initial is not None:
+            options.initial.state(tied)
+    if by_flag and not yields:
+        raise InputError(
+            f"A hysteresis was given, but {', '.join(labels)} do not yield. Models whose label ends in -BW do, such as "
+            "2DOF-S-BW, 2DOF-C-BW or 1DOF-fixed-BW: add one, or leave --yield-displacement out."
+        )
+    return labels
+
+
+def number_or_word(text: str) -> Any:
+    """Return a number where the text is one, and otherwise the text."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def parse_work_limit(given: str | None) -> float | None:
+    """Return the limit of computing time in s, None for no limit, or the usual limit if none is given.
+
+    Raises
+    ------
+    InputError
+        If the text is neither a positive number nor "none".
+    """
+    with naming({"work_limit": "--work-limit"}):
+        return WORK_LIMIT if given is None else work_limit_of(number_or_word(given))
+
+
+def _bouc_wen(file: Path | None, in_file: dict[str, float], flags: dict[str, float]) -> BoucWen | None:
+    values = {**in_file, **flags}
+    if not values:
+        return None
+    if "yield_displacement" not in values:
+        raise InputError("The hysteresis needs its yield displacement. Give --yield-displacement DY in m.")
+    try:
+        with naming({name: flag for name, flag in flags_of(BoucWenKeys).items() if name in flags}):
+            return BoucWen(**values)
+    except InputError as error:
+        if flags:
+            raise
+        raise InputError(f"{file}, [bouc_wen]: {error}") from error

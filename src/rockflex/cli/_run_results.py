@@ -1,0 +1,394 @@
+"""The results of ``rockflex run``: printed tables, files and the report on one page."""
+
+import shlex
+import sys
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rockflex._errors import InputError
+from rockflex._shown import counted, shortened
+from rockflex.cli._batch import SLIDING, Batch, Run
+from rockflex.cli._console import Styled, fits, grid, moment_unit, note, number, output, show
+from rockflex.cli._output import file_stems, staged
+from rockflex.cli._run_options import option_lines
+from rockflex.cli._structures import LoadedStructure, elements_table
+from rockflex.fragility import NOMINAL
+from rockflex.modal import Ground
+from rockflex.motion import MEASURES, GroundMotion
+from rockflex.report.run import MOST, checked_path, write_report
+from rockflex.response import IMPACT_WINDOW, Response, history_columns
+from rockflex.study._arguments import ground_under
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from rich.table import Table
+
+
+MAX_LISTED = 5
+LEGEND = (
+    "u_top: relative to the rotating base; total: relative to the ground\n"
+    "V_b, M_b: of the elastic forces; ΣF_x: horizontal force on the ground, including\n"
+    "the base's inertia and the damping; N_min: least vertical force on the ground"
+)
+PASSED = f"† θ passed {NOMINAL.label}, the nominal limit of overturning"
+FRICTION = (
+    "μ_req: largest |ΣF_x|/ΣF_z (Eqs. 20-22), of the whole run and without the {window:g} s after each impact; "
+    "the base slides where it passes {mu:g}"
+)
+OF_ELEMENTS = (
+    "F, E: largest force of each element, and the energy that it takes (with --out);\n"
+    "θ_end: rotation at the end of the run, where it is not closed"
+)
+OF_BASE = {
+    "slip": "slip: largest displacement of the base along the ground; x_end: where it rests",
+    "edge": "edge up, down: how far an edge of the base rises above the unloaded springs, and sinks below them",
+}
+STYLES = {"overturned": "bold red", "failed": "bold magenta", "rocking": "yellow", "no_uplift": "green"}
+Columns = list[tuple[str, list[str]]]
+
+
+def print_runs(title: str, batch: Batch, runs: Sequence[Run], elapsed: float, *, times: bool) -> None:
+    """Print the peaks of every run, and their times if requested; by motion if the terminal is narrow."""
+    console = output()
+    for line in (title, *option_lines(batch.options, batch.properties), *_vertical(batch.motions)):
+        console.print(line, markup=False, soft_wrap=True)
+    peaks, ground, base = (
+        _peaks(runs),
+        _reactions(runs),
+        _base_motion(ground_under(batch.properties, batch.options.ground), runs),
+    )
+    tables, elements = [(peaks + ground + base, 1)], batch.properties.elements
+    if not fits(console, _flat(batch, runs, *tables[0])):
+        tables = [(peaks, 1), (ground + base, 0)]
+    if times:
+        tables.append((_times(runs), 0))
+    if batch.friction is not None:
+        tables.append((_sliding(runs), 0))
+    if elements:
+        console.print("\nBetween base and ground", markup=False)
+        show(console, elements_table(elements))
+        tables += [(columns, 0) for columns in _element_peaks(runs, len(elements))]
+    for columns, n_words in tables:
+        flat = _flat(batch, runs, columns, n_words)
+        if fits(console, flat):
+            console.print()
+            show(console, flat)
+            continue
+        rows = zip(runs, _cells(columns), strict=True)
+        for place, members in groupby(rows, key=lambda row: _place(batch, row[0])):
+            console.print("\n" + " × ".join(place), markup=False, soft_wrap=True)
+            cells = [[run.model, *row] for run, row in members]
+            show(console, grid(["model", *(heading for heading, _ in columns)], cells, 1 + n_words))
+    console.print()
+    if any(run.peaks["nominal_overturning"] for run in runs):
+        console.print(PASSED, markup=False, soft_wrap=True)
+    console.print(LEGEND, markup=False, soft_wrap=True)
+    for name, said in OF_BASE.items():
+        if any(heading.startswith(name) for heading, _ in base):
+            console.print(said, markup=False, soft_wrap=True)
+    if elements:
+        console.print(OF_ELEMENTS, markup=False, soft_wrap=True)
+    if batch.friction is not None:
+        console.print(FRICTION.format(window=IMPACT_WINDOW, mu=batch.friction), markup=False, soft_wrap=True)
+    each = "" if len(runs) == 1 else f", {number(1e3 * elapsed / len(runs), 3)} ms a run"
+    console.print(f"{counted(len(runs), 'run')} in {number(elapsed, 3)} s{each}", markup=False)
+
+
+def print_warnings(runs: Sequence[Run]) -> None:
+    """Print warnings on stderr of demands that the ground or the tendons cannot meet."""
+    found = [f"Warning: {run.motion} × {run.scale:g}: {warning}" for run in runs for warning in run.warnings]
+    _list(found, "and {} more warnings; --json lists them all")
+
+
+def print_failures(runs: Sequence[Run]) -> int:
+    """List on stderr the runs that could not be solved, and return their number."""
+    failed = [run for run in runs if run.error is not None]
+    if failed:
+        note(f"{len(failed)} of {len(runs)} runs could not be solved:")
+    found = [f"  {run.model} under {run.motion} × {run.scale:g}: {run.error}" for run in failed]
+    _list(found, "  and {} more; --json and results.csv list them all")
+    return len(failed)
+
+
+def _list(found: Sequence[str], rest: str) -> None:
+    """Print the first of many lines on stderr, and how many more there are."""
+    for line in found[:MAX_LISTED]:
+        note(line)
+    if len(found) > MAX_LISTED:
+        note(rest.format(len(found) - MAX_LISTED))
+
+
+def _peaks(runs: Sequence[Run]) -> Columns:
+    moments = [abs(run.peaks["max_base_moment"] or 0.0) for run in runs]
+    unit, size = moment_unit(max(moments))
+    columns: Columns = [
+        ("status", [_status(run) for run in runs]),
+        ("θ_max [rad]", _column(runs, "max_rotation")),
+        ("u_top relative [m]", _column(runs, "max_top_displacement")),
+        ("u_top total [m]", _column(runs, "max_total_top_displacement")),
+        (f"M_b [{unit}]", _column(runs, "max_base_moment", size)),
+        ("V_b [kN]", _column(runs, "max_base_shear", 1e3)),
+        ("impacts", ["-" if run.error else str(run.peaks["n_impacts"]) for run in runs]),
+    ]
+    if any(run.peaks["max_tendon_force"] for run in runs):
+        columns.append(("T [kN]", _column(runs, "max_tendon_force", 1e3)))
+        columns.append(("T/F_y", _column(runs, "tendon_utilisation")))
+    if any(run.elements and run.peaks["residual_rotation"] for run in runs):
+        columns.append(("θ_end [rad]", _column(runs, "residual_rotation")))
+    if any(run.run_time is not None for run in runs):
+        columns.append(("time [ms]", [number(None if run.run_time is None else 1e3 * run.run_time, 3) for run in runs]))
+    return columns
+
+
+def _reactions(runs: Sequence[Run]) -> Columns:
+    return [
+        ("ΣF_x [kN]", _column(runs, "max_horizontal_reaction", 1e3)),
+        ("N_min [kN]", _column(runs, "min_vertical_reaction", 1e3)),
+    ]
+
+
+def _base_motion(ground: Ground | None, runs: Sequence[Run]) -> Columns:
+    """How far the base moves on a ground that lets it slide, or that gives."""
+    columns: Columns = []
+    if ground is not None and ground.slides:
+        columns += [
+            ("slip [mm]", _column(runs, "max_slip", 1e-3)),
+            ("x_end [mm]", _column(runs, "residual_slip", 1e-3)),
+        ]
+    if ground is not None and ground.springs is not None:
+        columns += [
+            ("edge up [mm]", _column(runs, "max_edge_uplift", 1e-3)),
+            ("edge down [mm]", _column(runs, "max_edge_settlement", 1e-3)),
+        ]
+    return columns
+
+
+def _vertical(motions: Sequence[GroundMotion]) -> list[str]:
+    """Name the vertical components, if any."""
+    upwards = [motion for motion in motions if motion.vertical is not None]
+    lines = [f"Vertical: {_source(motion)}, PVA = {motion.pva:.4g} m/s²" for motion in upwards[:MAX_LISTED]]
+    return lines + ([f"and {len(upwards) - MAX_LISTED} more vertical components"] if len(upwards) > MAX_LISTED else [])
+
+
+def _source(motion: GroundMotion) -> str:
+    source = None if motion.metadata is None else motion.metadata.vertical_source
+    return f"{source} with {motion.name}" if source else f"of {motion.name}"
+
+
+def _times(runs: Sequence[Run]) -> Columns:
+    names = {
+        "max_rotation": "θ_max",
+        "max_top_displacement": "u_top relative",
+        "max_total_top_displacement": "u_top total",
+        "max_base_moment": "M_b",
+        "max_base_shear": "V_b",
+        "max_horizontal_reaction": "ΣF_x",
+        "min_vertical_reaction": "N_min",
+    }
+    columns = [(f"t({label}) [s]", _column(runs, f"time_of_{name}", digits=5)) for name, label in names.items()]
+    return [*columns, ("end [s]", _column(runs, "end_time", digits=5))]
+
+
+def _sliding(runs: Sequence[Run]) -> Columns:
+    times = [run.friction["sliding_time"] for run in runs]
+    moments = [
+        "-" if run.error is not None else "no" if time is None else number(time, 5)
+        for run, time in zip(runs, times, strict=True)
+    ]
+    required = [[number(run.friction[name]) for run in runs] for name in SLIDING[:2]]
+    return [("μ_req", required[0]), ("μ_req [no impacts]", required[1]), ("slides at [s]", moments)]
+
+
+def _element_peaks(runs: Sequence[Run], count: int) -> Iterator[Columns]:
+    """The peaks of each element, by its number."""
+    for name, heading in (("max_element_force", "F_{} [kN]"), ("element_energy", "E_{} [kJ]")):
+        if any(name in run.elements for run in runs):
+            yield [
+                (heading.format(k + 1), [number(run.elements[name][k] / 1e3 if run.elements else None) for run in runs])
+                for k in range(count)
+            ]
+
+
+def _place(batch: Batch, run: Run) -> list[str]:
+    """Motion, and the scale unless all runs have the scale 1."""
+    return [run.motion] if batch.scales == [1.0] else [run.motion, f"{run.scale:g}"]
+
+
+def _cells(columns: Columns) -> list[tuple[str, ...]]:
+    return list(zip(*(values for _, values in columns), strict=True))
+
+
+def _flat(batch: Batch, runs: Sequence[Run], columns: Columns, n_words: int) -> "Table":
+    """Return one table of all runs."""
+    words = [*("motion", "scale")[: len(_place(batch, runs[0]))], "model"]
+    rows = [[*_place(batch, run), run.model, *row] for run, row in zip(runs, _cells(columns), strict=True)]
+    return grid([*words, *(heading for heading, _ in columns)], rows, len(words) + n_words)
+
+
+def _column(runs: Sequence[Run], name: str, size: float = 1.0, digits: int = 4) -> list[str]:
+    values = [run.peaks[name] for run in runs]
+    return [number(None if value is None else value / size, digits) for value in values]
+
+
+def _status(run: Run) -> str:
+    status = run.status or "failed"
+    return Styled(status.replace("_", " ") + (" †" if run.peaks["nominal_overturning"] else ""), STYLES[status])
+
+
+UNITS = {
+    "dt": "s",
+    "duration": "s",
+    "pga": MEASURES["pga"].unit,
+    "elapsed": "s",
+    "run_time": "s",
+    "end_time": "s",
+    "time_of_max_*": "s",
+    "max_rotation": "rad",
+    "time_of_min_*": "s",
+    "max_top_displacement": "m",
+    "max_total_top_displacement": "m",
+    "max_base_moment": "N m",
+    "max_base_shear": "N",
+    "max_horizontal_reaction": "N",
+    "min_vertical_reaction": "N",
+    "max_tendon_force": "N",
+    "max_element_force_*": "N",
+    "max_element_elongation_*": "m",
+    "element_energy_*": "J",
+    "residual_rotation": "rad",
+    "max_slip": "m",
+    "residual_slip": "m",
+    "max_edge_uplift": "m",
+    "max_edge_settlement": "m",
+    "sliding_time": "s",
+    "impact.shortest_excursion": "s",
+    "bouc_wen.yield_displacement": "m",
+    "initial_rotation": "rad",
+    "ground.base_inertia": "kg m²",
+    "ground.mat_mass": "kg",
+    "ground.springs.positions": "m",
+    "ground.springs.stiffness": "N/m",
+    "ground.springs.damping": "N s/m",
+    "ground.bed.breadth": "m",
+    "ground.bed.subgrade_modulus": "N/m³",
+    "ground.bed.shear_modulus": "N/m²",
+    "ground.bed.damping": "N s/m",
+    "ground.bed.end_zone": "m",
+}
+
+
+def write_runs(
+    folder: Path, document: dict[str, Any], batch: Batch, runs: Sequence[Run], *, figures: int, force: bool
+) -> None:
+    """Write results.csv, summary.json and, of up to `figures` motions, one CSV file and one figure for each motion.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written to, or is not empty and `force` is not set.
+    """
+    import pandas as pd
+
+    histories = batch.history and len(batch.motions) * len(batch.scales) <= figures
+    with staged(folder, document, force=force) as stage:
+        pd.DataFrame([run.row() for run in runs]).to_csv(stage / "results.csv", index=False, lineterminator="\n")
+        if histories:
+            _write_histories(stage, batch, runs)
+    note(f"Written to {folder}" + ("" if histories else "; no histories and figures of more than --figures motions"))
+
+
+def _write_histories(stage: Path, batch: Batch, runs: Sequence[Run]) -> None:
+    import pandas as pd
+
+    from rockflex.plot import plot_history, save_figure
+
+    groups = [(place, list(members)) for place, members in groupby(runs, key=lambda run: (run.motion, run.scale))]
+    several = len({scale for (_, scale), _ in groups}) > 1
+    names = [f"history-{motion}-x{scale:g}" if several else f"history-{motion}" for (motion, scale), _ in groups]
+    for stem, ((motion, scale), members) in zip(file_stems(names), groups, strict=True):
+        responses = [run.response for run in members if run.response is not None]
+        if not responses:
+            continue
+        table = pd.concat(list(_series(batch, responses)))
+        table.to_csv(stage / f"{stem}.csv", index=False, lineterminator="\n")
+        title = None if scale == 1.0 else f"{motion} × {scale:g}"
+        labels = [response.model for response in responses]
+        save_figure(plot_history(responses, labels=labels, title=title), stage / f"{stem}.png")
+
+
+def _series(batch: Batch, responses: Sequence[Response]) -> "Iterator[pd.DataFrame]":
+    """Histories as tables, one model below the other; an event is two rows at the same time."""
+    import pandas as pd
+
+    names = list[str]()
+    if batch.options.bouc_wen is not None:
+        names.append("yielding")
+    if batch.friction is not None:
+        names.append("friction_demand")
+    for response in responses:
+        assert response.history is not None
+        yield pd.DataFrame({"model": response.model, **history_columns(response.history, names)})
+
+
+_COMMAND, _FAILURE = 400, 200  # letters
+
+
+def check_page(path: Path, *, force: bool) -> Path:
+    """Return the path of a report, before anything is simulated.
+
+    Raises
+    ------
+    InputError
+        If it is no path of a page, or exists and `force` is not set.
+    """
+    page = checked_path("--report", path)
+    if page.exists() and not force:
+        raise InputError(f"--report {page} exists. Give another name, or --force to replace it.")
+    return page
+
+
+def check_runs(batch: Batch) -> None:
+    """Refuse more than one page holds, before anything is simulated.
+
+    Raises
+    ------
+    InputError
+        If there are several motions or scales, or too many models.
+    """
+    motions, scales, models = len(batch.motions), len(batch.scales), len(batch.models)
+    if motions * scales > 1:
+        first = batch.motions[0].name
+        raise InputError(
+            f"--report is of one motion at one scale, but there are {counted(motions, 'motion')} at "
+            f"{counted(scales, 'scale')}. Name one record, such as SUITE/NAME ({first}), with one --scale; a loop "
+            "writes a report of each."
+        )
+    if models > MOST:
+        raise InputError(
+            f"--report has room for {MOST} models, but there are {models}. Choose the ones that matter with --model."
+        )
+
+
+def write_page(page: Path, loaded: LoadedStructure, batch: Batch, runs: Sequence[Run]) -> None:
+    """Write the report of a batch of one motion at one scale."""
+    motion, scale = batch.motions[0], batch.scales[0]
+    times = "" if scale == 1.0 else f" × {scale:g}"
+    failed = [f"{run.model} could not be solved: {shortened(run.error, _FAILURE)}" for run in runs if run.error]
+    write_report(
+        [run.response for run in runs if run.response is not None],
+        page,
+        structure=loaded.built,
+        motion=motion,
+        title=f"{loaded.name} under {motion.name or 'a ground motion'}{times}",
+        friction=batch.friction,
+        notes=[*failed[:1], *_command()],
+    )
+    note(f"Written to {page}; any browser prints it on one sheet of A4")
+
+
+def _command() -> list[str]:
+    """Return the command as typed, which repeats the page, if this is one."""
+    typed = sys.argv[1:]
+    return [shortened(f"Command: rockflex {shlex.join(typed)}", _COMMAND)] if typed[:1] == ["run"] else []

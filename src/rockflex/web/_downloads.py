@@ -1,0 +1,386 @@
+"""The files of the page: figures, tables, records, studies, programs, a report and an animation."""
+
+import csv
+import io
+import math
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import tomli_w
+
+from rockflex.kinds import KINDS
+from rockflex.models import SpringModel
+from rockflex.motion import GroundMotion, record_csv
+from rockflex.report.run import report_html
+from rockflex.response import UNITS_OF_GROUND, UNITS_OF_HISTORY, Response, ground_columns
+from rockflex.web._earthquake import motion_of
+from rockflex.web._encoding import svg
+from rockflex.web._folders import packed_records
+from rockflex.web._jobs import Job
+from rockflex.web._refusal import Refusal, refusing
+from rockflex.web._response import check_energy, responses
+from rockflex.web._script import response_script
+from rockflex.web._selection import (
+    RECORDS_FOLDER,
+    SELECTIONS,
+    UNPACK_HINT,
+    VISITOR_FOLDER,
+    WHOLE_FOLDER,
+    call_of,
+    folder_suite,
+    options_of,
+    target_of,
+)
+from rockflex.web._state import State
+from rockflex.web._studies import PAGES, StudyPage
+from rockflex.web._uploads import Uploads, clean_name
+
+
+def _selection_table(state: State, uploads: Uploads) -> tuple[str, str]:
+    return "selection.csv", SELECTIONS.of(state, uploads)[0].table().to_csv(index=False, lineterminator="\n")
+
+
+def _selection_spectra(state: State, uploads: Uploads) -> tuple[str, str]:
+    return "spectra.csv", SELECTIONS.of(state, uploads)[0].spectra().to_csv(index=False, lineterminator="\n")
+
+
+def _selection_figure(state: State, uploads: Uploads) -> tuple[str, bytes]:
+    from rockflex.plot import plot_selection
+
+    return "selection.svg", svg(plot_selection(SELECTIONS.of(state, uploads)[0]))
+
+
+def _selection_records(state: State, uploads: Uploads) -> tuple[str, bytes]:
+    return "scaled-records.zip", packed_records(SELECTIONS.of(state, uploads)[0].suite)
+
+
+def _selection_python(state: State, _: Uploads) -> tuple[str, str]:
+    choice = state.target
+    name, values, named = call_of(choice)
+    if name == "read_target":
+        target = target_of(choice)
+        name, named = "TargetSpectrum", {"damping_ratio": target.damping_ratio, "name": target.name}
+        values = [target.periods.tolist(), target.sa.tolist()]
+    options = {key: value for key, value in options_of(choice).items() if value is not None}
+    given = (
+        f"rf.read_suite({WHOLE_FOLDER!r})  # unpacked from {WHOLE_FOLDER}.zip, which the page saves: Your records (ZIP)"
+    )
+    lines = [
+        "import rockflex as rf",
+        "",
+        f"target = rf.{name}({_arguments(values, named)})",
+        f"suite = {given if choice.source == VISITOR_FOLDER else f'rf.load_suite({choice.source!r})'}",
+        f"chosen = suite.select(target, {_arguments([choice.count, (choice.shortest, choice.longest)], options)})",
+        "print(chosen)",
+        "print(chosen.table().to_string(index=False))",
+        'chosen.spectra().to_csv("spectra.csv", index=False)',
+        'rf.save_figure(rf.plot_selection(chosen), "selection.png")',
+    ]
+    return "selection.py", "\n".join([*lines, ""])
+
+
+def _arguments(values: list[Any], named: dict[str, Any]) -> str:
+    return ", ".join([*map(repr, values), *(f"{name}={value!r}" for name, value in named.items())])
+
+
+SELECTION_FILES: dict[str, Callable[[State, Uploads], tuple[str, str | bytes]]] = {
+    "selection": _selection_table,
+    "selection-spectra": _selection_spectra,
+    "selection-figure": _selection_figure,
+    "selection-records": _selection_records,
+    "selection-python": _selection_python,
+}
+
+
+def run_report(state: State, uploads: Uploads) -> tuple[str, str]:
+    """Return the name and the text of the report of the runs of a state.
+
+    Energies and friction that would keep a visitor waiting are left out, and the page says so.
+
+    Raises
+    ------
+    Refusal
+        If a run cannot be made, or takes too long.
+    """
+    built, acting, found = responses(state, uploads)
+    motion = motion_of(state.record, uploads)
+    times = "" if state.scale == 1.0 else f" × {state.scale:g}"
+    name = state.structure.name or "Structure"
+    with refusing("models"):
+        text = report_html(
+            found,
+            structure=built.structure,
+            motion=motion,
+            title=f"{name} under {motion.name or 'a ground motion'}{times}",
+            omitted=[response.model for response in found if _is_long(response, acting, state)],
+        )
+    return "report.html", text
+
+
+def _is_long(response: Response, motion: GroundMotion, state: State) -> bool:
+    """Whether energies and friction would take too long here, as they do on many stiff springs."""
+    assert response.history is not None  # asked for in `responses`
+    if isinstance(response.history.model, SpringModel):
+        return True
+    try:
+        check_energy(response, motion, state)
+    except Refusal:
+        return True
+    return False
+
+
+FRAME_RATES = ((60.0, 25.0), (120.0, 12.5))
+"""Longest animation in s, and its frames per second: at most 1500 frames, which take some 20 s to draw."""
+ANIMATION_WIDTH = 800  # pixels
+
+
+def animation(state: State, uploads: Uploads, progress: Callable[[int, int], None]) -> tuple[str, bytes]:
+    """Return the name and the content of a GIF of the models that are shown, at their true speed.
+
+    `progress` is called with the number of frames drawn and that of all.
+
+    Raises
+    ------
+    Refusal
+        If a run cannot be made, or the animation would be too long.
+    """
+    from rockflex.plot import animate
+    from rockflex.plot._style import literal
+
+    built, motion, found = responses(state, uploads)
+    seconds = max(response.end_time for response in found)
+    rate = next((rate for longest, rate in FRAME_RATES if seconds <= longest), None)
+    if rate is None:
+        message = (
+            f"the animation would last {seconds:.4g} s, but the page draws {FRAME_RATES[-1][0]:g} s at most. Choose a "
+            "shorter record or less free vibration, or take Python lines and add rf.animate(..., start=, stop=)."
+        )
+        raise Refusal({"free_vibration": message})
+    title = None if state.scale == 1.0 else f"{literal(motion.name)} × {state.scale:g}"
+    with TemporaryDirectory() as folder, refusing("models"):
+        file = animate(
+            found, Path(folder) / "animation.gif", structure=built.structure, frames_per_second=rate, title=title,
+            width=ANIMATION_WIDTH, progress=progress,
+        )  # fmt: skip
+        return file.name, file.read_bytes()
+
+
+MEDIA_TYPES = {
+    ".zip": "application/zip",
+    ".svg": "image/svg+xml",
+    ".gif": "image/gif",
+    ".html": "text/html",
+    ".csv": "text/csv",
+    ".toml": "application/toml",
+    ".py": "text/x-python",
+}
+MAX_HISTORY_ROWS = 250_000  # of a table of histories
+MAX_HISTORY_VALUES = 6_000_000  # of it: a bed has a column for every spring
+
+
+def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes]:
+    """Return the name, the type and the content of a file.
+
+    Parameters
+    ----------
+    state
+        The state of the page.
+    what
+        ``"report"``, ``"figure"``, ``"energy"``, ``"modes"``, ``"peaks"``, ``"histories"``,
+        ``"record"``, ``"records"``, ``"study"``, ``"structure"``, ``"python"``, those of `SELECTION_FILES`, and
+        ``"cloud-study"``, ``"cloud-python"``, ``"cloud-records"``, ``"design-study"``, ``"design-python"``,
+        ``"design-records"``.
+    uploads
+        Records of visitors.
+
+    Raises
+    ------
+    Refusal
+        If there is no such file, or the state cannot be simulated.
+    """
+    maker = _MAKERS.get(what) or _study_maker(what)
+    if maker is None:
+        raise Refusal(f"There is no download named {what[:40]!r}.", 404)
+    name, content = maker(state, uploads)
+    data = content if isinstance(content, bytes) else content.encode()
+    return name, MEDIA_TYPES[Path(name).suffix], data
+
+
+def _figure(state: State, uploads: Uploads) -> tuple[str, bytes]:
+    from rockflex.plot import plot_history
+
+    return "response.svg", svg(plot_history(responses(state, uploads)[2]))
+
+
+def _energy(state: State, uploads: Uploads) -> tuple[str, bytes]:
+    from rockflex.plot import plot_energy
+
+    _, motion, found = responses(state, uploads)
+    check_energy(found[0], motion, state)
+    return "energy.svg", svg(plot_energy(found[0]))
+
+
+def _modes(state: State, _: Uploads) -> tuple[str, bytes]:
+    from rockflex.plot import plot_mode_shapes
+    from rockflex.web._structure import build
+
+    built = build(state.structure)
+    if built.modes is None:
+        message = "the shapes of the modes are not known, so there is no figure of them."
+        raise Refusal({"structure": message})
+    return "modes.svg", svg(plot_mode_shapes(built.modes, min(built.modes.n_modes, 10)))
+
+
+def _peaks(state: State, uploads: Uploads) -> tuple[str, str]:
+    _, motion, found = responses(state, uploads)
+    rows = [response.peaks() for response in found]
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["motion", "scale", *rows[0]])
+    writer.writerows([motion.name, state.scale, *row.values()] for row in rows)
+    return "peaks.csv", text.getvalue()
+
+
+def _histories(state: State, uploads: Uploads) -> tuple[str, str]:
+    import pandas as pd
+
+    found = responses(state, uploads)[2]
+    rows = sum(response.time.size for response in found)
+    if rows > MAX_HISTORY_ROWS:
+        message = (
+            f"the histories have {rows} rows, but the page writes {MAX_HISTORY_ROWS} at most. Choose fewer models, or "
+            "Python lines."
+        )
+        raise Refusal({"models": message})
+    of_ground = [_of_ground(each) for each in found]
+    cells = sum(
+        each.time.size * (len(UNITS_OF_HISTORY) + len(more)) for each, more in zip(found, of_ground, strict=True)
+    )
+    if cells > MAX_HISTORY_VALUES:
+        message = (
+            f"the histories with the forces of all springs have {cells} values, but the page writes "
+            f"{MAX_HISTORY_VALUES} at most. Choose fewer models or springs, or Python lines."
+        )
+        raise Refusal({"models": message})
+    heads = {name: f"{name} ({unit})" if unit else name for name, unit in UNITS_OF_HISTORY.items()}
+    # The total displacement is missing where the height of the top is not known.
+    columns = ({head: getattr(each, name, math.nan) for name, head in heads.items()} for each in found)
+    tables = [
+        pd.DataFrame({"model": each.model, **part, **_of_elements(each), **more})
+        for each, part, more in zip(found, columns, of_ground, strict=True)
+    ]
+    return "histories.csv", pd.concat(tables).to_csv(index=False, float_format="%.9g", na_rep="nan")
+
+
+def _of_ground(response: Response) -> dict[str, Any]:
+    """Return the histories of a base that slides or is on springs, and of vertical motion, as columns."""
+    columns = {} if response.history is None else ground_columns(response.history)
+    return {f"{name} ({UNITS_OF_GROUND[name.rstrip('0123456789').rstrip('_')]})": columns[name] for name in columns}
+
+
+def _of_elements(response: Response) -> dict[str, Any]:
+    """Return the histories of the elements between the base and the ground as columns, counted from one."""
+    columns: dict[str, Any] = {}
+    parts = zip(response.element_elongation.T, response.element_force.T, strict=True)
+    for place, (elongation, force) in enumerate(parts, start=1):
+        columns[f"element_{place}_elongation (m)"] = elongation
+        columns[f"element_{place}_force (N)"] = force
+    return columns
+
+
+def _record(state: State, uploads: Uploads) -> tuple[str, str]:
+    motion = motion_of(state.record, uploads)
+    return f"{_file_name(motion)}.csv", record_csv(motion)
+
+
+def _records(state: State, uploads: Uploads) -> tuple[str, bytes]:
+    return f"{WHOLE_FOLDER}.zip", packed_records(folder_suite(state, uploads))
+
+
+def _file_name(motion: GroundMotion) -> str:
+    """The name of a motion as a file name; a unit in it, such as m/s, is not a path."""
+    return clean_name(motion.name.replace("/", "_"))
+
+
+def _structure_toml(state: State, _: Uploads) -> tuple[str, str]:
+    return "structure.toml", tomli_w.dumps(state.structure.model_dump(exclude_none=True))
+
+
+def _study(state: State, uploads: Uploads) -> tuple[str, str]:
+    """The runs of the Response tab as a cloud study of one record."""
+    motion = motion_of(state.record, uploads)
+    head = "# rockflex cloud study.toml --out study\n"
+    records: dict[str, Any] = {"suites": [state.record.suite], "include": [motion.name]}
+    if state.record.source != "suite":
+        name = f"{_file_name(motion)}.csv"
+        head += f'# Put the record, which the page saves as "{name}", into the folder records next to this file.\n'
+        records = {"folder": "records"}
+    content: dict[str, Any] = {
+        "study": "cloud",
+        "name": state.structure.name or "Response",
+        "models": list(state.models),
+        "scales": [state.scale],
+        "free_vibration": state.free_vibration,
+    }
+    content |= state.option_keys(state.models)
+    structure = state.structure.model_dump(exclude_none=True)
+    return "study.toml", head + tomli_w.dumps(content | {"records": records, "structures": [structure]})
+
+
+def _python(state: State, uploads: Uploads) -> tuple[str, str]:
+    own = state.record.source in ("upload", "folder")
+    name = _file_name(motion_of(state.record, uploads)) if own else ""
+    return "response.py", response_script(state, name)
+
+
+def _study_maker(what: str) -> Callable[[State, Uploads], tuple[str, str | bytes]] | None:
+    """Return the maker of a file of a study, such as "cloud-study" or "design-python"; None if there is none."""
+    kind, _, form = what.partition("-")
+    page = PAGES.get(kind)
+    if page is None:
+        return None
+
+    def toml(state: State, uploads: Uploads) -> tuple[str, str]:
+        study = page.study(state, uploads)
+        head = f"# rockflex {KINDS[kind].command} {kind}.toml --out study\n"
+        head += UNPACK_HINT if study.records.folder else ""
+        return f"{kind}.toml", head + tomli_w.dumps(study.model_dump(exclude_none=True))
+
+    def python(state: State, uploads: Uploads) -> tuple[str, str]:
+        return f"{kind}.py", page.script(state, page.study(state, uploads))
+
+    def records(state: State, uploads: Uploads) -> tuple[str, bytes]:
+        return f"{RECORDS_FOLDER}.zip", packed_records(page.study(state, uploads).records.motions)
+
+    return {"study": toml, "python": python, "records": records}.get(form)
+
+
+def study_file(page: StudyPage, job: Job, state: State, what: str) -> tuple[str, str, bytes]:
+    """Return the name, the type and the content of the table or the figure of a study, from its runs so far.
+
+    Raises
+    ------
+    Refusal
+        If there are no runs yet, or nothing can be drawn.
+    """
+    if what == "table":
+        return f"{page.table_name}.csv", "text/csv", page.table(job, state).to_csv(index=False).encode()
+    with refusing(""):
+        return f"{page.figure_name}.svg", "image/svg+xml", svg(page.figure(job, state))
+
+
+_MAKERS: dict[str, Any] = SELECTION_FILES | {
+    "figure": _figure,
+    "energy": _energy,
+    "report": run_report,
+    "modes": _modes,
+    "peaks": _peaks,
+    "histories": _histories,
+    "record": _record,
+    "records": _records,
+    "structure": _structure_toml,
+    "study": _study,
+    "python": _python,
+}

@@ -1,0 +1,189 @@
+"""The Earthquake tab: the record, its spectrum and its intensity measures."""
+
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rockflex._json import plain
+from rockflex.motion import (
+    MEASURES,
+    GroundMotion,
+    Measure,
+    Shaking,
+    Suite,
+    half_sine_pulse,
+    load_suite,
+    mavroeidis_papageorgiou_pulse,
+    one_cosine_pulse,
+    one_sine_pulse,
+    record_measures,
+    rectangular_pulse,
+    ricker_pulse,
+    suite_names,
+    vertical_measures,
+)
+from rockflex.web._encoding import envelope, pack
+from rockflex.web._refusal import refusing
+from rockflex.web._state import PulseChoice, RecordChoice, State
+from rockflex.web._structure import Built
+from rockflex.web._uploads import Uploads
+
+MAX_THUMBNAIL_POINTS = 120  # points of a thumbnail
+MAX_CURVE_POINTS = 2000  # of a curve
+PERIODS = np.geomspace(0.05, 5.0, 90)
+
+
+class Pulse(NamedTuple):
+    """A pulse: its title, the function that makes it, and the arguments besides amplitude and period."""
+
+    title: str
+    maker: Callable[..., GroundMotion]
+    fields: tuple[str, ...] = ()
+    fixed: Mapping[str, str] = MappingProxyType({})
+
+    def options(self, choice: PulseChoice) -> dict[str, Any]:
+        """Return the named arguments of the function."""
+        return {name: getattr(choice, name) for name in self.fields} | dict(self.fixed)
+
+
+PULSES = {
+    "ricker_antisymmetric": Pulse("Ricker, antisymmetric", ricker_pulse),
+    "ricker_symmetric": Pulse("Ricker, symmetric", ricker_pulse, fixed={"kind": "symmetric"}),
+    "one_sine": Pulse("One sine", one_sine_pulse),
+    "one_cosine": Pulse("One cosine", one_cosine_pulse),
+    "half_sine": Pulse("Half a sine", half_sine_pulse),
+    "rectangular": Pulse("Rectangle", rectangular_pulse),
+    "mavroeidis": Pulse("Mavroeidis–Papageorgiou (velocity)", mavroeidis_papageorgiou_pulse, ("gamma", "nu")),
+}
+
+
+def suites() -> tuple[str, ...]:
+    """Return the names of the embedded suites."""
+    return tuple(suite_names())
+
+
+@lru_cache(maxsize=8)
+def _suite(name: str) -> Suite:
+    with refusing("record.suite"):
+        return load_suite(name)
+
+
+def motion_of(choice: RecordChoice, uploads: Uploads) -> GroundMotion:
+    """Return the chosen record, without the scale factor.
+
+    Raises
+    ------
+    Refusal
+        If there is none.
+    """
+    if choice.source == "upload":
+        return uploads.get(choice.upload)
+    if choice.source == "folder":
+        return folder_motion(choice, uploads)
+    if choice.source == "pulse":
+        pulse = PULSES[choice.pulse.shape]
+        with refusing("record.pulse"):
+            return pulse.maker(choice.pulse.amplitude, choice.pulse.period, **pulse.options(choice.pulse))
+    suite = _suite(choice.suite)
+    with refusing("record.name"):
+        return suite[choice.name]
+
+
+def folder_motion(choice: RecordChoice, uploads: Uploads) -> GroundMotion:
+    """Return the chosen record of the folder, with its vertical component if that is wanted and there.
+
+    Raises
+    ------
+    Refusal
+        If the server does not have the folder, or it has no such record.
+    """
+    suite = uploads.folders.get(choice.folder).suite(vertical=choice.vertical)
+    with refusing("record.folder"):
+        return suite[choice.given]
+
+
+@lru_cache(maxsize=8)
+def suite_view(name: str) -> dict[str, Any]:
+    """Return the records of a suite with thumbnails and intensity measures.
+
+    Raises
+    ------
+    Refusal
+        If the suite is unknown.
+    """
+    return plain({"name": name, "records": [_thumbnail(motion) for motion in _suite(name)]})
+
+
+def _thumbnail(motion: GroundMotion) -> dict[str, Any]:
+    kept = envelope([motion.acceleration], MAX_THUMBNAIL_POINTS)
+    info = motion.metadata
+    event = " ".join(str(part) for part in (info.event, info.year) if part is not None) if info else ""
+    return {
+        "name": motion.name,
+        "event": event,
+        "station": (info.station if info else None) or "",
+        "magnitude": info.magnitude if info else None,
+        "pga": motion.pga,
+        "pgv": motion.pgv,
+        "duration": motion.duration,
+        "t": pack(motion.time[kept] / motion.duration),
+        "a": pack(motion.acceleration[kept] / motion.pga),
+    }
+
+
+def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str, Any]:
+    """Return the history, the spectrum and the measures of the scaled record."""
+    motion = motion_of(state.record, uploads).scaled(state.scale)
+    velocity, displacement = motion.velocity, motion.displacement
+    upwards = [] if motion.vertical is None else [motion.vertical]
+    kept = envelope([motion.acceleration, velocity, displacement, *upwards], MAX_CURVE_POINTS)
+    spectrum = motion.spectrum(PERIODS)
+    measures: list[dict[str, Any]] = [
+        *(_fact(measure, measure.of(Shaking(motion)), measure.words) for measure in record_measures()),
+        *(_fact(measure, measure.of(Shaking(motion)), measure.words) for measure in _vertical(motion)),
+        {"name": "Duration", "value": motion.duration, "unit": "s", "help": "length of the record"},
+        {"name": "Step", "value": motion.dt, "unit": "s", "help": "sampling step"},
+    ]
+    first = None
+    if built is not None and built.properties.n_modes:
+        first = 2.0 * np.pi / float(built.properties.omega[0])
+        zeta, of_mode = float(built.properties.zeta[0]), MEASURES["sa_t1"]
+        measures += [
+            _fact(of_mode, motion.sa(first, zeta), f"{of_mode.words}, {zeta:.3g}, and its first period"),
+            _fact(MEASURES["sa_t1_5"], motion.sa(first, 0.05), MEASURES["sa_t1_5"].words),
+        ]
+    return plain(
+        {
+            "name": motion.name,
+            "title": _title(motion),
+            "measures": measures,
+            "t": pack(motion.time[kept]),
+            "acceleration": pack(motion.acceleration[kept]),
+            "vertical": pack(upwards[0][kept]) if upwards else None,
+            "velocity": pack(velocity[kept]),
+            "displacement": pack(displacement[kept]),
+            "periods": pack(PERIODS),
+            "sa": pack(spectrum.sa),
+            "first_period": first,
+            "lifting": None if built is None else built.properties.uplift_acceleration,
+        }
+    )
+
+
+def _vertical(motion: GroundMotion) -> list[Measure]:
+    return [] if motion.vertical is None else vertical_measures()
+
+
+def _fact(measure: Measure, value: float, words: str) -> dict[str, Any]:
+    return {"name": measure.head, "value": value, "unit": measure.unit, "help": words}
+
+
+def _title(motion: GroundMotion) -> str:
+    info = motion.metadata
+    if info is None:
+        return ""
+    parts = (info.event, info.year, info.station, info.component)
+    return ", ".join(str(part) for part in parts if part is not None)

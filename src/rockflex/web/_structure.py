@@ -1,0 +1,293 @@
+"""The Structure tab: the structure, its modes, its cross-section, and the ground under it."""
+
+import json
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rockflex._arrays import Array
+from rockflex._errors import InputError
+from rockflex._json import plain
+from rockflex.modal import Ground, ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
+from rockflex.structure import structure_warnings
+from rockflex.structure._freedoms import Freedoms
+from rockflex.structure.file import Structure, StructureEntry, StructureTable, Table
+from rockflex.structure.file._matrix_tables import MatricesTable, ModesTable
+from rockflex.study._option_tables import GroundTable
+from rockflex.web._refusal import Refusal, refusing
+
+MAX_SPRINGS_DRAWN = 9  # springs of a drawing, at most
+
+
+def ground_of(table: GroundTable | None, p: RockingProperties) -> Ground | None:
+    """Return the ground under a structure, None if it is rigid and the base cannot slide.
+
+    Raises
+    ------
+    Refusal
+        If its values contradict each other, at the field at fault.
+    """
+    try:
+        return None if table is None else table.under(p)
+    except InputError as error:
+        raise Refusal({error.field or "ground": error.said}) from error
+
+
+def ground_view(ground: Ground | None, p: RockingProperties) -> dict[str, Any] | None:
+    """Return where the springs of a drawing are, how far the base settles, and the ground's stiffness and damping."""
+    if ground is None:
+        return None
+    view: dict[str, Any] = {"slides": ground.slides, "springs": [], "facts": []}
+    if ground.springs is None:
+        return view
+    springs = ground.springs
+    kept = np.unique(np.linspace(0, springs.n - 1, min(springs.n, MAX_SPRINGS_DRAWN)).round().astype(int))
+    settlement = p.resting_reaction / springs.total_stiffness
+    ratio = 0.5 * springs.total_damping / math.sqrt(springs.total_stiffness * p.m_tot)
+    return view | {
+        "springs": springs.positions[kept],
+        "settlement": settlement,
+        "facts": [
+            _ground_fact("w", 1e3 * settlement, "mm", "settlement of the axis under the weight"),
+            _ground_fact("Σk", springs.total_stiffness, "N/m", "vertical stiffness of all springs"),
+            _ground_fact("Σkx²", springs.rotational_stiffness, "N m/rad", "rotational stiffness of all springs"),
+            _ground_fact("ζ_z", ratio, "", "damping of the heave mode, as a share of critical"),
+            _ground_fact("I_b", ground.base_inertia, "kg m²", "rotary inertia of base and floors"),
+        ],
+    }
+
+
+def _ground_fact(symbol: str, value: float | None, unit: str, said: str) -> dict[str, Any]:
+    return {"symbol": symbol, "value": value, "unit": unit, "help": said}
+
+
+def section_facts(table: Table) -> list[dict[str, Any]]:
+    """Return area, second moment, stiffness and mass of the cross-section of a structure; none without one."""
+    given: Any = getattr(table, "section", None)
+    if given is None:
+        return []
+    section = given.build()
+    composite = given.shape == "composite"
+    of_first = ", in the material of the first part" if composite else ""
+    return [
+        {"symbol": "A", "value": section.area, "unit": "m²", "help": f"area{of_first}"},
+        {"symbol": "I", "value": section.second_moment, "unit": "m⁴", "help": f"second moment of area{of_first}"},
+        {"symbol": "EI", "value": section.bending_stiffness, "unit": "N m²", "help": "effective bending stiffness"},
+        {"symbol": "m", "value": section.mass_per_length, "unit": "kg/m", "help": "mass per metre of height"},
+    ]
+
+
+MAX_HEIGHTS_DRAWN = 40  # heights of a structure, at most
+MAX_MODES_DRAWN = 6  # modes drawn
+RECENTRING_HELP = (
+    "moment of weight and prestress over that of the dissipators; above 1 the base closes by itself; at θ → 0"
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Built:
+    """A structure that can be simulated and drawn.
+
+    Attributes
+    ----------
+    structure
+        The structure itself.
+    properties
+        Its parameters with all modes.
+    modes
+        Its modes on a fixed base; None if they are unknown or there are none.
+    heights
+        Heights of the points drawn, in m, from the base to the top, shape (m,).
+    shapes
+        Displacements of these points for a unit of each D_n, shape (m, n).
+    """
+
+    structure: Structure | RockingProperties
+    properties: RockingProperties
+    modes: ModalProperties | None
+    heights: Array
+    shapes: Array
+
+
+def build(entry: StructureEntry) -> Built:
+    """Build a structure, or return it from the cache.
+
+    Raises
+    ------
+    Refusal
+        If it cannot be built, with the message at the field at fault.
+    """
+    try:
+        return _build(json.dumps(entry.model_dump(exclude_none=True)))
+    except InputError as error:
+        raise Refusal({_place(entry, error.field): error.said}) from error
+    except (ArithmeticError, MemoryError, RuntimeError, ValueError) as error:  # of linear algebra, at absurd numbers
+        message = "the modes cannot be computed from these numbers; check their sizes and units."
+        raise Refusal({"structure": message}) from error
+
+
+@lru_cache(maxsize=64)
+def _build(text: str) -> Built:
+    entry = StructureEntry.model_validate(json.loads(text))
+    structure = entry.build()
+    if isinstance(structure, RockingProperties):
+        return Built(structure, structure, None, *_straight_shape(entry, structure))
+    properties, modes = structure.rocking(), structure.modal()
+    kept = np.unique(np.linspace(0, modes.heights.size - 1, min(MAX_HEIGHTS_DRAWN, modes.heights.size)).astype(int))
+    shapes = (modes.shapes * modes.participation)[kept, : properties.n_modes]
+    heights = np.concatenate(([0.0], modes.heights[kept]))
+    shapes = np.vstack((np.zeros(shapes.shape[1]), shapes))
+    # The heights of freedoms may come in any order.
+    order = np.argsort(heights, kind="stable")
+    return Built(structure, properties, modes, heights[order], shapes[order])
+
+
+def _straight_shape(entry: StructureEntry, p: RockingProperties) -> tuple[Array, Array]:
+    """Shape of a structure with only a known displacement of the top: a straight line."""
+    if p.n_modes:
+        height = float(np.abs(p.effective_height).max()) * 1.25
+    else:
+        table: Any = entry.table
+        height = 2.0 * float(table.half_diagonal) * float(np.cos(table.slenderness))
+    return np.array([0.0, height]), np.vstack((np.zeros(p.n_modes), p.top_ordinate))
+
+
+def structure_view(entry: StructureEntry, table: GroundTable | None = None) -> dict[str, Any]:
+    """Return the outline, the parameters, the modes and the adequacy of a structure, and the ground under it.
+
+    Raises
+    ------
+    Refusal
+        If it cannot be built, the adequacy of its modes cannot be determined, or the ground contradicts itself.
+    """
+    built = build(entry)
+    p = built.properties
+    with refusing("structure"):
+        modes, judged = _modes(built), _mode_adequacy(entry, p)
+    return plain(
+        {
+            **outline(entry, built),
+            "name": entry.name,
+            "ground": ground_view(ground_of(table, p), p),
+            "shapes": built.shapes[:, :MAX_MODES_DRAWN].T,
+            "properties": _parameters(p),
+            "freedoms": _freedoms(entry.table),
+            "section": section_facts(entry.table),
+            "warnings": structure_warnings(built.structure),
+            "modes": modes,
+            "adequacy": judged,
+        }
+    )
+
+
+def outline(entry: StructureEntry, built: Built) -> dict[str, Any]:
+    """Return the data of the drawing of a structure."""
+    p = built.properties
+    return {
+        "kind": entry.kind,
+        "heights": built.heights,
+        "shapes_known": built.modes is not None,
+        "mass": p.m_tot,
+        "half_width": p.half_width,
+        "eccentricity": p.eccentricity,
+        "elements": [{"kind": table.kind, "position": table.position} for table in entry.elements or []],
+    }
+
+
+def _freedoms(table: StructureTable) -> str:
+    """Describe the degrees of freedom of given matrices; empty for other structures."""
+    if not isinstance(table, MatricesTable | ModesTable):
+        return ""
+    given = table.arguments(Path())
+    mass = np.asarray(given["mass"])
+    size = len(mass)
+    found = Freedoms.of(given["heights"], given.get("rotations", ()), size)
+    others = size - found.translates.size - found.rotates.size
+    kinds = ((found.translates.size, "sideways"), (found.rotates.size, "rotational"), (others, "other"))
+    counted = ", ".join(f"{count} {kind}" for count, kind in kinds if count)
+    bare = size - int(np.count_nonzero(mass.any(axis=1) if mass.ndim == 2 else mass))
+    condensed = f" Without mass, and condensed out: {bare}." if bare and isinstance(table, MatricesTable) else ""
+    return f"Degrees of freedom: {counted}.{condensed}"
+
+
+def _mode_adequacy(entry: StructureEntry, p: RockingProperties) -> dict[str, Any] | None:
+    """How many modes are enough, and why."""
+    if not p.n_modes:
+        return None
+    base = getattr(entry.table, "base_mass", None)
+    try:
+        found = adequacy(p, base_mass=base)
+    except InputError:  # a mass of the base that contradicts the rest
+        found = adequacy(p)
+    return {"reason": found.reason, "model": found.model, "model_for_shear": found.model_for_shear}
+
+
+def _parameters(p: RockingProperties) -> list[dict[str, Any]]:
+    """Return the parameters with symbols, units and meaning, for each edge of the base where the two differ."""
+    moved = {"symbol": "e", "value": p.eccentricity, "unit": "m", "help": "masses to the right of the base's middle"}
+    base = [
+        {"symbol": "B", "value": p.half_width, "unit": "m", "help": "half the width of the base"},
+        *([moved] if p.eccentricity else []),
+        {"symbol": "m_tot", "value": p.m_tot, "unit": "kg", "help": "total mass with the base"},
+    ]
+    arm = {"symbol": "L₀ʳ", "value": p.l0r, "unit": "kg m", "help": "sum of mass times height"}
+    if p.symmetric:
+        lifting, *rest = _of_pivot(p, p.pivot(1), "")
+        return [*base, lifting, arm, *rest]
+    edges = {1: "to the right: ", -1: "to the left: "}
+    return [*base, arm, *(each for pivot in p.pivots for each in _of_pivot(p, pivot, edges[pivot.side]))]
+
+
+def _of_pivot(p: RockingProperties, pivot: Pivot, about: str) -> list[dict[str, Any]]:
+    alpha = pivot.balance_rotation if math.isfinite(pivot.balance_rotation) else None
+    nominal = pivot.nominal_overturning_rotation
+    limit = "nominal limit 0.7 atan(B/h*₁)" if p.symmetric else "nominal limit 0.7 atan(b/h*₁), b to this edge"
+    said = [
+        ("M_r", pivot.resisting_moment, "N m", "moment at which the base lifts"),
+        ("I_θ", pivot.i_theta, "kg m²", "inertia about the pivot"),
+        ("a_lift", pivot.uplift_acceleration, "m/s²", "slow ground acceleration that lifts the base"),
+        ("α", alpha, "rad", "rotation beyond which it does not return to the upright position"),
+        *([("λ", pivot.recentring_ratio, "", RECENTRING_HELP)] if pivot.dissipator_moment > 0.0 else []),
+        ("θ_nom", nominal, "rad", limit),
+    ]
+    return [
+        {"symbol": symbol, "value": value, "unit": unit, "help": about + text}
+        | ({"none": "the tendons always bring it back"} if value is None else {})
+        for symbol, value, unit, text in said
+    ]
+
+
+def _modes(built: Built) -> list[dict[str, Any]]:
+    p = built.properties
+    if not p.n_modes:
+        return []
+    lifted = [uplifted_modes(p, side=pivot.side) for pivot in p.pivots]
+    return [
+        {
+            "period": 2.0 * np.pi / p.omega[n],
+            "effective_mass": p.effective_mass[n],
+            "mass_share": p.effective_mass[n] / p.m_tot,
+            "effective_height": p.effective_height[n],
+            "damping": p.zeta[n],
+            "uplifted": [
+                {
+                    "period": 2.0 * np.pi / each.omega[n] if each.omega[n] > 0.0 else None,
+                    "damping": each.damping_ratio[n],
+                }
+                for each in lifted
+            ],
+        }
+        for n in range(p.n_modes)
+    ]
+
+
+def _place(entry: StructureEntry, name: str | None) -> str:
+    """Return the path of a field of the form, or of the whole form if it has no such field."""
+    if name in type(entry.table).model_fields:
+        return f"structure.{entry.kind}.{name}"
+    own = name is not None and name.partition(".")[0] in type(entry).model_fields
+    return f"structure.{name}" if own else "structure"

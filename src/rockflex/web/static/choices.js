@@ -1,0 +1,103 @@
+// Models, intensity measures and suites to choose from.
+
+import { clone, h } from "./dom.js";
+import { trouble } from "./form.js";
+
+const MODELS = [
+  ["MDOF-S", "Simplified, all modes"],
+  ["2DOF-S", "Simplified, one mode"],
+  ["3DOF-S", "Simplified, two modes"],
+  ["2DOF-S-R", "As 2DOF-S, but base shear and base moment include the mass of the omitted modes"],
+  ["2DOF-C", "Complete, one mode: large rotations"],
+  ["MDOF-C-SI", "Complete, all modes"],
+  ["rigid", "Rigid block"],
+  ["fixed", "The same structure on a fixed base"],
+];
+const YIELDING = [
+  ["2DOF-S-BW", "Simplified, one yielding mode"],
+  ["2DOF-C-BW", "Complete, one yielding mode"],
+  ["1DOF-fixed-BW", "One yielding mode on a fixed base"],
+];
+
+// Whether a model can stand on springs, or slide.
+export const grounded = (label) => !/fixed|-C|-BW/.test(label);
+
+export const yields = (label) => label.includes("-BW");
+
+export function models(path, chosen, most, change) {
+  let now = clone(chosen);
+  let offered = MODELS;
+  const chips = h("div", { class: "chips", role: "group", "aria-label": "Models" });
+  const other = h("input", {
+    type: "text", placeholder: "another, e.g. 4DOF-S or 3DOF-S-R", "aria-label": "Another model", maxlength: 30,
+    onchange: () => {
+      const label = other.value.trim();
+      other.value = "";
+      if (label && !now.includes(label)) commit([...now, label]);
+    },
+  });
+
+  function commit(next) {
+    now = next;
+    draw();
+    change(clone(now));
+  }
+
+  function chip([label, title]) {
+    const checked = now.includes(label);
+    const disabled = checked ? now.length === 1 : now.length >= most;
+    const box = h("input", {
+      type: "checkbox", checked, disabled, "data-label": label,
+      onchange: () => {
+        commit(box.checked ? [...now, label] : now.filter((each) => each !== label));
+        chips.querySelector(`[data-label="${CSS.escape(label)}"]`)?.focus();
+      },
+    });
+    return h("label", { title }, box, label);
+  }
+
+  function draw() {
+    const others = now.filter((label) => !offered.some(([known]) => known === label));
+    chips.replaceChildren(...[...offered, ...others.map((label) => [label, label])].map(chip));
+  }
+
+  draw();
+  const element = h("div", { class: "field", "data-path": path },
+    h("div", { class: "label" }, `Models (up to ${most})`), chips, other, trouble());
+  // The chosen models, and whether yielding models are offered too.
+  element.setValue = (value, yielding = false) => {
+    now = clone(value);
+    offered = yielding ? [...MODELS, ...YIELDING] : MODELS;
+    const key = JSON.stringify([now, offered]);
+    if (key === element.dataset.drawn) return;
+    element.dataset.drawn = key;
+    draw();
+  };
+  return element;
+}
+
+// Values and titles for a list; the search for a width excludes measures that depend on the base.
+export function measuresOf(about, ofBase) {
+  const offered = about.measures.filter((each) => ofBase || !each.of_base);
+  return offered.map((each) => [each.name, each.title]);
+}
+
+const named = (about, name) => about.measures.find((each) => each.name === name);
+
+export const unitOf = (about, name) => named(about, name).unit;
+
+// Short name of a measure with its unit, for an axis.
+export const axisOf = (about, name) => named(about, name).axis;
+
+export const GIVEN = "given"; // the folder of the visitor among the suites
+export const CHOSEN = "chosen"; // and the records for the target spectrum
+
+// Suites of many records, with short names; the folder if there is one, or it is among those chosen; and the records for
+// the target spectrum, unless others are to be chosen for it.
+export function suitesOf({ about, state }, chosen = [], forTarget = false) {
+  const many = about.suites.filter((name) => name !== "el-centro-1940").map((name) => [name, name.replace("fema-p695-", "")]);
+  const own = [];
+  if (state.record.folder || chosen.includes(GIVEN) || (forTarget && state.target.source === GIVEN)) own.push([GIVEN, "your folder"]);
+  if (!forTarget && (state.target.shown || chosen.includes(CHOSEN))) own.push([CHOSEN, "records for the target"]);
+  return [...many, ...own];
+}

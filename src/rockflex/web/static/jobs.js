@@ -1,0 +1,213 @@
+// Work that the server does in the background: studies, and files that take long.
+
+import { ask, attempt, drop, file, get } from "./api.js";
+import { CHOSEN, GIVEN, suitesOf, yields } from "./choices.js";
+import { counted, h, latest, save } from "./dom.js";
+import { box, chips, select, trouble } from "./form.js";
+
+const STUDY_STATUS = {
+  waiting: () => "Waiting for other users' runs.",
+  running: (answer) => `${answer.done} of ${counted(answer.total, "run")}`,
+  done: (answer) => `Done: ${counted(answer.total, "run")}.`,
+  cancelled: (answer) => `Cancelled after ${answer.done} of ${counted(answer.total, "run")}.`,
+  failed: (answer) => `Failed: ${answer.message}`,
+};
+const SHOWN = 400; // ms between two polls while the tab is shown
+const ASIDE = 5000; // and while it is not: the server stops a study that is not polled
+
+// Everything that determines the runs of these models, apart from the study's own choices.
+export function assumed({ structure, impact, restitution, bouc_wen, ground }, labels) {
+  return [structure, impact, restitution, ground, labels.some(yields) ? bouc_wen : null, labels];
+}
+
+// What determines the records of these suites.
+export function recordsOf({ record, target: { shown: _, ...target } }, suites) {
+  const chosen = suites.includes(CHOSEN) ? target : null;
+  const given = suites.includes(GIVEN) || chosen?.source === GIVEN ? [record.folder, record.vertical] : null;
+  return [suites, given, chosen];
+}
+
+// Controls of the choices of a study.
+export function choices(app, kind) {
+  const now = app.state[kind];
+  const put = (patch) => app.change({ [kind]: patch });
+  const set = (name) => (value) => put({ [name]: value });
+  const suites = chips(`${kind}.suites`, "Suites of records", suitesOf(app, now.suites), now.suites, set("suites"));
+  suites.refresh = () => suites.setOptions(suitesOf(app, app.state[kind].suites), app.state[kind].suites);
+  return {
+    put,
+    entry: (name, label, extra) => box(`${kind}.${name}`, label, now[name], set(name), extra),
+    list: (name, label, options) => select(`${kind}.${name}`, label, options, now[name], set(name)),
+    suites,
+  };
+}
+
+// A list of remarks on the fits, hidden while it is empty.
+export class Remarks {
+  constructor() {
+    this.list = h("ul", { class: "notes" });
+    this.element = h("details", {}, h("summary", {}, "Remarks on the fits"), this.list);
+    this.set([]);
+  }
+
+  set(texts) {
+    this.list.replaceChildren(...texts.map((text) => h("li", {}, text)));
+    this.element.hidden = !texts.length;
+  }
+}
+
+const goes = (answer) => ["waiting", "running"].includes(answer.status);
+
+export class Study {
+  // `key` identifies everything that determines the runs; `show` draws an answer into `results`.
+  constructor(app, kind, { verb, key, show, results }) {
+    Object.assign(this, { app, kind, verb, key, show, results });
+    this.token = null;
+    this.answer = null;
+    this.ran = ""; // the key of the present or last run
+    this.watching = false;
+    this.run = h("button", { type: "button", class: "primary", id: "run", onclick: () => this.#start() }, verb);
+    this.cancel = h("button", { type: "button", id: "cancel", disabled: true, onclick: () => this.#stop() }, "Cancel");
+    this.bar = h("progress", { max: 1, value: 0, "aria-label": "Progress" });
+    this.status = h("p", { class: "help", id: "status", role: "status" }, `No ${verb.toLowerCase()} yet.`);
+    this.foot = h("p", { class: "error foot", role: "alert" });
+    this.element = h("div", {},
+      h("div", { "data-path": kind }, h("div", { class: "buttons" }, this.run, this.cancel), this.bar, this.status, trouble()),
+      this.foot);
+    this.load = latest(() => this.#load());
+  }
+
+  // Update the tab after a change of the state.
+  refresh() {
+    this.ownRecords.hidden = ![GIVEN, CHOSEN].some((each) => this.app.state[this.kind].suites.includes(each));
+    if (this.token) this.#watch();
+    if (this.answer) this.load();
+  }
+
+  // The page was reopened from a link.
+  close() {
+    this.token = this.answer = null;
+  }
+
+  // Buttons for files: files of runs once there are any, the others at any time.
+  downloads(root, ofRuns, others) {
+    const own = [`${this.kind}-records`, "Records (ZIP)"]; // those that the program has not
+    const names = ofRuns.map(([what]) => what);
+    const path = (what) => (names.includes(what) ? `/api/study/${this.kind}/${this.token}/${what}` : `/api/download/${what}`);
+    const buttons = this.app.downloads(root, [...ofRuns, ...others, own], path);
+    this.ownRecords = [...buttons.children].find((each) => each.dataset.file === own[0]);
+    this.needRuns = [...buttons.children].filter((each) => names.includes(each.dataset.file));
+    for (const button of this.needRuns) button.disabled = true;
+    return buttons;
+  }
+
+  get #root() {
+    return this.element.closest(".columns");
+  }
+
+  async #start() {
+    await this.#stop();
+    const wanted = this.key();
+    const found = await this.app.ask(`/api/study/${this.kind}`, this.#root);
+    if (!found) return;
+    this.token = found.token;
+    this.answer = null;
+    this.ran = wanted;
+    this.#watch();
+  }
+
+  async #stop() {
+    if (this.token && this.answer && goes(this.answer)) await attempt(() => drop(`/api/job/${this.token}`), () => {});
+  }
+
+  async #watch() {
+    if (this.watching) return;
+    this.watching = true;
+    try {
+      do {
+        await this.load();
+        for (let waited = 0; waited < (this.element.isConnected ? SHOWN : ASIDE); waited += SHOWN)
+          await new Promise((resolve) => setTimeout(resolve, SHOWN));
+      } while (this.token && (!this.answer || goes(this.answer)));
+    } finally {
+      this.watching = false;
+    }
+  }
+
+  async #load() {
+    const token = this.token;
+    if (!token) return;
+    await attempt(async () => {
+      const answer = await ask(`/api/study/${this.kind}/${token}`, { state: this.app.state });
+      if (token !== this.token) return;
+      this.answer = answer;
+      this.app.complain(this.#root, {});
+      this.#draw();
+    }, (error) => {
+      if (token !== this.token) return;
+      this.app.complain(this.#root, error.errors);
+      if (error.status === 404) this.token = this.answer = null;
+      this.cancel.disabled = !this.token;
+    });
+  }
+
+  #draw() {
+    const { answer } = this;
+    const on = goes(answer);
+    const old = this.ran !== this.key();
+    this.run.textContent = on ? `${this.verb} again` : this.verb;
+    this.cancel.disabled = !on;
+    this.bar.value = answer.done / answer.total;
+    for (const button of this.needRuns) button.disabled = !answer.done;
+    const changed = old ? ` The input has changed: ${this.verb.toLowerCase()} again.` : "";
+    this.status.textContent = STUDY_STATUS[answer.status](answer) + changed;
+    this.results.classList.toggle("stale", old);
+    this.show(answer);
+  }
+}
+
+const POLL = 400; // ms
+const FILE_STATUS = {
+  waiting: () => "Waiting for other users' files.",
+  running: ({ done, total }) => (total ? `${done} of ${total} frames` : "Computing …"),
+  done: () => "Saved.",
+  cancelled: () => "Cancelled.",
+  failed: () => "",
+};
+
+// The button, and the element that shows the progress; messages appear next to the fields of `root`.
+export function making(app, root, what, label) {
+  let token = null;
+  const button = h("button", { type: "button", "data-file": what, onclick: make }, label);
+  const cancel = h("button", { type: "button", onclick: () => attempt(() => drop(`/api/file/${token}`), refused) }, "Cancel");
+  const bar = h("progress", { max: 1, value: 0, "aria-label": `Progress of ${label}` });
+  const status = h("p", { class: "help", role: "status" });
+  const going = h("div", { class: "making", hidden: true }, bar, cancel);
+  const refused = (error) => app.complain(root, error.errors);
+
+  async function make() {
+    if (button.ariaBusy === "true") return;
+    button.ariaBusy = "true";
+    bar.value = 0;
+    status.textContent = "";
+    await attempt(follow, refused);
+    going.hidden = true;
+    button.ariaBusy = "false";
+  }
+
+  async function follow() {
+    ({ token } = await ask(`/api/file/${what}`, { state: app.state }));
+    app.complain(root, {});
+    going.hidden = false;
+    for (;;) {
+      const answer = await get(`/api/file/${token}`);
+      bar.value = answer.total ? answer.done / answer.total : 0;
+      status.textContent = FILE_STATUS[answer.status](answer);
+      if (answer.status === "failed") app.complain(root, answer.errors);
+      if (answer.status === "done") return save(...(await file(`/api/file/${token}/content`)));
+      if (!["waiting", "running"].includes(answer.status)) return null;
+      await new Promise((resolve) => setTimeout(resolve, POLL));
+    }
+  }
+  return { button, element: h("div", { id: `making-${what}` }, going, status) };
+}

@@ -1,0 +1,254 @@
+// The base of a structure: its drawing, the elements between it and the ground, and the ground itself.
+
+import { grounded } from "../choices.js";
+import { h, ink, svg } from "../dom.js";
+import { coil, colorOf, nameOf, strokes } from "../drawing.js";
+import { select, tableField, trouble } from "../form.js";
+
+const [WIDTH, HEIGHT] = [460, 104];
+const [BASE, GROUND] = [40, 74]; // px from the top
+const NUMBERS = 13; // px between numbers that would overlap
+
+export function base(about, view) {
+  const { half_width: b, eccentricity: e, elements, ground } = view;
+  const springs = ground?.springs ?? [];
+  const reach = Math.max(b + Math.abs(e), ...elements.map((each) => Math.abs(each.position)));
+  const x = (metres) => WIDTH / 2 + (metres / reach) * (WIDTH / 2 - 24);
+  const [left, right] = [x(-b - e), x(b - e)];
+  const names = elements.map((each, i) => nameOf(about, each, i));
+  if (springs.length) names.unshift("springs under the base");
+  return svg("svg", {
+    id: "base", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": `The base and what holds it: ${names.join("; ")}`,
+  },
+  svg("line", { x1: x(0), x2: x(0), y1: 4, y2: BASE, stroke: ink("control"), "stroke-dasharray": "4 3" }),
+  svg("path", { d: hatch(), stroke: ink("muted"), fill: "none" }),
+  ...elements.flatMap((each) => drawn(each, x(each.position))),
+  svg("line", { x1: left, x2: right, y1: BASE, y2: BASE, stroke: ink("structure"), "stroke-width": 5 }),
+  ...springs.flatMap((place) => sprung(x(place), springs.length)),
+  ...(springs.length ? [] : [left, right]).map((at) => svg("path", { d: `M${at} ${BASE}l-7 ${GROUND - BASE}h14z`, fill: ink("structure") })),
+  ...numbers(elements.map((each) => x(each.position))));
+}
+
+function hatch() {
+  let path = `M8 ${GROUND}H${WIDTH - 8}`;
+  for (let at = 14; at < WIDTH - 8; at += 10) path += `M${at} ${GROUND}l-5 6`;
+  return path;
+}
+
+function sprung(at, count) {
+  return coil(GROUND - BASE, count > 4 ? 5 : 7).map(({ points, width }) => svg("polyline", {
+    points: points.map(([u, v]) => `${(at + u).toFixed(1)},${(GROUND - v).toFixed(1)}`).join(" "),
+    fill: "none", stroke: ink("soil"), "stroke-width": width,
+  }));
+}
+
+function drawn({ kind }, at) {
+  const tone = ink(colorOf(kind));
+  const tendon = kind === "tendon";
+  const [from, length] = tendon ? [GROUND + 10, GROUND + 6] : [GROUND, GROUND - BASE];
+  return strokes(kind, length).map(({ points, width, fill }) => svg("polyline", {
+    points: points.map(([u, v]) => `${(at + u).toFixed(1)},${(from - v).toFixed(1)}`).join(" "),
+    fill: fill ? tone : "none", stroke: tone, "stroke-width": tendon ? 2 : width,
+  }));
+}
+
+// The numbers below the ground, each in the highest row where it has room.
+function numbers(places) {
+  const rows = [];
+  return places.map((at, i) => ({ at, i })).sort((a, b) => a.at - b.at).map(({ at, i }) => {
+    let row = rows.findIndex((last) => at - last >= NUMBERS);
+    if (row < 0) row = rows.length;
+    rows[row] = at;
+    return svg("text", { x: at, y: GROUND + 18 + 11 * Math.min(row, 1), "text-anchor": "middle", "font-size": 11, fill: ink("text") },
+      String(i + 1));
+  });
+}
+
+// Default values of elements added to a structure.
+const NEW_ELEMENTS = {
+  tendon: { position: 0, initial_force: 1e5, stiffness: 1e6 },
+  yielding_dissipator: { position: 0, stiffness: 5e7, yield_force: 1e5 },
+  viscous_damper: { position: 0, coefficient: 5e5 },
+  friction_damper: { position: 0, force: 5e4 },
+};
+
+// `current` returns a copy of the structure, `put` takes the changed one.
+export function elements({ about }, current, put) {
+  const titles = Object.entries(about.elements).map(([name, { title }]) => [name, title]);
+  const most = about.limits.elements;
+  const rows = h("div");
+  const kind = h("select", { id: "new-element", "aria-label": "Element to add" },
+    titles.map(([name, title]) => h("option", { value: name }, title)));
+  const add = h("button", { type: "button", onclick: () => {
+    change((list) => [...list, { kind: kind.value, ...NEW_ELEMENTS[kind.value] }]);
+    const last = rows.lastElementChild;
+    last.open = true;
+    last.querySelector("select").focus();
+  } }, "Add an element");
+  const element = h("fieldset", { "data-path": "structure.elements" }, h("legend", {}, "Elements at the base"),
+    h("p", { class: "hint" }, "Between the base and the ground, at the given distance from the axis of the masses."),
+    rows, h("div", { class: "buttons" }, add, kind), trouble());
+
+  // Change the list and draw it again.
+  function change(next) {
+    const structure = current();
+    const list = next(structure.elements ?? []);
+    if (list.length) structure.elements = list;
+    else delete structure.elements;
+    draw(list);
+    put(structure);
+  }
+
+  function draw(list) {
+    const open = [...rows.children].map((row) => row.open);
+    rows.replaceChildren(...list.map((each, i) => row(each, i, open[i] ?? list.length < 2)));
+    add.disabled = list.length >= most;
+  }
+
+  function row(each, i, open) {
+    const path = `structure.elements.${i}`;
+    const summary = h("summary", {}, nameOf(about, each, i));
+    const other = select(`${path}.kind`, "Element", titles, each.kind, (name) => {
+      change((list) => list.with(i, turned(list[i], name)));
+      rows.children[i].querySelector("select").focus();
+    });
+    const fields = about.elements[each.kind].fields.map((spec) => tableField(`${path}.${spec.name}`, spec, each[spec.name], (value) => {
+      const structure = current();
+      if (value === undefined) delete structure.elements[i][spec.name];
+      else structure.elements[i][spec.name] = value;
+      summary.textContent = nameOf(about, structure.elements[i], i);
+      put(structure);
+    }));
+    const remove = h("button", { type: "button", onclick: () => {
+      rows.children[i].remove(); // so that the others stay open or closed
+      change((list) => list.filter((_, j) => j !== i));
+      add.focus();
+    } }, "Remove");
+    return h("details", { open, "data-path": path }, summary, other, fields, remove, trouble());
+  }
+
+  // An element of another kind, with the values that both kinds have.
+  function turned(each, name) {
+    const kept = about.elements[name].fields.map((spec) => spec.name).filter((key) => key in each);
+    return { kind: name, ...NEW_ELEMENTS[name], ...Object.fromEntries(kept.map((key) => [key, each[key]])) };
+  }
+
+  element.draw = draw;
+  return element;
+}
+
+const KINDS = [
+  ["", "rigid"], ["springs", "springs"], ["winkler", "bed, by subgrade modulus"],
+  ["asce41", "bed of ASCE 41, by shear modulus"],
+];
+const WITHOUT = { winkler: ["shear_modulus", "poisson_ratio"], asce41: ["subgrade_modulus", "end_zone", "end_ratio"] };
+const [FRICTION, DAMPING, SETTLEMENT, GRAVITY] = [0.5, 0.3, 0.005, 9.81]; // of new springs, and m and m/s²
+const USUAL = { mass: 2e5, half_width: 1 }; // kg and m of a structure that cannot be built yet
+const round = (value) => Number(value.toPrecision(2));
+
+// `shown` returns the view of the present structure, or a promise of it: its weight and width are those of new springs.
+export function ground(app, shown) {
+  const { about } = app;
+  const specs = Object.fromEntries(about.ground.map((spec) => [spec.name, spec]));
+  const kind = select("ground.kind", "Ground", KINDS, "", choose);
+  const tick = h("input", { type: "checkbox", id: "slides", onchange: () => {
+    const { friction: _, ...rest } = app.state.ground ?? {};
+    put(tick.checked ? { ...rest, friction: FRICTION } : rest);
+  } });
+  const [fields, friction] = [h("div"), h("div")];
+  const element = h("fieldset", { "data-path": "ground" }, h("legend", {}, "Ground"), kind, fields,
+    h("label", { class: "check" }, tick, "The base can slide (Coulomb friction)"), friction,
+    h("p", { class: "hint" }, "On springs no impact law acts, and only simplified elastic models that lift can be used; likewise if the base can slide."),
+    trouble());
+
+  let chosen = ""; // a later choice replaces one that still waits for the structure
+  async function choose(name) {
+    chosen = name;
+    const { state } = app;
+    const view = name ? shown() : null;
+    const known = view instanceof Promise ? await view : view;
+    if (chosen === name && app.state === state) put({ ...kept(), ...made(name, known) });
+  }
+
+  function kept() {
+    const { friction: mu } = app.state.ground ?? {};
+    return mu === undefined ? {} : { friction: mu };
+  }
+
+  // Springs that settle a little under the weight, and a rigid mat of a tenth of the mass.
+  function made(name, view) {
+    if (!name) return {};
+    const { mass, half_width: b } = view ?? USUAL;
+    const stiffness = (mass * GRAVITY) / SETTLEMENT;
+    const mat = { mat_mass: round(0.1 * mass) };
+    if (name === "springs") return { ...mat, springs: { stiffness: round(stiffness / 2), heave_damping_ratio: DAMPING } };
+    const bed = { breadth: round(2 * b), heave_damping_ratio: DAMPING };
+    if (name === "winkler") return { ...mat, bed: { ...bed, subgrade_modulus: round(stiffness / (2 * b * bed.breadth)) } };
+    // Over half of the length the coefficient is 6.83/(1 − ν), over the rest 0.73/(1 − ν).
+    return { ...mat, bed: { ...bed, shear_modulus: round((stiffness * 0.65) / (2 * b * 2.8)), poisson_ratio: 0.35 } };
+  }
+
+  // Replace the ground, and leave what cannot be used on it.
+  function put(next) {
+    const { state } = app;
+    const before = state.ground;
+    if (before) delete state.ground;
+    const given = Object.keys(next).length ? next : undefined;
+    const patch = { ground: given };
+    if (given && !before) Object.assign(patch, without(state));
+    if (given?.springs || given?.bed) Object.assign(patch, { impact: undefined, restitution: undefined });
+    app.change(patch);
+  }
+
+  function entry(path, spec, values, change) {
+    return tableField(`${path}.${spec.name}`, spec, values[spec.name], change);
+  }
+
+  function form() {
+    const given = app.state.ground;
+    const now = kindOf(given);
+    kind.setValue(now);
+    tick.checked = given?.friction !== undefined;
+    friction.replaceChildren(...(tick.checked ? [own("friction")] : []));
+    const inner = now === "springs" ? "springs" : "bed";
+    fields.replaceChildren(...(now ? [
+      ...specs[inner].fields.filter((spec) => !WITHOUT[now]?.includes(spec.name)).map((spec) => entry(`ground.${inner}`, spec,
+        given[inner], (value) => app.change({ ground: { [inner]: { [spec.name]: value } } }))),
+      own("mat_mass"), own("base_inertia"),
+    ] : []));
+  }
+
+  function own(name) {
+    return entry("ground", specs[name], app.state.ground, (value) => app.change({ ground: { [name]: value } }));
+  }
+
+  // The fields are drawn anew only where others are needed, so that the present one keeps the focus.
+  let drawn = null;
+  element.refresh = () => {
+    const { ground: given } = app.state;
+    const key = JSON.stringify([kindOf(given), given?.friction !== undefined]);
+    if (key === drawn) return;
+    drawn = key;
+    form();
+  };
+  return element;
+}
+
+function kindOf(given) {
+  if (given?.springs) return "springs";
+  if (!given?.bed) return "";
+  return given.bed.shear_modulus !== undefined || given.bed.poisson_ratio !== undefined ? "asce41" : "winkler";
+}
+
+// The models of a state that can stand on springs or slide, or others in their place; no hysteresis.
+export function without(state) {
+  const usual = "block" in state.structure ? ["rigid"] : ["MDOF-S", "2DOF-S"];
+  const left = (labels) => {
+    const found = labels.filter(grounded);
+    return found.length ? found : [...usual];
+  };
+  return {
+    models: left(state.models), cloud: { models: left(state.cloud.models) }, design: { model: left([state.design.model])[0] },
+    bouc_wen: undefined,
+  };
+}

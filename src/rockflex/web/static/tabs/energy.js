@@ -1,0 +1,158 @@
+// Energies and elements of a response, and the loops of force over movement.
+
+import { bracket } from "../axes.js";
+import { Chart } from "../chart.js";
+import { decode, h, number, symbol, tableOf } from "../dom.js";
+import { nameOf } from "../drawing.js";
+import { legend } from "../marks.js";
+
+export class Loop {
+  constructor(options) {
+    this.chart = new Chart({ height: 240, firstOnTop: true, xName: options.xLabel, ...options });
+    this.curves = [];
+    this.time = 0;
+  }
+
+  // Models with `x` and `y` over `t`; what follows a fall is left out.
+  set(curves) {
+    this.curves = curves.map((curve) => {
+      const end = curve.until < Infinity ? curve.t.findIndex((t) => t >= curve.until) : curve.t.length;
+      return { ...curve, t: curve.t.subarray(0, end), x: curve.x.subarray(0, end), y: curve.y.subarray(0, end) };
+    });
+    this.chart.set({ series: this.curves.map(({ x, y, label, look }) => (
+      { x, y, label, parametric: true, ...look, width: 1, alpha: 0.6 })) });
+    this.follow(this.time);
+  }
+
+  follow(time) {
+    this.time = time;
+    const places = this.curves.map(({ t, x, y, look }) => {
+      const [low, high, share] = bracket(t, time);
+      const at = (values) => values[low] + share * (values[high] - values[low]);
+      return { n: low + 1, xs: x, ys: y, x: at(x), y: at(y), color: look.color };
+    });
+    this.chart.setCursor(null, places, places);
+  }
+}
+
+const PARTS = [
+  ["kinetic", "kinetic"],
+  ["strain", "strain"],
+  ["gravity", "raised weight"],
+  ["element_strain", "stored in elements", "tendons"],
+  ["damped", "damping"],
+  ["yielded", "yielding"],
+  ["elements", "taken by elements", "fuse"],
+  ["lost", "impacts"],
+  ["soil_strain", "compressed ground", "clay"],
+  ["soil", "damped by the ground"],
+  ["friction", "friction of the base"],
+];
+
+export class Energy {
+  // `chosen` is called when another model is chosen.
+  constructor(chosen) {
+    this.focus = "";
+    this.chart = new Chart({
+      label: "Energy over time", yLabel: "energy [kJ]", xLabel: "time [s]", height: 240, zero: true, xName: "t [s]",
+    });
+    this.keys = h("div");
+    this.note = h("p", { class: "hint" });
+    this.of = h("select", { id: "energy-of", "aria-label": "Model for the energy", onchange: () => {
+      this.focus = this.of.value;
+      chosen();
+    } });
+    this.element = h("div", {},
+      h("h2", { class: "buttons" }, "Energy of", this.of), this.chart.element, this.keys, this.note);
+  }
+
+  set(view) {
+    const { energy } = view;
+    this.of.replaceChildren(...view.models.map((m) => h("option", { value: m.label }, m.label)));
+    this.of.value = energy.label;
+    this.note.textContent = energy.note ?? "";
+    this.chart.element.hidden = this.keys.hidden = Boolean(energy.note);
+    if (energy.note) return;
+    const until = view.models.find((m) => m.label === energy.label)?.fall_time ?? Infinity;
+    const x = decode(energy.t);
+    let below = new Float32Array(x.length);
+    const series = [];
+    for (const [name, label, tone = name] of PARTS) {
+      const values = energy[name] ? decode(energy[name]) : [];
+      if (!values.some((value) => value !== 0)) continue;
+      const high = below.map((value, i) => value + values[i] / 1000);
+      series.push({ kind: "band", x, low: below, high, color: tone, alpha: 0.75, edge: true, label, until });
+      below = high;
+    }
+    const input = decode(energy.input).map((value) => value / 1000);
+    series.push({ x, y: input, color: "text", width: 1.2, label: "input", until });
+    this.chart.set({
+      series, xRange: [0, view.end],
+      vlines: until < Infinity ? [{ x: until, color: "error", label: "falls" }] : [],
+    });
+    this.keys.replaceChildren(legend(series));
+  }
+}
+
+const HEAD = ["Element", "F_max [kN]", "δ_max [mm]", "Dissipated [kJ]", "Yielded or slid"];
+const PRESTRESS = "Prestress left [kN]"; // of tendons
+const EDGES = { 1: "to the right", "-1": "to the left" };
+
+export class Elements {
+  // `chosen` is called when another element or model is chosen.
+  constructor(about, chosen) {
+    this.about = about;
+    this.element = 0;
+    this.model = h("select", { id: "elements-of", "aria-label": "Model for the elements", onchange: () => chosen() });
+    this.of = h("select", { id: "loop-of", "aria-label": "Element for the loop", onchange: () => {
+      this.element = Number(this.of.value);
+      chosen();
+    } });
+    this.rows = h("div", { class: "scroll" });
+    this.closing = h("p", { id: "closing" });
+    this.table = h("div", { id: "elements" },
+      h("h2", { class: "buttons" }, "Elements at the base, by", this.model), this.rows, this.closing);
+    this.loop = new Loop({ label: "Force over elongation of an element", yLabel: "F [kN]", xLabel: "δ [mm]" });
+    this.chart = h("div", {}, h("h2", { class: "buttons" }, "Loop of", this.of), this.loop.chart.element);
+  }
+
+  set(view) {
+    const { held } = view;
+    this.table.hidden = this.chart.hidden = !held;
+    if (!held) return;
+    const lifting = view.models.filter((m) => m.lifts);
+    this.model.replaceChildren(...lifting.map((m) => h("option", { value: m.label }, m.label)));
+    this.model.value = held.label;
+    const names = view.elements.map((each, i) => nameOf(this.about, each, i));
+    this.of.replaceChildren(...names.map((name, i) => h("option", { value: i }, name)));
+    this.element = view.element;
+    this.of.value = String(view.element);
+    const tendons = held.rows.some((row) => row.prestress !== null);
+    const head = [...HEAD, ...(tendons ? [PRESTRESS] : [])].map(symbol);
+    this.rows.replaceChildren(tableOf(head, held.rows.map((row, i) => line(row, names[i], tendons))));
+    this.closing.textContent = said(view.self_centring);
+    this.loop.set(lifting.map((m) => ({
+      t: m.t, x: m.element_elongation.map((v) => v * 1000), y: m.element_force.map((v) => v / 1000),
+      until: m.fall_time ?? Infinity, label: m.label, look: m.look,
+    })));
+  }
+}
+
+function line(row, name, tendons) {
+  const value = (key, factor) => h("td", { "data-name": key, "data-value": row[key] }, number(row[key] === null ? null : row[key] * factor));
+  return h("tr", {}, h("th", { scope: "row" }, name),
+    value("force", 1e-3), value("elongation", 1e3), value("energy", 1e-3),
+    h("td", { "data-name": "yielded", class: row.broken ? "overturned" : null }, row.broken ? "broke" : row.yielded ? "yes" : "no"),
+    tendons ? value("prestress", 1e-3) : null);
+}
+
+function said(edges) {
+  if (!edges.length) return "";
+  const parts = edges.map(({ side, closes, ratio }) => {
+    const about = edges.length > 1 ? ` after rocking ${EDGES[side]}` : "";
+    return `${closes ? "close" : "need not close"} the base${about} against its dissipators (λ = ${number(ratio, 3)})`;
+  });
+  const [{ at }] = edges;
+  const design = at === null ? "" : ` At the largest rotation of these runs λ = ${number(at, 3)}.`;
+  return `Weight and prestress ${parts.join(" and ")}; above λ = 1 it centres itself.${design}`;
+}

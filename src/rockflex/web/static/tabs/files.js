@@ -1,0 +1,170 @@
+// Records from a visitor's files: one file, or a folder.
+
+import { attempt, get, isArchive, send, sendAll } from "../api.js";
+import { counted, h, latest, number, tableOf, tooLarge } from "../dom.js";
+import { box, field, fileBox, select, trouble } from "../form.js";
+
+const UNITS = [["", "as in the file"], ["g", "g"], ["m/s2", "m/s²"], ["cm/s2", "cm/s²"]];
+
+// `complain` takes messages by the path of their field.
+export function uploading(app, complain) {
+  const { file: most, duration } = app.about.limits;
+  let unit = "";
+  let step = "";
+  let along = ""; // the record without its vertical component
+  const said = h("p", { class: "help", id: "uploaded", role: "status" });
+  const kinds = ".at2,.AT2,.csv,.txt,.dat,.tsv,.asc,.ASC,.v1,.V1,.v2,.V2,.v2c,.V2c,.xlsx,.NS,.EW,.UD,.NS2,.EW2,.UD2";
+  const input = fileBox(kinds, (file) => take(file, "record.upload"));
+  const upwards = fileBox(kinds, (file) => take(file, "record.vertical"));
+
+  async function take(file, path) {
+    const vertical = path === "record.vertical";
+    const under = vertical ? along || app.state.record.upload : "";
+    const large = vertical && !under ? "Choose the file of the horizontal component first." : tooLarge(file, most);
+    said.textContent = large ? "" : `Reading ${file.name} …`;
+    complain(large ? { [path]: large } : {});
+    if (large) return;
+    await attempt(async () => {
+      const found = await send(`/api/upload?${new URLSearchParams({ name: file.name, units: unit, dt: step, under })}`, file);
+      const both = found.pva === null ? "" : `, vertical ${number(found.pva)} m/s²`;
+      said.textContent = `${found.name}: ${found.samples} samples, PGA ${number(found.pga)} m/s²${both}`;
+      if (!vertical) along = found.upload;
+      app.change({ record: { source: "upload", upload: found.upload, name: found.name } });
+    }, (error) => {
+      said.textContent = "";
+      complain(error.errors);
+    });
+  }
+
+  return h("div", {},
+    field("record.upload", "File", input, { hint: `AT2, CSV, text columns, Excel, K-NET, ESM or COSMOS; up to ${most / 1e6} MB and ${duration} s` }),
+    field("record.vertical", "Vertical component", upwards, { hint: "optional; upwards positive, with the same step; or a column “vertical” in the file above" }),
+    select("upload.units", "Unit of the acceleration", UNITS, "", (value) => (unit = value), { hint: "if the file does not state it" }),
+    box("upload.dt", "Sampling step", undefined, (value) => (step = value), { unit: "s", hint: "only if the file has no times" }),
+    said,
+    h("p", { class: "help" }, "A link does not contain the file: whoever opens it needs the file, too."));
+}
+
+const GRAVITY = 9.81;
+const HEAD = ["record", "PGA [g]", "duration [s]", "Δt [s]", "M", "R [km]", "V_s30 [m/s]", "recording", "component", "format", "file"];
+
+// `complain` takes messages by the path of their field. `report` is the table, which belongs to the results.
+export function folder(app, complain) {
+  const { file: most, files: many, folder: together } = app.about.limits;
+  let unit = "";
+  let step = "";
+  let shown = ""; // the folder of the report
+  let times = 0; // that files were given
+  const said = h("p", { class: "help", id: "given", role: "status" });
+  const input = (attributes) => h("input", {
+    type: "file", multiple: true, ...attributes,
+    onchange: ({ target }) => {
+      const chosen = [...target.files];
+      target.value = "";
+      if (chosen.length) give(chosen);
+    },
+  });
+  const vertical = h("input", { type: "checkbox", id: "upwards", onchange: () => put({ vertical: vertical.checked }) });
+  const upwards = h("label", { class: "check" }, vertical, "With the vertical components of the stations");
+  const rows = h("div", { class: "scroll report", role: "group", "aria-label": "Records given" });
+  const stations = h("div", { class: "scroll" });
+  const notes = h("ul", { class: "notes" });
+  const summary = h("p", { class: "answer", id: "taken" });
+  const report = h("section", { id: "report", hidden: true },
+    h("h2", {}, "Your records"), summary, rows, notes,
+    h("details", {}, h("summary", {}, "Recordings: which components belong together"), stations));
+
+  function put(patch) {
+    app.change({ record: patch });
+  }
+
+  async function give(files) {
+    const mine = ++times; // the answer about files given later may come first
+    const large = tooMuch(files);
+    said.textContent = large ? "" : `Reading ${files.length === 1 ? files[0].name : `${files.length} files`} …`;
+    complain(large ? { "record.folder": large } : {});
+    if (large) return;
+    await attempt(async () => {
+      const found = await sendAll(`/api/folder?${new URLSearchParams({ units: unit, dt: step })}`, files, most);
+      if (mine !== times) return;
+      draw(found);
+      const first = found.entries.find((entry) => entry.taken);
+      put({ source: "folder", folder: found.folder, given: first.name });
+    }, (error) => {
+      if (mine !== times) return;
+      said.textContent = "";
+      complain(error.errors);
+    });
+  }
+
+  function tooMuch(files) {
+    const size = files.reduce((sum, each) => sum + (each.size > most && !isArchive(each) ? 0 : each.size), 0);
+    if (files.length > many) return `There are ${files.length} files, but the page takes ${many} at most. Choose fewer.`;
+    if (size > together) return `The files have ${(size / 1e6).toFixed(0)} MB, but the page takes ${together / 1e6} MB at most. Choose fewer.`;
+    return "";
+  }
+
+  function draw(found) {
+    shown = found.folder;
+    const taken = found.entries.filter((entry) => entry.taken);
+    const left = found.entries.length - taken.length;
+    const pairs = found.stations.filter((each) => each.horizontal.length === 2);
+    const upright = pairs.filter((each) => each.vertical).length;
+    said.textContent = "";
+    summary.textContent = `${counted(taken.length, "record")} taken, ${counted(left, "entry", "entries")} not. `
+      + `${pairs.length} of ${counted(found.stations.length, "recording has", "recordings have")} two horizontal components, ${upright} of these a vertical one, too.`;
+    rows.replaceChildren(tableOf(HEAD.map(subscript), found.entries.map(row)));
+    stations.replaceChildren(tableOf(["recording", "horizontal", "vertical"], found.stations.map((each) => h("tr", {},
+      h("th", { scope: "row" }, each.name), h("td", {}, each.horizontal.join(", ") || "–"), h("td", {}, each.vertical ?? "–")))));
+    notes.replaceChildren(...found.notes.map((text) => h("li", {}, text)));
+    upwards.hidden = !taken.some((entry) => entry.vertical);
+  }
+
+  function row(entry) {
+    if (!entry.taken) {
+      return h("tr", { class: "left", "data-file": entry.file },
+        h("td", {}, entry.file), h("td", { colspan: HEAD.length - 1, class: "reason" }, entry.paired ? "" : "not taken: ", entry.reason));
+    }
+    const use = h("button", { type: "button", "data-given": entry.name, title: "Use this record", onclick: () => (
+      put({ source: "folder", given: entry.name })) }, entry.name);
+    const pga = h("td", { "data-value": entry.pga }, number(entry.pga / GRAVITY, 3));
+    const facts = [entry.magnitude, entry.distance, entry.vs30].map((value) => h("td", {}, number(value)));
+    const recording = [entry.recording ?? "–", entry.vertical ? " with vertical" : "", entry.reason ? ` (${entry.reason})` : ""];
+    return h("tr", { "data-file": entry.file },
+      h("td", {}, use), pga, h("td", {}, number(entry.duration)), h("td", {}, number(entry.dt)), ...facts,
+      h("td", {}, recording.join("")), h("td", {}, entry.component ?? "–"), h("td", {}, entry.format ?? "–"), h("td", {}, entry.file));
+  }
+
+  const load = latest(async () => {
+    const { folder: token } = app.state.record;
+    if (!token || shown === token) return;
+    // The query for the record itself reports an error.
+    const found = await attempt(() => get(`/api/folder/${token}`), () => null);
+    if (found && token === app.state.record.folder) draw(found);
+  });
+
+  async function refresh() {
+    await load();
+    const { folder: token, given, vertical: both, source } = app.state.record;
+    report.hidden = source !== "folder" || !token || shown !== token;
+    vertical.checked = both;
+    for (const button of rows.querySelectorAll("[data-given]")) button.setAttribute("aria-pressed", String(button.dataset.given === given));
+  }
+
+  const element = h("div", { "data-path": "record.folder" },
+    field("given.folder", "Folder", input({ webkitdirectory: true, id: "folder" }), { hint: `up to ${many} files, ${together / 1e6} MB together and ${most / 1e6} MB each` }),
+    field("given.files", "Or files, or a ZIP archive", input({ id: "files" }),
+      { hint: "AT2, CSV, text columns, Excel, K-NET, ESM, COSMOS; PEER’s search results or a flatfile among them give magnitude, distance and soil" }),
+    select("given.units", "Unit of the acceleration", UNITS, "", (value) => (unit = value), { hint: "of files that do not state it" }),
+    box("given.dt", "Sampling step", undefined, (value) => (step = value), { unit: "s", hint: "of files that do not state it" }),
+    said, upwards, trouble(),
+    h("p", { class: "help" }, "The records stay on the server until it is restarted or needs the space; a link does not contain them."));
+  return { element, report, refresh };
+}
+
+function subscript(text) {
+  const [head, below] = text.split("_");
+  if (!below) return text;
+  const [index, ...rest] = below.split(" ");
+  return [head, h("sub", {}, index), ` ${rest.join(" ")}`];
+}

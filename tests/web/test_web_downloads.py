@@ -1,0 +1,278 @@
+"""The files of the page that take long: the report and the animation."""
+
+import io
+import json
+import re
+import threading
+import time
+
+import pytest
+from PIL import Image
+
+import rockflex as rf
+from rockflex.web import _downloads
+from rockflex.web._downloads import animation
+from rockflex.web._forms import PRESETS
+from rockflex.web._jobs import FileJob
+from rockflex.web._state import parse_state
+from rockflex.web._uploads import Uploads
+
+STATE = {"models": ["2DOF-S", "MDOF-S", "fixed"], "scale": 1.5}
+TONNES = {
+    "cantilever": {
+        "height": 12.0,
+        "tip_mass": 60.0,
+        "mass_per_length": 4e3,
+        "bending_stiffness": 2e9,
+        "base_mass": 50e3,
+        "half_width": 1.5,
+        "damping_ratio": 0.02,
+    }
+}
+BED = {"base_inertia": 5e5, "springs": {"positions": [-1.0, 0.0, 1.0], "stiffness": 4e8, "damping": 1e6}}
+
+
+def test_the_report_has_the_numbers_of_the_tab(client) -> None:
+    state = client.state(**STATE)
+    name, body = client.download("/api/download/report", state)
+    assert name == "report.html"
+    text = body.decode()
+    for each in client.ask("/api/response", state)["models"]:
+        value = float(re.search(f'<td>{each["label"]}</td>.*?data-of="max_base_moment" data-value="([^"]+)"', text)[1])
+        assert value == each["peaks"]["max_base_moment"]
+    assert "<title>Structure #1 of Table 1 under EL-CENTRO-1940-NS × 1.5</title>" in text
+    assert "http" not in text
+    assert "<script" not in text
+    assert "not computed" not in text
+
+
+def test_names_of_visitors_are_text(client) -> None:
+    structure = PRESETS[0]["structure"] | {"name": "<img src=x onerror=alert(1)>"}
+    text = client.download("/api/download/report", client.state(structure=structure))[1].decode()
+    assert "&lt;img src=x onerror=alert(1)&gt;" in text
+    assert "<img" not in text
+
+
+def test_what_takes_long_is_left_out_and_said(client, monkeypatch) -> None:
+    on_springs = client.state(models=["2DOF-S"], ground=BED)
+    text = client.download("/api/download/report", on_springs)[1].decode()
+    assert text.count("<td>not computed</td>") == 2
+    assert "Not computed: energies and friction of a run that would take too long here." in text
+    monkeypatch.setattr(rf.History, "required_friction", property(lambda _: pytest.fail("computed")))
+    client.download("/api/download/report", on_springs)
+
+    def refuse(*_):
+        raise _downloads.Refusal({"energy": "too long"})
+
+    monkeypatch.setattr(_downloads, "check_energy", refuse)
+    text = client.download("/api/download/report", client.state(models=["2DOF-S"]))[1].decode()
+    assert text.count("<td>not computed</td>") == 2
+
+
+def test_the_structure_tab_has_the_warnings(client) -> None:
+    assert client.ask("/api/structure", client.state())["warnings"] == []
+    (warning,) = client.ask("/api/structure", client.state(structure=TONNES))["warnings"]
+    assert "The tip has a mass of 60 kg, less than a tenth of the 48000 kg" in warning
+
+
+@pytest.mark.web
+def test_a_warning_is_seen(visit, link) -> None:
+    visitor = visit(link({"structure": TONNES}))
+    visitor.page.wait_for_selector("#warnings")
+    assert "Masses are in kg: a tonne is 1000 kg." in visitor.page.locator("#warnings").inner_text()
+
+
+@pytest.mark.web
+@pytest.mark.parametrize("tab", ["structure", "earthquake", "response", "fragility", "design"])
+def test_a_tab_on_paper(visit, tab) -> None:
+    pypdf = pytest.importorskip("pypdf", reason="pages are read by pypdf, of rockflex[dev]")
+    visitor = visit(color_scheme="dark")
+    page = visitor.page
+    visitor.tab(tab)
+    if tab == "response":
+        visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    if tab == "design":
+        visitor.fill("design.widths", "3")
+    if tab in ("fragility", "design"):
+        visitor.run_study()
+    page.wait_for_load_state("networkidle")
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    page.emulate_media(media="print")
+    assert page.evaluate("document.documentElement.dataset.theme") == "light"
+    shown = page.evaluate(
+        """() => [...document.querySelectorAll("input, textarea, button, header, form")]
+          .filter((e) => e.checkVisibility()).map((e) => e.outerHTML.slice(0, 80))"""
+    )
+    assert shown == []
+    assert page.get_by_text("Point at one of these charts").locator("visible=true").count() == 0
+    wide = page.evaluate(
+        """() => [...document.querySelectorAll("#view *")].filter((e) => e.checkVisibility()
+            && e.getBoundingClientRect().right > document.querySelector("main").getBoundingClientRect().right + 1)
+          .map((e) => e.outerHTML.slice(0, 80))"""
+    )
+    assert wide == []
+    # The numbers at the axes have the colour of the light theme, and none that of the dark one.
+    inks = page.evaluate(
+        """() => [...document.querySelectorAll(".chart canvas")].filter((c) => c.checkVisibility()).map((c) => {
+          const { data } = c.getContext("2d").getImageData(0, 0, c.width, c.height);
+          const count = (r, g, b) => {
+            let n = 0;
+            for (let i = 0; i < data.length; i += 4)
+              n += data[i] === r && data[i + 1] === g && data[i + 2] === b && data[i + 3] === 255;
+            return n;
+          };
+          return [c.width / c.clientWidth, count(0x5a, 0x64, 0x70), count(0xa2, 0xac, 0xb8)];
+        })"""
+    )
+    assert inks or tab == "structure"
+    assert all(ratio == pytest.approx(3.0, rel=0.01) and light > 0 and dark == 0 for ratio, light, dark in inks)
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    page.emulate_media(media="screen")
+    assert page.evaluate("document.documentElement.dataset.theme") == "dark"
+    assert page.locator("header").is_visible()
+    sheets = pypdf.PdfReader(io.BytesIO(page.pdf(prefer_css_page_size=True))).pages
+    assert 1 <= len(sheets) <= 3
+    text = sheets[0].extract_text()
+    assert "Structure #1 of Table 1" in text
+    assert "Copy link" not in text
+    assert page.evaluate("document.documentElement.dataset.theme") == "dark"  # as before
+
+
+SHORT = {"source": "pulse", "pulse": {"shape": "one_sine", "amplitude": 4.0, "period": 0.8}}
+
+
+def test_the_gif_is_that_of_the_library(client, frame, tmp_path) -> None:
+    state = client.state(record=SHORT, models=["MDOF-S", "fixed"], scale=1.5, free_vibration=1.0)
+    made = client.made("animation", state)
+    assert (made["status"], made["name"]) == ("done", "animation.gif")
+    pulse = rf.one_sine_pulse(4.0, 0.8).scaled(1.5)
+    runs = [rf.simulate(frame, pulse, model, free_vibration=1.0) for model in ("MDOF-S", "fixed")]
+    title = f"{pulse.name} × 1.5"
+    same = rf.animate(runs, tmp_path / "same.gif", structure=frame, width=800, title=title)
+    with Image.open(io.BytesIO(made["content"])) as image, Image.open(same) as other:
+        assert image.size == other.size
+        assert image.n_frames == other.n_frames > 40
+        assert made["done"] == made["total"] == image.n_frames
+        for place in (0, image.n_frames // 2, image.n_frames - 1):
+            image.seek(place)
+            other.seek(place)
+            assert image.convert("RGB").tobytes() == other.convert("RGB").tobytes()
+
+
+def test_a_long_one_has_fewer_frames_and_a_longer_one_is_refused(client, monkeypatch) -> None:
+    state = client.state(record=SHORT, models=["fixed"], free_vibration=1.0)
+
+    def frames() -> int:
+        with Image.open(io.BytesIO(client.made("animation", state)["content"])) as image:
+            return image.n_frames
+
+    usual = frames()
+    monkeypatch.setattr(_downloads, "FRAME_RATES", ((1.0, 25.0), (10.0, 12.5)))
+    assert frames() == pytest.approx(usual / 2, abs=1)
+    monkeypatch.setattr(_downloads, "FRAME_RATES", ((1.0, 25.0),))
+    said = client.made("animation", state)["errors"]["free_vibration"]
+    assert "the animation would last 1." in said
+    assert "but the page draws 1 s at most. Choose a shorter record or less free vibration, or take Python" in said
+
+
+LONG = {"record": SHORT, "models": ["MDOF-S", "2DOF-S", "fixed"], "free_vibration": 40.0}
+
+
+def test_it_ends_when_nobody_waits(client, monkeypatch) -> None:
+    monkeypatch.setattr("rockflex.web._jobs.ABANDONED_AFTER", 0.5)
+    state = parse_state(client.state(**LONG))
+    job = FileJob(lambda told: animation(state, Uploads(), told))
+    job.compute()
+    assert job.status == "cancelled"
+    assert job.file is None
+
+
+def test_it_can_be_cancelled_and_says_how_far_it_is(client) -> None:
+    token = client.make("animation", client.state(**LONG))
+    path, seen = f"/api/file/{token}", []
+    while len(seen) < 3:
+        answer = json.loads(client.request(path)[2])
+        assert answer["status"] in ("waiting", "running")
+        if answer["done"] and answer["done"] not in seen:
+            seen.append(answer["done"])
+    assert seen == sorted(seen)
+    assert seen[-1] < answer["total"]
+    assert client.request(f"{path}/content")[0] == 404
+    assert client.request(path, method="DELETE")[0] == 200
+    while (answer := json.loads(client.request(path)[2]))["status"] == "running":
+        time.sleep(0.05)
+    assert answer["status"] == "cancelled"
+    assert answer["done"] < answer["total"]
+
+
+def test_an_unknown_file_is_refused(client) -> None:
+    assert "no file named 'soul'" in client.refused("/api/file/soul", client.state())[""]
+    assert client.request("/api/file/none")[0] == 404
+
+
+def test_the_page_answers_while_it_draws(client) -> None:
+    state = client.state(record=SHORT, models=["MDOF-S", "2DOF-S", "fixed"], free_vibration=10.0)
+    done: list[float] = []
+
+    def draw() -> None:
+        client.made("animation", state)
+        done.append(time.monotonic())
+
+    drawing = threading.Thread(target=draw)
+    drawing.start()
+    time.sleep(0.5)
+    for _ in range(3):
+        client.ask("/api/structure", state)
+    answered = time.monotonic()
+    drawing.join()
+    assert answered < done[0]
+
+
+@pytest.mark.web
+def test_the_button_saves_the_gif_and_says_that_it_works(visit, link) -> None:
+    visitor = visit(link({"record": SHORT, "models": ["MDOF-S", "2DOF-S", "fixed"]}))
+    page = visitor.page
+    visitor.tab("response")
+    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    button = page.get_by_role("button", name="Animation (GIF)")
+    with page.expect_download(timeout=120_000) as got:
+        button.click()
+        page.wait_for_function("b => b.ariaBusy === 'true'", arg=button.element_handle())
+        button.click()  # once is enough
+        page.wait_for_function(
+            "() => /[1-9]\\d* of \\d+ frames/.test(document.querySelector('#making-animation').innerText)"
+        )
+        assert 0.0 < page.locator("#making-animation progress").evaluate("bar => bar.value") < 1.0
+    content = got.value.path().read_bytes()
+    assert got.value.suggested_filename == "animation.gif"
+    with Image.open(io.BytesIO(content)) as image:
+        assert image.format == "GIF"
+        assert image.n_frames > 100
+        assert image.size[0] == 800
+    page.wait_for_function("b => b.ariaBusy === 'false'", arg=button.element_handle())
+    assert page.locator("#making-animation").inner_text() == "Saved."
+    assert not visitor.said
+
+
+@pytest.mark.web
+def test_an_animation_can_be_cancelled_on_the_page(visit, link) -> None:
+    visitor = visit(link(LONG))
+    page = visitor.page
+    visitor.tab("response")
+    visitor.shown(1, LONG["models"])
+    saved = []
+    page.on("download", lambda each: saved.append(each))
+    page.get_by_role("button", name="Animation (GIF)").click()
+    page.locator("#making-animation").get_by_role("button", name="Cancel").click()
+    page.wait_for_function("() => document.querySelector('#making-animation').innerText === 'Cancelled.'")
+    assert page.locator('[data-file="animation"]').evaluate("b => b.ariaBusy") == "false"
+    assert saved == []
+
+
+@pytest.mark.web
+def test_the_page_says_that_an_animation_would_be_too_long(visitor, monkeypatch) -> None:
+    monkeypatch.setattr(_downloads, "FRAME_RATES", ((1.0, 25.0),))
+    visitor.tab("response")
+    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    visitor.page.get_by_role("button", name="Animation (GIF)").click()
+    assert visitor.error("free_vibration").startswith("The animation would last ")
