@@ -12,7 +12,7 @@ from rockflex.cli import app
 from rockflex.kinds import load_study
 from rockflex.motion import MEASURES, Measure, Shaking, intensities, intensity, record_measures
 from rockflex.plot import plot_clouds
-from rockflex.study.plan import run_plan
+from rockflex.study import run_plan
 from rockflex.study.stripes import StripeStudy
 
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]

@@ -17,8 +17,8 @@ from rockflex.plot.animation._outline import outline_of
 from rockflex.plot.animation._poses import poses_of
 from rockflex.plot.animation._scene import Scene
 from rockflex.plot.animation._video import write_video
-from rockflex.progress import ProgressChoice, telling
 from rockflex.response import Response
+from rockflex.study.progress import ProgressChoice, reporting
 
 NARROWEST, WIDEST = 320, 3840  # pixels
 MOST_RESPONSES = 6
@@ -124,7 +124,7 @@ def animate(
     ]
     poses = [poses_of(curve, o, clock.times, clock.speed) for curve, o in zip(curves, outlines, strict=True)]
     factor = usual_amplification(curves, poses) if amplification is None else _factor(amplification)
-    with telling(progress, clock.times.size, "frames") as advance:
+    with reporting(progress, clock.times.size, "frames") as advance:
         scene = Scene(curves, poses, quantities, clock, factor, title, pixels)
         try:
             return _WRITERS[suffix](target, scene, clock, advance)
