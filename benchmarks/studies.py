@@ -76,16 +76,16 @@ def breakdown(studies: dict[str, "rf.CloudStudy | rf.PopulationStudy"]) -> dict[
     """Parts of the time on one thread."""
     loading = [least(study.plan, 3) for study in studies.values()]
     plan = studies["cloud"].plan()
-    bench = plan.bench
+    matrix = plan.matrix
     begun = time.perf_counter()
-    for structure in range(len(bench.names)):
-        for record in range(len(bench.motions)):
-            bench.measures(structure, record)
+    for structure in range(len(matrix.names)):
+        for record in range(len(matrix.motions)):
+            matrix.measures(structure, record)
     measures = time.perf_counter() - begun
     begun = time.perf_counter()
-    for structure in range(len(bench.names)):
-        for model in range(len(bench.labels)):
-            bench.run(structure, 0, model, 1.0)
+    for structure in range(len(matrix.names)):
+        for model in range(len(matrix.labels)):
+            matrix.run(structure, 0, model, 1.0)
     engines = time.perf_counter() - begun
     population = studies["population"].plan()
     drawn = [rf.draw_prototype(0, number, len(population.motions)).frame() for number in range(population.n_units)]

@@ -7,7 +7,7 @@ from scipy.stats import norm
 
 import rockflex as rf
 from builders import frame_values
-from rockflex.study.plan import Bench
+from rockflex.study import StudyMatrix
 
 FRAME = frame_values(n_stories=3, base_mass=50e3, period=0.6, aspect_ratio=8.0)
 BARE = rf.Frame(**FRAME)
@@ -47,16 +47,16 @@ class Law:
         self.residuals = SPREAD * np.random.default_rng(3).standard_normal(len(SUITE))
         self.runs = []
 
-    def run(self, bench, structure, record, model, scale):
-        p = bench.structures[structure]
+    def run(self, matrix, structure, record, model, scale):
+        p = matrix.structures[structure]
         forces = sum(each.yield_force for each in p.elements if isinstance(each, rf.YieldingDissipator))
-        im = bench.motions[record].pgv * scale
+        im = matrix.motions[record].pgv * scale
         self.runs.append(p)
         rotation = math.exp(log_rotation(p.half_width, p.prestress, forces, im) + self.residuals[record])
         return {
             "structure": structure,
             "motion": record,
-            "group": bench._facts[record]["group"],
+            "group": matrix._facts[record]["group"],
             "model": model,
             "scale": scale,
             "pgv": im,
@@ -90,5 +90,5 @@ class Law:
 def replaced(monkeypatch):
     """Put the law in the place of the simulation."""
     law = Law()
-    monkeypatch.setattr(Bench, "run_all", lambda bench, runs: [law.run(bench, *run) for run in runs])
+    monkeypatch.setattr(StudyMatrix, "run_all", lambda matrix, runs: [law.run(matrix, *run) for run in runs])
     return law

@@ -17,7 +17,7 @@ from rockflex.structure.file import expected
 
 PLACES = (
     "rockflex",
-    "rockflex.study.plan",
+    "rockflex.study",
     "rockflex.papers.silva_stojadinovic_2024.population",
 )  # packages whose names the reference has
 SPANS = re.compile(r"(``.*?``|`[^`]*`|\*[A-Z][A-Za-z ]+\*)", re.DOTALL)  # literals, links, titles of books

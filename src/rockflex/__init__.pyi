@@ -90,7 +90,6 @@ from .papers.silva_stojadinovic_2024.population import run_population as run_pop
 from .papers.silva_stojadinovic_2024.population.plots import plot_agreement as plot_agreement
 from .papers.silva_stojadinovic_2024.population.plots import plot_modal_combination as plot_modal_combination
 from .papers.silva_stojadinovic_2024.population.plots import plot_population as plot_population
-from .parallel import ClusterError as ClusterError
 from .plot import animate as animate
 from .plot import plot_clouds as plot_clouds
 from .plot import plot_design as plot_design
@@ -116,7 +115,6 @@ from .plot import plot_stripes as plot_stripes
 from .plot import plot_tower as plot_tower
 from .plot import plot_yielding as plot_yielding
 from .plot import save_figure as save_figure
-from .progress import Progress as Progress
 from .report import write_report as write_report
 from .response import EnergyLedger as EnergyLedger
 from .response import FloorPeaks as FloorPeaks
@@ -125,7 +123,6 @@ from .response import MomentRotation as MomentRotation
 from .response import MomentRotationOnSprings as MomentRotationOnSprings
 from .response import Response as Response
 from .response import SampledHistory as SampledHistory
-from .store import StudyFolder as StudyFolder
 from .structure import Beam as Beam
 from .structure import CantileverWithTipMass as CantileverWithTipMass
 from .structure import Eccentric as Eccentric
@@ -148,6 +145,7 @@ from .structure.file import read_structure as read_structure
 from .study import CombinedPeaks as CombinedPeaks
 from .study import InitialState as InitialState
 from .study import OverturningScales as OverturningScales
+from .study import Records as Records
 from .study import SecondMode as SecondMode
 from .study import frequency_ratios as frequency_ratios
 from .study import modal_combination as modal_combination
@@ -159,23 +157,25 @@ from .study import simulate as simulate
 from .study import simulate_many as simulate_many
 from .study.cloud import CloudStudy as CloudStudy
 from .study.cloud import run_cloud as run_cloud
+from .study.design import BestDesign as BestDesign
+from .study.design import DesignCost as DesignCost
+from .study.design import DesignSearch as DesignSearch
 from .study.design import DesignStudy as DesignStudy
+from .study.design import Requirement as Requirement
 from .study.design import TendonLevel as TendonLevel
+from .study.design import best_design as best_design
 from .study.design import design_table as design_table
 from .study.design import run_design as run_design
+from .study.design import search_design as search_design
 from .study.design import smallest_width as smallest_width
-from .study.design.search import BestDesign as BestDesign
-from .study.design.search import DesignCost as DesignCost
-from .study.design.search import DesignSearch as DesignSearch
-from .study.design.search import Requirement as Requirement
-from .study.design.search import best_design as best_design
-from .study.design.search import search_design as search_design
-from .study.design.search import trade_off as trade_off
+from .study.design import trade_off as trade_off
+from .study.folders import StudyFolder as StudyFolder
 from .study.incremental import IncrementalStudy as IncrementalStudy
 from .study.incremental import incremental_capacities as incremental_capacities
 from .study.incremental import run_incremental as run_incremental
 from .study.monte_carlo import MonteCarloStudy as MonteCarloStudy
-from .study.plan import Records as Records
+from .study.parallel import ClusterError as ClusterError
+from .study.progress import Progress as Progress
 from .study.stripes import StripeStudy as StripeStudy
 from .study.stripes import stripe_counts as stripe_counts
 

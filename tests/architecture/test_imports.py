@@ -17,9 +17,6 @@ ALLOWED = {
     "motion": {"engine"},
     "modal": set(),
     "engine": set(),
-    "parallel": set(),
-    "progress": set(),
-    "store": set(),
     "fragility": set(),
     "structure": {"modal"},
     "models": {"modal", "engine"},
@@ -32,12 +29,9 @@ ALLOWED = {
         "models",
         "solve",
         "response",
-        "parallel",
-        "progress",
-        "store",
         "fragility",
     },
-    "plot": {"motion", "modal", "structure", "response", "study", "fragility", "progress"},
+    "plot": {"motion", "modal", "structure", "response", "study", "fragility"},
     "report": {"plot", "response", "models", "modal", "motion", "structure"},
     "papers": {
         "motion",
@@ -48,10 +42,9 @@ ALLOWED = {
         "study",
         "fragility",
         "plot",
-        "progress",
         "report",
     },
-    "kinds": {"engine", "motion", "structure", "study", "fragility", "plot", "papers", "parallel", "progress", "store"},
+    "kinds": {"engine", "motion", "structure", "study", "fragility", "plot", "papers"},
 }
 FOUNDATION = {
     "_arrays",
@@ -73,14 +66,14 @@ FOUNDATION = {
 FACES = {"cli", "web", "__main__"}  # may import anything, and nothing below them or the front
 USERS = {"papers"}  # may import the package's own front too, as its users do
 
-# The one place of each of these libraries.
+# The one place of each of these libraries: layers, or modules of them.
 HOME = {
     "matplotlib": {"plot", "papers"},
     "typer": {"cli"},
-    "rich": {"cli", "progress"},
-    "IPython": {"progress"},
-    "distributed": {"parallel"},
-    "dask": {"parallel"},
+    "rich": {"cli", "study.progress"},
+    "IPython": {"study.progress"},
+    "distributed": {"study.parallel", "study._dask_worker"},
+    "dask": {"study.parallel"},
     "jinja2": {"report"},
     "starlette": {"web"},
     "uvicorn": {"web"},
@@ -189,7 +182,8 @@ def misplaced(found: list[Import]) -> list[str]:
     for each in found:
         library = each.target.split(".")[0]
         home = HOME.get(library)
-        elsewhere = home is not None and layer(each.importer) not in home
+        places = {layer(each.importer), public(each.importer).removeprefix("rockflex.")}
+        elsewhere = home is not None and not home & places
         if elsewhere or (library in NEVER_AT_IMPORT and each.when == RUNTIME):
             wrong.append(str(each))
     return wrong

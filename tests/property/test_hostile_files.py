@@ -22,7 +22,7 @@ import rockflex as rf
 from builders import make_frame
 from record_samples import SEARCH_RESULTS, cosmos, esm, knet
 from rockflex.motion._record_table import read_table
-from rockflex.store import _lock
+from rockflex.study.folders import _lock
 from toy_study import ToyPlan, opened, run_study
 
 FRAME = """

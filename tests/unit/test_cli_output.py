@@ -20,7 +20,7 @@ from rockflex import InputError
 from rockflex._numbers import moment_unit
 from rockflex.cli import _console, app
 from rockflex.cli._output import check_folder, file_stems, staged, to_json, versions
-from rockflex.progress import _lines
+from rockflex.study import progress
 
 
 def contents(folder):
@@ -314,7 +314,7 @@ def study(tmp_path):
 @pytest.fixture
 def impatient(monkeypatch):
     """Lines that wait for a tenth more, but not for half a minute."""
-    monkeypatch.setattr(_lines, "SOON", 0.0)
+    monkeypatch.setattr(progress, "MIN_INTERVAL", 0.0)
 
 
 def lines_of(*arguments: object) -> list[re.Match[str]]:

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 import rockflex as rf
 from report_page import read
 from rockflex.cli import app
-from rockflex.study.plan import record_groups
+from rockflex.study import record_groups
 
 G = 9.81
 SUITE = "fema-p695-far-field"

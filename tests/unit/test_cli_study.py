@@ -251,7 +251,7 @@ def test_on_error_without_a_folder(study):
 
 
 def test_a_cluster_that_does_not_answer(study, monkeypatch):
-    from rockflex.parallel import _dask
+    from rockflex.study.parallel import _dask
 
     monkeypatch.setattr(_dask, "CONNECT", 0.2)
     done = invoke("cloud", study("cloud"), "--dask", "tcp://127.0.0.1:9")

@@ -11,7 +11,7 @@ import rockflex as rf
 from builders import make_frame
 from rockflex.models import LinearModel, _label
 from rockflex.structure.file import Table, checked
-from rockflex.study._option_tables import GroundTable
+from rockflex.study.spec import GroundTable
 
 FRAME = make_frame(n_stories=2, period=0.5, aspect_ratio=8.0)
 PROPERTIES = FRAME.rocking()
@@ -176,8 +176,8 @@ def test_a_plan_takes_its_ground_to_other_processes(tmp_path):
     path = tmp_path / "study.toml"
     path.write_text(f'study = "cloud"\n{STUDY}')
     plan = rf.load_study(path).plan()
-    bench = pickle.loads(pickle.dumps(plan)).bench
-    assert bench.assumptions.ground(PROPERTIES) == rf.Ground(0.15)
+    matrix = pickle.loads(pickle.dumps(plan)).matrix
+    assert matrix.options.ground(PROPERTIES) == rf.Ground(0.15)
 
 
 def test_friction_that_prevents_sliding_is_resumed(tmp_path):

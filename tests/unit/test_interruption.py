@@ -13,7 +13,7 @@ import pytest
 from builders import make_frame
 from rockflex import GroundMotion, simulate, simulate_many
 from rockflex.solve import RunStoppedError, stopping_when
-from rockflex.study._runs import map_runs
+from rockflex.study.parallel import map_runs
 from rockflex.web._app import Server
 from rockflex.web._refusal import Refusal
 

@@ -26,7 +26,7 @@ from rockflex.motion import (
     record_measures,
 )
 from rockflex.plot import plot_clouds
-from rockflex.study.plan import run_plan
+from rockflex.study import run_plan
 from rockflex.study.stripes import StripeStudy
 
 RECORDS = [GroundMotion(np.random.default_rng(seed).normal(size=n), dt) for seed, n, dt in [(1, 40, 0.3), (2, 7, 0.02)]]

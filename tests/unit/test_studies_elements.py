@@ -7,7 +7,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.study.plan import run_plan
+from rockflex.study import run_plan
 
 if TYPE_CHECKING:
     from dask_cluster import Cluster

@@ -195,8 +195,8 @@ def test_a_study_file_has_a_limit() -> None:
     }
     study = rf.CloudStudy(**content)
     assert study.document()["work_limit"] == WORK_LIMIT
-    assert study.plan().bench.assumptions.work_limit == WORK_LIMIT
-    assert rf.CloudStudy(**content, work_limit="none").plan().bench.assumptions.work_limit is None
+    assert study.plan().matrix.options.work_limit == WORK_LIMIT
+    assert rf.CloudStudy(**content, work_limit="none").plan().matrix.options.work_limit is None
     with pytest.raises(InputError, match="work_limit is 1e-05 s"):
         rf.run_study(rf.CloudStudy(**content, work_limit=1e-5))
     with pytest.raises(InputError, match="work_limit must be a positive number of seconds"):

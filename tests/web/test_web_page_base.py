@@ -8,7 +8,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.study._option_tables import GroundTable
+from rockflex.study.spec import GroundTable
 from rockflex.web._forms import PRESETS
 
 pytestmark = pytest.mark.web

@@ -8,7 +8,7 @@ import typer
 from rockflex._errors import InputError
 from rockflex.cli import _options as options
 from rockflex.cli._console import note, warn
-from rockflex.progress import bar
+from rockflex.study.progress import bar
 
 EPILOG = """[bold]Examples[/bold]
 

@@ -28,11 +28,8 @@ from rockflex.models import parse_model
 from rockflex.motion import GroundMotion, OnError
 from rockflex.response import PEAKS, Response, friction_coefficient, warnings_of
 from rockflex.solve import WorkLimitError
-from rockflex.study import Case
-from rockflex.study._arguments import factors_of, free_vibration_time
-from rockflex.study._ranges import parsed
-from rockflex.study._run_options import RunOptions, yielding
-from rockflex.study._runs import map_runs
+from rockflex.study import Case, RunOptions, factors_of, free_vibration_time, parse_scales, yielding
+from rockflex.study.parallel import map_runs
 
 MAX_TIMED_RUNS = 64  # runs; more are not timed one by one
 
@@ -245,7 +242,7 @@ def prepare(context: typer.Context, arguments: RunArguments, *, histories: int) 
             found = find_motions(names, arguments.units, arguments.dt, arguments.on_error, arguments.vertical)
         else:
             found, free = quiet_ground(free)
-        given_scales = [factor for text in arguments.scale for factor in parsed(text)]
+        given_scales = [factor for text in arguments.scale for factor in parse_scales(text)]
         strongest = max((each.motion for each in found), key=lambda it: it.pga)
         scales = list(dict.fromkeys(factors_of(given_scales, strongest)))
         limit = parse_work_limit(arguments.work_limit)

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Self
 
 from rockflex._errors import RecordWarning
-from rockflex.progress import bar, counter
+from rockflex.study.progress import bar, counter
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -14,10 +14,8 @@ from rockflex.cli._options import flags_of, naming
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, Restitution, parse_model
 from rockflex.structure.file import checked
-from rockflex.study import WORK_LIMIT, InitialState
-from rockflex.study._arguments import ground_under, work_limit_of
-from rockflex.study._option_tables import GroundTable, RunOptionKeys, name_of
-from rockflex.study._run_options import RunOptions, yielding
+from rockflex.study import WORK_LIMIT, InitialState, RunOptions, ground_under, work_limit_of, yielding
+from rockflex.study.spec import GroundTable, RunOptionKeys, name_of
 
 _INERTIA = {"base_inertia", "mat_mass"}
 _FIELDS = {f"ground.{name}": (name, flag) for name, flag in flags_of(GroundKeys).items()} | {

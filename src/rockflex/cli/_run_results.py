@@ -20,7 +20,7 @@ from rockflex.modal import Ground
 from rockflex.motion import MEASURES, GroundMotion
 from rockflex.report.run import MAX_RUNS, checked_path, write_report
 from rockflex.response import IMPACT_WINDOW, Response, history_columns
-from rockflex.study._arguments import ground_under
+from rockflex.study import ground_under
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -14,7 +14,7 @@ from rockflex.cli._options import flags_of, naming
 from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.structure import Eccentric, Frame, Restrained, structure_warnings
 from rockflex.structure.file import ELEMENTS, KINDS, Built, StructureEntry, build_in, checked, read_toml
-from rockflex.study._option_tables import RunOptionKeys
+from rockflex.study.spec import RunOptionKeys
 
 if TYPE_CHECKING:
     from rich.table import Table

@@ -14,13 +14,13 @@ from rockflex.cli import _options as options
 from rockflex.cli._console import complain, grid, note, number, output, show
 from rockflex.cli._output import check_folder, staged, to_json, versions
 from rockflex.kinds import KINDS, Findings, StudyKind, kind_named
-from rockflex.progress import bar, duration, pace
+from rockflex.study.progress import bar, duration, row_rate
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rockflex.progress import Progress
-    from rockflex.study.plan import Spec
+    from rockflex.study import Spec
+    from rockflex.study.progress import Progress
 
 
 Result = TypeVar("Result")
@@ -181,7 +181,7 @@ def _watched(
     """Return the result of `work` and the time that it took in s; a terminal shows a progress bar."""
     from time import perf_counter
 
-    from rockflex.parallel import ClusterError
+    from rockflex.study.parallel import ClusterError
 
     last: list[Progress] = []
     start = perf_counter()
@@ -192,7 +192,7 @@ def _watched(
                 if not last and now.kept:
                     note(f"{now.kept} of {now.parts} parts are already in {out}")
                 last[:] = [now]
-                show(now.done, now.parts, pace(now, perf_counter() - start))
+                show(now.done, now.parts, row_rate(now, perf_counter() - start))
 
             result = work(progress)
     except KeyboardInterrupt as stop:
@@ -210,7 +210,7 @@ Tables = dict[str, list[dict[str, Any]]]
 
 def summarise(kind: StudyKind, study: "Spec", table: "pd.DataFrame", seconds: float, *, json: bool) -> tuple[int, int]:
     """Print the summary of a study; return the number of failed runs and of failed fits."""
-    from rockflex.study.plan import pivot_lifts
+    from rockflex.study import pivot_lifts
 
     found = Findings()
     try:
@@ -299,7 +299,7 @@ def figures(
     """Draw the results of a study: fragility curves, clouds, capacities, designs, or the agreement of models."""
     if form not in FORMATS:
         raise InputError(f"--format must be one of {', '.join(FORMATS)}, but {shown(form)} was given.")
-    from rockflex.store import StudyFolder
+    from rockflex.study.folders import StudyFolder
 
     target = folder / "figures" if out is None else out
     check_folder(target, force=force)

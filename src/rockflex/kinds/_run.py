@@ -1,4 +1,4 @@
-"""Running a study: here or on a cluster, in memory or in a folder from which it can be resumed."""
+"""Loading a study from a file, and running it: here or on a cluster, in memory or in a resumable folder."""
 
 from collections.abc import Callable, Sequence
 from contextlib import closing
@@ -9,24 +9,73 @@ from typing import TYPE_CHECKING, Any, SupportsIndex, TypeVar
 
 from rockflex._checks import whole_number
 from rockflex._errors import InputError
+from rockflex._files import path_of
 from rockflex._shown import shown
 from rockflex._versions import commit_of, versions_of
 from rockflex.engine import VECTOR_LEVEL
-from rockflex.parallel import core_count, map_dask
-from rockflex.progress import PartProgress, Progress, check_part_progress, telling_parts
-from rockflex.store import LEVEL, Part, PartMaker, StudyFolder
+from rockflex.kinds._kinds import kind_named
+from rockflex.structure.file import read_toml
+from rockflex.study import ChunkedPlan, Spec, map_chunks, to_frame
+from rockflex.study.folders import LEVEL, Part, PartMaker, StudyFolder
+from rockflex.study.parallel import Chunks, core_count, map_dask
+from rockflex.study.progress import PartProgress, Progress, check_part_progress, reporting_parts
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rockflex.parallel import Chunks
-    from rockflex.study.plan import ChunkedPlan, Spec
+
+def load_study(path: str | Path) -> Spec:
+    """Read a study from a TOML file.
+
+    Its key `study` is "cloud", "incremental", "stripes", "population", "monte_carlo" or "design"; the other keys are
+    the fields of `CloudStudy`, `IncrementalStudy`, `StripeStudy`, `PopulationStudy`, `MonteCarloStudy` or
+    `DesignStudy`. Relative paths start from the folder of the file.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    CloudStudy, IncrementalStudy, StripeStudy, PopulationStudy, MonteCarloStudy or DesignStudy
+        The study; `.plan()` prepares its runs.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, a key is unknown or missing, or a value is wrong; the message names file and key.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> import rockflex as rf
+    >>> text = '''
+    ... study = "population"
+    ... pairs = 5
+    ... records.suites = ["el-centro-1940"]
+    ... '''
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "study.toml")
+    ...     _ = file.write_text(text)
+    ...     study = rf.load_study(file)
+    >>> study.plan().n_runs
+    10
+    """
+    file = path_of("path", path)
+    content = read_toml(file, "study")
+    try:
+        return kind_named(content.get("study")).spec()(**content).read_from(file.parent, file)
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from error
+
 
 Result = TypeVar("Result")
 
 LIBRARIES = ("rockflex", "numpy", "scipy")  # those that affect the numbers
-SAMPLE = 48  # largest number of units that an estimate runs
-PATIENCE = 2.0  # s after which an estimate stops
+MAX_SAMPLE = 48  # largest number of units that an estimate runs
+MAX_SAMPLE_TIME = 2.0  # s after which an estimate stops
 
 
 def run_study(
@@ -79,8 +128,6 @@ def run_study(
     1     1          4     rocking
     2     2          3     rocking
     """
-    from rockflex.study.plan import to_frame
-
     if folder is not None:
         filled = fill_study(study, folder, workers=workers, dask=dask, any_version=any_version, progress=progress)
         return to_frame(filled.table())
@@ -139,27 +186,25 @@ def fill_study(
     [1]
     True
     """
-    from rockflex.study.plan import to_frame
-
     spec = _loaded(study)
     plan = _plan_of(spec, workers, dask, progress)
     mine = _share_of(plan, share)
     checksums = plan.checksums | spec.checksums()
     with StudyFolder.open(
         folder, spec.document(), plan.n_chunks, _versions(spec), checksums, any_version=any_version
-    ) as kept:
+    ) as target:
 
         def keep(_: int, part: Part) -> int:
-            kept.add(part)
+            target.add(part)
             return part.rows
 
         def so_far() -> "pd.DataFrame":
-            return to_frame(kept.table(partial=True))
+            return to_frame(target.table(partial=True))
 
         def stored(plan: "ChunkedPlan") -> _PartPlan:
-            return _PartPlan(plan, kept.maker)
+            return _PartPlan(plan, target.maker)
 
-        numbers = [number for number in kept.missing() if number in mine]
+        numbers = [number for number in target.missing() if number in mine]
         _compute(plan, numbers, stored, keep, so_far, workers, dask, progress, len(mine))
     return StudyFolder.load(folder)
 
@@ -186,8 +231,6 @@ def _versions(spec: "Spec") -> dict[str, str]:
 
 
 def _loaded(study: "Spec | str | Path") -> "Spec":
-    from rockflex.kinds._load import load_study
-
     return load_study(study) if isinstance(study, str | Path) else study
 
 
@@ -227,19 +270,17 @@ def _compute(
     parts: int | None = None,
 ) -> None:
     """Compute these of `parts` chunks, round by round; `keep` takes each one when it is done, and counts its rows."""
-    from rockflex.study.plan import map_chunks
-
     total = plan.n_chunks if parts is None else parts
     done = kept = total - len(numbers)
     runs = 0
-    with telling_parts(progress) as tell:
+    with reporting_parts(progress) as tell:
         tell(Progress(total, done, kept, runs))
         for place, each in enumerate(plan.rounds):
             missing = [number for number in numbers if number in each]
             if done == total:
                 break
             if place:
-                plan = plan.informed(so_far())
+                plan = plan.next_round(so_far())
             work = sent(plan)
             # Closed at once if a part cannot be stored, or a cluster would hold the plan until this process ends.
             coming = map_chunks(work.chunk, missing, workers) if dask is None else map_dask(work, missing, dask)
@@ -275,13 +316,13 @@ def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:
     plan = study.plan()
     plan.check_work()
     threads = core_count() if workers is None else whole_number("workers", workers, 1)
-    sample = sorted({round(place * (plan.n_ready - 1) / max(SAMPLE - 1, 1)) for place in range(SAMPLE)})
+    sample = sorted({round(place * (plan.n_ready - 1) / max(MAX_SAMPLE - 1, 1)) for place in range(MAX_SAMPLE)})
     for unit in sample[:: max(len(sample) // 6, 1)]:  # fill the caches that the study fills once
         plan.rows([unit])
     start, tried = perf_counter(), 0
     for unit in sample:
         plan.rows([unit])
         tried += 1
-        if perf_counter() - start > PATIENCE:
+        if perf_counter() - start > MAX_SAMPLE_TIME:
             break
     return (perf_counter() - start) / tried * plan.n_units / min(threads, plan.n_chunks)

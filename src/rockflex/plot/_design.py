@@ -33,7 +33,7 @@ from rockflex.plot._style import (
     recoloured,
     styled,
 )
-from rockflex.study.design.search import BestDesign, Interpolated, margins_of, trade_off
+from rockflex.study.design import BestDesign, Interpolated, margins_of, trade_off
 
 if TYPE_CHECKING:
     import pandas as pd

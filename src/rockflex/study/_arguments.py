@@ -1,20 +1,26 @@
-"""Checks of the arguments of studies."""
+"""Checks of the arguments of studies: structures, motions, models, scales, the initial state, and options."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from numbers import Real
-from typing import Any, Literal, Protocol, TypeAlias, get_args
+from typing import Any, Literal, Protocol, TypeAlias, cast, get_args
 
-from rockflex._checks import finite_vector, one_of, real_or_nan
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rockflex._arrays import Array
+from rockflex._checks import finite_vector, one_of, real_or_nan, within
 from rockflex._errors import InputError
-from rockflex._shown import shown
+from rockflex._shown import counted, shown
+from rockflex._values import Value
 from rockflex.modal import Ground, RockingProperties
-from rockflex.models import BoucWen, ImpactLaw
+from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel, parse_model
 from rockflex.motion import GroundMotion, check_horizontal
 
 Output = Literal["history", "peaks"]
 
-LONGEST = 1e9  # s of free vibration
+MAX_FREE_VIBRATION = 1e9  # s of free vibration
 
 GroundChoice: TypeAlias = Ground | Callable[[RockingProperties], Ground] | None
 """The ground of all structures, or a function that returns the ground of each; None: rigid, without sliding."""
@@ -70,10 +76,10 @@ def free_vibration_time(value: float | Literal["settle"]) -> float | None:
     if isinstance(value, str) and value == "settle":
         return None
     seconds = real_or_nan(value)
-    if not 0.0 <= seconds <= LONGEST:
+    if not 0.0 <= seconds <= MAX_FREE_VIBRATION:
         raise InputError(
-            f'free_vibration must be zero or more seconds (at most {LONGEST:g}), or "settle", but {shown(value)} was '
-            "given.",
+            f'free_vibration must be zero or more seconds (at most {MAX_FREE_VIBRATION:g}), or "settle", but '
+            f"{shown(value)} was given.",
             field="free_vibration",
         )
     return seconds
@@ -202,3 +208,254 @@ def _items(given: Any) -> list[Any] | None:
     except TypeError:
         return None
     return list(items)
+
+
+Structures: TypeAlias = (
+    RockingStructure
+    | RockingProperties
+    | Iterable[RockingStructure | RockingProperties]
+    | Mapping[str, RockingStructure]
+    | Mapping[str, RockingProperties]
+    | Mapping[str, RockingStructure | RockingProperties]
+)
+Motions: TypeAlias = GroundMotion | Iterable[GroundMotion] | Mapping[str, GroundMotion]
+Models: TypeAlias = str | Model | Iterable[str | Model]
+
+
+def structures_of(given: Structures) -> tuple[list[RockingStructure | RockingProperties], list[str] | None]:
+    """Return the structures, and their names if they are given by name.
+
+    Raises
+    ------
+    InputError
+        If there is none, an item is not a structure, or a name is not text.
+    """
+    names, several = _named_entries("structures", given)
+    return sequence_of("structures", several, is_structure, "a structure such as a Frame, or RockingProperties"), names
+
+
+def motions_of(given: Motions) -> list[GroundMotion]:
+    """Return the motions; a name in the mapping replaces the name of the motion.
+
+    Raises
+    ------
+    InputError
+        If there is none, an item is not a motion, or a name is not text.
+    """
+    names, several = _named_entries("motions", given)
+    motions = sequence_of("motions", several, lambda each: isinstance(each, GroundMotion), "a GroundMotion")
+    if names is None:
+        return motions
+    return [replace(motion, name=name) for name, motion in zip(names, motions, strict=True)]
+
+
+def models_of(given: Models) -> list[Model]:
+    """Return the models of labels.
+
+    Raises
+    ------
+    InputError
+        If there is none, a label is unknown, or something is neither a label nor a `Model`.
+    """
+    wanted = 'a label such as "2DOF-S", or a Model'
+    labels = sequence_of("models", given, lambda each: isinstance(each, str | Model), wanted)
+    return [parse_model(each) for each in labels]
+
+
+def _named_entries(what: str, given: Any) -> tuple[list[str] | None, Any]:
+    """Return the names and values of a mapping; None and `given` itself if it is not a mapping."""
+    if not isinstance(given, Mapping):
+        return None, given
+    entries = cast("Mapping[Any, Any]", given)
+    for name in entries:
+        if not isinstance(name, str):
+            raise InputError(
+                f"The names of {what} must be texts, but {name!r} was given. Write {{{str(name)!r}: ...}}."
+            )
+    return list(entries), list(entries.values())
+
+
+MAX_FACTORS = 1000
+ROUNDING = 1e-9  # of a step: the largest factor is met in spite of rounding
+_EXAMPLES = (
+    "{smallest = 0.5, largest = 3.0, step = 0.25}, or with a count in place of the step, and then perhaps with "
+    'spacing = "logarithmic"'
+)
+
+
+def expand_scales(given: Any) -> Any:
+    """Return the factors of a mapping with `smallest`, `largest` and `step` or `count`; anything else unchanged.
+
+    Both ends are included, the largest one if a whole number of steps leads there.
+
+    Raises
+    ------
+    InputError
+        If a key is missing or unknown, a value is out of range, or there are more than a thousand factors.
+    """
+    if not isinstance(given, Mapping):
+        return given
+    values: dict[Any, Any] = {**given}
+    spacing = values.pop("spacing", "linear")
+    keys = set(values)
+    logarithmic = spacing == "logarithmic"
+    known = one_of(spacing, ("linear", "logarithmic")) and not (logarithmic and "step" in keys)
+    smallest, largest = real_or_nan(values.get("smallest")), real_or_nan(values.get("largest"))
+    if known and keys == {"smallest", "largest", "step"}:
+        return stepped_scales(smallest, largest, real_or_nan(values["step"]))
+    if known and keys == {"smallest", "largest", "count"} and type(values["count"]) is int:
+        count = values["count"]
+        if _rises(smallest, largest) and 2 <= count <= MAX_FACTORS and not (logarithmic and smallest <= 0.0):
+            spaced = np.geomspace if logarithmic else np.linspace
+            return [_tidy(factor) for factor in spaced(smallest, largest, count)]
+    raise InputError(
+        f"scales must be a list, or a range such as {_EXAMPLES}, of at most {MAX_FACTORS} factors, but "
+        f"{shown(given)} was given.",
+        field="scales",
+    )
+
+
+def parse_scales(text: str) -> list[float]:
+    """Return the factors of a text: a number, or a range such as ``0.5:3.0:0.25`` of smallest, largest and step.
+
+    Raises
+    ------
+    InputError
+        If the text is neither.
+    """
+    numbers = [_number(part) for part in text.split(":")]
+    if None in numbers or len(numbers) not in (1, 3):
+        raise InputError(
+            f"scales must be numbers, or ranges such as 0.5:3.0:0.25, but {shown(text)} was given.", field="scales"
+        )
+    found = [number for number in numbers if number is not None]
+    return found if len(found) == 1 else stepped_scales(*found)
+
+
+def stepped_scales(smallest: float, largest: float, step: float) -> list[float]:
+    """Return the factors from the smallest in steps up to the largest.
+
+    Raises
+    ------
+    InputError
+        If they do not rise, or are too many.
+    """
+    if _rises(smallest, largest) and 0.0 < step < math.inf:
+        steps = (largest - smallest) / step + ROUNDING
+        if 1.0 <= steps < MAX_FACTORS:
+            return [_tidy(smallest + place * step) for place in range(int(steps) + 1)]
+    raise InputError(
+        f"scales must rise in 1 to {MAX_FACTORS - 1} steps, but a range from {smallest:g} to {largest:g} in steps of "
+        f"{step:g} was given.",
+        field="scales",
+    )
+
+
+def _rises(smallest: float, largest: float) -> bool:
+    return -math.inf < smallest < largest < math.inf
+
+
+def _number(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def _tidy(factor: float) -> float:
+    """The factor without the rounding of its sum, such as 0.3 in place of 0.30000000000000004."""
+    return float(f"{factor:.12g}")
+
+
+MAX_STATE = 1e9  # m, m/s or rad/s: beyond any structure, and far from where numbers overflow
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class InitialState(Value):
+    """The state at t = 0, if the structure does not start at rest.
+
+    The base starts uplifted if `rotation` is not zero; its sign gives the side. If only `rotation_velocity` is not
+    zero, the base also starts uplifted, and the sign of the velocity gives the side.
+
+    Parameters
+    ----------
+    rotation
+        θ in rad, below π/2 in magnitude.
+    modal_displacement, modal_velocity
+        D_n in m and D'_n in m/s of the modes of the model, shape (N,) or fewer (the others are zero); None for zero.
+        Stored as read-only copies.
+    rotation_velocity
+        θ' in rad/s; outward (the sign of θ) or, with θ ≠ 0, inward.
+
+    Raises
+    ------
+    InputError
+        If a value is not a finite number, |θ| is not below π/2, or another value is not below 1e9 in magnitude.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> block = rf.rigid_block(slenderness=0.2, half_diagonal=2.0)
+    >>> start = rf.InitialState(rotation=0.1)
+    >>> response = rf.simulate(block, rf.quiet_motion(5.0), "rigid", initial=start)
+    >>> round(response.max_rotation, 3)
+    0.1
+    """
+
+    rotation: float
+    modal_displacement: Array | None
+    modal_velocity: Array | None
+    rotation_velocity: float
+
+    def __init__(
+        self,
+        rotation: float = 0.0,
+        modal_displacement: ArrayLike | None = None,
+        modal_velocity: ArrayLike | None = None,
+        rotation_velocity: float = 0.0,
+    ) -> None:
+        vars(self).update(
+            rotation=within("rotation", rotation, 0.5 * math.pi, "rad"),
+            modal_displacement=_modal("modal_displacement", modal_displacement, "m"),
+            modal_velocity=_modal("modal_velocity", modal_velocity, "m/s"),
+            rotation_velocity=within("rotation_velocity", rotation_velocity, MAX_STATE, "rad/s"),
+        )
+
+    def state(self, model: RockingModel) -> Array:
+        """Return the state [D.., D'.., θ, θ'] for a model.
+
+        Raises
+        ------
+        InputError
+            If there are more values than modes, or a fixed base would rotate.
+        """
+        n = model.properties.n_modes
+        state = np.zeros(2 * n + 2)
+        for name, values, first in (
+            ("modal_displacement", self.modal_displacement, 0),
+            ("modal_velocity", self.modal_velocity, n),
+        ):
+            if values is None:
+                continue
+            if values.size > n:
+                raise InputError(
+                    f"{name} has {counted(values.size, 'value')}, but {model.label} has {counted(n, 'mode')}. Give at "
+                    f"most {n}."
+                )
+            state[first : first + values.size] = values
+        state[-2:] = self.rotation, self.rotation_velocity
+        if not model.lifts and np.any(state[-2:] != 0.0):
+            raise InputError(
+                f"{model.label} has a base that cannot lift, but rotation={shown(self.rotation)} and "
+                f"rotation_velocity={shown(self.rotation_velocity)} were given. Give zero, or a model that rocks."
+            )
+        return state
+
+
+def _modal(name: str, values: ArrayLike | None, unit: str) -> Array | None:
+    if values is None:
+        return None
+    vector = finite_vector(name, values, unit)
+    for place, value in enumerate(vector.tolist()):
+        within(f"{name}[{place}]", value, MAX_STATE, unit)
+    return vector

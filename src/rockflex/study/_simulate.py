@@ -1,25 +1,108 @@
-"""One structure, one motion, one model."""
+"""Runs in Python: one structure, motion and model; or the cross product of many."""
 
+from collections import OrderedDict
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import replace
-from typing import Literal
+from itertools import product
+from threading import Lock
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rockflex.modal import RockingProperties
-from rockflex.models import BoucWen, ImpactLaw, Model, parse_model
-from rockflex.motion import GroundMotion
-from rockflex.response import Response
+from rockflex.models import (
+    BoucWen,
+    ImpactLaw,
+    Model,
+    Restitution,
+    SidedRestitution,
+    VVELComplete,
+    VVELSimplified,
+    parse_model,
+)
+from rockflex.motion import GroundMotion, check_horizontal
+from rockflex.response import STATUSES, Response
+from rockflex.solve import WorkLimitError
 from rockflex.study._arguments import (
     WORK_LIMIT,
     GroundChoice,
+    InitialState,
+    Models,
+    Motions,
     Output,
     RockingStructure,
+    Structures,
     check_motion,
+    factors_of,
     ground_under,
+    models_of,
+    motions_of,
     properties_of,
+    structures_of,
     wants_history,
 )
-from rockflex.study._initial import InitialState
-from rockflex.study._prepared import run_prepared
-from rockflex.study._run_options import RunOptions
+from rockflex.study._case import Case, RunOptions, prepare_together
+from rockflex.study._run_matrix import RunMatrix
+from rockflex.study._tables import RESULTS, ResultColumns
+from rockflex.study.parallel import in_order
+from rockflex.study.progress import ProgressChoice, reporting
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+MAX_CASES = 32  # cases kept
+MIN_WEIGHED_BYTES, MAX_TOTAL_BYTES = 8_000_000, 256_000_000  # of the tables of a case that are counted anew, and of all
+IMMUTABLE_LAWS = (VVELSimplified, VVELComplete, Restitution, SidedRestitution)  # impact laws that cannot change
+
+_cache: OrderedDict[Hashable, tuple[Case, RockingProperties, RunOptions]] = OrderedDict()
+_lock = Lock()
+
+
+def run_cached(
+    model: Model,
+    properties: RockingProperties,
+    options: RunOptions,
+    motion: GroundMotion,
+    *,
+    history: bool,
+) -> Response:
+    """Run a motion on a structure, with the case of an earlier run if everything but the motion is the same.
+
+    The structure and the ground are the same only if they are the same objects, which cannot change; a user-defined
+    impact law can. A case is kept only for the time step of its run, and not if its run failed, so that no run depends
+    on those before it.
+
+    Raises
+    ------
+    InputError
+        If the model does not apply to the structure, its numbers overflow, or the run exceeds its work limit.
+    SolverError
+        If the run cannot be solved.
+    """
+    rest = (options.bouc_wen, options.free_vibration, options.work_limit, history, motion.dt)
+    key = (id(properties), id(options.ground), id(options.initial), model, options.impact, *rest)
+    keeps = options.impact is None or type(options.impact) in IMMUTABLE_LAWS
+    known = _cached(key) if keeps else None
+    case = known or options.case(model, properties, history=history, floors=history)
+    response = case.run(motion)
+    if keeps and (known is None or case.engine.size > MIN_WEIGHED_BYTES):
+        with _lock:
+            # What a key identifies is kept with it, so that no later object can have its place in memory.
+            _cache[key] = case, properties, options
+            while len(_cache) > MAX_CASES or sum(each.engine.size for each, *_ in _cache.values()) > MAX_TOTAL_BYTES:
+                _cache.popitem(last=False)
+    return response
+
+
+def _cached(key: Hashable) -> Case | None:
+    with _lock:
+        found = _cache.get(key)
+        if found is None:
+            return None
+        _cache.move_to_end(key)
+        return found[0]
 
 
 def simulate(
@@ -104,4 +187,160 @@ def simulate(
     properties = properties_of(structure)
     choice, below = parse_model(model), ground_under(properties, ground)
     check_motion(motion)
-    return run_prepared(choice, properties, replace(options, ground=below, all_yield=True), motion, history=history)
+    return run_cached(choice, properties, replace(options, ground=below, all_yield=True), motion, history=history)
+
+
+RUNS_PER_TASK = 64  # runs a task: long enough to hide a task's cost, short enough to share the work evenly
+
+Part = tuple[int, int, int, RunMatrix]  # some runs of a structure: its index, the first, the last, and its matrix
+
+
+def simulate_many(
+    structures: Structures,
+    motions: Motions,
+    models: Models = "MDOF-S",
+    output: Output = "peaks",
+    scales: float | Sequence[float] = 1.0,
+    free_vibration: float | Literal["settle"] = 0.0,
+    bouc_wen: BoucWen | None = None,
+    impact: ImpactLaw | None = None,
+    initial: InitialState | None = None,
+    workers: SupportsIndex | None = None,
+    work_limit: float | None = WORK_LIMIT,
+    ground: GroundChoice = None,
+    progress: ProgressChoice = None,
+) -> "pd.DataFrame":
+    """Simulate every structure under every motion with every model at every scale.
+
+    The runs are shared among threads; the engine releases the interpreter lock. With ``output="peaks"`` only the table
+    grows with the number of runs.
+
+    Parameters
+    ----------
+    structures, motions
+        One of each, a sequence, or a mapping from names; a suite is a sequence of motions.
+    models
+        Labels or models, one or a sequence.
+    output
+        ``"peaks"``, or ``"history"`` for a further column `response` with every run's `Response`.
+    scales
+        Factor on the acceleration, or a sequence of factors.
+    free_vibration, bouc_wen, impact, initial
+        As in `simulate`. `bouc_wen` applies to the models whose label ends in "-BW", or to all models if there are
+        none, which must then have one mode. All models start from the same initial state. A run fails if its model has
+        fewer modes than the state has values, or a fixed base where the state rotates.
+    workers
+        Number of threads; None for one a core.
+    work_limit
+        Work limit of each run, as in `simulate`. A run that exceeds it has a message in `error`.
+    ground
+        As in `simulate`. With several structures, a function gives each its own: ``lambda properties:
+        Ground(springs=winkler_bed(properties.half_width, ...), ...)``.
+    progress
+        ``"bar"`` for a bar with the time left, in a terminal or a notebook; or a function ``progress(done, total)``
+        of the runs that are done and of all, called here, first with 0. What it raises ends the study.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a run, structures outermost, then motions, models and scales. Columns: `structure` (its name in a
+        mapping, else its index), `motion` (name), `scale`, `model`, `status`, `error`, then every scalar of `Response`
+        by its name, in SI units. A run that cannot be solved, or whose model has more modes than its structure, has a
+        message in `error`. Its other results are missing: NaN, or NA in the columns of counts (Int64) and flags
+        (boolean).
+
+    Raises
+    ------
+    InputError
+        If a label is unknown, a sequence is empty, an argument is out of range or of the wrong kind, a motion is a
+        vertical component, a scaled motion would overflow, or every run exceeds `work_limit`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
+    >>> table = rf.simulate_many(frame, pulse, ["2DOF-S", "MDOF-S"], scales=(0.5, 1.0))
+    >>> table[["model", "scale", "status"]]
+        model  scale   status
+    0  2DOF-S    0.5  rocking
+    1  2DOF-S    1.0  rocking
+    2  MDOF-S    0.5  rocking
+    3  MDOF-S    1.0  rocking
+    """
+    history = wants_history(output)
+    options = RunOptions.of(
+        free_vibration, impact=impact, bouc_wen=bouc_wen, ground=ground, initial=initial, work_limit=work_limit
+    )
+    everything, names = structures_of(structures)
+    records = motions_of(motions)
+    check_horizontal(*records)
+    chosen = models_of(models)
+    factors = factors_of(scales, max(records, key=lambda motion: motion.pga))
+    shape = (len(everything), len(records), len(chosen), len(factors))
+    matrix = RunMatrix(everything, records, chosen, options, history=history, floors=history)
+    runs_of_one = [(0, *run) for run in product(range(len(records)), range(len(chosen)), factors)]
+    each = len(runs_of_one)
+    responses = np.full(len(everything) * each if history else 0, None, dtype=object)
+
+    def tasks() -> Iterator[list[Part]]:
+        task, runs = list[Part](), 0
+        for index, structure in enumerate(everything):
+            own = matrix.with_structure(structure)
+            for first in range(0, each, RUNS_PER_TASK):
+                task.append((index, first, min(first + RUNS_PER_TASK, each), own))
+                runs += task[-1][2] - first
+                if runs >= RUNS_PER_TASK:
+                    yield task
+                    task, runs = [], 0
+        if task:
+            yield task
+
+    def work(task: list[Part]) -> tuple[ResultColumns, list[WorkLimitError]]:
+        refused, begun = list[WorkLimitError](), 0
+        sheet = ResultColumns(sum(last - first for _, first, last, _ in task), columns)
+        # All of them first, so that the code that prepares stays in the cache.
+        prepare_together([case for *_, own in task for case in own.cases(0)])
+        for index, first, last, own in task:
+            for places, _, peaks in own.peaks(runs_of_one[first:last]):
+                sheet.put([begun + place for place in places], peaks.columns)
+                for place, error in peaks.failures.items():
+                    sheet.fail([begun + places[place]], str(error))
+                for place, response in zip(places, peaks.responses, strict=False):
+                    responses[index * each + first + place] = response
+                refused += [error for error in peaks.failures.values() if isinstance(error, WorkLimitError)]
+            begun += last - first
+            if first == 0 and last == each:
+                own.forget()  # no other task needs its engines, and the next tables find room in the cache
+        return sheet, refused
+
+    columns = {"status": STATUSES, "error": str, **RESULTS}
+    with reporting(progress, len(everything) * each, "runs") as advance:
+        found = in_order(work, tasks(), workers, lambda made: advance(made[0].size))
+    results = ResultColumns.joined([sheet for sheet, _ in found])
+    refused = [error for _, errors in found for error in errors]
+    if len(refused) == len(everything) * each:
+        raise refused[0]
+
+    import pandas as pd
+
+    structure, motion, model, scale = (axis.ravel() for axis in np.indices(shape, dtype=np.int32))
+    table = pd.DataFrame(
+        {
+            "structure": structure if names is None else _category(structure, names),
+            "motion": _category(motion, [record.name for record in records]),
+            "scale": np.asarray(factors)[scale],
+            "model": _category(model, [each.label for each in chosen]),
+            **results,
+        }
+    )
+    return table.assign(response=responses) if responses.size else table
+
+
+def _category(codes: NDArray[np.int32], names: list[str]) -> "pd.Categorical[Any]":
+    """Return a categorical column; names that occur twice share a category."""
+    import pandas as pd
+
+    categories = list(dict.fromkeys(names))
+    places = np.array([categories.index(name) for name in names], dtype=np.int32)
+    return pd.Categorical.from_codes(places[codes], dtype=pd.CategoricalDtype(categories))

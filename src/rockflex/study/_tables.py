@@ -1,13 +1,20 @@
 """Tables of results: the same columns in every chunk, with missing values where a run could not be solved."""
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypeAlias
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._cases import cases
+from rockflex.modal import RockingProperties, Tendon
+from rockflex.response import NAMES, Response, complete_of, leaves_range
+
 if TYPE_CHECKING:
     import pandas as pd
+
 
 ArrowTable: TypeAlias = Any  # a pyarrow.Table: pyarrow has no type annotations
 
@@ -39,7 +46,7 @@ def _column(values: list[Any], kind: type | Sequence[str]) -> Any:
     return pa.DictionaryArray.from_arrays(pa.array(values, pa.int32()), pa.array(kind, pa.string()))
 
 
-class Sheet:
+class ResultColumns:
     """Results of some runs, filled column by column, for a table in memory.
 
     Parameters
@@ -74,7 +81,7 @@ class Sheet:
         self._missing[places] = True
 
     @staticmethod
-    def joined(sheets: "Sequence[Sheet]") -> dict[str, Any]:
+    def joined(sheets: "Sequence[ResultColumns]") -> dict[str, Any]:
         """Return the columns of all sheets, one after another, for a DataFrame as `to_frame` gives it."""
         import pandas as pd
 
@@ -105,3 +112,94 @@ def to_frame(*tables: ArrowTable) -> "pd.DataFrame":
 
     kinds = {pa.int64(): pd.Int64Dtype(), pa.bool_(): pd.BooleanDtype(), pa.string(): pd.StringDtype()}
     return pa.concat_tables(tables).to_pandas(types_mapper=kinds.get)
+
+
+# Every number and flag of a Response, by its name.
+RESULTS: dict[str, type] = {name: Response.__annotations__[name] for name in NAMES if name != "status"}
+OF_ELEMENTS = ("tendon_yield", "tendon_overload", "residual_rotation")
+OF_GROUND = ("max_slip", "residual_slip", "max_edge_uplift", "max_edge_settlement")
+
+
+def results_of(response: Response, suffix: str = "") -> dict[str, Any]:
+    """Return the status of a response, and every number and flag by its name; `suffix` is added to each name."""
+    return dict(zip(_named(suffix), _values_of(response), strict=True))
+
+
+_values_of = attrgetter("status", *RESULTS)
+
+
+@cache
+def _named(suffix: str) -> tuple[str, ...]:
+    return tuple(name + suffix for name in ("status", *RESULTS))
+
+
+def result_columns(
+    structures: Iterable[RockingProperties] = (), suffix: str = "", *, with_ground: bool = False
+) -> dict[str, type]:
+    """Return the kinds of the columns that `results_of` fills in a study of these structures.
+
+    Without elements other than elastic tendons the columns of `OF_ELEMENTS` would say nothing, and are left out; so are
+    those of `OF_GROUND` on rigid ground on which no base slides, unless the study is `with_ground`.
+    """
+    left_out: tuple[str, ...] = () if with_ground else OF_GROUND
+    if not any(map(_is_controlled, structures)):
+        left_out += OF_ELEMENTS
+    kinds = {"status": str, **RESULTS}
+    return {name + suffix: kind for name, kind in kinds.items() if name not in left_out}
+
+
+def _is_controlled(properties: RockingProperties) -> bool:
+    return any(not isinstance(each, Tendon) or each.post_yield_ratio is not None for each in properties.elements)
+
+
+REACTION = "min_vertical_reaction"
+
+
+class PivotLifts(NamedTuple):
+    """Numbers of runs that rock and stand, of those whose pivot would lift, and of those beyond α, of one case."""
+
+    structure: str
+    model: str
+    rocking: int
+    lifting: int
+    beyond: int = 0
+
+    def __str__(self) -> str:
+        return " ".join(self.warnings)
+
+    @property
+    def warnings(self) -> list[str]:
+        """What to tell of these runs, a text each."""
+        found: list[str] = []
+        if self.lifting:
+            found.append(
+                f"{self.structure}, {self.model}: in {self.lifting} of {self.rocking} runs that rock and stand the "
+                f"model pulls the base down ({REACTION} below zero), which no ground can: the pivot would lift. Read "
+                "what follows in such a run with care."
+            )
+        if self.beyond:
+            found.append(
+                f"{self.structure}, {self.model}: in {self.beyond} of {self.rocking} runs that rock and stand θ passes "
+                "α, at which the static moment vanishes (balance_ratio above one). The model is for small rotations: "
+                f"whether these overturn is to be decided by a complete model on rigid ground, such as "
+                f"{complete_of(self.model)}."
+            )
+        return found
+
+
+def pivot_lifts(runs: "pd.DataFrame") -> list[PivotLifts]:
+    """Count the runs in which the vertical reaction falls below zero or a simplified θ passes α, by case.
+
+    Parameters
+    ----------
+    runs
+        A table with one row a run.
+    """
+    standing = runs[runs["status"] == "rocking"]
+    found: list[PivotLifts] = []
+    for structure, model, each in cases(standing):
+        past = 0  # where a table of an earlier version does not tell
+        if "balance_ratio" in each:
+            past = int(leaves_range(each["model"], each["balance_ratio"], each["max_rotation"]).sum())
+        found.append(PivotLifts(structure, model, len(each), int((each[REACTION] < 0.0).sum()), past))
+    return found

@@ -10,7 +10,7 @@ from pydantic.fields import FieldInfo
 
 from rockflex._json import plain
 from rockflex.structure.file import ELEMENTS, KINDS, PartTable, StructureEntry, Table, inner_table, key_of, parts
-from rockflex.study._option_tables import BoucWenTable, GroundTable
+from rockflex.study.spec import BoucWenTable, GroundTable
 
 
 def _frame(number: int, period: float, aspect_ratio: float, stiffness_ratio: float) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from typing import Any, Generic, TypeVar
 
 from rockflex._errors import InputError, SolverError
 from rockflex.solve import RunStoppedError, check_interruption, stopping_when
-from rockflex.study.plan import ChunkedPlan
+from rockflex.study import ChunkedPlan
 from rockflex.web._refusal import Refusal
 
 MAX_STUDIES = 40  # studies that are remembered

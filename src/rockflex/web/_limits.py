@@ -152,7 +152,7 @@ def _checked_work(task: Task, path: str) -> float:
 def _check_model(plan: "CloudPlan", properties: RockingProperties, label: str, path: str) -> None:
     """Refuse a model that the structure cannot have, such as one with modes for a rigid block."""
     with refusing(path):
-        plan.bench.options.tied(parse_model(label), properties)
+        plan.matrix.options.tied(parse_model(label), properties)
 
 
 def check_runs(plan: "CloudPlan", path: str) -> None:
@@ -160,14 +160,14 @@ def check_runs(plan: "CloudPlan", path: str) -> None:
     if plan.n_runs > MAX_STUDY_RUNS:
         message = f"it has {plan.n_runs} runs, but the page takes {MAX_STUDY_RUNS} at most. Use the command line."
         raise Refusal({path: message})
-    bench = plan.bench
+    matrix = plan.matrix
     largest = max(plan.scales, key=abs)
     work = 0.0
-    for structure, properties in enumerate(bench.structures):
-        for model, label in enumerate(bench.labels):
+    for structure, properties in enumerate(matrix.structures):
+        for model, label in enumerate(matrix.labels):
             _check_model(plan, properties, label, path)
-            for record in range(len(bench.motions)):
-                task = bench.task(structure, record, model, largest)
+            for record in range(len(matrix.motions)):
+                task = matrix.task(structure, record, model, largest)
                 if task is not None:
                     work += len(plan.scales) * _checked_work(task, path)
     if work > MAX_STUDY_COST:

@@ -11,10 +11,10 @@ from rockflex.fragility import NOMINAL, ROCKING
 from rockflex.modal import BaseElement
 from rockflex.structure import LumpedMasses, Section
 from rockflex.structure.file import StructureEntry
-from rockflex.study._option_tables import BedTable, GroundTable, SpringsTable
-from rockflex.study._run_options import yielding
+from rockflex.study import yielding
 from rockflex.study.cloud import CloudStudy
 from rockflex.study.design import DesignStudy
+from rockflex.study.spec import BedTable, GroundTable, SpringsTable
 from rockflex.web._earthquake import PULSES
 from rockflex.web._selection import RECORDS_FOLDER, VISITOR_SUITES
 from rockflex.web._state import ROTATION, PulseChoice, State

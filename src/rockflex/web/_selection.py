@@ -27,7 +27,7 @@ from rockflex.motion import (
     read_target,
 )
 from rockflex.solve import check_interruption
-from rockflex.study.plan import Records
+from rockflex.study import Records
 from rockflex.web._cache import Cache
 from rockflex.web._earthquake import motion_of
 from rockflex.web._limits import unclear

@@ -13,8 +13,8 @@ from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKED, ROCKI
 from rockflex.modal import Ground
 from rockflex.motion import Combination, Measure, intensities
 from rockflex.structure.file import StructureEntry, Table, spot_of
-from rockflex.study._option_tables import BoucWenTable, GroundTable, RunOptionKeys
-from rockflex.study._run_options import RunOptions, yielding
+from rockflex.study import RunOptions, yielding
+from rockflex.study.spec import BoucWenTable, GroundTable, RunOptionKeys
 from rockflex.web._limits import MAX_MODELS, RUN_WORK_LIMIT, check_numbers, errors_of_numbers, unclear, wanted
 from rockflex.web._refusal import Refusal, refusing
 

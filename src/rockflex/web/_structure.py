@@ -17,7 +17,7 @@ from rockflex.structure import structure_warnings
 from rockflex.structure._from_matrices import DegreesOfFreedom
 from rockflex.structure.file import Structure, StructureEntry, StructureTable, Table
 from rockflex.structure.file._tables import MatricesTable, ModesTable
-from rockflex.study._option_tables import GroundTable
+from rockflex.study.spec import GroundTable
 from rockflex.web._refusal import Refusal, refusing
 
 MAX_SPRINGS_DRAWN = 9  # springs of a drawing, at most

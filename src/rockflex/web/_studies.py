@@ -23,10 +23,9 @@ from rockflex.fragility import (
 )
 from rockflex.kinds import KINDS
 from rockflex.motion import MEASURES
-from rockflex.study._run_options import yielding
+from rockflex.study import pivot_lifts, to_frame, yielding
 from rockflex.study.cloud import CloudPlan, CloudStudy
 from rockflex.study.design import DesignStudy, design_table, smallest_width
-from rockflex.study.plan import pivot_lifts, to_frame
 from rockflex.web._jobs import Job
 from rockflex.web._limits import MAX_RUN_COST, check_runs
 from rockflex.web._refusal import Refusal, refusing
@@ -104,7 +103,7 @@ def study_plan(study: CloudStudy | DesignStudy, path: str) -> CloudPlan:
     """
     with refusing(path):
         plan = cast("CloudPlan", study.plan())  # the page has no design study with a search
-    plan.bench = plan.bench.limited(MAX_RUN_COST)
+    plan.matrix = plan.matrix.limited(MAX_RUN_COST)
     check_runs(plan, path)
     return plan
 

@@ -1,4 +1,4 @@
-"""The fit of one design, its result, and the confidence band of the result."""
+"""Limits of a design, the fit of its probability or annual rate, and the confidence band."""
 
 import math
 from dataclasses import dataclass
@@ -8,17 +8,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import in_range, positive
+from rockflex._checks import in_range, positive, real_or_nan
 from rockflex._errors import InputError, SolverError
+from rockflex._shown import shown
 from rockflex.fragility import (
+    LIMIT_STATES,
+    NOMINAL,
     OVERTURNED,
     OVERTURNING,
+    ROCKED,
     HazardCurve,
     LimitState,
     LogisticFit,
     RotationFragility,
     UnanimousOutcome,
     annual_rate,
+    beyond,
     damping_of,
     fit_logistic,
     fit_outcomes,
@@ -27,10 +32,85 @@ from rockflex.fragility import (
     resampled_exceedance,
 )
 from rockflex.modal import RockingProperties
-from rockflex.study.design._limits import is_rotation, state_of
+from rockflex.motion import intensity
+from rockflex.study._tables import RESULTS
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+def check_limit(limit: float | str) -> None:
+    """Raise an InputError unless a limit is one of those that `state_of` knows."""
+    state_of(limit, 0.1)
+
+
+def check_same_for_all(measure: str) -> None:
+    """Raise an InputError unless the measure exists and does not depend on the base."""
+    if intensity(measure).of_what == "base":
+        raise InputError(
+            f"measure must not depend on the base, as a level of {measure} does. Give pgv, pga or sa_t1_5."
+        )
+
+
+def state_of(limit: float | str, nominal: float) -> LimitState:
+    """Limit state of a limit, where `nominal` is 0.7 atan(B/h*_1) of the design.
+
+    A rotation in rad; a multiple of the nominal one; the name of a limit state; or a result with its bound, such as
+    ``"max_base_moment > 5e6"``, which an overturned run exceeds too.
+
+    Raises
+    ------
+    InputError
+        If it is none of these, or a rotation is not from 1e-4 rad to below π/2.
+    """
+    words = limit.split() if isinstance(limit, str) else []
+    if words == [OVERTURNING.name]:
+        return OVERTURNING
+    if len(words) == 1 and words[0] in LIMIT_STATES and words[0] != NOMINAL.name:
+        return LIMIT_STATES[words[0]]
+    if len(words) == 3 and words[1] == ">" and RESULTS.get(words[0]) in (float, int):
+        return _above(words[0], words[2], limit)
+    return beyond(_rotation(limit, nominal, words))
+
+
+def is_rotation(state: LimitState) -> bool:
+    """Whether a state is a rotation whose probability `fit_outcomes` gives."""
+    return ROCKED <= state.threshold <= OVERTURNED
+
+
+def _above(column: str, given: str, limit: Any) -> LimitState:
+    try:
+        bound = float(given)
+    except ValueError:
+        bound = math.nan
+    if not (math.isfinite(bound) and bound >= 0.0):
+        raise InputError(
+            f"limit: the bound of {column} must be zero or a positive number, but {shown(limit)} was given."
+        )
+    if column == "max_rotation":
+        return beyond(_rotation(bound, math.nan, []))
+
+    def exceeded(runs: Any) -> Any:
+        return (runs[column] > bound) | OVERTURNING.exceeded(runs)
+
+    return LimitState(name=column, label=f"{column} > {bound:g}", symbol=f"{column} above {bound:g}", exceeded=exceeded)
+
+
+def _rotation(limit: float | str, nominal: float, words: list[str]) -> float:
+    rotation = real_or_nan(limit)
+    if words and words[-1] == NOMINAL.name and len(words) <= 2:
+        try:
+            rotation = nominal * float(words[0] if len(words) == 2 else 1.0)
+        except ValueError:
+            rotation = math.nan
+    if not ROCKED <= rotation < OVERTURNED:
+        is_of = f" ({rotation:.3g} rad)" if words and math.isfinite(rotation) else ""
+        raise InputError(
+            f"limit must be a rotation from {ROCKED:g} rad to below π/2, a multiple of 0.7 atan(B/h*_1) such as "
+            f'"nominal" or "0.5 nominal" in the same range, a limit state ({", ".join(LIMIT_STATES)}), or a result '
+            f'with its bound, such as "max_base_moment > 5e6", but {shown(limit)}{is_of} was given.'
+        )
+    return rotation
 
 
 def check_confidence(confidence: float) -> None:
@@ -52,7 +132,7 @@ def first_damping(structure: RockingProperties) -> "pd.DataFrame":
 
 
 @dataclass(frozen=True)
-class Question:
+class ShakingLevel:
     """The strength of the shaking: a level of the measure, or a hazard curve.
 
     The result for a curve P is the sum of P at `nodes` times `weights`.
@@ -62,7 +142,7 @@ class Question:
     nodes: Array
     weights: Array
 
-    def answer(self, curve: LogisticFit | UnanimousOutcome | RotationFragility) -> tuple[float, float]:
+    def exceedance(self, curve: LogisticFit | UnanimousOutcome | RotationFragility) -> tuple[float, float]:
         """Probability at the level and zero, or annual rate and an upper bound on the rate beyond the hazard curve."""
         if self.hazard is not None:
             found = annual_rate(self.hazard, curve)
@@ -70,7 +150,7 @@ class Question:
         return float(curve.probability(self.nodes)[0]), 0.0
 
     @classmethod
-    def of(cls, at: float | None, hazard: HazardCurve | None) -> "Question":
+    def of(cls, at: float | None, hazard: HazardCurve | None) -> "ShakingLevel":
         """Check the arguments, and choose the nodes.
 
         Raises
@@ -133,13 +213,13 @@ class Runs(NamedTuple):
         )
         return Fitted(found, falls, bool(alike), [found.note] if found.note else [])
 
-    def resampled(self, question: Question, n: int, seed: int) -> Array:
+    def resampled(self, level: ShakingLevel, n: int, seed: int) -> Array:
         """The result for each of `n` resamples of the recordings, NaN where there is no fit."""
         import pandas as pd
 
         weights = resample_weights(pd.factorize(self.groups)[0], n, seed)
         outcome, limit = (self.fallen, self.state.threshold) if is_rotation(self.state) else (self.exceeded, OVERTURNED)
-        return resampled_exceedance(self.im, self.rotation, outcome, weights, question.nodes, limit) @ question.weights
+        return resampled_exceedance(self.im, self.rotation, outcome, weights, level.nodes, limit) @ level.weights
 
 
 class Fitted(NamedTuple):
@@ -150,21 +230,21 @@ class Fitted(NamedTuple):
     certain: bool
     notes: list[str]
 
-    def band(self, question: Question, confidence: float, n_groups: int) -> tuple[float, float, str]:
-        """Lower and upper confidence limit of the answer, and a note; NaN where there is none."""
+    def band(self, level: ShakingLevel, confidence: float, n_groups: int) -> tuple[float, float, str]:
+        """Lower and upper confidence limit of the probability or rate, and a note; NaN where there is none."""
         if self.certain or isinstance(self.curve, UnanimousOutcome):
             return math.nan, math.nan, "No band: all runs had the same outcome."
         if n_groups < 2:
             return math.nan, math.nan, "No band: all runs belong to one recording."
-        if question.hazard is None:
-            low, high = (float(end[0]) for end in self.curve.band(question.nodes, confidence))
+        if level.hazard is None:
+            low, high = (float(end[0]) for end in self.curve.band(level.nodes, confidence))
             return low, high, ""
-        found = annual_rate(question.hazard, self.curve, confidence=confidence)
+        found = annual_rate(level.hazard, self.curve, confidence=confidence)
         return found.low, found.high, ""
 
 
-def judged(
-    group: "pd.DataFrame", limit: float | str, measure: str, question: Question, confidence: float | None
+def design_row(
+    group: "pd.DataFrame", limit: float | str, measure: str, level: ShakingLevel, confidence: float | None
 ) -> dict[str, Any]:
     """Columns of `design_table` for all runs of one design and model."""
     solved = group[group["status"].notna()]
@@ -172,13 +252,13 @@ def judged(
     if len(solved):
         runs = Runs.of(solved, limit, measure)
         bound = runs.state.threshold if is_rotation(runs.state) else math.nan
-        found = {"limit": bound, "state": runs.state.label, **_answers(runs, question, confidence)}
+        found = {"limit": bound, "state": runs.state.label, **_exceedance_columns(runs, level, confidence)}
         counts = int(runs.exceeded.sum()), int(runs.fallen.sum())
     else:
         found = {
             "limit": math.nan,
             "state": "",
-            **_nothing(question),
+            **_no_values(level),
             "note": "No run was solved: see the column error.",
         }
         counts = 0, 0
@@ -192,33 +272,33 @@ def judged(
     }
 
 
-def _nothing(question: Question) -> dict[str, Any]:
-    names = ("probability", "low", "high", "overturning") if question.hazard is None else (
+def _no_values(level: ShakingLevel) -> dict[str, Any]:
+    names = ("probability", "low", "high", "overturning") if level.hazard is None else (
         "rate", "low", "high", "overturning", "beyond",
     )  # fmt: skip
     return dict.fromkeys(names, math.nan)
 
 
-def _answers(runs: Runs, question: Question, confidence: float | None) -> dict[str, Any]:
+def _exceedance_columns(runs: Runs, level: ShakingLevel, confidence: float | None) -> dict[str, Any]:
     """Value, band, value for overturning, and notes."""
-    name = "probability" if question.hazard is None else "rate"
-    found = _nothing(question)
+    name = "probability" if level.hazard is None else "rate"
+    found = _no_values(level)
     try:
         fit = runs.fitted(banded=confidence is not None)
-        found["overturning"] = question.answer(fit.overturning)[0]
+        found["overturning"] = level.exceedance(fit.overturning)[0]
         notes = list(fit.notes)
-        if question.hazard is None and not runs.im.min() <= question.nodes[0] <= runs.im.max():
+        if level.hazard is None and not runs.im.min() <= level.nodes[0] <= runs.im.max():
             ends = f"{runs.im.min():.3g} to {runs.im.max():.3g}"
             notes.append(f"The level lies outside the measures of the runs, {ends}: the result is extrapolated.")
-        if not np.isfinite(fit.curve.probability(question.nodes)).all():
+        if not np.isfinite(fit.curve.probability(level.nodes)).all():
             notes.append("There is no probability: a curve that it needs could not be fitted.")
             return found | {"note": " ".join(notes)}
-        found[name], beyond = question.answer(fit.curve)
+        found[name], beyond = level.exceedance(fit.curve)
     except (InputError, SolverError) as error:
         return found | {"note": str(error)}
-    if question.hazard is not None:
+    if level.hazard is not None:
         found["beyond"] = beyond
     if confidence is not None:
-        found["low"], found["high"], note = fit.band(question, confidence, len(set(runs.groups)))
+        found["low"], found["high"], note = fit.band(level, confidence, len(set(runs.groups)))
         notes += [note] if note else []
     return found | {"note": " ".join(notes)}

@@ -1,10 +1,10 @@
-"""Design of a base: how wide it must be, and which tendon holds it down (Section 4.1)."""
+"""Design of a base: its width and the tendon that holds it down (Section 4.1)."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal, SupportsIndex
 
 from numpy.typing import ArrayLike
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from rockflex._checks import in_range, positive
 from rockflex._constants import GRAVITY
@@ -13,24 +13,124 @@ from rockflex._shown import shown
 from rockflex.fragility import HazardCurve
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw
-from rockflex.progress import ProgressChoice
-from rockflex.structure.file import StructureEntry
-from rockflex.study._arguments import WORK_LIMIT, GroundChoice, RockingStructure, described
-from rockflex.study._subjects import Models, Motions
+from rockflex.structure.file import StructureEntry, Table
+from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, RockingStructure, described
+from rockflex.study._plan import run_plan
+from rockflex.study._run_matrix import StudyMatrix, check_lifts, study_matrix
 from rockflex.study._tables import Columns, Row
-from rockflex.study.cloud._study import CloudPlan, Factors
-from rockflex.study.design._fit import check_damping, first_damping
-from rockflex.study.design._levels import Design, TendonLevel, designs_of, half_widths_of
-from rockflex.study.design._limits import check_limit, check_same_for_all, state_of
-from rockflex.study.design._questions import search_of
-from rockflex.study.design._tables import HazardTable, SearchTable, TendonLevelTable
-from rockflex.study.design.search import DesignSearch, SearchPlan
-from rockflex.study.plan._bench import Bench, bench_of, check_lifts
-from rockflex.study.plan._chunked import run_plan
-from rockflex.study.plan._spec import FreeVibration, StructuresSpec, checked_by
+from rockflex.study.cloud import CloudPlan, Factors
+from rockflex.study.design._designs import (
+    Design,
+    DesignSearch,
+    Scaling,
+    TendonLevel,
+    designs_of,
+    factors_of,
+    half_widths_of,
+)
+from rockflex.study.design._fit import check_damping, check_limit, check_same_for_all, first_damping, state_of
+from rockflex.study.design._requirements import DesignCost, Requirement, check_requirements
+from rockflex.study.design._search import SearchPlan
+from rockflex.study.design._table import design_table
+from rockflex.study.progress import ProgressChoice
+from rockflex.study.spec import FreeVibration, StructuresSpec, checked_by
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+def design_tables(
+    runs: "pd.DataFrame", spec: Mapping[str, Any], confidence: float | None = 0.9
+) -> "Iterator[tuple[float | str, pd.DataFrame]]":
+    """Yield each limit of a study with its `design_table`.
+
+    Parameters
+    ----------
+    runs
+        The table of the study.
+    spec
+        The study as returned by its `document()`.
+    confidence
+        As in `design_table`.
+    """
+    for limit, at, _, hazard in stored_limits(spec):
+        yield limit, design_table(runs, limit, measure=spec["measure"], at=at, hazard=hazard, confidence=confidence)
+
+
+def stored_limits(
+    spec: Mapping[str, Any],
+) -> "Iterator[tuple[float | str, float | None, float | None, HazardCurve | None]]":
+    """Yield limit, level, target and hazard curve of each limit of a study, from its document."""
+    hazard = None if spec.get("hazard") is None else HazardCurve(**spec["hazard"])
+    limits: list[float | str] = spec["limits"]
+    levels, targets = (
+        given if isinstance(given, list) else [given] * len(limits) for given in (spec.get("level"), spec.get("target"))
+    )
+    for limit, level, target in zip(limits, levels, targets, strict=True):
+        yield limit, level, target, hazard
+
+
+def stored_search(spec: Mapping[str, Any]) -> tuple[list[Requirement], DesignCost]:
+    """Return the requirements and the unit costs of a study with a search, from its document.
+
+    Raises
+    ------
+    InputError
+        If two limits are the same at the same level.
+    """
+    found = [
+        Requirement(limit, target, at, hazard, spec["measure"])  # pyright: ignore[reportArgumentType]
+        for limit, at, target, hazard in stored_limits(spec)
+    ]
+    return check_requirements(found), DesignCost(**spec["search"]["cost"])
+
+
+_FACTORS = "a list of factors on the {} of the structure, or a range {{smallest = 0.5, largest = 2.0, count = 4}}"
+_SCALING = '"size" (force and stiffness) or "force"'
+
+
+class TendonLevelTable(Table):
+    """The arguments of `TendonLevel`."""
+
+    prestress_ratio: float = Field(0.0, description="the initial force over the weight m_tot g, a number")
+    stiffness_ratio: float = Field(0.0, description="EA/L over L_0^r g/B², a number; 1 keeps the moment constant")
+    yield_ratio: float | None = Field(None, description="the yield force over the weight m_tot g, a number")
+    name: str = Field("", description="a name, in quotes")
+
+
+class HazardTable(Table):
+    """The arguments of `HazardCurve`."""
+
+    im: list[float] = Field(description="a list of levels of the measure, in SI units, rising")
+    rate: list[float] = Field(description="a list of annual rates at which they are exceeded, falling")
+    damping: float = Field(0.05, description="the damping ratio of a spectral measure, a number")
+
+
+class CostTable(Table):
+    """The arguments of `DesignCost`."""
+
+    half_width: float = Field(0.0, description="the cost of each metre of the half width B, a number")
+    prestress: float = Field(0.0, description="the cost of each newton of the tendons' initial forces, a number")
+    dissipator_force: float = Field(
+        0.0, description="the cost of each newton of the dissipators' yield forces, a number"
+    )
+
+
+class SearchTable(Table):
+    """The arguments of `DesignSearch` other than those of the study itself, and the unit costs."""
+
+    cost: CostTable = Field(description="a table of half_width, prestress and dissipator_force, in cost/m and cost/N")
+    tendon_factors: list[float] = Field([1.0], description=_FACTORS.format("tendons"))
+    dissipator_factors: list[float] = Field([1.0], description=_FACTORS.format("dissipators"))
+    tendon_scaling: Scaling = Field("size", description=_SCALING)
+    dissipator_scaling: Scaling = Field("size", description=_SCALING)
+    refinements: int = Field(4, description="how often the distance of neighbouring values is halved, a whole number")
+    designs_per_refinement: int = Field(8, description="the largest number of designs of a refinement, a whole number")
+
+    @field_validator("tendon_factors", "dissipator_factors", mode="before")
+    @classmethod
+    def _factors(cls, given: object, info: ValidationInfo) -> object:
+        return list(factors_of(str(info.field_name), given)) if isinstance(given, list | dict) else given
 
 
 class DesignStudy(StructuresSpec):
@@ -125,7 +225,7 @@ class DesignStudy(StructuresSpec):
                 "A search varies the elements of the structure itself by factors. Leave out the levels [[tendons]], "
                 "and give the structure its tendons as [[structures.elements]]."
             )
-        search_of(self.document())
+        stored_search(self.document())
         self._space(self.search)
         return self
 
@@ -146,12 +246,12 @@ class DesignStudy(StructuresSpec):
             If a design cannot be built, a record cannot be read, a limit is out of range for a design, a model's base
             cannot lift, or measure and hazard curve are of different damping.
         """
-        bench = self.bench()
+        matrix = self.matrix()
         if self.search is not None:
-            requirements, cost = search_of(self.document())
-            return SearchPlan(bench, self._space(self.search), requirements, cost, self.scales, self.runs_per_chunk)
+            requirements, cost = stored_search(self.document())
+            return SearchPlan(matrix, self._space(self.search), requirements, cost, self.scales, self.runs_per_chunk)
         levels = [TendonLevel(**each.model_dump()) for each in self.tendons]
-        (properties,) = bench.structures
+        (properties,) = matrix.structures
         if self.hazard is not None:
             check_damping(HazardCurve(**self.hazard.model_dump()), first_damping(properties), self.measure)
         designs = designs_of(properties, self.half_widths, levels, self.base_mass_per_width)
@@ -161,17 +261,17 @@ class DesignStudy(StructuresSpec):
                     state_of(limit, design.properties.nominal_overturning_rotation)
                 except InputError as error:
                     raise InputError(f"{design.name}: {error}") from error
-        return DesignPlan(bench, designs, self.scales, self.runs_per_chunk)
+        return DesignPlan(matrix, designs, self.scales, self.runs_per_chunk)
 
 
 class DesignPlan(CloudPlan):
     """The cross product of designs, records, models and scales, cut into chunks."""
 
-    def __init__(self, bench: Bench, designs: Sequence[Design], scales: Sequence[float], per_chunk: int) -> None:
-        check_lifts(bench, "a fixed base, so the base width has no effect")
+    def __init__(self, matrix: StudyMatrix, designs: Sequence[Design], scales: Sequence[float], per_chunk: int) -> None:
+        check_lifts(matrix, "a fixed base, so the base width has no effect")
         self._tendons = list(dict.fromkeys(design.tendon for design in designs))
         self._facts = [self._facts_of(design) for design in designs]
-        made = Bench({each.name: each.properties for each in designs}, bench.motions, bench.options)
+        made = StudyMatrix({each.name: each.properties for each in designs}, matrix.motions, matrix.options)
         super().__init__(made, scales, per_chunk)
 
     def _facts_of(self, design: Design) -> Row:
@@ -190,7 +290,7 @@ class DesignPlan(CloudPlan):
     def columns(self) -> Columns:
         """Columns of every chunk's table."""
         facts = {name: self._tendons if name == "tendon" else float for name in self._facts[0]}
-        return {"structure": self.bench.names, **facts, **self.bench.columns}
+        return {"structure": self.matrix.names, **facts, **self.matrix.columns}
 
     def rows(self, units: Sequence[int]) -> list[Row]:
         """Simulate one run a unit."""
@@ -263,8 +363,8 @@ def run_design(
     given: Any = scales
     if not isinstance(tendons, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InputError(f"tendons must be a sequence of TendonLevel objects, but {described(tendons)} was given.")
-    bench = bench_of(
+    matrix = study_matrix(
         [structure], motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground
     )
-    designs = designs_of(bench.structures[0], half_widths, list(tendons), base_mass_per_width)
-    return run_plan(DesignPlan(bench, designs, given, per_chunk=64), workers, progress)
+    designs = designs_of(matrix.structures[0], half_widths, list(tendons), base_mass_per_width)
+    return run_plan(DesignPlan(matrix, designs, given, per_chunk=64), workers, progress)

@@ -1,14 +1,27 @@
-"""Probability or annual rate at which each design exceeds a limit."""
+"""Probability or annual rate at which each design exceeds a limit, and the narrowest base that meets a target."""
 
-from typing import TYPE_CHECKING, Any
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
+from rockflex._arrays import Array
+from rockflex._checks import positive
 from rockflex._errors import InputError
 from rockflex.fragility import HazardCurve
-from rockflex.study.design._fit import Question, check_confidence, check_damping, judged
-from rockflex.study.design._limits import check_limit, check_same_for_all
+from rockflex.study.design._fit import (
+    ShakingLevel,
+    check_confidence,
+    check_damping,
+    check_limit,
+    check_same_for_all,
+    design_row,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
+
 
 FACTS = ("tendon", "half_width", "aspect_ratio", "prestress_ratio", "stiffness_ratio", "resisting_moment")
 RESULTS = ("status", "max_rotation", "nominal_limit", "max_base_moment", "tendon_utilisation", "group")
@@ -79,7 +92,7 @@ def design_table(
     if lacking or not len(runs):
         lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
         raise InputError(f"The table {lacks}. Give what run_design returned.")
-    question = Question.of(at, hazard)
+    level = ShakingLevel.of(at, hazard)
     check_damping(hazard, runs, measure)
     if confidence is not None:
         check_confidence(confidence)
@@ -90,7 +103,127 @@ def design_table(
     for (_, model), group in runs.groupby(["structure", "model"], observed=True, sort=False):
         first = group.iloc[0]
         facts = {"model": str(model), **{name: first[name] for name in FACTS}}
-        rows.append(facts | judged(group, limit, measure, question, confidence))
+        rows.append(facts | design_row(group, limit, measure, level, confidence))
     models, tendons = (list(dict.fromkeys(row[name] for row in rows)) for name in ("model", "tendon"))
     rows.sort(key=lambda row: (models.index(row["model"]), tendons.index(row["tendon"]), row["half_width"]))
     return pd.DataFrame(rows)
+
+
+NEEDED = ("model", "tendon", "half_width", "prestress_ratio", "stiffness_ratio", "high")
+
+
+def smallest_width(table: "pd.DataFrame", target: float) -> "pd.DataFrame":
+    """Find the smallest half width at and above which every base meets a target, for each tendon.
+
+    Between the widest base that does not meet it and the next, the logarithm of the value is interpolated linearly in
+    B. If the next value is zero, the value itself is interpolated, which gives the wider base.
+
+    Parameters
+    ----------
+    table
+        The table of `design_table`.
+    target
+        Largest probability, or annual rate, of exceeding the limit.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per model and tendon: `model`, `tendon`, `prestress_ratio`, `stiffness_ratio` (missing if it differs
+        from base to base), `target`; `half_width` (m), NaN if the widest base does not meet the target;
+        `half_width_upper` (m), the same for the upper limit of the band; `outcome`: ``"met"``; ``"met more than
+        once"``, narrower bases meet it too, but not all in between; ``"all meet it"`` (the half width is then the
+        smallest in the table, and a smaller one might do); or ``"not met"``. `monotone`, whether the value never rises
+        with B; `note`, about bases without a value, rises, and narrower bases that meet the target.
+
+    Raises
+    ------
+    InputError
+        If the table lacks a column, or the target is not positive.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> import pandas as pd
+    >>> facts = {"model": "MDOF-S", "tendon": "no tendon", "prestress_ratio": 0.0, "stiffness_ratio": 0.0}
+    >>> values = {"probability": [0.4, 0.1, 0.05], "high": [0.5, 0.2, 0.1]}
+    >>> table = pd.DataFrame({"half_width": [1.0, 1.5, 2.0], **values, **facts})
+    >>> found = rf.smallest_width(table, target=0.2).iloc[0]
+    >>> print(f"{found.half_width:.3g}, {found.half_width_upper:.3g}, {found.outcome}")
+    1.25, 1.5, met
+    """
+    import pandas as pd
+
+    value = "rate" if "rate" in table else "probability"
+    lacking = [name for name in (*NEEDED, value) if name not in table]
+    if lacking or not len(table):
+        lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
+        raise InputError(f"The table {lacks}. Give what design_table returned.")
+    wanted = positive("target", target, "1/year" if value == "rate" else "probability")
+    rows: list[dict[str, Any]] = []
+    for (model, tendon), group in table.groupby(["model", "tendon"], observed=True, sort=False):
+        designs = group.sort_values("half_width")
+        widths = designs["half_width"].to_numpy(float)
+        found = _least(widths, designs[value].to_numpy(float), wanted)
+        upper = _least(widths, designs["high"].to_numpy(float), wanted)
+        rows.append(
+            {
+                "model": str(model),
+                "tendon": str(tendon),
+                "prestress_ratio": _common(designs["prestress_ratio"]),
+                "stiffness_ratio": _common(designs["stiffness_ratio"]),
+                "target": wanted,
+                "half_width": found.half_width,
+                "half_width_upper": upper.half_width,
+                "outcome": found.outcome,
+                "monotone": found.monotone,
+                "note": found.note,
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+class _Least(NamedTuple):
+    half_width: float
+    outcome: str
+    monotone: bool
+    note: str
+
+
+def _common(column: "pd.Series[Any]") -> float:
+    first = float(column.iloc[0])
+    return first if np.allclose(column, first, rtol=1e-9, atol=0.0) else math.nan
+
+
+def _least(widths: Array, values: Array, target: float) -> _Least:
+    """Least width, outcome and notes, from values at rising widths."""
+    known = np.isfinite(values)
+    notes = [] if known.all() else [f"{int((~known).sum())} of {known.size} bases have no value and were left out."]
+    b, y = widths[known], values[known]
+    rises = [(one, other) for (one, low), (other, high) in pairwise(zip(b, y, strict=True)) if high > low]
+    meets = y <= target
+    if rises:
+        one, other = rises[0]
+        times = "" if len(rises) == 1 else f" and {len(rises) - 1} times more"
+        notes.append(f"It does not fall everywhere: it rises between B = {one:.4g} and {other:.4g} m{times}.")
+    width, outcome = math.nan, "not met"
+    if meets.all() and b.size:
+        width, outcome = float(b[0]), "all meet it"
+        notes.append(f"Every base meets it; a base below B = {b[0]:.4g} m might do.")
+    elif b.size and meets[-1]:
+        last = int(np.flatnonzero(~meets)[-1])
+        width, outcome = _between(b[last : last + 2], y[last : last + 2], target), "met"
+        if meets[:last].any():
+            outcome = "met more than once"
+            notes.append(f"Narrower bases meet it too, from B = {b[meets][0]:.4g} m, but {b[last]:.4g} m does not.")
+    elif b.size:
+        notes.append(f"The widest base, B = {b[-1]:.4g} m, has {y[-1]:.3g}.")
+        if meets.any():
+            notes.append(f"Narrower bases meet it, from B = {b[meets][0]:.4g} m.")
+    return _Least(width, outcome, not rises, " ".join(notes))
+
+
+def _between(b: Array, y: Array, target: float) -> float:
+    """Width at which a line through two values, the second at most the target, reaches it."""
+    if y[1] > 0.0:
+        y, target = np.log(y), math.log(target)
+    return float(b[0] + (b[1] - b[0]) * (y[0] - target) / (y[0] - y[1]))

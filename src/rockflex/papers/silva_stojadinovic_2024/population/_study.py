@@ -14,19 +14,31 @@ from rockflex._errors import InputError, SolverError
 from rockflex.modal import RockingProperties
 from rockflex.models import LinearModel, modal_displacement
 from rockflex.motion import GroundMotion, Suite
-from rockflex.progress import ProgressChoice
 from rockflex.response import Response, respond
 from rockflex.structure import Frame
-from rockflex.study import WORK_LIMIT, Case, SecondMode
-from rockflex.study._arguments import free_vibration_time, work_limit_of
-from rockflex.study._case import prepare_together
-from rockflex.study._modal_combination import combine, second_mode
-from rockflex.study._results import result_columns, results_of
-from rockflex.study._subjects import Motions, motions_of
-from rockflex.study._tables import Columns, Row, kinds_of
-from rockflex.study.plan import ChunkedPlan, Spec, run_plan
-from rockflex.study.plan._bench import record_columns, record_facts
-from rockflex.study.plan._spec import FreeVibration
+from rockflex.study import (
+    WORK_LIMIT,
+    Case,
+    ChunkedPlan,
+    Columns,
+    Motions,
+    Row,
+    SecondMode,
+    combine,
+    free_vibration_time,
+    kinds_of,
+    motions_of,
+    prepare_together,
+    record_columns,
+    record_facts,
+    result_columns,
+    results_of,
+    run_plan,
+    second_mode,
+    work_limit_of,
+)
+from rockflex.study.progress import ProgressChoice
+from rockflex.study.spec import FreeVibration, Spec
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -1,0 +1,475 @@
+"""The kinds of study: the command, the report and the figures of each."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+from rockflex._errors import InputError, SolverError
+from rockflex._shown import counted, shown
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rockflex.fragility import CloudFit
+    from rockflex.study import Spec
+
+
+Row: TypeAlias = dict[str, Any]
+Runs: TypeAlias = "pd.DataFrame"
+Document: TypeAlias = Mapping[str, Any]
+Remark: TypeAlias = Callable[[str], None]
+Figures: TypeAlias = Iterator[tuple[str, Callable[[], Any]]]  # name of the file, and what returns the matplotlib Figure
+
+
+@dataclass
+class Findings:
+    """What is reported of a study: titled tables, fits that could not be made, and remarks."""
+
+    tables: dict[str, list[Row]] = field(default_factory=dict[str, list[Row]])
+    unfitted: list[str] = field(default_factory=list[str])
+    remarks: list[str] = field(default_factory=list[str])
+
+    def fitted(self, fit: Callable[[], Any], what: str) -> Any:
+        """Return the fit, or None where the data give none; `what` then names it among the unfitted."""
+        try:
+            return fit()
+        except (InputError, SolverError) as error:
+            self.unfitted.append(f"{what}: {error}")
+            return None
+
+
+def _as_they_are(table: Runs) -> Runs:
+    return table
+
+
+@dataclass(frozen=True, kw_only=True)
+class StudyKind:
+    """One kind of study. Its functions import what they need when called, so that the registry loads at once.
+
+    Attributes
+    ----------
+    name : str
+        The value of the key `study` in a file.
+    command : str
+        The command of ``rockflex`` that runs it.
+    summary : str
+        What the command does, for its help.
+    described_by : str
+        The class of such a study, with its package.
+    report : callable
+        Takes a study, its table and the `Findings` to fill.
+    figures : callable
+        Takes the study's document, its table, an intensity measure and a function for remarks. Yields the name of each
+        file and a function that draws it.
+    measured : bool
+        Whether the intensity measure of the figures can be chosen.
+    runs : callable
+        Returns the study's table with one row a run, and in `structure` the name under which runs are counted.
+    """
+
+    name: str
+    command: str
+    summary: str
+    described_by: str
+    report: Callable[[Any, Runs, Findings], None]
+    figures: Callable[[Document, Runs, str, Remark], Figures]
+    measured: bool = False
+    runs: Callable[[Runs], Runs] = _as_they_are
+
+    def spec(self) -> "type[Spec]":
+        """Return the class of such a study."""
+        package, _, name = self.described_by.rpartition(".")
+        return getattr(import_module(package), name)
+
+
+def _report_cloud(_: Any, runs: Runs, found: Findings) -> None:
+    """Count the outcomes, and fit the regressions."""
+    from rockflex._cases import cases
+    from rockflex.fragility import OVERTURNING, ROCKING, LogisticFit, fit_each_cloud
+    from rockflex.motion import MEASURES
+
+    pgv = MEASURES["pgv"]
+    fits, reasons = fit_each_cloud(runs, pgv.name)
+    found.unfitted += [f"{structure} with {model}: {reason}" for (structure, model), reason in reasons.items()]
+    fits_of = {(each.structure, each.model): each for each in fits}
+    outcomes = found.tables[f"Outcomes, and P({ROCKING.label}) by logistic regression on log {pgv.label}"] = []
+    lines = found.tables[f"log y = c1 + c2 log {pgv.label} of runs that rocked and stand (rad, m, {pgv.unit})"] = []
+    for structure, model, group in cases(runs):
+        name = {"structure": structure, "model": model}
+        solved, fallen = group["status"].notna(), OVERTURNING.exceeded(group)
+        rocked = solved & ~fallen & ROCKING.exceeded(group)
+        fit = fits_of.get((structure, model))
+        curve = fit and fit.outcomes.initiation
+        fitted = isinstance(curve, LogisticFit)
+        outcomes.append(
+            {
+                **name,
+                "fit": curve.method if fitted else "all alike" if curve else "none",
+                "no rocking": int((solved & ~fallen & ~rocked).sum()),
+                "rocking": int(rocked.sum()),
+                "overturned": int(fallen.sum()),
+                "failed": int((~solved).sum()),
+                pgv.with_unit(f"{pgv.label} of P(rocking)=½"): curve.median if fitted else None,
+                "spread [-]": curve.dispersion if fitted else None,
+            }
+        )
+        lines += [
+            {**name, "y": "θ_max", **_line(fit and fit.outcomes.rotation)},
+            {**name, "y": "u_top relative to the base", **_line(fit and fit.top_displacement)},
+            {**name, "y": "u_top in total", **_line(fit and fit.total_top_displacement)},
+        ]
+
+
+def _line(fit: "CloudFit | None") -> dict[str, Any]:
+    return {"c1": fit and fit.c1, "c2": fit and fit.c2, "spread": fit and fit.dispersion, "R²": fit and fit.r2}
+
+
+def _figures_cloud(_: Document, runs: Runs, measure: str, remark: Remark) -> Figures:
+    """Yield the fragility curves and the clouds."""
+    from rockflex import plot
+    from rockflex.fragility import fit_each_cloud
+
+    fits, reasons = fit_each_cloud(runs, measure)
+    for (structure, model), reason in reasons.items():
+        remark(f"No fit: {structure} with {model}: {reason}")
+    if fits:
+        names = zip(runs["structure"].astype(str), runs["model"].astype(str), strict=True)
+        fitted = runs[[case not in reasons for case in names]]
+        yield "fragility", lambda: plot.plot_fragility(fitted, measure)
+    else:
+        remark("No figure fragility, and clouds without lines: add records or scales to the study, and run it again")
+    yield "rotation", lambda: plot.plot_clouds(runs, "max_rotation", measure)
+    yield "top_displacement", lambda: plot.plot_clouds(runs, "max_top_displacement", measure)
+    if runs["max_total_top_displacement"].notna().any():
+        yield "total_top_displacement", lambda: plot.plot_clouds(runs, "max_total_top_displacement", measure)
+
+
+CLOUD = StudyKind(
+    name="cloud",
+    command="cloud",
+    summary="Run every structure under every record at every scale, and fit regressions and fragility curves.",
+    described_by="rockflex.study.cloud.CloudStudy",
+    report=_report_cloud,
+    figures=_figures_cloud,
+    measured=True,
+)
+
+
+def _report_incremental(study: Any, runs: Runs, found: Findings) -> None:
+    from rockflex._cases import cases
+    from rockflex.fragility import LIMIT_STATES, fit_capacities
+    from rockflex.motion import MEASURES
+    from rockflex.study.incremental import incremental_capacities
+
+    rows = []
+    for measure in (MEASURES["pga"], MEASURES["pgv"]):
+        capacities = incremental_capacities(runs, measure.name).dropna(subset=["capacity"])
+        for structure, model, each in cases(capacities):
+            what = f"{structure} with {model}, {measure.label}"
+            fit = found.fitted(lambda each=each: fit_capacities(each["capacity"], each["censored"]), what)
+            rows.append(
+                {
+                    "structure": structure,
+                    "model": model,
+                    "measure": measure.label,
+                    "records": len(each),
+                    "never overturned": int(each["censored"].sum()),
+                    "resurrections": int(each["resurrections"].sum()),
+                    "median [SI]": fit and fit.median,
+                    "β": fit and fit.beta,
+                }
+            )
+    found.tables[f"Capacities to {LIMIT_STATES[study.limit].rotation}, lognormal"] = rows
+
+
+def _figures_incremental(_: Document, runs: Runs, measure: str, __: Remark) -> Figures:
+    from rockflex import plot
+
+    yield "capacities", lambda: plot.plot_ida(runs, measure)
+
+
+INCREMENTAL = StudyKind(
+    name="incremental",
+    command="ida",
+    summary="Scale every record until the structure overturns, and fit the capacities (incremental dynamic analysis).",
+    described_by="rockflex.study.incremental.IncrementalStudy",
+    report=_report_incremental,
+    figures=_figures_incremental,
+    measured=True,
+)
+
+
+def _report_stripes(study: Any, runs: Runs, found: Findings) -> None:
+    from rockflex._cases import cases
+    from rockflex.fragility import NOMINAL, OVERTURNING, UPLIFT, fit_stripes
+    from rockflex.study.stripes import stripe_counts
+
+    counts = found.tables[f"Runs beyond the limit at each level of {study.measure}"] = []
+    fits = found.tables[f"Fragility by maximum likelihood, lognormal in {study.measure}"] = []
+    for limit in (UPLIFT, NOMINAL, OVERTURNING):
+        for structure, model, each in cases(stripe_counts(runs, limit.name)):  # pyright: ignore[reportArgumentType]
+            stripes = each["level"], each["n_exceeding"], each["n_total"]
+            what = f"{structure} with {model}, {limit.label}"
+            fit = found.fitted(lambda stripes=stripes: fit_stripes(*stripes), what)
+            name = {"limit": limit.label, "structure": structure, "model": model}
+            fits.append({**name, "median": fit and fit.median, "β": fit and fit.beta})
+            counts.append({**name, **{f"{level:g}": f"{n}/{total}" for level, n, total in zip(*stripes, strict=True)}})
+
+
+def _figures_stripes(spec: Document, runs: Runs, _: str, __: Remark) -> Figures:
+    from rockflex import plot
+
+    yield "stripes", lambda: plot.plot_stripes(runs, measure=spec["measure"])
+
+
+STRIPES = StudyKind(
+    name="stripes",
+    command="stripes",
+    summary="Scale the records to levels of an intensity measure, and fit how many exceed a limit.",
+    described_by="rockflex.study.stripes.StripeStudy",
+    report=_report_stripes,
+    figures=_figures_stripes,
+)
+
+
+INTERVALS = ["n", "r2", "r2_low", "r2_high", "slope", "slope_low", "slope_high", "r2_line"]
+OUTLIER = [
+    *("behaviour", "motion", "pair", "n_stories", "aspect_ratio", "period", "pgv"),
+    *("max_rotation_mdof", "max_rotation_2dof", "share"),
+]
+
+
+def _report_population(_: Any, pairs: Runs, found: Findings) -> None:
+    from rockflex.papers.silva_stojadinovic_2024.population import population_statistics
+
+    said = population_statistics(pairs)
+    for title, table in (
+        ("Pairs by outcome", said.outcomes.reset_index(names="MDOF-S \\ 2DOF-S")),
+        (
+            "MDOF-S against 2DOF-S (Section 3.3), 90 % intervals",
+            said.agreement[["group", "quantity", "behaviour", *INTERVALS]],
+        ),
+        ("Modal combination (Section 3.4), 90 % intervals", said.combination[["quantity", "estimate", *INTERVALS]]),
+        ("Largest disagreements in rotation", said.outliers[OUTLIER]),
+    ):
+        found.tables[title] = table.to_dict("records")  # pyright: ignore[reportArgumentType]
+
+
+def _figures_population(_: Document, pairs: Runs, __: str, ___: Remark) -> Figures:
+    from rockflex.papers.silva_stojadinovic_2024.population import plots
+
+    yield "population", lambda: plots.plot_population(pairs)
+    yield "agreement", lambda: plots.plot_agreement(pairs)
+    yield "modal_combination", lambda: plots.plot_modal_combination(pairs)
+
+
+def _runs_population(pairs: Runs) -> Runs:
+    import pandas as pd
+
+    models = []
+    for model, suffix in (("MDOF-S", "_mdof"), ("2DOF-S", "_2dof")):
+        names = {name: str(name).removesuffix(suffix) for name in pairs if str(name).endswith(suffix)}
+        models.append(pairs[[*names]].rename(columns=names).assign(structure="Population", model=model))
+    return pd.concat(models, ignore_index=True)
+
+
+POPULATION = StudyKind(
+    name="population",
+    command="population",
+    summary="Run random structures under random records with MDOF-S and 2DOF-S, and compare the two.",
+    described_by="rockflex.papers.silva_stojadinovic_2024.population.PopulationStudy",
+    report=_report_population,
+    figures=_figures_population,
+    runs=_runs_population,
+)
+
+
+def _report_monte_carlo(study: Any, runs: Runs, found: Findings) -> None:
+    structures = runs.drop_duplicates("number")
+    lost = int(structures["weight"].isna().sum())
+    if lost:
+        found.remarks.append(f"{lost} of {len(structures)} structures cannot be built; their runs have an error")
+    found.tables[f"Values of {counted(len(structures), 'random structure')}"] = [
+        {"variable": name, "least": values.min(), "median": values.median(), "largest": values.max()}
+        for name in (*study.variables, "recentring_ratio")
+        for values in (structures[name],)
+    ]
+    _report_cloud(study, runs, found)
+
+
+MONTE_CARLO = StudyKind(
+    name="monte_carlo",
+    command="monte-carlo",
+    summary="Run random structures under the records, and fit regressions and fragility curves of all of them.",
+    described_by="rockflex.study.monte_carlo.MonteCarloStudy",
+    report=_report_monte_carlo,
+    figures=_figures_cloud,
+    measured=True,
+)
+
+
+def _report_design(study: Any, runs: Runs, found: Findings) -> None:
+    from rockflex.fragility import limit_label
+    from rockflex.study.design import design_tables, smallest_width, stored_limits
+
+    if study.search is not None:
+        _report_search(study, runs, found)
+        return
+    levels: list[float | None] = study.level if isinstance(study.level, list) else [study.level]
+    at = ", ".join(f"{level:g}" for level in dict.fromkeys(levels) if level is not None)
+    asked = "annual rate" if study.hazard else f"P at {study.measure} = {at}"
+    value = "rate" if study.hazard else "probability"
+    targets = [target for _, _, target, _ in stored_limits(study.document())]
+    designs: dict[tuple[str, str, float], dict[str, Any]] = {}
+    widths: list[dict[str, Any]] = []
+    for target, (limit, table) in zip(targets, design_tables(runs, study.document()), strict=True):
+        word = limit_label(limit)
+        for reason, lost in table[table[value].isna()].groupby("note"):
+            found.unfitted.append(f"{word}: no {value} of {len(lost)} of {len(table)} designs. {reason}")
+        for each in table.to_dict("records"):
+            row = designs.setdefault(
+                (each["model"], each["tendon"], each["half_width"]),
+                {
+                    "tendon": each["tendon"],
+                    "model": each["model"],
+                    "B [m]": each["half_width"],
+                    "h*/B": each["aspect_ratio"],
+                    "M_r [N m]": each["resisting_moment"],
+                    "M_b [N m]": each["median_base_moment"],
+                    "utilisation": each["median_tendon_utilisation"],
+                    "failed": each["n_failed"],
+                },
+            )
+            row |= {word: each[value], f"{word}, low": each["low"], f"{word}, high": each["high"]}
+        if target is None:
+            continue
+        for each in smallest_width(table, target).to_dict("records"):
+            words = {"limit": word, **{name: each[name] for name in ("tendon", "model", "outcome")}}
+            widths.append({**words, "B [m]": each["half_width"], "B, upper limit [m]": each["half_width_upper"]})
+            if each["note"]:
+                found.remarks.append(f"{word}, {each['tendon']}, {each['model']}: {each['note']}")
+    found.tables[f"Designs, and the {asked} of exceeding each limit; medians of all runs"] = [*designs.values()]
+    if widths:
+        most = ", ".join(f"{target:g}" for target in dict.fromkeys(targets) if target is not None)
+        found.tables[f"Least half width from which on the {asked} is at most {most}"] = widths
+
+
+def _report_search(study: Any, runs: Runs, found: Findings) -> None:
+    from rockflex.study.design import best_design, stored_search
+
+    requirements, cost = stored_search(study.document())
+    best = best_design(runs, requirements, cost)
+    found.remarks += best.notes
+    found.tables["Designs of the search, in the order in which they were run"] = [
+        _row(row, [each.label for each in requirements]) for row in best.designs.to_dict("records")
+    ]
+    if best.best is None:
+        return
+    chosen = {"best": best.best} | ({} if best.cautious is None else {"cautious": best.cautious})
+    names = {"best": "the cheapest that meets all targets", "cautious": "the cheapest whose bands meet them too"}
+    found.tables["Cheapest designs"] = [
+        {"which": names[word], **_row(best.designs.iloc[place].to_dict(), [])} for word, place in chosen.items()
+    ]
+    found.tables[f"Limits of the cheapest design, governed by {best.governs}"] = [
+        {
+            "limit": row["limit"],
+            "governs": "yes" if row["limit"] == best.governs else "no",
+            "target": row["target"],
+            "value": row["value"],
+            "low": row["low"],
+            "high": row["high"],
+            "value/target": row["used"],
+            "cost without it": row["cost_without"],
+        }
+        for row in best.limits.to_dict("records")
+    ]
+    found.tables["Cheapest design in resamples of the recordings"] = [
+        {str(name): value for name, value in row.items()} for row in best.interval.to_dict("records")
+    ]
+
+
+def _row(row: Mapping[Any, Any], labels: list[str]) -> dict[str, Any]:
+    """What is told of a design, with the values of some requirements."""
+    return {
+        "design": row["structure"],
+        "governs": row["governs"],
+        "meets": "yes" if row["meets"] else "no",
+        "B [m]": row["half_width"],
+        "tendons": row["tendon_factor"],
+        "dissipators": row["dissipator_factor"],
+        "ΣF_0 [N]": row["prestress"],
+        "ΣF_y [N]": row["dissipator_force"],
+        "cost": row["cost"],
+        **{label: row[label] for label in labels},
+        "meets in resamples": row["confidence"],
+        "chosen in resamples": row["chosen"],
+        "failed": row["n_failed"],
+    }
+
+
+def _figures_design(spec: Document, runs: Runs, _: str, __: Remark) -> Figures:
+    from rockflex import plot
+    from rockflex.fragility import limit_label
+    from rockflex.study.design import best_design, design_tables, stored_limits, stored_search
+
+    if "search" in spec:
+        best = best_design(runs, *stored_search(spec))
+        themes: dict[str, Literal["light", "dark"]] = {"design_search": "light", "design_search_dark": "dark"}
+        for name, theme in themes.items():
+            yield name, lambda theme=theme: plot.plot_design_search(best, theme=theme)
+        return
+    targets = [target for _, _, target, _ in stored_limits(spec)]
+    for target, (limit, table) in zip(targets, design_tables(runs, spec), strict=True):
+        stem = f"design_{'_'.join(limit_label(limit).split())}"
+        yield stem, lambda table=table, target=target: plot.plot_design(table, target)
+
+
+def _runs_design(table: Runs) -> Runs:
+    # The widths of a design are counted together, and so are all designs of a search.
+    if "tendon" not in table:
+        return table.assign(structure="Designs of the search")
+    return table.assign(structure=[f"Designs, tendons: {tendon}" for tendon in table["tendon"]])
+
+
+DESIGN = StudyKind(
+    name="design",
+    command="design",
+    summary="Find how wide a base must be, or the cheapest width, tendons and dissipators together.",
+    described_by="rockflex.study.design.DesignStudy",
+    report=_report_design,
+    figures=_figures_design,
+    runs=_runs_design,
+)
+
+
+KINDS: dict[str, StudyKind] = {
+    kind.name: kind
+    for kind in (
+        CLOUD,
+        INCREMENTAL,
+        STRIPES,
+        POPULATION,
+        MONTE_CARLO,
+        DESIGN,
+    )
+}
+
+
+def kind_named(name: object) -> StudyKind:
+    """Return the kind of a name.
+
+    Raises
+    ------
+    InputError
+        If there is no such kind.
+    """
+    found = KINDS.get(name) if isinstance(name, str) else None
+    if found is None:
+        known = ", ".join(f'"{each}"' for each in KINDS)
+        near = get_close_matches(str(name), KINDS, n=1)
+        hint = f' Did you mean "{near[0]}"?' if near else ""
+        was = "it is missing" if name is None else f"{shown(name)} was given"
+        raise InputError(f"study must be one of {known}, but {was}.{hint}")
+    return found

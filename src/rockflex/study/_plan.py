@@ -1,0 +1,187 @@
+"""A study divided into chunks that can be computed anywhere."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
+from typing import TYPE_CHECKING, ClassVar, SupportsIndex, TypeVar
+
+from rockflex._checks import whole_number
+from rockflex.motion import Suite, check_horizontal
+from rockflex.study._run_matrix import StudyMatrix, checksums
+from rockflex.study._tables import ArrowTable, Columns, Row, tabulate, to_frame
+from rockflex.study.parallel import map_runs
+from rockflex.study.progress import ProgressChoice, reporting
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+Result = TypeVar("Result")
+
+
+class ChunkedPlan(ABC):
+    """A plan of `n_units` units, computed `per_chunk` at a time; each unit gives some rows of the table.
+
+    A unit depends only on its own number, so the size of the chunks changes no row.
+    """
+
+    exact_count: ClassVar[bool] = True
+    """Whether `n_runs` is the number of runs, and not only an upper bound."""
+
+    units: ClassVar[str] = "runs"
+    """What the units are, in the plural."""
+
+    def __init__(self, motions: Suite, n_units: int, per_chunk: int) -> None:
+        check_horizontal(*motions)
+        self.motions = motions
+        self.n_units = n_units
+        self.per_chunk = whole_number("the size of a chunk", per_chunk, 1)
+
+    @property
+    @abstractmethod
+    def n_runs(self) -> int:
+        """Number of runs in all chunks, or an upper bound of it."""
+
+    @property
+    @abstractmethod
+    def columns(self) -> Columns:
+        """Columns of every chunk's table."""
+
+    @abstractmethod
+    def rows(self, units: Sequence[int]) -> list[Row]:
+        """Compute the rows of some units, in their order."""
+
+    def check_work(self) -> None:
+        """Refuse a study if every run exceeds its work limit; a plan whose runs are not known in advance refuses none.
+
+        Raises
+        ------
+        InputError
+            If no run is within its work limit.
+        """
+        return
+
+    @property
+    def rounds(self) -> list[range]:
+        """Numbers of the chunks that can be computed one round after the other, all of them at once by default."""
+        return [range(-(-self.n_units // self.per_chunk))]
+
+    def next_round(self, table: "pd.DataFrame") -> "ChunkedPlan":  # noqa: ARG002
+        """Return the plan of the next round, which may depend on the table of the rounds before."""
+        return self
+
+    @property
+    def n_ready(self) -> int:
+        """Number of units, from the first, that do not depend on other units."""
+        return self.n_units
+
+    @property
+    def n_chunks(self) -> int:
+        """Number of chunks."""
+        return self.rounds[-1].stop
+
+    def units_of(self, number: int) -> range:
+        """Units of a chunk."""
+        first = self.per_chunk * number
+        return range(first, min(first + self.per_chunk, self.n_units))
+
+    @property
+    def checksums(self) -> dict[str, str]:
+        """SHA-256 of each record's step and samples, by its name."""
+        return checksums(self.motions)
+
+    def chunk(self, number: SupportsIndex) -> ArrowTable:
+        """Compute a chunk. The table is the same to the last bit, whenever and wherever it is computed.
+
+        Raises
+        ------
+        InputError
+            If there is no such chunk. A run that cannot be solved is a row with a message in `error`.
+        """
+        units = self.units_of(whole_number("number", number, 0, self.n_chunks - 1))
+        return tabulate(self.rows(units), self.columns)
+
+
+def run_plan(
+    plan: ChunkedPlan, workers: SupportsIndex | None = None, progress: ProgressChoice = None
+) -> "pd.DataFrame":
+    """Compute all chunks of a plan, and return them as one table, in order.
+
+    Parameters
+    ----------
+    plan
+        The plan that `.plan()` of a study returns.
+    workers
+        Number of threads; None for one a core.
+    progress
+        None, "bar", or a function of the number of units that are done, and of all.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The rows of all chunks; see the study for its columns.
+    """
+    tables: list[ArrowTable] = []
+    with reporting(progress, plan.n_units, plan.units) as advance:
+        plan.check_work()
+        for numbers in plan.rounds:
+            if tables:
+                plan = plan.next_round(to_frame(*tables))
+            found = dict[int, ArrowTable]()
+            with closing(map_chunks(plan.chunk, numbers, workers)) as coming:
+                for number, table in coming:
+                    found[number] = table
+                    advance(len(plan.units_of(number)))
+            tables += [found[number] for number in numbers]
+    return to_frame(*tables)
+
+
+def map_chunks(
+    chunk: Callable[[int], Result], numbers: Sequence[int], workers: SupportsIndex | None
+) -> Generator[tuple[int, Result]]:
+    """Yield the number and the result of chunks in order of completion."""
+    return map_runs(lambda number: (number, chunk(number)), numbers, workers)
+
+
+class CrossPlan(ChunkedPlan):
+    """The cross product of structures, records, models and `n_levels` levels, one unit each, divided into chunks."""
+
+    def __init__(self, matrix: StudyMatrix, n_levels: int, per_chunk: int) -> None:
+        self.matrix, self._n_levels = matrix, n_levels
+        n_units = len(matrix.names) * len(matrix.motions) * len(matrix.labels) * n_levels
+        super().__init__(matrix.motions, n_units, per_chunk)
+
+    @abstractmethod
+    def scale(self, structure: int, record: int, level: int) -> float:
+        """Factor on a record's acceleration at a level."""
+
+    @property
+    def n_runs(self) -> int:
+        """Number of runs."""
+        return self.n_units
+
+    @property
+    def columns(self) -> Columns:
+        """Columns of every chunk's table."""
+        return self.matrix.columns
+
+    def rows(self, units: Sequence[int]) -> list[Row]:
+        """Simulate one run a unit."""
+        return self.matrix.run_all([self.run_of(unit) for unit in units])
+
+    def check_work(self) -> None:
+        """Refuse a study if every run exceeds its work limit.
+
+        Raises
+        ------
+        InputError
+            If no run is within its work limit.
+        """
+        self.matrix.check_work(map(self.run_of, range(self.n_units)))
+
+    def run_of(self, unit: int) -> tuple[int, int, int, float]:
+        """Return the places of the structure, record and model of a unit, and the scale of its (first) run."""
+        rest, level = divmod(unit, self._n_levels)
+        rest, model = divmod(rest, len(self.matrix.labels))
+        structure, record = divmod(rest, len(self.matrix.motions))
+        return structure, record, model, self.scale(structure, record, level)

@@ -1,0 +1,360 @@
+"""The search for the cheapest design: the values given, then a few designs for each refinement."""
+
+from collections.abc import Callable, Iterator, Sequence
+from copy import copy
+from itertools import accumulate, pairwise, product
+from typing import TYPE_CHECKING, Any, Literal, Self, SupportsIndex
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockflex._arrays import Array
+from rockflex._checks import instance
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+from rockflex.modal import RockingProperties
+from rockflex.models import BoucWen, ImpactLaw, Model
+from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Motions, RockingStructure, factors_of
+from rockflex.study._plan import ChunkedPlan, run_plan
+from rockflex.study._run_matrix import StudyMatrix, check_lifts, study_matrix
+from rockflex.study._tables import Columns, Row
+from rockflex.study.design._designs import VARIABLES, DesignSearch, Point, dissipator_force_of
+from rockflex.study.design._fit import check_damping, first_damping, state_of
+from rockflex.study.design._requirements import DesignCost, Requirement, check_requirements, margins_of, values_of
+from rockflex.study.progress import ProgressChoice
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+CHUNK = 5_000  # points at once
+SMOOTHINGS = (1e-6, 1e-3, 1e-2, 0.1, 1.0, 10.0)
+
+Costs = Callable[[Array], Array]
+Integer = NDArray[np.intp]
+
+
+class Surface:
+    """Smoothed thin-plate splines through the margins of the designs tried, one for each requirement.
+
+    Coordinates are counted in steps between the values that were given, so that the surface does not depend on units.
+    The smoothing of each spline is the one with the smallest error where each design is left out in turn (Wahba 1990,
+    Spline Models for Observational Data, Chapter 4).
+
+    Parameters
+    ----------
+    steps : ndarray, shape (n, d)
+        Coordinates of the designs in the variables that are varied.
+    margins : ndarray, shape (n, m)
+        Their margins; designs without a margin are left out.
+
+    Raises
+    ------
+    InputError
+        If too few designs have margins.
+    """
+
+    def __init__(self, steps: Array, margins: Array) -> None:
+        known = np.isfinite(margins).all(axis=1)
+        self._centres, values = steps[known], margins[known]
+        n, d = self._centres.shape
+        tail = np.column_stack((np.ones(n), self._centres))
+        if n <= d + 1 or np.linalg.matrix_rank(tail) <= d:
+            raise InputError(
+                f"Only {int(known.sum())} of {known.size} designs have all probabilities, too few to interpolate "
+                "between them."
+            )
+        system = np.zeros((n + d + 1, n + d + 1))
+        system[:n, n:], system[n:, :n] = tail, tail.T
+        bending = _bending(self._centres, self._centres)
+        padded = np.vstack((values, np.zeros((d + 1, values.shape[1]))))
+        least = np.full(values.shape[1], np.inf)
+        self._weights = np.zeros_like(padded)
+        for smoothing in SMOOTHINGS:
+            system[:n, :n] = bending + smoothing * np.eye(n)
+            inverse = np.linalg.pinv(system)
+            weights = inverse @ padded
+            left_out = ((weights[:n] / np.diag(inverse)[:n, None]) ** 2).sum(axis=0)
+            better = left_out < least
+            least[better], self._weights[:, better] = left_out[better], weights[:, better]
+
+    def margins(self, steps: Array) -> Array:
+        """Margins at other coordinates, shape (k, m)."""
+        return np.concatenate([self._at(steps[start : start + CHUNK]) for start in range(0, len(steps), CHUNK)])
+
+    def _at(self, steps: Array) -> Array:
+        rows = np.column_stack((_bending(steps, self._centres), np.ones(len(steps)), steps))
+        return rows @ self._weights
+
+
+def _bending(steps: Array, centres: Array) -> Array:
+    """r² log r between two sets of coordinates."""
+    squares = ((steps[:, None, :] - centres[None, :, :]) ** 2).sum(axis=2)
+    return 0.5 * squares * np.log(np.where(squares > 0.0, squares, 1.0))
+
+
+def next_points(search: DesignSearch, level: int, tried: Sequence[Point], margins: Array, costs: Costs) -> list[Point]:
+    """Points that a refinement tries, in the order of their number; `costs` are those of values of the variables.
+
+    One half are the cheapest designs that are expected to meet all targets, and that are the cheapest for one value of
+    a variable. The other half are those among them that are farthest from all designs tried, so that the trade-off is
+    known in its whole range. If there are too few, those that are expected to meet or miss the targets by the least
+    follow. Where no design is expected to meet the targets, they are the closest to doing so.
+    """
+    axes, most = search.varied, search.designs_per_refinement
+    points = np.array([*product(*search.grid(level))])
+    scale = 2.0**search.refinements
+    seen = np.array(tried)
+    try:
+        surface = Surface(seen[:, axes] / scale, margins)
+    except InputError:
+        return []
+    worst = surface.margins(points[:, axes] / scale).max(axis=1)
+    cost = costs(search.at(points))
+    new = ~np.isin(_codes(points), _codes(seen))
+    meets = worst <= 0.0
+    if not meets.any():
+        order = np.lexsort((cost, worst))
+        return _listed(points[order[new[order]][:most]])
+    front = np.unique(
+        np.concatenate([_cheapest_of_each(points[:, axis], np.where(meets, cost, np.inf)) for axis in axes])
+    )
+    front = front[new[front] & meets[front]]
+    front = front[np.argsort(cost[front], kind="stable")]
+    chosen = [int(place) for place in front[: -(-most // 2)]]
+    rest = [int(place) for place in front[len(chosen) :]]
+    while rest and len(chosen) < most:
+        known = np.concatenate([seen, points[chosen]])
+        apart = [float(np.abs(known - points[place]).max(axis=1).min()) for place in rest]
+        chosen.append(rest.pop(int(np.argmax(apart))))
+    new[chosen] = False
+    nearest = np.lexsort((cost, np.abs(worst)))
+    chosen += [int(place) for place in nearest[new[nearest]][: most - len(chosen)]]
+    return _listed(points[chosen])
+
+
+def _cheapest_of_each(values: Integer, cost: Array) -> Integer:
+    """Place of the least cost among the points of each value."""
+    order = np.lexsort((cost, values))
+    return order[np.unique(values[order], return_index=True)[1]]
+
+
+def _codes(points: Integer) -> Integer:
+    """A number for each point; no grid reaches 2^20."""
+    return points[:, 0] * 2**40 + points[:, 1] * 2**20 + points[:, 2]
+
+
+def _listed(points: Integer) -> list[Point]:
+    found = [(int(b), int(tendon), int(dissipator)) for b, tendon, dissipator in points]
+    return sorted(found)
+
+
+FACTS = (*VARIABLES, "aspect_ratio", "prestress", "dissipator_force", "prestress_ratio", "resisting_moment")
+
+
+class SearchPlan(ChunkedPlan):
+    """A search in rounds: each unit is a design under all records at all scales.
+
+    The number of units is fixed. A unit of a refinement stays empty if there are fewer designs worth trying.
+    """
+
+    exact_count = False
+    units = "designs"
+
+    def __init__(
+        self,
+        matrix: StudyMatrix,
+        search: DesignSearch,
+        requirements: Sequence[Requirement],
+        cost: DesignCost,
+        scales: Sequence[float],
+        runs_per_chunk: int,
+    ) -> None:
+        check_lifts(matrix, "a fixed base, so the base width has no effect")
+        if len(matrix.labels) != 1:
+            raise InputError(f"models: a search needs one model, but {', '.join(matrix.labels)} were given.")
+        (self.structure,) = matrix.structures
+        search.check_elements(self.structure)
+        self.search, self.requirements, self.cost = search, list(requirements), cost
+        for each in self.requirements:
+            check_damping(each.hazard, first_damping(self.structure), each.measure)
+        self.scales = factors_of(scales, max(matrix.motions, key=lambda motion: motion.pga))
+        self._each = len(matrix.motions) * len(self.scales)
+        super().__init__(matrix.motions, search.n_designs, max(1, runs_per_chunk // self._each))
+        self._empty = matrix
+        self._start_round(0, search.first())
+        for point, properties in zip(search.first(), self._matrix.structures, strict=True):
+            self._check_limits(point, properties)
+
+    def _start_round(self, number: int, points: Sequence[Point]) -> None:
+        self.round, self.points = number, list(points)
+        names = [f"design {self._first_unit(number) + place + 1}" for place in range(len(self.points))]
+        built = {name: self.search.built(self.structure, point) for name, point in zip(names, self.points, strict=True)}
+        self._matrix = StudyMatrix(built, self._empty.motions, self._empty.options)
+
+    def _check_limits(self, point: Point, properties: RockingProperties) -> None:
+        for each in self.requirements:
+            try:
+                state_of(each.limit, properties.nominal_overturning_rotation)
+            except InputError as error:
+                raise InputError(f"B = {self.search.at(point)[0, 0]:.6g} m: {error}") from error
+
+    def _first_unit(self, number: int) -> int:
+        return self.search.n_first + (number - 1) * self.search.designs_per_refinement if number else 0
+
+    @property
+    def n_runs(self) -> int:
+        """Upper bound of the number of runs."""
+        return self.n_units * self._each
+
+    @property
+    def n_ready(self) -> int:
+        """Number of units that are known before anything was run."""
+        return self.search.n_first
+
+    @property
+    def rounds(self) -> list[range]:
+        """Numbers of the chunks of each round."""
+        counts = [self.search.n_first] + [self.search.designs_per_refinement] * self.search.refinements
+        ends = accumulate((-(-count // self.per_chunk) for count in counts), initial=0)
+        return [range(start, end) for start, end in pairwise(ends)]
+
+    def units_of(self, number: int) -> range:
+        """Units of a chunk, all of one round."""
+        place = next(place for place, numbers in enumerate(self.rounds) if number in numbers)
+        first, last = self._first_unit(place), self._first_unit(place + 1)
+        start = first + (number - self.rounds[place].start) * self.per_chunk
+        return range(start, min(start + self.per_chunk, last))
+
+    def next_round(self, table: "pd.DataFrame") -> Self:
+        """Return the plan of the next round, from the table of this and the earlier rounds."""
+        following = copy(self)
+        known = table[table["round"] <= self.round]
+        designs = [rows for _, rows in known.groupby("structure", observed=True, sort=False)]
+        margins = margins_of(values_of(designs, self.requirements), self.requirements)
+        values = np.array([rows[[*VARIABLES]].iloc[0].to_numpy(float) for rows in designs])
+        points = next_points(self.search, self.round + 1, self.search.points_of(values), margins, self.costs)
+        following._start_round(self.round + 1, points)
+        return following
+
+    def costs(self, values: Array) -> Array:
+        """Cost of designs from the values of their variables, shape (n, 3)."""
+        prestress = self.structure.prestress * values[:, 1]
+        return self.cost.of(values[:, 0], prestress, dissipator_force_of(self.structure) * values[:, 2])
+
+    @property
+    def columns(self) -> Columns:
+        """Columns of every chunk's table."""
+        names = [f"design {unit + 1}" for unit in range(self.n_units)]
+        found = dict(self._empty.columns) | {"structure": names}
+        return {"structure": found.pop("structure"), "round": int, **dict.fromkeys(FACTS, float), **found}
+
+    def rows(self, units: Sequence[int]) -> list[Row]:
+        """Simulate all runs of a design a unit; none if the round has no such design."""
+        return [row for unit in units for row in self._runs_of(unit)]
+
+    def _runs_of(self, unit: int) -> Iterator[Row]:
+        place = unit - self._first_unit(self.round)
+        if not 0 <= place < len(self.points):
+            return
+        facts = {"structure": unit, "round": self.round} | self._facts_of(place)
+        runs = [(place, record, 0, scale) for record, scale in product(range(len(self.motions)), self.scales)]
+        for row in self._matrix.run_all(runs):
+            yield row | facts
+
+    def _facts_of(self, place: int) -> dict[str, Any]:
+        p = self._matrix.structures[place]
+        height = float(p.effective_height[0]) if p.n_modes else p.l0r / p.m_tot
+        return {
+            **dict(zip(VARIABLES, map(float, self.search.at(self.points[place])[0]), strict=True)),
+            "aspect_ratio": height / p.half_width,
+            "prestress": p.prestress,
+            "dissipator_force": dissipator_force_of(p),
+            "prestress_ratio": p.prestress / (p.m_tot * GRAVITY),
+            "resisting_moment": p.resisting_moment,
+        }
+
+    def check_work(self) -> None:
+        """Refuse a search if every run of its first round exceeds its work limit.
+
+        Raises
+        ------
+        InputError
+            If no run is within its work limit.
+        """
+        places = range(len(self.points)), range(len(self.motions)), self.scales
+        self._matrix.check_work((place, record, 0, scale) for place, record, scale in product(*places))
+
+
+def search_design(
+    structure: RockingStructure | RockingProperties,
+    motions: Motions,
+    search: DesignSearch,
+    requirements: Sequence[Requirement],
+    cost: DesignCost,
+    model: str | Model = "MDOF-S",
+    scales: float | Sequence[float] = 1.0,
+    free_vibration: float | Literal["settle"] = "settle",
+    bouc_wen: BoucWen | None = None,
+    impact: ImpactLaw | None = None,
+    workers: SupportsIndex | None = None,
+    work_limit: float | None = WORK_LIMIT,
+    ground: GroundChoice = None,
+    progress: ProgressChoice = None,
+) -> "pd.DataFrame":
+    """Search base width, tendons and dissipators together for the cheapest design that meets all requirements.
+
+    All combinations of the values of the search are run under all motions, then the designs of each refinement; the
+    same call always runs the same designs. `best_design` evaluates the table.
+
+    Parameters
+    ----------
+    structure
+        A structure, or its `RockingProperties`, with the elements that the factors of the search multiply.
+    motions, scales, free_vibration, bouc_wen, impact, workers, work_limit, ground
+        As in `run_cloud`.
+    search
+        The values of the variables, and the number of refinements.
+    requirements
+        Limits with their targets, which all must be met.
+    cost
+        Unit costs of the width and of the forces.
+    model
+        One model, as in `simulate`.
+    progress
+        As in `run_cloud`, counted in designs.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per run, in the order of the search. The columns are those of `run_cloud`, where `structure` numbers the
+        designs, and after it: `round`, 0 for the values given; `half_width` (m), `tendon_factor`, `dissipator_factor`;
+        `aspect_ratio` = h*_1/B; `prestress` = ΣF_0 and `dissipator_force` = ΣF_y in N; `prestress_ratio` =
+        ΣF_0/(m_tot g); `resisting_moment` (M_r in N m).
+
+    Raises
+    ------
+    InputError
+        If the structure lacks elements for the factors, a design cannot be built, the model's base cannot lift, or as
+        in `run_cloud`.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> held = rf.Restrained(frame, rf.Tendon(initial_force=300e3, stiffness=2e6))
+    >>> pulses = {"a": rf.ricker_pulse(3.0, 0.6), "b": rf.ricker_pulse(3.0, 0.9)}
+    >>> search = rf.DesignSearch([1.0, 2.0, 3.0], tendon_factors=[0.0, 1.0, 2.0], refinements=1)
+    >>> targets, cost = [rf.Requirement(0.01, 0.2, at=0.5)], rf.DesignCost(half_width=1.0, prestress=5e-7)
+    >>> runs = rf.search_design(held, pulses, search, targets, cost, model="2DOF-S", scales=[0.5, 1.0, 2.0, 4.0])
+    >>> runs.groupby("round")["structure"].nunique().tolist()
+    [9, 8]
+    """
+    given: Any = scales
+    matrix = study_matrix(
+        [structure], motions, [model], free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground
+    )
+    wanted = check_requirements(requirements)
+    space, unit_costs = instance("search", search, DesignSearch), instance("cost", cost, DesignCost)
+    return run_plan(SearchPlan(matrix, space, wanted, unit_costs, given, runs_per_chunk=64), workers, progress)

@@ -1,0 +1,243 @@
+"""The manifest of a study's folder: its specification as plain JSON, and the origin of its numbers."""
+
+import hashlib
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, Self, SupportsIndex, cast
+
+from rockflex._checks import whole_number
+from rockflex._errors import InputError
+from rockflex._files import check_regular, write_whole
+from rockflex._shown import counted, shortened, shown
+
+MAX_DIFFERENCES = 10  # differences in a message
+MAX_DEPTH = 50  # levels of a specification; those of studies have five
+WIDTH = 60  # characters of a value in a message
+
+
+def plain(name: str, value: object, depth: int = 0) -> Any:
+    """Return `value` as dicts, lists, strings, numbers, booleans and None, as JSON would give it back.
+
+    Infinities and NaN are allowed, as in Python's JSON.
+
+    Raises
+    ------
+    InputError
+        If it holds any other value, or is nested too deep; the message has the dotted path.
+    """
+    if depth > MAX_DEPTH:
+        raise InputError(
+            f"{shortened(name)} is nested more than {MAX_DEPTH} deep, which no specification is. Give the value "
+            "itself, not lists within lists, and no list that holds itself."
+        )
+    if value is None or isinstance(value, str | bool):
+        return value
+    if isinstance(value, int | float):
+        return int(value) if isinstance(value, int) else float(value)
+    if isinstance(value, Mapping):
+        items = cast("Mapping[object, object]", value)
+        for key in items:
+            if not isinstance(key, str):
+                raise InputError(f"The keys of {name} must be strings, but {shown(key)} was given.")
+        return {str(key): plain(f"{name}.{key}", each, depth + 1) for key, each in items.items()}
+    if isinstance(value, list | tuple):
+        entries = cast("Sequence[object]", value)
+        return [plain(f"{name}[{place}]", each, depth + 1) for place, each in enumerate(entries)]
+    raise InputError(
+        f"{name} is of type {type(value).__name__}, which JSON does not know. Give a number, a string, a list or a "
+        "dict; a NumPy array or number by its .tolist()."
+    )
+
+
+def differences(old: Any, new: Any, where: str = "") -> list[str]:
+    """Return a line for each place where two plain values differ, by its dotted path."""
+    if isinstance(old, dict) and isinstance(new, dict):
+        before, now = cast("dict[str, Any]", old), cast("dict[str, Any]", new)
+        found: list[str] = []
+        for key in [*before, *(key for key in now if key not in before)]:
+            path = f"{where}.{key}" if where else key
+            if key not in now:
+                found.append(f"{path}: {_shown(before[key])} in the folder, not given now")
+            elif key not in before:
+                found.append(f"{path}: not in the folder, {_shown(now[key])} now")
+            else:
+                found += differences(before[key], now[key], path)
+        return found
+    if isinstance(old, list) and isinstance(new, list):
+        first, second = cast("list[Any]", old), cast("list[Any]", new)
+        if len(first) != len(second):
+            return [f"{where}: {counted(len(first), 'entry', 'entries')} in the folder, {len(second)} now"]
+        pairs = enumerate(zip(first, second, strict=True))
+        return [line for place, (one, two) in pairs for line in differences(one, two, f"{where}[{place}]")]
+    return [] if _same(old, new) else [f"{where}: {_shown(old)} in the folder, {_shown(new)} now"]
+
+
+def listed(lines: Sequence[str]) -> str:
+    """Return the first lines, indented, and how many more there are."""
+    more = [f"and {len(lines) - MAX_DIFFERENCES} more"] if len(lines) > MAX_DIFFERENCES else []
+    return "".join(f"\n  {line}" for line in [*lines[:MAX_DIFFERENCES], *more])
+
+
+def _same(old: Any, new: Any) -> bool:
+    if isinstance(old, float) and isinstance(new, float) and math.isnan(old) and math.isnan(new):
+        return True
+    return isinstance(old, bool) is isinstance(new, bool) and old == new
+
+
+def _shown(value: Any) -> str:
+    text = json.dumps(value, ensure_ascii=False)
+    return text if len(text) <= WIDTH else f"{text[: WIDTH - 3]}..."
+
+
+FORMAT = "rockflex-study-2"  # 1: without total displacements and reactions of the ground
+MANIFEST, SPEC = "manifest.json", "spec.json"
+COMMIT = " commit"  # versions whose name ends so tell where code came from, and are not compared
+LEVEL = "vector instructions"  # the version that older manifests do not have
+MAX_PARTS = 100_000  # every part is a file, whose number has five digits
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """Identity and origin of a study.
+
+    Parameters
+    ----------
+    spec
+        The study's specification, as plain JSON; stored in a separate file.
+    study
+        Digest of the specification, the number of chunks and the checksums; every part records it.
+    n_chunks
+        Number of parts of the complete study.
+    versions
+        Version of each library that the numbers depend on; those that end in " commit" only say where code came from.
+    checksums
+        Checksum of each record, matrix from a file and other file that the study depends on, by name.
+    created
+        Date and time, UTC, ISO 8601.
+    """
+
+    spec: dict[str, Any]
+    study: str
+    n_chunks: int
+    versions: dict[str, Any]
+    checksums: dict[str, Any]
+    created: str
+
+    @classmethod
+    def of(
+        cls,
+        spec: Mapping[str, Any],
+        n_chunks: SupportsIndex,
+        versions: Mapping[str, str],
+        checksums: Mapping[str, str],
+    ) -> Self:
+        for name, given in (("spec", spec), ("versions", versions), ("checksums", checksums)):
+            if not isinstance(given, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
+                raise InputError(f"{name} must be a mapping, but {type(given).__name__} was given.")
+        count = _part_count(n_chunks)
+        content, sums = plain("spec", spec), plain("checksums", checksums)
+        now = datetime.now(UTC).isoformat(timespec="seconds")
+        return cls(content, _digest(content, count, sums), count, plain("versions", versions), sums, now)
+
+    def write(self, folder: Path) -> None:
+        """Write both files, the manifest last, because its presence marks the folder as a study."""
+        origin = {"format": FORMAT, **asdict(self), "seed": self.spec.get("seed")}
+        del origin["spec"]
+        write_whole(folder / SPEC, _encoded(self.spec))
+        write_whole(folder / MANIFEST, _encoded(origin))
+
+    @classmethod
+    def read(cls, folder: Path) -> Self:
+        """Read what `write` wrote.
+
+        Raises
+        ------
+        InputError
+            If a file is missing, damaged, changed by hand or of another format.
+        """
+        path = folder / MANIFEST
+        for file in (path, folder / SPEC):
+            check_regular(file)
+        try:
+            origin = json.loads(path.read_text("utf-8"))
+            spec = plain("spec", json.loads((folder / SPEC).read_text("utf-8")))
+            known = origin.pop("format")
+            if known == FORMAT:
+                del origin["seed"]
+                _part_count(origin["n_chunks"])
+                manifest = cls(spec=spec, **origin)
+                datetime.fromisoformat(manifest.created)
+                dict[str, Any](manifest.versions)
+                intact = manifest.study == _digest(spec, manifest.n_chunks, manifest.checksums)
+                if intact:
+                    return manifest
+        except (ValueError, TypeError, KeyError, AttributeError, RecursionError, FileNotFoundError) as error:
+            reason = f"{type(error).__name__}: {shortened(str(error))}"
+            raise InputError(
+                f"{path} or the {SPEC} beside it is damaged ({reason}). Restore both from a copy, "
+                f"or give another folder; the results in {folder / 'parts'} can still be read as Parquet."
+            ) from error
+        if known != FORMAT:
+            raise InputError(
+                f"{path} has the format {shown(known)}, but this version of rockflex reads {FORMAT!r}. "
+                "Use the version that wrote it, or run the study again in another folder; the results in "
+                f"{folder / 'parts'} can still be read as Parquet."
+            )
+        raise InputError(
+            f"{folder / SPEC} was changed after the study started. Undo the change, or give another folder."
+        )
+
+    def accept(self, given: "Manifest", folder: Path, *, any_version: bool) -> None:
+        """Raise an `InputError` that lists the differences if `given` is not this study."""
+        changed = differences(self.spec, given.spec)
+        if self.n_chunks != given.n_chunks:
+            changed.append(f"number of chunks: {self.n_chunks} in the folder, {given.n_chunks} now")
+        if changed:
+            raise InputError(
+                f"{folder} holds another study. What differs:{listed(changed)}\n"
+                "Give another folder for this study, or the folder's own specification to resume it."
+            )
+        changed = differences(self.checksums, given.checksums)
+        if changed:
+            raise InputError(
+                f"{folder} holds this study with another record, matrix or impact law. Checksums that differ:"
+                f"{listed(changed)}\nUse the same files, or give another folder."
+            )
+        now = _compared(given.versions)
+        if LEVEL not in self.versions:
+            now.pop(LEVEL, None)
+        changed = differences(_compared(self.versions), now)
+        if changed and not any_version:
+            raise InputError(
+                f"{folder} was started with other versions, whose numbers may differ in the last digits:"
+                f"{listed(changed)}\n"
+                f"Install those versions (set ROCKFLEX_SIMD for other {LEVEL}), give another folder, or pass "
+                "any_version=True to mix them."
+            )
+
+
+def _compared(versions: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: version for name, version in versions.items() if not name.endswith(COMMIT)}
+
+
+def _part_count(n_chunks: SupportsIndex) -> int:
+    count = whole_number("n_chunks", n_chunks, 1)
+    if count > MAX_PARTS:
+        raise InputError(
+            f"n_chunks must be at most {MAX_PARTS}, because each chunk is a file, but {shown(count)} was given. "
+            "Compute more runs per chunk: runs_per_chunk in a study."
+        )
+    return count
+
+
+def _encoded(content: dict[str, Any]) -> bytes:
+    return (json.dumps(content, indent=2, ensure_ascii=False) + "\n").encode()
+
+
+def _digest(spec: dict[str, Any], n_chunks: int, checksums: dict[str, Any]) -> str:
+    canonical = json.dumps([spec, n_chunks, checksums], sort_keys=True)
+    return hashlib.sha256(canonical.encode()).hexdigest()[:32]

@@ -1,0 +1,370 @@
+"""Monte Carlo simulation: structures whose dimensions and elements are random, under a suite of records."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any, Literal, cast
+
+import numpy as np
+from pydantic import Field
+
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+from rockflex._schema import PLAIN, Key
+from rockflex.modal import Ground, RockingProperties
+from rockflex.motion import Suite, intensities
+from rockflex.structure.file import StructureEntry, Table, checked, label_of
+from rockflex.study._arguments import factors_of, properties_of
+from rockflex.study._case import prepare_together
+from rockflex.study._plan import ChunkedPlan
+from rockflex.study._random_variables import Variables, check_known, draws, is_formula, names_of, value_of
+from rockflex.study._run_matrix import StudyMatrix
+from rockflex.study._tables import RESULTS, Columns, Row, kinds_of
+from rockflex.study.cloud import Factors
+from rockflex.study.spec import GroundTable, RunsSpec
+
+ELEMENT_KEYS = ("tendons", "elements")
+FACTS = {
+    "weight": "the weight m_tot g of the structure in N",
+    "weight_moment": "the moment m_tot g B of the weight in N m",
+    "half_width": "the half width B of the base in m",
+    "l0r_g": "the moment L_0^r g of the weight, a radian, in N m",
+}
+"""What formulas of tendons, elements and the ground may use besides the variables."""
+
+Place = tuple[str | int, ...]
+
+
+class _Holder(Table):
+    structure: StructureEntry
+
+
+class _GroundHolder(Table):
+    ground: GroundTable
+
+
+class Population:
+    """Structures that differ in the values of variables.
+
+    Parameters
+    ----------
+    variables
+        The variables.
+    structure
+        A structure as a file describes it, with formulas such as "= 0.3 * weight" in place of some numbers.
+    folder
+        Where relative paths of files of numbers start.
+    ground
+        The ground as a file describes it, with formulas in place of some numbers; None for rigid ground.
+
+    Raises
+    ------
+    InputError
+        If a formula cannot be read, or refers to unknown names.
+    """
+
+    def __init__(
+        self, variables: Variables, structure: Mapping[str, Any], folder: Path, ground: Mapping[str, Any] | None = None
+    ) -> None:
+        self.variables, self._structure, self._folder, self._ground = variables, structure, folder, ground
+        for place, formula in (*_formulas(structure, ("structure",)), *_formulas(ground, ("ground",))):
+            label, held = label_of(place), place[0] == "ground" or place[1] in ELEMENT_KEYS
+            try:
+                needed = names_of(formula)
+            except InputError as error:
+                raise InputError(f"{label}: {error}") from error
+            if not held and (early := sorted(needed & FACTS.keys())):
+                raise InputError(
+                    f"{label}: {early[0]} is known only after the structure is built, so only formulas of elements, "
+                    "tendons and the ground may use it."
+                )
+            check_known(label, needed, variables.kinds | (FACTS if held else {}))
+
+    def entry(self, values: Mapping[str, float]) -> StructureEntry:
+        """Return the structure without tendons and elements for values of the variables.
+
+        Raises
+        ------
+        InputError
+            If a formula has no value, or a key is unknown, missing, or of the wrong kind.
+        """
+        return _checked({key: value for key, value in self._structure.items() if key not in ELEMENT_KEYS}, values)
+
+    def build(self, values: Mapping[str, float]) -> RockingProperties:
+        """Return the structure for values of the variables.
+
+        Raises
+        ------
+        InputError
+            As `entry`, or if a value is out of range or values contradict each other.
+        """
+        free = properties_of(self.entry(values).build(self._folder))
+        if not any(self._structure.get(key) for key in ELEMENT_KEYS):
+            return free
+        return properties_of(_checked(self._structure, {**values, **facts_of(free)}).hold(free))
+
+    def ground_under(self, properties: RockingProperties, values: Mapping[str, float]) -> Ground | None:
+        """Return the ground under a structure for values of the variables.
+
+        Raises
+        ------
+        InputError
+            If a formula has no value, a key is unknown, missing, or of the wrong kind, or a value is out of range.
+        """
+        if self._ground is None:
+            return None
+        content = _evaluated(self._ground, {**values, **facts_of(properties)}, ("ground",))
+        return checked(_GroundHolder, {"ground": content}).ground.under(properties)
+
+
+def facts_of(properties: RockingProperties) -> dict[str, float]:
+    """Return the values of `FACTS`."""
+    weight = properties.m_tot * GRAVITY
+    return {
+        "weight": weight,
+        "weight_moment": weight * properties.half_width,
+        "half_width": properties.half_width,
+        "l0r_g": properties.l0r * GRAVITY,
+    }
+
+
+def _checked(content: Mapping[str, Any], values: Mapping[str, float]) -> StructureEntry:
+    return checked(_Holder, {"structure": _evaluated(content, values, ("structure",))}).structure
+
+
+def _formulas(content: object, place: Place) -> Iterator[tuple[Place, str]]:
+    if is_formula(content):
+        yield place, str(content)
+    for key, each in _items(content):
+        yield from _formulas(each, (*place, key))
+
+
+def _evaluated(content: Any, values: Mapping[str, float], place: Place) -> Any:
+    """Return the content with the values of its formulas."""
+    if is_formula(content):
+        try:
+            return value_of(content, values)
+        except InputError as error:
+            raise InputError(f"{label_of(place)}: {error}") from error
+    evaluated = ((key, _evaluated(each, values, (*place, key))) for key, each in _items(content))
+    if isinstance(content, Mapping):
+        return dict(evaluated)
+    return [each for _, each in evaluated] if isinstance(content, list) else content
+
+
+def _items(content: object) -> Iterator[tuple[str | int, Any]]:
+    if isinstance(content, Mapping):
+        yield from cast("Mapping[str, Any]", content).items()
+    elif isinstance(content, list):
+        yield from enumerate(cast("list[Any]", content))
+
+
+MAX_STRUCTURES = 2**32 - 1  # structures with different random numbers
+MAX_TRIALS = 20  # structures, at most, until one can be built
+STRUCTURES_PER_BATCH = 64  # structures that are prepared together
+OF_STRUCTURE = "resisting_moment recentring_ratio"
+_RUN = "structure number motion group magnitude distance_km model scale nominal_limit zeta_1 error"
+_COLUMNS = (*_RUN.split(), *OF_STRUCTURE.split(), *(measure.name for measure in intensities()), "status", *RESULTS)
+
+
+class MonteCarloStudy(RunsSpec):
+    """Random structures under all records, or under some that are drawn for each structure.
+
+    `variables` are distributions (`uniform`, `log_uniform`, `whole`, `normal`, `lognormal` or `one_of`), formulas of
+    other variables, and numbers. `structure` is a structure as a file describes it; any number in it may be a formula,
+    a text that begins with "=": numbers, names of variables, + - * / **, parentheses, min, max, sqrt, exp and log.
+    `ground` is the ground as a file describes it, and may have formulas too. Formulas of tendons, elements and the
+    ground may also use `weight` (m_tot g, N), `weight_moment` (m_tot g B, N m), `half_width` (B, m) and `l0r_g`
+    (L_0^r g, N m), so that strengths can be shares of the weight.
+
+    The table has one row per run, structures outermost, then records, models and scales. Its columns are those of
+    `run_cloud`, with the name of the study as `structure`; `number`, which counts the structures from 0; each variable;
+    `weight`, `weight_moment`, `half_width`, `l0r_g`, `resisting_moment` and `recentring_ratio` of the structure. The
+    runs of a structure that cannot be built have a message in `error`. The draw of a variable depends only on `seed`,
+    the number, and the name of the variable: other variables, or more structures, change no value.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> study = rf.MonteCarloStudy(
+    ...     count=1000,
+    ...     variables={"height": {"uniform": [10.0, 40.0]}, "fuse": {"lognormal": [0.3, 0.4]}},
+    ...     structure={
+    ...         "wall_frame": {
+    ...             "height": "= height", "mass": "= 2e4 * height", "stiffness_parameter": 0.0, "base_mass": 4e4,
+    ...             "period": "= 0.05 * height**0.75", "aspect_ratio": 5.0, "damping_ratio": 0.03, "n_modes": 3},
+    ...         "elements": [{"kind": "yielding_dissipator", "stiffness": "= 50 * weight / half_width",
+    ...                       "yield_force": "= fuse * weight"}]},
+    ...     records={"suites": ["fema-p695-far-field"]},
+    ...     records_per_structure=4,
+    ... )
+    >>> study.plan().n_runs
+    4000
+    >>> wall = study.structure_of(0)
+    >>> round(wall.recentring_ratio, 3)
+    3.246
+    """
+
+    study: Literal["monte_carlo"] = Field("monte_carlo", description='"monte_carlo"')
+    count: int = Field(
+        1000,
+        ge=1,
+        le=MAX_STRUCTURES,
+        description="the number of random structures, a whole number from 1 to 4294967295",
+    )
+    seed: int = Field(0, ge=0, description="what the draws depend on, a whole number of at least 0")
+    variables: dict[str, Any] = Field(description="a table of random variables")
+    structure: dict[str, Any] = Field(description="a table of a structure, such as [structure.frame]")
+    ground: Annotated[dict[str, Any] | None, Key("a table", form=PLAIN)] = None  # pyright: ignore[reportIncompatibleVariableOverride]
+    scales: Factors = Field([1.0])
+    records_per_structure: int | None = Field(
+        None, ge=1, description="how many records to draw for each structure, a whole number (default: all records)"
+    )
+
+    def population(self) -> Population:
+        """Return the population of structures.
+
+        Raises
+        ------
+        InputError
+            If a variable or a formula is wrong.
+        """
+        taken = dict.fromkeys(_COLUMNS, "a column of the table")
+        return Population(Variables(self.variables, taken | FACTS), self.structure, self._folder, self.ground)
+
+    def structure_of(self, number: int) -> RockingProperties:
+        """Return the random structure of a number from 0.
+
+        Raises
+        ------
+        InputError
+            If it cannot be built.
+        """
+        population = self.population()
+        return population.build(population.variables.draw(self.seed, number))
+
+    def ground_of(self, number: int) -> Ground | None:
+        """Return the ground under the random structure of a number from 0; None for rigid ground without sliding.
+
+        Raises
+        ------
+        InputError
+            If the structure or its ground cannot be built.
+        """
+        population = self.population()
+        values = population.variables.draw(self.seed, number)
+        return population.ground_under(population.build(values), values)
+
+    def ground_rule(self) -> None:
+        """Return None: each structure has a ground of its own."""
+
+    def checksums(self) -> dict[str, str]:
+        """Return the SHA-256 of the numbers in each file that the structure names, and of a user-defined impact law.
+
+        Raises
+        ------
+        InputError
+            If a file cannot be read, or that law is not defined in a file.
+        """
+        population = self.population()
+        entry = population.entry(population.variables.draw(self.seed, 0))
+        files = {f"structure.{key}": value for key, value in entry.checksums(self._folder).items()}
+        return files | super().checksums()
+
+    def plan(self) -> "MonteCarloPlan":
+        """Load the records, and divide the study into chunks.
+
+        Raises
+        ------
+        InputError
+            If a variable or a formula is wrong, none of the first structures can be built, a record cannot be read, or
+            fewer records are there than are to be drawn.
+        """
+        return MonteCarloPlan(self, self.records.load(self._folder))
+
+
+class MonteCarloPlan(ChunkedPlan):
+    """The runs of each random structure, divided into chunks of structures.
+
+    Structures share nothing but the records, so a study of any size fits in memory.
+    """
+
+    def __init__(self, study: MonteCarloStudy, motions: Suite) -> None:
+        self.population, self.seed = study.population(), study.seed
+        self._per_structure = len(motions) if study.records_per_structure is None else study.records_per_structure
+        if self._per_structure > len(motions):
+            raise InputError(
+                f"records_per_structure must be at most the number of records, {len(motions)}, but "
+                f"{self._per_structure} was given."
+            )
+        self.scales = factors_of(study.scales, max(motions, key=lambda motion: motion.pga))
+        first = self._first(study.count)
+        self.matrix = StudyMatrix({study.name or "random structures": first}, motions, study.study_options())
+        runs = self._per_structure * len(self.matrix.labels) * len(self.scales)
+        super().__init__(motions, study.count, max(1, study.runs_per_chunk // runs))
+
+    def _first(self, count: int) -> RockingProperties:
+        """Return the first structure that can be built."""
+        first: InputError | None = None
+        for number in range(min(count, MAX_TRIALS)):
+            try:
+                values = self.population.variables.draw(self.seed, number)
+                built = self.population.build(values)
+                self.population.ground_under(built, values)
+            except InputError as error:
+                first = first or error
+            else:
+                return built
+        raise InputError(f"None of the first {min(count, MAX_TRIALS)} structures can be built. Number 0: {first}")
+
+    @property
+    def n_runs(self) -> int:
+        """Number of runs."""
+        return self.n_units * self._per_structure * len(self.matrix.labels) * len(self.scales)
+
+    @property
+    def columns(self) -> Columns:
+        """Columns of every chunk's table."""
+        head, *rest = self.matrix.columns.items()
+        drawn = dict.fromkeys(self.population.variables.kinds, float)
+        of_structure = dict.fromkeys(FACTS, float) | kinds_of(OF_STRUCTURE, float)
+        return dict([head]) | {"number": int} | drawn | of_structure | dict(rest)
+
+    def records_of(self, number: int) -> list[int]:
+        """Return the places of the records of a structure, in the order of the suite."""
+        if self._per_structure == len(self.motions):
+            return [*range(len(self.motions))]
+        order = np.argsort(draws(self.seed, number, "", len(self.motions)), kind="stable")
+        return sorted(order[: self._per_structure].tolist())
+
+    def rows(self, units: Sequence[int]) -> list[Row]:
+        """Draw a structure a unit, and simulate it; some at a time, which are prepared together."""
+        parts = (units[first : first + STRUCTURES_PER_BATCH] for first in range(0, len(units), STRUCTURES_PER_BATCH))
+        return [row for part in parts for row in self._rows(part)]
+
+    def _rows(self, units: Sequence[int]) -> Iterator[Row]:
+        drawn = [self._drawn(unit) for unit in units]
+        prepare_together(case for _, matrix in drawn if matrix is not None for case in matrix.cases(0))
+        for unit, (row, matrix) in zip(units, drawn, strict=True):
+            if matrix is None:
+                yield from (self.matrix.head(*run) | row for run in self._runs(unit))
+            else:
+                yield from (found | row for found in matrix.run_all([*self._runs(unit)]))
+
+    def _drawn(self, unit: int) -> tuple[Row, StudyMatrix | None]:
+        """Return what describes a structure, and the matrix for its runs, or the error and none."""
+        row: Row = {"number": unit}
+        try:
+            row |= self.population.variables.draw(self.seed, unit)
+            properties = self.population.build(row)
+            ground = self.population.ground_under(properties, row)
+        except InputError as error:
+            return row | {"error": str(error)}, None
+        row |= facts_of(properties)
+        row |= {"resisting_moment": properties.resisting_moment, "recentring_ratio": properties.recentring_ratio}
+        return row, self.matrix.on_ground(properties, ground)
+
+    def _runs(self, number: int) -> Iterator[tuple[int, int, int, float]]:
+        models = range(len(self.matrix.labels))
+        return (
+            (0, record, model, scale) for record in self.records_of(number) for model in models for scale in self.scales
+        )

@@ -1,0 +1,153 @@
+"""Multiple stripes: every record scaled to each of a few intensities."""
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+from pydantic import Field
+
+from rockflex._checks import positive
+from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex.fragility import NOMINAL, OVERTURNING, TENDON_YIELD, UPLIFT, LimitState, beyond
+from rockflex.motion import intensity
+from rockflex.study._arguments import positive_numbers
+from rockflex.study._plan import CrossPlan
+from rockflex.study._run_matrix import StudyMatrix
+from rockflex.study._tables import Columns, Row
+from rockflex.study.spec import StructuresSpec
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+COUNTED = (OVERTURNING, NOMINAL, TENDON_YIELD, UPLIFT)
+
+StripeLimit: TypeAlias = Literal["overturning", "nominal", "tendon_yield", "uplift"] | float | LimitState
+
+
+class StripeStudy(StructuresSpec):
+    """Multiple-stripe analysis: every record is scaled to each level of an intensity measure.
+
+    The table has the columns of `run_cloud` and the `level` of the stripe; `stripe_counts` counts its runs.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> table = {"n_stories": 2, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3}
+    >>> table |= {"stiffness_ratio": 1.0, "period": 0.5, "aspect_ratio": 8.0, "damping_ratio": 0.02}
+    >>> study = rf.StripeStudy(
+    ...     structures=[{"name": "frame", "frame": table}], records={"suites": ["el-centro-1940"]}, levels=[0.2, 0.4]
+    ... )
+    >>> rf.run_study(study)[["level", "pgv"]].round(3)
+       level  pgv
+    0    0.2  0.2
+    1    0.4  0.4
+    """
+
+    study: Literal["stripes"] = Field("stripes", description='"stripes"')
+    measure: str = Field("pgv", description='the intensity measure, such as "pga", "pgv" or "sa_t1_5"')
+    levels: list[float] = Field(min_length=1, description="a list of levels of the measure, in SI units")
+
+    def plan(self) -> "StripePlan":
+        """Build the structures, load the records, and divide the study into chunks.
+
+        Raises
+        ------
+        InputError
+            If a structure cannot be built, a record cannot be read, the measure is unknown, a level is not positive,
+            or a record cannot be scaled to it.
+        """
+        return StripePlan(self.matrix(), self.measure, self.levels, self.runs_per_chunk)
+
+
+class StripePlan(CrossPlan):
+    """The cross product of structures, records, models and levels, divided into chunks."""
+
+    def __init__(self, matrix: StudyMatrix, measure: str, levels: Sequence[float], per_chunk: int) -> None:
+        chosen = intensity(measure)
+        self.measure = measure  # the name, because a pickle cannot hold the measure
+        self.levels = positive_numbers("levels", levels, "")
+        for structure, name in enumerate(matrix.names):
+            for record, motion in enumerate(matrix.motions):
+                if not math.isfinite(chosen.factor(matrix.measures(structure, record)[measure], 1.0)):
+                    raise InputError(
+                        f"{shown(motion.name)} has no {measure} for {shown(name)}, so no scale takes it to a level."
+                    )
+        super().__init__(matrix, len(self.levels), per_chunk)
+
+    def scale(self, structure: int, record: int, level: int) -> float:
+        """Return the factor that scales a record to a level of the measure."""
+        value = self.matrix.measures(structure, record)[self.measure]
+        return intensity(self.measure).factor(value, self.levels[level])
+
+    @property
+    def columns(self) -> Columns:
+        """Columns of every chunk's table."""
+        return {"level": float, **super().columns}
+
+    def rows(self, units: Sequence[int]) -> list[Row]:
+        """Simulate one run a unit."""
+        levels = [self.levels[unit % len(self.levels)] for unit in units]
+        return [row | {"level": level} for row, level in zip(super().rows(units), levels, strict=True)]
+
+
+def stripe_counts(runs: "pd.DataFrame", limit: StripeLimit = "overturning") -> "pd.DataFrame":
+    """Count the runs of each stripe that exceed a limit, as input of `fit_stripes`.
+
+    Parameters
+    ----------
+    runs
+        The table of a `StripeStudy`.
+    limit
+        ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"tendon_yield"``, ``"uplift"``, a
+        rotation in rad, or a limit state such as ``rockflex.fragility.residual_beyond(0.005)``.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per structure, model and level: `structure`, `model`, `level`, `n_exceeding`, `n_total`. Runs that could
+        not be solved are not counted.
+
+    Raises
+    ------
+    InputError
+        If the limit is another word, or not positive.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> table = {"n_stories": 2, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3}
+    >>> table |= {"stiffness_ratio": 1.0, "period": 0.5, "aspect_ratio": 8.0, "damping_ratio": 0.02}
+    >>> study = rf.StripeStudy(
+    ...     structures=[{"name": "frame", "frame": table}], records={"suites": ["el-centro-1940"]}, levels=[0.2, 0.4]
+    ... )
+    >>> rf.stripe_counts(rf.run_study(study), "uplift")[["level", "n_exceeding", "n_total"]]
+       level  n_exceeding  n_total
+    0    0.2            1        1
+    1    0.4            1        1
+    """
+    solved, state = runs[runs["status"].notna()], stripe_limit(limit)
+    counted = solved.assign(exceeds=state.exceeded(solved).astype(bool)).groupby(
+        ["structure", "model", "level"], observed=True
+    )
+    return counted["exceeds"].agg(n_exceeding="sum", n_total="size").reset_index()
+
+
+def stripe_limit(limit: StripeLimit) -> LimitState:
+    """Return the limit state that `stripe_counts` counts.
+
+    Raises
+    ------
+    InputError
+        If the limit is another word, or not positive.
+    """
+    if isinstance(limit, LimitState):
+        return limit
+    if not isinstance(limit, str):
+        return beyond(positive("limit", limit, "rad"))
+    state = next((each for each in COUNTED if each.name == limit), None)
+    if state is None:
+        words = ", ".join(f'"{each.name}"' for each in COUNTED)
+        raise InputError(f"limit must be {words}, a LimitState or a rotation in rad, but {shown(limit)} was given.")
+    return state
