@@ -152,7 +152,7 @@ def test_where_no_mode_moves_after_the_impact_none_does():
 @pytest.mark.parametrize("n", [1, 2, 4])
 @pytest.mark.parametrize("e", [0.0, 0.4, 1.0])
 def test_what_an_impact_costs(n, e):
-    """The losses of docs/design/0005 at D = 0."""
+    """The losses of docs/design/0005-complete-models.md at D = 0."""
     p = ALL.truncated(n)
     seen = float(p.effective_mass @ p.effective_height**2)
     horizontal = float(MASSES @ HEIGHTS**2)

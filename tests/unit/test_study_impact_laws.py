@@ -98,7 +98,7 @@ def test_a_law_that_returns_energy(model):
 
 
 def test_a_restitution_may_return_energy_in_a_complete_model():
-    """Bent towards the old pivot, a structure lies farther from the new one (docs/design/0005)."""
+    """Bent towards the old pivot, a structure lies farther from the new one (docs/design/0005-complete-models.md)."""
     start = InitialState(1e-4, [0.12], rotation_velocity=-1.0)
     text = (
         r"The impact law Restitution\(e=1\.0, shortest_excursion=0\.0001\) returns energy .* or lower its restitution\."
@@ -252,7 +252,7 @@ def test_a_law_may_throw_the_base_back():
 @pytest.mark.parametrize("model", ["MDOF-S", "2DOF-S", "MDOF-C", "2DOF-C", "2DOF-C-SI"])
 @pytest.mark.parametrize("law", [None, VVELSimplified(), VVELComplete(), Restitution(0.6)], ids=repr)
 def test_the_ledger_of_a_run_has_the_laws_losses(model, law):
-    """Per impact, with the inertia about the pivot as the masses stand (docs/design/0005)."""
+    """Per impact, with the inertia about the pivot as the masses stand (docs/design/0005-complete-models.md)."""
     run = simulate(FRAME, MOTION, model, impact=law)
     p, energy = run.history.model.properties, run.energy
     k = np.flatnonzero(np.isin(run.time, run.impact_times) & (np.diff(run.time, append=np.inf) == 0.0))

@@ -30,7 +30,7 @@ def test_random_runs_do_not_depend_on_the_samples_of_a_motion(seed):
         pytest.skip("the outcome itself depends on the twelfth digit of the record")
     assert counts == others
     # Each allows 1e-10 in a step, whose sum is at most 2e-9 in nine of ten runs and 2e-8 in a hundred
-    # (docs/design/0008), and more where a change of the record by 1e-12 is multiplied by a thousand.
+    # (docs/design/0002-engine.md), and more where a change of the record by 1e-12 is multiplied by a thousand.
     size = np.maximum(np.abs(expected), 1e-300)
     np.testing.assert_array_less(np.abs(peaks - expected) / size, 2e-8 + 50.0 * (np.abs(moved[1] - peaks) / size).max())
     if found is not None and found.history is not None:

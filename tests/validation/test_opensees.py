@@ -1,4 +1,4 @@
-"""rockflex against OpenSees, and against Newton's law for each mass; see docs/design/0012-opensees.md.
+"""rockflex against OpenSees, and against Newton's law for each mass; see docs/design/0009-validation.md.
 
 What needs OpenSeesPy is skipped where it cannot be imported. The full tables come from validation/opensees/run.py.
 """

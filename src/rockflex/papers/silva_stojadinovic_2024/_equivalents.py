@@ -1,4 +1,4 @@
-"""Equivalents of two tested specimens, built from published ratios (docs/design/0007-specimen-equivalents.md).
+"""Equivalents of two tested specimens, built from published ratios (docs/design/0009-validation.md).
 
 They are not the specimens, whose masses, lengths and damping are not published. The parameters that the ratios do not
 fix are arguments. The mass above the base is 1 kg, because the response does not depend on it.
