@@ -58,7 +58,8 @@ test-sanitized: $(READY)  ## the engine and runs of all models with every index 
 		--config-settings=setup-args=-Dchecked=true --config-settings=setup-args=-Dbuildtype=debugoptimized \
 		--config-settings=setup-args=-Db_sanitize=address,undefined --config-settings=setup-args=-Db_lundef=false
 	MESONPY_EDITABLE_SKIP=$(abspath $(wildcard build/cp*)) PYTHONPATH=build/sanitized PYTHONMALLOC=malloc \
-		LD_PRELOAD=$$($${CC:-gcc} -print-file-name=libasan.so) ASAN_OPTIONS=detect_leaks=0 \
+		LD_PRELOAD="$$($${CC:-gcc} -print-file-name=libasan.so) $$($${CC:-gcc} -print-file-name=libstdc++.so.6)" \
+		ASAN_OPTIONS=detect_leaks=0 \
 		UBSAN_OPTIONS=halt_on_error=1 $(BIN)/python -m pytest -p no:xdist tests/engine \
 		tests/unit/test_solve_batch.py tests/validation/test_same_bits.py
 
