@@ -10,6 +10,7 @@ import rockflex as rf
 import rockflex.kinds._run
 from rockflex.cli import _study, app
 from rockflex.kinds import load_study
+from rockflex.study import map_chunks, parallel
 
 FRAME = """
 [structures.frame]
@@ -251,22 +252,18 @@ def test_on_error_without_a_folder(study):
 
 
 def test_a_cluster_that_does_not_answer(study, monkeypatch):
-    from rockflex.study.parallel import _dask
-
-    monkeypatch.setattr(_dask, "CONNECT", 0.2)
+    monkeypatch.setattr(parallel, "CONNECT_TIMEOUT", 0.2)
     done = invoke("cloud", study("cloud"), "--dask", "tcp://127.0.0.1:9")
     assert done.exit_code == 2
     assert "No Dask scheduler answers at 'tcp://127.0.0.1:9'" in done.stderr
 
 
 def test_ctrl_c_says_what_is_kept(study, tmp_path, monkeypatch):
-    real = rockflex.kinds._run._here
-
-    def interrupted(plan, work, numbers, workers):
-        yield next(iter(real(plan, work, numbers, 1)))
+    def interrupted(chunk, numbers, workers):
+        yield next(map_chunks(chunk, numbers, 1))
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(rockflex.kinds._run, "_here", interrupted)
+    monkeypatch.setattr(rockflex.kinds._run, "map_chunks", interrupted)
     file = study("cloud", HEADS["cloud"] + "runs_per_chunk = 8\n")
     done = invoke("cloud", file, "--out", tmp_path / "kept")
     assert done.exit_code == 130
