@@ -179,7 +179,7 @@ def test_against_the_twin(name):
 )
 @pytest.mark.parametrize("complete", [True, False])
 def test_energy_changes_at_impacts_alone_and_by_what_the_law_says(law, n_modes, complete):
-    """The losses of docs/design/0005-complete-models.md, in the twin's complete and simplified equations without damping."""
+    """The losses of docs/design/0005, in the twin's complete and simplified equations without damping."""
     given = structure(n_modes, damping_ratio=0.0)
     model = CompleteModel(Structure.of(**given), complete=complete)
     run = {
