@@ -13,39 +13,29 @@ from rockflex.engine.tables import BLOCK, tables_of
 H, FINE = 0.02, 40  # time step, and places looked at in a sample
 
 
-def phase_of(rng, turns, drags=0):
-    """Modes that turn by these angles in a sample, hidden behind random coordinates, and four rows.
-
-    They drive so many states one after the other, on which nothing depends, as the place of a base that slides.
-    """
+def phase_of(rng, turns):
+    """Modes that turn by these angles in a sample, hidden behind random coordinates, and four rows."""
     n = 2 * len(turns)
     modes = np.zeros((n, n))
     for k, turn in enumerate(turns):
         modes[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = [[-0.05 * turn, turn], [-turn, -0.05 * turn]]
     basis = np.linalg.qr(rng.normal(size=(n, n)))[0] + 0.2 * rng.normal(size=(n, n))
     A = basis @ (modes / H) @ np.linalg.inv(basis)
-    if drags:
-        A = np.block([[A, np.zeros((n, drags))], [np.zeros((drags, n)), np.eye(drags, k=-1)]])
-        A[n, :n], n = rng.normal(size=n), n + drags
-    C, rest = rng.normal(size=(4, n)), np.zeros(4)
-    c = rng.normal(size=n)
-    if drags:  # which one row sees alone, and which move fast
-        C[0, :-drags], c[-drags:] = 0.0, 1e3
-    return LinearPhase(A, rng.normal(size=n), c, C, rest, rest)
+    rest = np.zeros(4)
+    return LinearPhase(A, rng.normal(size=n), rng.normal(size=n), rng.normal(size=(4, n)), rest, rest)
 
 
 @pytest.mark.parametrize("start", ["steady", "ramp", "anywhere"])
-@pytest.mark.parametrize("drags", [0, 2])
-@pytest.mark.parametrize("turns", [(0.05, 0.3), (0.3, 1.2, 2.5), (0.1, 8.0), (0.2, 5.0, 60.0), (0.4, 0.4)])
+@pytest.mark.parametrize("turns", [(0.05, 0.3), (0.3, 1.2, 2.5), (0.1, 8.0), (0.2, 5.0, 60.0)])
 @pytest.mark.parametrize("seed", range(4))
-def test_bounds_of_a_block_hold(seed, turns, start, drags):
+def test_bounds_of_a_block_hold(seed, turns, start):
     rng = np.random.default_rng(seed)
-    phase = phase_of(rng, turns, drags)
+    phase = phase_of(rng, turns)
     A, f, c, C = phase.A, phase.f, phase.c, phase.C
     n, a = len(f), rng.normal(size=BLOCK + 1)
     if start == "ramp":  # in one sample only
         a[1:] = a[1]
-    y = rng.normal(size=n) if start == "anywhere" else -np.linalg.lstsq(A, f * a[0] + c)[0]
+    y = rng.normal(size=n) if start == "anywhere" else -np.linalg.solve(A, f * a[0] + c)
     zero, one = np.zeros(1), np.ones(1)
     conditions = tuple(Event("", row[None], None, zero, zero, one) for row in C)
     stacked = LinearPhase(A[None], f[None], c[None], C[None], phase.d[None], phase.e[None], conditions)

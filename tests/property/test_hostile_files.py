@@ -214,11 +214,11 @@ def test_locks_of_anything(tmp_path: Path, content: bytes, age: float) -> None:
     path = tmp_path / "lock"
     path.write_bytes(content)
     os.utime(path, (time.time() - age,) * 2)
-    begin, patience = time.monotonic(), _lock.UNREADABLE_FOR
+    begin, patience = time.monotonic(), _lock.MIN_STALE_AGE
     try:
-        _lock.UNREADABLE_FOR = 0.05
+        _lock.MIN_STALE_AGE = 0.05
         message = refusal(lambda: _lock.Lock.acquire(path).release())
     finally:
-        _lock.UNREADABLE_FOR = patience
+        _lock.MIN_STALE_AGE = patience
     assert time.monotonic() - begin < 2.0
     assert message is None or (len(message) < 2000 and "is in use by process" in message)

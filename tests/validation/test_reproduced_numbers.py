@@ -245,7 +245,7 @@ def test_a_measure_that_few_draws_have_is_none(records, monkeypatch):
     calls = iter(range(10**6))
     monkeypatch.setattr(_section_3_3, "DRAWS", 20)
     monkeypatch.setattr(
-        _section_3_3, "measure", lambda _: {"x": float(i) if (i := next(calls)) % 10 else np.nan, "y": 1.0}
+        _section_3_3, "measures_of", lambda _: {"x": float(i) if (i := next(calls)) % 10 else np.nan, "y": 1.0}
     )
     found = _section_3_3.intervals.__wrapped__(records)
     assert found["y"] == Interval(1.0, 1.0, 1.0)

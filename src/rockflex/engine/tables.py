@@ -14,10 +14,7 @@ LONGEST = 2.5  # rad that a mode may turn within one power series: some thirty t
 SMALL = 1e-18  # of a sum: terms that no longer change it
 FINEST = 8  # halvings of h/2 between which bounds allow for the growth of motion, at most
 FAST = 3.0  # rad that a mode turns within a step, from which on its amplitude bounds what it can do
-POOR, LOOSE = 1e6, 30.0  # conditions of a fast mode and of others from which on their part is useless
-COUPLED = 1.4  # share of |A| in A from which on bounds by its entries are useless, since these cancel each other
-ROUNDING = 1e-13  # of the magnitudes of its terms: what a row cannot see of a mode
-STILL = 1e-6  # of the largest root: those that are next to zero
+POOR = 1e6  # condition of a mode from which on its part is useless
 MIRRORS = 4  # phases that may have a mirror image yet to come
 VAGUE = 1e100  # a bound that is as good as none, and does not overflow
 
@@ -52,9 +49,8 @@ class Mirror(NamedTuple):
     f: Array
     c: Array
     C: Array  # of outputs and conditions
-    halvings: NDArray[np.intc]
     step: Array
-    bounds: tuple[Array, Array, Array, Array]  # moves, bend, sway and jolt
+    bounds: tuple[Array, Array, Array]  # bend, sway and jolt
 
     def sign(self, A: Array, f: Array, c: Array, C: Array) -> int:
         """1 if this is the same motion, -1 with c reversed, and with any rows reversed; 0 if it is another one."""
@@ -78,48 +74,49 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
     rows[:, :m, :n], rows[:, :m, n], rows[:, :m, n + 1] = phase.C, phase.d, phase.e
     for row, event in zip(rows[:, m:].swapaxes(0, 1), phase.events, strict=True):
         row[:, :n], row[:, n], row[:, n + 1] = event.row, event.direct, event.constant
-    C, centre, most = rows[..., :n], rows.copy(), 0
+    C = rows[..., :n]
+
+    turn = radius(A * h)
+    halvings, squared = halvings_of(turn, LONGEST), halvings_of(turn, 1.0)
+    splits = [split_of(A[place], f[place], C[place], h) if turn[place] > FAST else None for place in range(S)]
+    most = max((len(each.parts) for each in splits if each is not None), default=0)
+    slow, driven = A.copy(), f.copy()
+    moves, (bend, cap, sway) = np.zeros((S, n + most, n)), np.zeros((3, S, m + k, n + 2 + most))
+    jolt = np.full((S, k, n + 2 + most), VAGUE)
+    moves[:, :n] = np.eye(n)
+    centre = rows.copy()
+    for place, each in enumerate(splits):
+        if each is not None:
+            end = n + len(each.parts)
+            slow[place], driven[place], moves[place, :n], moves[place, n:end] = each[:4]
+            cap[place, :, n : n + 2], cap[place, :, n + 2 : end + 2] = by_rows(each.cap, each.push), each.cap
+            sway[place, :, n : n + 2], sway[place, :, n + 2 : end + 2] = by_rows(each.sway, each.push), each.sway
+            sway[place, :, n + 1] += each.jerk
+            centre[place] -= by_rows(each.swing, rates[place])
+    parted = np.array([each is not None for each in splits])
+    fine = np.minimum(halvings_of(radius(np.abs(slow) * h), 1.0), FINEST)
+    G = np.zeros((S, n + 3, n + 3))  # of y, a, its rise, and 1
+    G[:, :n, :n], G[:, :n, n], G[:, :n, n + 2], G[:, n, n + 1] = A * h, f * h, c * h, 1.0
+    step = np.empty((S, n, n + 3))
     mirror, sign = next(((each, sign) for each in mirrors if (sign := each.sign(A, f, c, C))), (None, 0))
     if mirror is not None:
-        halvings, step, (moves, bend, sway, jolt) = mirror.halvings, mirror.step.copy(), mirror.bounds
+        step[...], (bend, sway, jolt) = mirror.step, mirror.bounds
         step[..., -1] *= sign
-        cap = np.zeros_like(bend)
     else:
-        turn, tangle = radius(A * h), radius(np.abs(A) * h)
-        modal = {
-            place: found
-            for place in np.flatnonzero((turn > FAST) | (tangle > COUPLED * turn)).tolist()
-            if (found := modal_bounds(A[place], f[place], C[place], m, h)) is not None
-        }
-        most = max((len(each.moves) - n for each in modal.values()), default=0)
-        moves, (bend, cap, sway) = np.zeros((S, n + most, n)), np.zeros((3, S, m + k, n + 2 + most))
-        jolt, halvings = np.full((S, k, n + 2 + most), VAGUE), halvings_of(turn, LONGEST)
-        moves[:, :n] = np.eye(n)
-        for place, each in modal.items():
-            end = len(each.moves) + 2
-            halvings[place], moves[place, : end - 2] = halvings_of(each.fastest * h, LONGEST), each.moves
-            for table, found in ((bend, each.bend), (cap, each.cap), (sway, each.sway), (jolt, each.jolt)):
-                table[place, :, :end] = found
-            centre[place] -= by_rows(each.swing, rates[place])
-        G = np.zeros((S, n + 3, n + 3))  # of y, a, its rise, and 1
-        G[:, :n, :n], G[:, :n, n], G[:, :n, n + 2], G[:, n, n + 1] = A * h, f * h, c * h, 1.0
-        step = np.empty((S, n, n + 3))
-        squared = halvings_of(turn, 1.0)
-        fine = np.minimum(halvings_of(tangle, 1.0), FINEST)
-        fine[[*modal]] = -1
-        for kind in {*zip(squared.tolist(), fine.tolist(), strict=True)}:
-            some = np.flatnonzero((squared == kind[0]) & (fine == kind[1]))
-            changes = changes_of(G[some], max(kind[0], kind[1] + 1))
+        for kind in {*zip(squared.tolist(), fine.tolist(), parted.tolist(), strict=True)}:
+            some = np.flatnonzero((squared == kind[0]) & (fine == kind[1]) & (parted == kind[2]))
+            changes = changes_of(G[some], kind[0] if kind[2] else max(kind[0], kind[1]) + 1)
             whole = changes[0][:, :n]
             step[some, :, :n], step[some, :, n:] = whole[..., :n], whole[..., n:]
             step[some, :, n] -= whole[..., n + 1]
-            if kind[1] >= 0:
-                of_states = [each[:, :n, :n] for each in changes[1 : kind[1] + 2]]
-                found = bounds(A[some], f[some], C[some], m, of_states, h)
-                bend[some, :, : n + 2], sway[some, :, : n + 2], jolt[some, :, : n + 2] = found
-                jolt[some, :, n + 2 :] = 0.0
+            of_states = changes_of(slow[some] * h, kind[1] + 1) if kind[2] else [each[:, :n, :n] for each in changes]
+            found = bounds(slow[some], driven[some], C[some], m, of_states[1 : kind[1] + 2], h)
+            bend[some, :, : n + 2] = found[0]
+            sway[some, :, : n + 2] += found[1]
+            if not kind[2]:
+                jolt[some, :, : n + 2], jolt[some, :, n + 2 :] = found[2], 0.0
         if not most:
-            mirrors[:] = [*mirrors[1 - MIRRORS :], Mirror(A, f, c, C, halvings, step, (moves, bend, sway, jolt))]
+            mirrors[:] = [*mirrors[1 - MIRRORS :], Mirror(A, f, c, C, step, (bend, sway, jolt))]
     changes = changes_ahead(step)
     shift = shift_of(rates)
     now, outs = padded(np.concatenate((rates[:, shift:], rows[:, m:]), axis=1)), padded(rows[:, :m])
@@ -185,101 +182,53 @@ def shift_of(rates: Array) -> int:
     return 0
 
 
-class ModalBounds(NamedTuple):
-    """Bounds of rows by the modes of y': y' = Σ V w + Q z with w' = λ w + W f a' and z' = A_q z + f_q a'.
+class Split(NamedTuple):
+    """The fast modes of a phase parted from the others, with y' = v + Σ V w, v' = A_s v + f_s a', w' = λ w + W f a'.
 
-    z has what is left by modes that are ill-conditioned, as the place of a base that slides. What fast modes add to a
-    row never gets further from its chord in a sample than 2 |C V/λ| |w|.
+    What they add to a row never gets further from its chord in a sample than 2 |C V/λ| |w|.
     """
 
-    fastest: float  # largest |λ|, 1/s
-    moves: Array  # from y': real and imaginary parts of slow w, z, and the same parts of fast w; (n + F, n)
-    bend: Array  # as those of `bounds`, (R, n + 2 + F)
-    cap: Array  # of the fast modes
-    sway: Array
-    jolt: Array
-    swing: Array  # what fast modes add to every row beside what changes linearly in a sample, from y', (R, n)
+    slow: Array  # A_s
+    driven: Array  # f_s
+    rest: Array  # v from y'
+    parts: Array  # real and imaginary parts of all w from y', (F, n)
+    push: Array  # by how much w may grow within a block, for the variation of a and for |a'|, (F, 2)
+    cap: Array  # of every row, factors of those parts' magnitudes in a bound of the distance from the chord, (R, F)
+    sway: Array  # the same for h³/96 times the third derivative
+    jerk: Array  # and its factor of |a'|, (R,)
+    swing: Array  # what they add to every row beside what changes linearly in a sample, from y', (R, n)
 
 
-def modal_bounds(A: Array, f: Array, C: Array, m: int, h: float) -> ModalBounds | None:
-    """Bounds by modes, of m outputs and of the conditions after them; None if there are no modes.
-
-    They serve the search alone: poor ones cost time, not digits.
-    """
-    (R, n), modes = C.shape, modes_of(A, h)
-    if modes is None:
+def split_of(A: Array, f: Array, C: Array, h: float) -> Split | None:
+    """Part the fast modes from the others; None if that is ill-conditioned. It serves the bounds alone."""
+    roots, vectors = (np.asarray(each, dtype=np.complex128) for each in np.linalg.eig(A))
+    try:
+        inverse = np.linalg.inv(vectors)
+    except np.linalg.LinAlgError:
         return None
-    root, V, W, fast, fastest = modes
+    fast = (np.abs(roots) * h > FAST) & (roots.imag >= 0.0)
+    V, W, root = vectors[:, fast], inverse[fast], roots[fast]
     both = np.where(root.imag > 0.0, 2.0, 1.0)  # of a pair of conjugate modes
+    if not fast.any() or not (np.abs(W.T) * np.abs(V)).sum(axis=0).max() < POOR:
+        return None
+    share = np.real((V * both) @ W)
     seen = by_rows(C, V)
-    seen[np.abs(seen) <= ROUNDING * by_rows(np.abs(C), np.abs(V))] = 0.0  # so that a row at rest is not looked at
-    slow, size = ~fast, both * np.abs(seen) * np.exp(np.maximum(root.real, 0.0) * BLOCK * h)
-    # By how much w may grow within a block, for the variation of a and for |a'|.
+    size = both * np.abs(seen) * np.exp(np.maximum(root.real, 0.0) * BLOCK * h)
+    bent = size * np.abs(root) ** 2 * (h**3 / 96.0)
     push, fades = np.abs(W @ f), np.maximum(-root.real, 0.0)
     soon = fades * BLOCK * h > 1.0
     grown = np.column_stack((np.where(soon, 0.0, push), np.where(soon, push / np.maximum(fades, 1e-300), 0.0)))
-    share = np.real((V * both) @ W)
-    places = np.concatenate((np.flatnonzero(slow), np.flatnonzero(slow & (root.imag > 0.0))))
-    count, F = len(places), 2 * int(fast.sum())
-    moves, (bend, cap, sway, jolt) = np.zeros((n + F, n)), np.zeros((4, R, n + 2 + F))
-    moves[:count] = np.concatenate((W[slow].real, W[slow & (root.imag > 0.0)].imag))
-    moves[n:] = np.concatenate((W[fast].real, W[fast].imag))
-    factors = h**2 / 8.0, h**3 / 96.0, h**4 / 384.0
-    for order, (table, factor) in enumerate(zip((bend, sway, jolt), factors, strict=True), 1):
-        part = factor * size * np.abs(root) ** order
-        pushed = np.real(by_rows(seen[:, slow] * (both * root ** (order - 1))[slow], (W[slow] @ f)[:, None]))[:, 0]
-        table[:, :count], table[:, n : n + 2] = part[:, places], by_rows(part[:, slow], grown[slow])
-        table[:, n + 1] += factor * np.abs(pushed)
-    left = n - count - int((both[fast]).sum())
-    if left:
-        last = slice(count, count + left), slice(n, n + 2)
-        found, moves[last[0]] = bounds_of_rest(A, f, C, m, np.eye(n) - share, left, h)
-        for table, more in zip((bend, sway, jolt[m:]), found, strict=True):
-            table[:, last[0]] = more[:, :left]
-            table[:, last[1]] += more[:, left:]
-    if F:
-        bent = size[:, fast] * np.abs(root[fast]) ** 2 * factors[1]
-        cap[:, n + 2 :], sway[:, n + 2 :] = np.tile(2.0 * size[:, fast] / np.abs(root[fast]), 2), np.tile(bent, 2)
-        cap[:, n : n + 2] = by_rows(2.0 * size[:, fast] / np.abs(root[fast]), grown[fast])
-        sway[:, n : n + 2] += by_rows(bent, grown[fast])
-        sway[:, n + 1] += by_rows(bent / np.abs(root[fast]), push[fast, None])[:, 0]
-        jolt[:] = VAGUE
-    swing = np.real(by_rows(seen[:, fast] * (both[fast] / root[fast]), W[fast]))
-    bend, cap, sway, jolt = (np.minimum(np.nan_to_num(each, nan=VAGUE), VAGUE) for each in (bend, cap, sway, jolt[m:]))
-    return ModalBounds(fastest, moves, bend, cap, sway, jolt, swing)
-
-
-def modes_of(A: Array, h: float) -> tuple[Array, Array, Array, NDArray[np.bool_], float] | None:
-    """The roots λ of A with Im λ >= 0, V, W, which are fast, and the largest |λ|; without ill-conditioned modes."""
-    n, within = len(A), np.ones(len(A), dtype=bool)
-    while (still := within & ~A[within].any(axis=0)).any():  # states on which no others depend, as the place of a base
-        within &= ~still
-    core, others = np.flatnonzero(within), np.flatnonzero(~within)
-    roots, vectors = (np.asarray(each, dtype=complex) for each in np.linalg.eig(A[np.ix_(core, core)]))
-    V, W = np.zeros((n, len(core)), dtype=complex), np.zeros((len(core), n), dtype=complex)
-    try:
-        V[core], W[:, core] = vectors, np.linalg.inv(vectors)
-    except np.linalg.LinAlgError:
-        return None
-    large = np.abs(roots) > STILL * np.abs(roots).max(initial=0.0)
-    for _ in others:
-        V[others] = A[others] @ V / np.where(large, roots, 1.0)
-    fast = np.abs(roots) * h > FAST
-    good = (np.abs(W.T) * np.abs(V)).sum(axis=0) < np.where(fast, POOR, LOOSE)
-    good &= (np.imag(roots) >= 0.0) & (large | (others.size == 0))
-    return roots[good], V[:, good], W[good], fast[good], float(np.abs(roots).max(initial=0.0))
-
-
-def bounds_of_rest(
-    A: Array, f: Array, C: Array, m: int, rest: Array, count: int, h: float
-) -> tuple[list[Array], Array]:
-    """Bounds by what is left of y' beside the modes, rest y', of a rank `count`; and its coordinates from y'."""
-    apart = np.flatnonzero((rest == np.eye(len(rest))).all(axis=1))
-    Q = np.eye(len(rest))[:, apart] if len(apart) == count else np.linalg.svd(rest)[0][:, :count]
-    own = (Q.T @ A @ Q)[None]
-    fine = min(int(halvings_of(radius(np.abs(own) * h), 1.0)[0]), FINEST)
-    found = bounds(own, (Q.T @ rest @ f)[None], by_rows(C, Q)[None], m, changes_of(own * h, fine + 1)[1:], h)
-    return [each[0] for each in found], Q.T @ rest
+    return Split(
+        slow=A - np.real((V * (both * root)) @ W),
+        driven=f - share @ f,
+        rest=np.eye(len(A)) - share,
+        parts=np.asarray(np.concatenate((W.real, W.imag)), dtype=float),
+        push=np.concatenate((grown, np.zeros_like(grown))),
+        cap=np.tile(2.0 * size / np.abs(root), 2),
+        sway=np.tile(bent, 2),
+        jerk=by_rows(bent / np.abs(root), push[:, None])[:, 0],
+        swing=np.real(by_rows(seen * (both / root), W)),
+    )
 
 
 def changes_ahead(step: Array) -> list[Array]:

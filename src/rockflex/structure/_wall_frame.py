@@ -6,7 +6,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from rockflex._arrays import Array
 from rockflex._checks import MOST_MODES, damping_ratios, positive, whole_number
@@ -132,6 +131,7 @@ def _root(n: int, alpha: float) -> float:
     """Return γ_n of sin γx from the boundary conditions of a free top."""
     if math.isinf(alpha):
         return (n - 0.5) * math.pi
+    from scipy.optimize import brentq
 
     def frequency(g: float) -> float:
         # 2 + (2 + α⁴/(γβ)²) cos γ cosh β + α²/(γβ) sin γ sinh β, times (γβ)²/cosh β
