@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, SupportsIndex
+from typing import SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,9 +15,6 @@ from rockflex.modal import FloorModes
 from rockflex.models import TIME, RockingModel, floor_accelerations, floor_quantities, values_of
 from rockflex.motion import GroundMotion
 from rockflex.response._interpolation import even_instants, states_at
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True, eq=False, init=False)

@@ -33,7 +33,7 @@ from rockflex.response._energy import EnergyLedger, energy_ledger, is_impact
 from rockflex.response._floors import floor_histories, floor_motion
 from rockflex.response._friction import IMPACT_WINDOW, Friction
 from rockflex.response._interpolation import even_instants, instants, only_of_run, settled_rotation, states_at
-from rockflex.response._peaks import global_histories
+from rockflex.response._peaks import global_histories, springs_of
 from rockflex.response._tables import dataset_of, frame_of
 
 if TYPE_CHECKING:
@@ -368,7 +368,7 @@ class History(Value):
         InputError
             If the springs have no `area`.
         """
-        return pressure_of(self.spring_force, self.model.springs if isinstance(self.model, SpringModel) else None)
+        return pressure_of(self.spring_force, springs_of(self.model))
 
     @property
     def bearing_pressure(self) -> Array:
@@ -385,7 +385,7 @@ class History(Value):
             If the springs have no `area`.
         """
         model = self.model
-        springs = model.springs if isinstance(model, SpringModel) else None
+        springs = springs_of(model)
         if springs is None or springs.area is None:
             raise no_area()
         turn = model.layout.of(self.states, model.layout.rotation)[:, None]

@@ -1,4 +1,4 @@
-"""The quantities whose peaks a run tracks, and the response that they give."""
+"""The quantities whose peaks a run tracks, and the peaks of edges and elements that follow from them."""
 
 import math
 from collections.abc import Sequence
