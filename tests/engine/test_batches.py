@@ -50,6 +50,33 @@ def test_a_batch_has_the_bits_of_runs_one_by_one(engine, free, settles):
     assert batch.place == batch.count == 3
 
 
+def stack() -> tuple[System, list[System]]:
+    """Two bilinear oscillators as one stack, and each by itself."""
+    alone = [bilinear(frequency, 0.05, 0.1, 0.01) for frequency in (6.0, 9.0)]
+
+    def phase(key):
+        both = [each.phase(key) for each in alone]
+        A, C = (np.stack([getattr(each, name) for each in both]) for name in "AC")
+        return replace(both[0], A=A, C=C)
+
+    return replace(alone[0], phase=phase, count=2), alone
+
+
+def test_each_run_has_its_own_system_and_start(engine):
+    run_of, batch_of = engine
+    (together, alone), (a,) = stack(), records(1)
+    which, free, starts = [1, 0, 1, 1], [0, 70, 10, 0], np.linspace(-0.004, 0.004, 12).reshape(4, -1)
+    batch = batch_of(together, [a] * 4, free=free, start=starts, which=which)
+    run_of(together, 0.02).follow(batch)
+    for r, (place, start) in enumerate(zip(which, starts, strict=True)):
+        run = run_of(alone[place], 0.02, start)
+        run.advance(a)
+        run.coast(free[r])
+        assert batch.states[r].tolist() == run.state.tolist()
+        assert [batch.high[r].tolist(), batch.when[r].tolist()] == run.highest.tolist()
+        assert batch.times[r] == run.time
+
+
 def test_a_run_that_fails_leaves_the_others_alone(engine):
     run_of, batch_of = engine
     system, (a,) = shaken(), records(1)
@@ -83,13 +110,13 @@ def test_a_batch_says_how_runs_have_ended(engine):
     )
     system = System(layout, ("height", "speed"), lambda _: fall, "falls")
     held, free = np.full(101, GRAVITY), np.zeros(101)
-    batch = batch_of(system, [held, free], names=("lands",))
-    run_of(system, 0.01).follow(batch, [1.0, 0.0])
+    batch = batch_of(system, [held, free], names=("lands",), start=[1.0, 0.0])
+    run_of(system, 0.01).follow(batch)
     assert batch.outcomes.tolist() == [0, 1]
     assert batch.counts[:, 0].tolist() == [0, 1]
     np.testing.assert_allclose(batch.times, (1.0, np.sqrt(2.0 / GRAVITY)), rtol=1e-12)
-    bounces = batch_of(ball(0.3, 1e-6), [free], free=2000, settles=True)
-    run_of(ball(0.3, 1e-6), 0.01).follow(bounces, [1.0, 0.0])
+    bounces = batch_of(ball(0.3, 1e-6), [free], free=2000, settles=True, start=[1.0, 0.0])
+    run_of(ball(0.3, 1e-6), 0.01).follow(bounces)
     assert bounces.outcomes.tolist() == [2]
 
 

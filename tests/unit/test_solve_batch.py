@@ -7,7 +7,7 @@ import rockflex as rf
 from builders import frame_values
 from rockflex.models import parse_model
 from rockflex.response import NAMES, STATUSES, columns_of, respond
-from rockflex.solve import Excitation, WorkLimitError
+from rockflex.solve import Excitation, WorkLimitError, run_all
 from rockflex.study import Case
 
 RECORD = rf.load_suite("el-centro-1940")[0].acceleration
@@ -52,8 +52,9 @@ def case_of(name):
 
 
 def solved(case, runs, **options):
-    state = None if case.initial is None else case.initial.state(case.model)
-    return case.engine.run_all(runs, 0.02, free_vibration=case.free_vibration, state=state, **options)
+    starts = [case.start] * len(runs)
+    engines = [case.engine] * len(runs)
+    return run_all(engines, runs, 0.02, free_vibration=case.free_vibration, starts=starts, **options)
 
 
 def assert_same(one, other):
@@ -76,7 +77,7 @@ def test_every_run_is_as_if_it_were_alone(name):
 def test_columns_are_the_numbers_of_the_responses(name):
     case, runs = case_of(name)
     found = solved(case, [runs[0], runs[1]._replace(scale=30.0), runs[2]])
-    columns = columns_of(case.model, found)
+    columns = columns_of([case.model] * 3, found)
     assert set(columns) == set(NAMES)
     for place in range(3):
         response = respond(case.model, "", found.one(place))

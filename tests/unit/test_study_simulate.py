@@ -263,7 +263,7 @@ def test_threads_may_simulate_the_same_structure():
 
 
 def test_many_structures_give_the_same_table_on_threads(monkeypatch):
-    monkeypatch.setattr(_simulate, "RUNS_PER_TASK", 8)
+    monkeypatch.setattr(_simulate, "RUNS_PER_TASK", (8, 8))
     frames = {f"{t:.3g} s": make_frame(n_stories=2, period=t) for t in np.linspace(0.3, 1.5, 20)}
     frames["low"] = make_frame(n_stories=1)  # has one mode only
     options = {"models": ["2DOF-S", "3DOF-S"], "scales": (0.5, 1.0)}

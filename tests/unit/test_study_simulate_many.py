@@ -26,7 +26,7 @@ from rockflex import (
     simulate_many,
 )
 from rockflex.response import PEAKS
-from rockflex.solve import Engine, engine
+from rockflex.solve import engine
 from rockflex.solve._failures import Status
 
 RECORD = load_suite("el-centro-1940")[0].acceleration
@@ -137,13 +137,13 @@ def test_threads_change_nothing(output):
 
 
 def test_work_is_done_by_the_threads_asked_for(monkeypatch):
-    seen, real = set(), Engine.run_all
+    seen, real = set(), engine.Stack.taken
 
-    def run_all(*arguments, **options):
+    def taken(stack, dt):
         seen.add(threading.current_thread())
-        return real(*arguments, **options)
+        return real(stack, dt)
 
-    monkeypatch.setattr(Engine, "run_all", run_all)
+    monkeypatch.setattr(engine.Stack, "taken", taken)
     simulate_many(STRUCTURES, MOTIONS, workers=1)
     assert seen == {threading.current_thread()}
     simulate_many(STRUCTURES, MOTIONS, workers=3)

@@ -1,4 +1,4 @@
-"""Runs from one state, each under a record of its own, and what has become of them. Declarations: `batch.pxd`."""
+"""Runs of the systems of a stack, each under a record of its own, and how they end. Declarations: `batch.pxd`."""
 
 from math import isfinite
 
@@ -6,13 +6,14 @@ import cython
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex.engine.system import acceleration
+from rockflex.engine.failures import check_key
+from rockflex.engine.system import acceleration, array
 
 
 @cython.final
 @cython.cclass
 class Batch:
-    """What R runs of a system are shaken by; `Run.follow` runs them, and notes here how each has ended.
+    """What R runs are shaken by, and from which state; `Run.follow` runs them, and notes here how each has ended.
 
     Parameters
     ----------
@@ -21,7 +22,7 @@ class Batch:
         Acceleration of each run; the same one may be given many times.
     scales : sequence of float, optional
         Its factors.
-    free : int
+    free : int, or sequence of int
         Samples without excitation after each record.
     settles : bool
         Whether a run ends before that once nothing can happen any more, as in `Run.settle`.
@@ -29,6 +30,12 @@ class Batch:
         Names of the events that are counted.
     verticals : sequence of ndarray, optional
         Vertical accelerations, one for each record and as long, or None for none; they have the same factor.
+    start : ndarray, optional
+        States at time 0, shape (R, n), or (n,) for all runs; zero by default.
+    keys : sequence, optional
+        Key of the first phase of every run; by default that of the system.
+    which : sequence of int, optional
+        Which system of the stack each run is of; by default the first.
 
     Attributes
     ----------
@@ -49,7 +56,19 @@ class Batch:
         The last ones; of runs that have come to rest, those that they approach.
     """
 
-    def __init__(self, system, records, scales=None, free=0, settles=False, names=(), verticals=None):
+    def __init__(
+        self,
+        system,
+        records,
+        scales=None,
+        free=0,
+        settles=False,
+        names=(),
+        verticals=None,
+        start=None,
+        keys=None,
+        which=None,
+    ):
         count, places, distinct, first = len(records), {}, [], 0
         verticals = [None] * count if verticals is None else list(verticals)
         if len(verticals) != count:
@@ -75,12 +94,23 @@ class Batch:
         bounds = [(*places[id(each)][:2], *places[id(other)][:2]) for each, other in pairs]
         self.bounds = np.array(bounds, dtype=np.intp).reshape(-1, 4)
         self.record, self.rise = np.zeros((2, max([each.size for each in distinct], default=0)))
-        self.free, self.settles, self.outputs, self.n = (
-            min(free, 2**62),
-            settles,
-            len(system.outputs),
-            system.layout.size,
-        )
+        self.settles, self.outputs, self.n = settles, len(system.outputs), system.layout.size
+        self.free = np.broadcast_to(np.minimum(np.array(free, dtype=float), 2.0**62).astype(np.int64), count)
+        start, rows = np.zeros(self.n) if start is None else np.asarray(start, dtype=float), (count, self.n)
+        self.starts = np.broadcast_to(array("the state", start, rows if start.ndim > 1 else rows[1:]), rows)
+        keys = [system.start] * count if keys is None else list(keys)
+        for key in keys:
+            check_key(key)
+        self.keys = tuple(dict.fromkeys(keys))
+        phases = {key: place for place, key in enumerate(self.keys)}
+        self.phase = np.array([phases[key] for key in keys], dtype=np.intc)
+        self.first = np.zeros(len(self.keys), dtype=np.intc)
+        which = np.zeros(count, dtype=np.intc) if which is None else np.array(which, dtype=np.intc)
+        if which.shape != (count,) or len(keys) != count:
+            raise InputError(f"There are {count} records, but {which.size} systems and {len(keys)} first phases.")
+        if not ((which >= 0) & (which < system.count)).all():
+            raise InputError(f"There are {system.count} systems in the stack, but number {which.max()} was asked for.")
+        self.which = which
         self.numbers = np.zeros((count, 2 + len(self.names)), dtype=np.intc)
         self.values = np.zeros((count, 1 + 2 * self.outputs + self.n))
         self.kinds = np.zeros(len(self.names), dtype=np.intc)

@@ -1,7 +1,7 @@
 from collections.abc import Sequence
 
 from rockflex._arrays import Array, Integers
-from rockflex.engine.system import System
+from rockflex.engine.system import Key, System
 
 class Batch:
     place: int
@@ -11,10 +11,13 @@ class Batch:
         system: System,
         records: Sequence[Array],
         scales: Sequence[float] | Array | None = None,
-        free: int = 0,
+        free: int | Sequence[int] = 0,
         settles: bool = False,
         names: Sequence[str] = (),
         verticals: Sequence[Array | None] | None = None,
+        start: Array | Sequence[float] | None = None,
+        keys: Sequence[Key] | None = None,
+        which: Sequence[int] | None = None,
     ) -> None: ...
     @property
     def count(self) -> int: ...

@@ -58,7 +58,9 @@ cdef extern from "march.h" nogil:
         long long work
     ctypedef struct Phase:
         Tables tables
-        int events, halvings
+        int events, halvings, which
+        const int *halvings_of
+        Py_ssize_t stride, shaken_stride
         const double *scale
         const double **jump
         const double **rest
@@ -128,6 +130,8 @@ cdef class Phases:
     cdef readonly double[:, ::1] rows, found  # of a step: states and rates, outputs and conditions; see `tableau`
 
     cdef void release(self, int place) noexcept nogil
+    cdef void select(self, int which) noexcept nogil
+    cdef void turn(self, int place, int which) noexcept nogil
     cdef bint knows(self, int place, bint shakes) noexcept nogil
     cdef int events(self, int place) noexcept nogil
     cdef int halvings(self, int place) noexcept nogil

@@ -213,12 +213,37 @@ class Phases:
         self.point(place, which)
         return content.nbytes
 
-    def select(self, which: cython.int):
+    def select(self, which):
         """Take the tables of one system of the stack."""
         place: cython.int
         for place in range(self.count):
             if self.known[place]:
-                self.point(place, which)
+                self.turn(place, which)
+
+    def turn(self, place, which):
+        """Take the tables of another system for one phase: they are as far away in every stack of tables."""
+        phase: cython.pointer(Phase) = cython.address(self.phases[place])
+        tables: cython.pointer(cython.p_const_double) = cython.address(phase.tables.block)
+        others: cython.pointer(cython.p_const_double) = cython.address(phase.tables.shaken.now)
+        more: cython.Py_ssize_t = (which - phase.which) * phase.stride
+        k: cython.int
+        for k in range(14):
+            tables[k] += more
+        phase.scale += more
+        for k in range(2 * phase.events):
+            if phase.jump[k] != cython.NULL:
+                phase.jump[k] += more
+        for k in range(phase.events):
+            if phase.rest[k] != cython.NULL:
+                phase.rest[k] += more
+        phase.halvings, more = phase.halvings_of[which], (which - phase.which) * phase.shaken_stride
+        phase.which = which
+        if phase.tables.shaken.now != cython.NULL:
+            for k in range(4):
+                others[k] += more
+            others = cython.address(phase.tables.shaken.limit)
+            for k in range(18):
+                others[k] += more
 
     def point(self, place: cython.int, which: cython.int):
         """Take the tables of one system for one phase."""
@@ -232,7 +257,9 @@ class Phases:
         for k in range(14):  # from `block` to `most`, as in `march.h`
             tables[k] = first + offsets[k]
         phase.tables.one_sided = cython.address(self.one_sided[0])
-        phase.scale, phase.halvings = first + offsets[14], halvings[which]
+        number: cython.const[cython.int][::1] = halvings
+        phase.scale, phase.halvings_of, phase.halvings = first + offsets[14], cython.address(number[0]), number[which]
+        phase.which, phase.stride = which, row.shape[0]
         part: cython.int = 15
         for k in range(2 * phase.events):
             if jumps[k] is not None:
@@ -255,6 +282,7 @@ class Phases:
         s: cython.pointer(Shaken) = cython.address(self.phases[place].tables.shaken)
         s.fed, s.places = places.shape[0] - 2, cython.address(places[0])
         s.shift, s.nodes = places[s.fed], places[s.fed + 1]
+        self.phases[place].shaken_stride = row.shape[0]
         tables: cython.pointer(cython.p_const_double) = cython.address(s.now)
         others: cython.pointer(cython.p_const_double) = cython.address(s.limit)
         k: cython.int

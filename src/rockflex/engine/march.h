@@ -82,6 +82,9 @@ typedef struct {
 typedef struct {
     Tables tables;
     int events, halvings;  /* of the step, so that its power series converge */
+    int which;             /* system of the stack whose tables these are */
+    const int *halvings_of; /* of every system of the stack */
+    ptrdiff_t stride, shaken_stride; /* from the tables of a system to those of the next one */
     const double *scale;   /* of every event */
     const double **jump;   /* of every event, and of the rest after it: a matrix J and |J|; null if the state is continuous */
     const double **rest;   /* of every event: columns y, a, 1; null if nothing can follow instead */

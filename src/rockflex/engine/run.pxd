@@ -60,6 +60,7 @@ cdef class Run:
     cdef int renew(self, int place) except -1
     cdef int prepare(self, key, int place) except -1
     cdef forget(self)
+    cdef void choose(self, int which) noexcept nogil
     cdef int follow_all(self, Batch batch, bint history) except -1 nogil
     cdef int proceed(self, const double[::1] ground, const double[::1] rise, bint history) except -1 nogil
     cdef int coast_over(self, long long samples, bint history) except -1 nogil

@@ -99,12 +99,16 @@ class Run:
         """Begin anew at time 0, with the phases met so far."""
         if not 0 <= which < self.system.count:
             raise InputError(f"There are {self.system.count} systems in the stack, but number {which} was asked for.")
-        if which != self.which:
-            self.which = which
-            self.phases.select(which)
+        self.choose(which)
         self.start = np.zeros(self.n) if state is None else array("the state", state, (self.n,))
         self.begin()
         self.now = self.first = self.enter(self.system.start if key is None else key)
+
+    def choose(self, which):
+        """Take another system of the stack."""
+        if which != self.which:
+            self.which = which
+            self.phases.select(which)
 
     def begin(self):
         """Begin anew from the same state."""
@@ -249,8 +253,8 @@ class Run:
         with cython.nogil:
             self.proceed(ground, rise, history)
 
-    def follow(self, batch: Batch, state=None, key=None, which: cython.int = 0, history: cython.bint = False):
-        """Do the runs of a batch, or go on with them, all from one state.
+    def follow(self, batch: Batch, history: cython.bint = False):
+        """Do the runs of a batch, or go on with them.
 
         Raises
         ------
@@ -258,27 +262,35 @@ class Run:
             As `advance`, for the run `batch.place`; with 1 added to that, the next call goes on with the others.
         """
         number: cython.int
-        self.restart(state, key, which)
+        for number, key in enumerate(batch.keys):
+            batch.first[number] = self.enter(key)
         for number, name in enumerate(batch.names):
             batch.kinds[number] = self.journal.kind(name)
         with cython.nogil:
             self.follow_all(batch, history)
 
     def follow_all(self, batch, history):
-        """Do the runs of a batch, which share the start."""
+        """Do the runs of a batch."""
+        i: cython.int
+        run: cython.int
         rested: cython.bint
         outcome: cython.int
         end: cython.double
         while batch.place < batch.count:
+            run = batch.place
+            self.choose(batch.which[run])
+            self.first = batch.first[batch.phase[run]]
+            for i in range(self.n):
+                self.start[i] = batch.starts[run, i]
             self.begin()
             self.proceed(batch.scaled(), batch.scaled_vertical(), history)
             rested = False
             if batch.settles:
-                rested = self.settle_over(batch.free, history)
+                rested = self.settle_over(batch.free[run], history)
                 if rested and not self.phases.nonlinear(self.now):
                     self.fading.decay.bring_to_rest(self.y)
             else:
-                self.coast_over(batch.free, history)
+                self.coast_over(batch.free[run], history)
             outcome, end = 1 if self.ended else 2 if rested else 0, self.end if self.ended else self.passed * self.h
             batch.close(outcome, self.now, end, self.h, self.high, self.when, self.y, self.journal)
         return 0

@@ -1,6 +1,7 @@
 """The matrices of a phase for one time step, for a stack of systems at once."""
 
 from itertools import pairwise
+from threading import RLock
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,8 @@ FINEST = 8  # halvings of h/2 between which bounds allow for the growth of motio
 FAST = 3.0  # rad that a mode turns within a step, from which on its amplitude bounds what it can do
 POOR = 1e6  # condition of a mode from which on its part is useless
 MIRRORS = 4  # phases that may have a mirror image yet to come
+# Two threads that prepare at once pass the interpreter's lock to and fro, in every second call of NumPy.
+PREPARING = RLock()
 VAGUE = 1e100  # a bound that is as good as none, and does not overflow
 
 
@@ -150,10 +153,11 @@ def prepared(system: System, key: Key, h: float, mirrors: list[Mirror]) -> tuple
     StepTooLongError
         If a linear motion overflows within a step.
     """
-    phase = system.checked(key)
-    if isinstance(phase, NonlinearPhase):
-        return phase, tables_of_rows(phase)
-    tables = tables_of(phase, h, mirrors)
+    with PREPARING:
+        phase = system.checked(key)
+        if isinstance(phase, NonlinearPhase):
+            return phase, tables_of_rows(phase)
+        tables = tables_of(phase, h, mirrors)
     if not np.isfinite(tables.step).all():
         words = f"phase {key!r}: the motion grows without bound within one time step of {h:.9g}."
         raise StepTooLongError(words, float(np.linalg.eigvals(phase.A).real.max()))

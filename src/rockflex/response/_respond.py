@@ -137,12 +137,20 @@ _values_of = attrgetter(*NAMES)
 Columns = dict[str, NDArray[Any]]
 
 
-def columns_of(model: RockingModel, solutions: Solutions) -> Columns:
-    """Return the status and every number and flag of the responses of R runs, as `columns_among` does."""
-    if model.properties.elements or isinstance(model, SpringModel) or model.layout.slip >= 0:
-        runs = range(len(solutions))
-        return columns_among([None if k in solutions.failures else respond(model, "", solutions.one(k)) for k in runs])
-    return _of_bare_base(model, solutions)
+def columns_of(models: Sequence[RockingModel], solutions: Solutions) -> Columns:
+    """Return the status and every number and flag of the responses of R runs, as `columns_among` does.
+
+    There is a model for every run; they are of one kind, and differ only in numbers.
+    """
+    first = models[0]
+    if first.properties.elements or isinstance(first, SpringModel) or first.layout.slip >= 0:
+        return columns_among(
+            [
+                None if place in solutions.failures else respond(model, "", solutions.one(place))
+                for place, model in enumerate(models)
+            ]
+        )
+    return _of_bare_base(models, solutions)
 
 
 def columns_among(responses: Sequence[Response | None]) -> Columns:
@@ -161,18 +169,28 @@ def columns_among(responses: Sequence[Response | None]) -> Columns:
     return found
 
 
-def _of_bare_base(model: RockingModel, solutions: Solutions) -> Columns:
-    """Return the columns of a base on rigid ground without elements, on which it does not slide."""
-    p, runs, last = model.properties, len(solutions), 1 + len(GLOBAL)
+def _numbers_of(model: RockingModel) -> tuple[float, ...]:
+    """Return whether a model has a top, its half width, its reaction at rest, and two rotations for each pivot."""
+    p = model.properties
+    sides = [p.pivot(side) for side in (1, -1)]
+    rotations = [(each.balance_rotation, each.nominal_overturning_rotation) for each in sides]
+    return p.top_height is not None, p.half_width, p.resting_reaction, *rotations[0], *rotations[1]
+
+
+def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions) -> Columns:
+    """Return the columns of bases on rigid ground without elements, on which they do not slide."""
+    model, runs, last = models[0], len(solutions), 1 + len(GLOBAL)
+    distinct = {id(each): _numbers_of(each) for each in {id(each): each for each in models}.values()}
+    numbers = np.array([distinct[id(each)] for each in models]).T
+    has_top, half_width, resting, balance_right, nominal_right, balance_left, nominal_left = numbers
     rotation = solutions.peaks[:, 0]
     right, left = (
         (solutions.peaks[:, last], solutions.peaks[:, last + 1]) if tracks_both_sides(model) else (rotation, rotation)
     )
     found: Columns = dict(zip(MAXIMA, solutions.peaks[:, 1:last].T, strict=True))
     found |= dict(zip(TIMES, solutions.peak_times[:, 1:last].T, strict=True))
-    if p.top_height is None:
-        missing = np.full(runs, np.nan)
-        found |= {"max_total_top_displacement": missing, "time_of_max_total_top_displacement": missing}
+    for name in ("max_total_top_displacement", "time_of_max_total_top_displacement"):
+        found[name] = np.where(has_top > 0.0, found[name], np.nan)
     rocks = (solutions.n_uplifts > 0) | (solutions.n_impacts > 0) | (rotation > 0.0)
     lever = np.maximum(np.sin(left), np.sin(right)) if model.complete else np.maximum(left, right)
     nothing, never = np.zeros(runs), np.zeros(runs, dtype=np.bool_)
@@ -180,22 +198,21 @@ def _of_bare_base(model: RockingModel, solutions: Solutions) -> Columns:
         "status": np.where(solutions.overturned, 2, rocks.astype(np.int64)),
         "max_rotation": rotation,
         "time_of_max_rotation": solutions.peak_times[:, 0],
-        "min_vertical_reaction": p.resting_reaction - solutions.lost_support,
+        "min_vertical_reaction": resting - solutions.lost_support,
         "time_of_min_vertical_reaction": solutions.time_of_lost_support,
         "max_tendon_force": nothing,
         "tendon_utilisation": nothing,
         "tendon_yield": never,
         "tendon_overload": never,
         "residual_rotation": np.where(solutions.overturned, np.nan, solutions.final_state[:, model.layout.rotation]),
-        "balance_ratio": balance_ratio(model, right, left),
+        "balance_ratio": np.maximum(right / balance_right, left / balance_left),
         "max_slip": nothing,
         "residual_slip": nothing,
-        "max_edge_uplift": 2.0 * p.half_width * lever,
+        "max_edge_uplift": 2.0 * half_width * lever,
         "max_edge_settlement": nothing,
         "n_uplifts": solutions.n_uplifts,
         "n_impacts": solutions.n_impacts,
-        "nominal_overturning": (right > p.pivot(1).nominal_overturning_rotation)
-        | (left > p.pivot(-1).nominal_overturning_rotation),
+        "nominal_overturning": (right > nominal_right) | (left > nominal_left),
         "end_time": solutions.end_time,
         "settled": solutions.settled,
     }

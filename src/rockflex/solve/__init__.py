@@ -13,7 +13,7 @@ from rockflex.solve._work import (
     pace_of,
     stopping_when,
 )
-from rockflex.solve.engine import Engine, gather
+from rockflex.solve.engine import Engine, Start, gather, run_all
 
 __all__ = [
     "Engine",
@@ -22,6 +22,7 @@ __all__ = [
     "RunStoppedError",
     "Solution",
     "Solutions",
+    "Start",
     "Task",
     "Work",
     "WorkLimitError",
@@ -30,5 +31,6 @@ __all__ = [
     "gather",
     "pace_of",
     "preparing",
+    "run_all",
     "stopping_when",
 ]

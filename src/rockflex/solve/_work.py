@@ -7,7 +7,7 @@ work.
 """
 
 import math
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._errors import InputError, SolverError
+from rockflex._errors import InputError
 from rockflex.models import HEADER, RockingModel, stiffness_of_fuses
 
 LOOKS = 0.8  # into a sample, per radian beyond the first by which the phase of the fastest vibration advances
@@ -300,22 +300,15 @@ class Gate:
     def __init__(self) -> None:
         self._accepted = set[tuple[object, ...]]()
 
-    def refused(self, tasks: Sequence[Task], limit: float | None) -> dict[int, InputError | SolverError]:
-        """Check tasks against the work limit, and return the errors by their places."""
-        found: dict[int, InputError | SolverError] = {}
-        for place, task in enumerate(tasks):
-            size = task.size
-            if size is not None and (size, limit) in self._accepted:
-                continue
-            try:
-                task.check(limit)
-            except WorkLimitError as error:
-                found[place] = error
-                continue
-            if len(self._accepted) >= SIZES:
-                self._accepted.clear()
-            self._accepted.add((size, limit))
-        return found
+    def check(self, task: Task, limit: float | None) -> None:
+        """Raise `WorkLimitError` as `Task.check` does."""
+        size = task.size
+        if size is not None and (size, limit) in self._accepted:
+            return
+        task.check(limit)
+        if len(self._accepted) >= SIZES:
+            self._accepted.clear()
+        self._accepted.add((size, limit))
 
 
 def _lasting(seconds: float) -> str:

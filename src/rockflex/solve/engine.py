@@ -5,6 +5,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
+from threading import Lock
 from typing import Any, cast
 
 import numpy as np
@@ -39,7 +40,7 @@ from rockflex.solve._work import SEARCH, Gate, Pace, Task, check_interruption, p
 
 SHARE = 0.5  # of the estimated time of a sample that one takes here
 STEP = 12.0  # samples that a step of a nonlinear model counts like
-STACK = 64  # systems in one stack, at most
+STACK = 256  # systems in one stack, at most
 MEMORY = 64_000_000  # bytes of the tables of one stack
 MANY = 10_000  # phases that a solver has met, from which on it is given up: their keys take memory, too
 COUNTED = ("uplift", "impact")
@@ -47,7 +48,11 @@ OUTCOMES = np.array(  # for fixed times, and until settled
     [[Status.ENDED, Status.OVERTURNED, Status.SETTLED], [Status.UNSETTLED, Status.OVERTURNED, Status.SETTLED]]
 )
 MOST_SAMPLES = 2.0**62  # of free vibration: more than can ever be computed
+_GATHERING = Lock()
 FAILURES = {"accumulation": Status.CHATTER, "growth": Status.INFINITE, "stall": Status.STALLED}
+
+
+Start = Array | tuple[Key, Array] | None  # the state of a model at time 0; None: at rest
 
 
 class Stack:
@@ -115,8 +120,8 @@ class Engine:
                 "simulated. Keep fewer: the highest ones move nothing.",
                 field="model",
             )
-        self._place, self._gate = 0, Gate()
-        self._n_peaks = 1 + len(quantities)
+        self.place, self.gate = 0, Gate()
+        self.n_peaks = 1 + len(quantities)
 
     @cached_property
     def base(self) -> ElementBase | None:
@@ -140,12 +145,12 @@ class Engine:
         return self.stack if self.base is None else Stack([self.model], [self.quantities], self._base(shaken=True))
 
     @cached_property
-    def _patience(self) -> float:
+    def patience(self) -> float:
         """The longest free vibration until settled, s."""
         p = self.model.properties
         slowest = float(p.omega.min(initial=math.inf))
         if self.base is not None:  # on springs it rocks more slowly
-            roots = np.linalg.eigvals(self.base.rates(self._at_rest[0])[:, :-2])
+            roots = np.linalg.eigvals(self.base.rates(self.at_rest[0])[:, :-2])
             slowest = float(np.abs(roots[roots.imag > 0.0]).min(initial=slowest))
         return 2000.0 * 2.0 * math.pi / slowest + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
 
@@ -157,13 +162,13 @@ class Engine:
     @property
     def size_of_plain(self) -> int:
         """Memory of the tables of a model without elements in bytes, roughly, before they are made."""
-        n, rows = self.model.layout.core, self._n_peaks + 3
+        n, rows = self.model.layout.core, self.n_peaks + 3
         return 8 * len(self.model.sides) * (n + 6) * (5 * n + 14 * rows)
 
     @cached_property
     def pace(self) -> Pace:
         """The properties that determine the work of runs."""
-        p, found = self.model.properties, pace_of(self.model, self._n_peaks + 1)
+        p, found = self.model.properties, pace_of(self.model, self.n_peaks + 1)
         if isinstance(self.model, NonlinearModel):
             return found
         levers, drag = p.effective_mass * p.effective_height**2, 2.0 * p.zeta * p.omega
@@ -178,7 +183,18 @@ class Engine:
 
     def gather(self, stack: Stack, place: int) -> None:
         """Share a stack with other models."""
-        vars(self)["stack"], self._place = stack, place
+        vars(self)["stack"], self.place = stack, place
+
+    @property
+    def group(self) -> int:
+        """A number that engines have in common if they share a stack."""
+        return id(vars(self).get("stack", self))
+
+    def release(self) -> None:
+        """Forget all tables; the next run makes them anew."""
+        self.place = 0
+        for name in ("stack", "shaken"):
+            vars(self).pop(name, None)
 
     def run(
         self,
@@ -186,100 +202,45 @@ class Engine:
         dt: float,
         *,
         free_vibration: float | None = 0.0,
-        state: Array | tuple[Key, Array] | None = None,
+        state: Start = None,
         history: bool = False,
         work_limit: float | None = None,
         vertical: Array | None = None,
     ) -> Solution:
         """Run one record as `run_all` does, and return its solution or raise its error."""
         runs = [Excitation(acceleration, vertical)]
-        found = self.run_all(
-            runs, dt, free_vibration=free_vibration, state=state, history=history, work_limit=work_limit
+        found = run_all(
+            [self], runs, dt, free_vibration=free_vibration, starts=[state], history=history, work_limit=work_limit
         )
         return found.one(0)
 
-    def run_all(
-        self,
-        runs: Sequence[Excitation],
-        dt: float,
-        *,
-        free_vibration: float | None = 0.0,
-        state: Array | tuple[Key, Array] | None = None,
-        history: bool = False,
-        work_limit: float | None = None,
-    ) -> Solutions:
-        """Run records, each followed by `free_vibration` s (None: until settled), from a state [D.., D'.., θ, θ'].
+    def stack_for(self, run: Excitation) -> Stack:
+        """Return the stack that has the phases of a run."""
+        return self.stack if run.vertical is None else self.shaken
+
+    def start(self, state: Start) -> tuple[Key, Array]:
+        """Return the first phase and the states of the engine at time 0, from a state [D.., D'.., θ, θ'].
 
         The state may also be that of a run that goes on: its branches, and all that the layout holds.
-
-        The ground moves vertically in all runs, or in none. `work_limit` is the limit of the estimated and of the
-        actual work of each run in s, see `Pace`; None means no limit. Some ten times a second the runs can be
-        interrupted by Ctrl-C or `stopping_when`. Only a single run can have a `history`, which keeps every state.
-
-        The failures of the result are the errors of single runs: a run that exceeds its work limit (`WorkLimitError`
-        before it begins), a user-defined impact law that fails or a time step that is too long (`InputError`), events
-        that accumulate without end, a motion that does not settle, or impacts that would gain energy (`SolverError`).
 
         Raises
         ------
         InputError
-            If the initial state does not fit, or the numbers of the model overflow.
-        RunStoppedError
-            If the runs were stopped from outside.
+            If it does not fit the model.
         """
-        tasks = [self.task(run, dt, free_vibration, history=history) for run in runs]
-        failures = self._gate.refused(tasks, work_limit)
-        key, start = self._start(state)
-        allowed = [place for place in range(len(runs)) if place not in failures]
-        stack, settles = self.stack if runs[0].vertical is None else self.shaken, free_vibration is None
-        batch = Batch(
-            stack.system,
-            [runs[place].acceleration for place in allowed],
-            [runs[place].scale for place in allowed],
-            free=samples_in(self._patience if free_vibration is None else free_vibration, dt),
-            settles=settles,
-            names=COUNTED,
-            verticals=[runs[place].vertical for place in allowed],
-        )
-        check_interruption()
-        solver = stack.taken(dt)
-        solver.watch, solver.limit = check_interruption, self._samples_in(work_limit)
-        while batch.place < len(allowed):
-            try:
-                solver.follow(batch, start, key, self._place, history)
-            except (InputError, SolverError) as error:
-                place = allowed[batch.place]
-                failures[place] = self._failure(error, solver, tasks[place], work_limit)
-                batch.place += 1
-        found = _ends_of(
-            batch,
-            self._of_model(cast("list[Key]", solver.keys), batch.places, batch.states),
-            dt,
-            allowed,
-            len(runs),
-            settles=settles,
-        )
-        for place in np.flatnonzero(found.status < 0).tolist():
-            status, samples = Status(found.status[place]), int(found.samples[place])
-            failures.setdefault(place, failure_of(self.model, status, samples, dt, found.states[place]))
-        states = self._states(solver) if history and not failures else None
-        stack.returned(solver)
-        return Solutions(found, dt, self._n_peaks, self._n_peaks, failures, states)
-
-    def _start(self, state: Array | tuple[Key, Array] | None) -> tuple[Key, Array]:
-        """The phase and the states at the start."""
         if state is None:
-            return self._at_rest
+            return self.at_rest
         key, start = state if isinstance(state, tuple) else self.model.initial(state)
         if isinstance(self.model, NonlinearModel):
             return key_of(self.model, key, start), start
         return key, start if self.base is None else self.base.state_of(key, start)
 
     @cached_property
-    def _at_rest(self) -> tuple[Key, Array]:
-        return self._start(self.model.initial(None))
+    def at_rest(self) -> tuple[Key, Array]:
+        """First phase and states at rest."""
+        return self.start(self.model.initial(None))
 
-    def _of_model(self, keys: Sequence[Key], places: Integers, states: Array, *, history: bool = False) -> Array:
+    def of_model(self, keys: Sequence[Key], places: Integers, states: Array, *, history: bool = False) -> Array:
         """The states of the model, from those of the engine."""
         known, places = np.unique(places, return_inverse=True)
         keys = [keys[place] for place in known.tolist()]
@@ -287,7 +248,7 @@ class Engine:
             return with_marks(self.model, keys, places, states)
         return states if self.base is None else self.base.states_of_model(keys, places, states, history=history)
 
-    def _failure(
+    def failure(
         self, error: InputError | SolverError, solver: Run, task: Task, work_limit: float | None
     ) -> InputError | SolverError:
         """The error of a run that could not be solved, with its time and state."""
@@ -299,7 +260,7 @@ class Engine:
         status = Status.GAINED if isinstance(error, GainsEnergyError) else FAILURES.get(solver.failure)
         return error if status is None else failure_of(self.model, status, samples, task.dt, solver.state)
 
-    def _samples_in(self, work_limit: float | None) -> int:
+    def samples_allowed(self, work_limit: float | None) -> int:
         """The number of samples that a work limit in s allows."""
         if work_limit is None:
             return 2**62
@@ -308,7 +269,8 @@ class Engine:
             return int(min(work_limit / step * STEP, 2.0**62))
         return int(min(work_limit / (SHARE * (sample + SEARCH * look)), 2.0**62))
 
-    def _states(self, solver: Run) -> Array:
+    def history_of(self, solver: Run) -> Array:
+        """Return the states of the model at samples and beside events, as in `Solution`."""
         times, places, ground, states, rise = solver.history
         keys = cast("list[Key]", solver.keys)
         kept = np.arange(times.size)
@@ -318,7 +280,7 @@ class Engine:
         times, places, ground, states = times[kept], places[kept], ground[kept], states[kept]
         rows = np.zeros((times.size, HEADER + self.model.layout.size))
         rows[:, TIME], rows[:, GROUND], rows[:, RISE] = times, ground, rise[kept]
-        rows[:, HEADER:] = self._of_model(keys, places, states, history=True)
+        rows[:, HEADER:] = self.of_model(keys, places, states, history=True)
         side, rotation = rows[:, SIDE], rows[:, HEADER + self.model.layout.rotation]
         side[:] = np.array([key[0] for key in keys])[places]
         memory = HEADER + self.model.layout.memory
@@ -329,6 +291,81 @@ class Engine:
         lands = (rotation[1:] == 0.0) | (side[1:] != side[:-1])  # another event may follow before the time has changed
         rotation[:-1][(times[1:] == times[:-1]) & (side[:-1] != 0.0) & lands] = 0.0
         return rows
+
+
+def run_all(
+    engines: Sequence[Engine],
+    runs: Sequence[Excitation],
+    dt: float,
+    *,
+    free_vibration: float | None = 0.0,
+    starts: Sequence[Start] | None = None,
+    history: bool = False,
+    work_limit: float | None = None,
+) -> Solutions:
+    """Run records, each on one of the engines of a stack, followed by `free_vibration` s (None: until settled).
+
+    There is an engine and a start for every run; starts are as in `Engine.start`, and all at rest by default. The
+    ground moves vertically in all runs, or in none. `work_limit` is the limit of the estimated and of the actual work
+    of each run in s, see `Pace`; None means no limit. Some ten times a second the runs can be interrupted by Ctrl-C or
+    `stopping_when`. Only a single run can have a `history`, which keeps every state.
+
+    The failures of the result are the errors of single runs: an initial state that does not fit, a run that exceeds its
+    work limit (`WorkLimitError` before it begins), a user-defined impact law that fails or a time step that is too long
+    (`InputError`), events that accumulate without end, a motion that does not settle, or impacts that would gain energy
+    (`SolverError`).
+
+    Raises
+    ------
+    InputError
+        If the numbers of the model overflow.
+    RunStoppedError
+        If the runs were stopped from outside.
+    """
+    first, settles, failures = engines[0], free_vibration is None, dict[int, InputError | SolverError]()
+    tasks = [engine.task(run, dt, free_vibration, history=history) for engine, run in zip(engines, runs, strict=True)]
+    begins = [first.at_rest] * len(runs)
+    for place, (engine, task) in enumerate(zip(engines, tasks, strict=True)):
+        try:
+            engine.gate.check(task, work_limit)
+            if starts is not None:
+                begins[place] = engine.start(starts[place])
+        except InputError as error:
+            failures[place] = error
+    allowed = [place for place in range(len(runs)) if place not in failures]
+    stack = first.stack_for(runs[0])
+    batch = Batch(
+        stack.system,
+        [runs[place].acceleration for place in allowed],
+        [runs[place].scale for place in allowed],
+        free=[
+            samples_in(engines[place].patience if free_vibration is None else free_vibration, dt) for place in allowed
+        ],
+        settles=settles,
+        names=COUNTED,
+        verticals=[runs[place].vertical for place in allowed],
+        start=np.array([begins[place][1] for place in allowed]) if allowed else None,
+        keys=[begins[place][0] for place in allowed],
+        which=[engines[place].place for place in allowed],
+    )
+    check_interruption()
+    solver = stack.taken(dt)
+    solver.watch, solver.limit = check_interruption, first.samples_allowed(work_limit)
+    while batch.place < len(allowed):
+        try:
+            solver.follow(batch, history)
+        except (InputError, SolverError) as error:
+            place = allowed[batch.place]
+            failures[place] = engines[place].failure(error, solver, tasks[place], work_limit)
+            batch.place += 1
+    states = first.of_model(cast("list[Key]", solver.keys), batch.places, batch.states)
+    found = _ends_of(batch, states, dt, allowed, len(runs), settles=settles)
+    for place in np.flatnonzero(found.status < 0).tolist():
+        status, samples = Status(found.status[place]), int(found.samples[place])
+        failures.setdefault(place, failure_of(engines[place].model, status, samples, dt, found.states[place]))
+    kept = first.history_of(solver) if history and not failures else None
+    stack.returned(solver)
+    return Solutions(found, dt, first.n_peaks, first.n_peaks, failures, kept)
 
 
 def samples_in(time: float, dt: float) -> int:
@@ -374,6 +411,11 @@ def _spread(values: Any, places: Sequence[int], count: int) -> Any:
 
 def gather(engines: Iterable[Engine]) -> None:
     """Let engines of many models that differ only in numbers share their preparation."""
+    with _GATHERING:  # two threads may gather the same engines
+        _gather(engines)
+
+
+def _gather(engines: Iterable[Engine]) -> None:
     alike = defaultdict[tuple[int, ...], list[Engine]](list)
     for each in engines:
         if isinstance(each.model, NonlinearModel) or each.base is not None:

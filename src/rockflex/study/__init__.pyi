@@ -11,7 +11,7 @@ from ._arguments import properties_of as properties_of
 from ._arguments import work_limit_of as work_limit_of
 from ._case import Case as Case
 from ._case import RunOptions as RunOptions
-from ._case import prepare_together as prepare_together
+from ._case import solutions_of as solutions_of
 from ._case import yielding as yielding
 from ._modal import CombinedPeaks as CombinedPeaks
 from ._modal import SecondMode as SecondMode

@@ -1,8 +1,9 @@
 """One run: the options, a model tied to its structure, and the peaks of several such runs as columns."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal, Self
+from typing import Any, Literal, Self, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ from rockflex.response import (
     tracked_extremes,
     tracked_quantities,
 )
-from rockflex.solve import Engine, Excitation, Solution, Solutions, Task, gather, preparing
+from rockflex.solve import Engine, Excitation, Solution, Solutions, Start, Task, gather, preparing, run_all
 from rockflex.study._arguments import (
     WORK_LIMIT,
     GroundChoice,
@@ -100,42 +101,21 @@ class Case:
         SolverError
             If the run cannot be solved.
         """
-        return self.solve_all([(motion, scale)], motion.dt, shaken=has_vertical(motion)).one(0)
+        return solve_all([(self, motion, scale)]).one(0)
 
-    def solve_all(self, runs: Sequence[tuple[GroundMotion, float]], dt: float, *, shaken: bool) -> Solutions:
-        """Run motions with one time step, each at a scale, which are all `shaken` vertically or none of them.
+    @property
+    def start(self) -> Start:
+        """The state of the model at t = 0; None if at rest."""
+        return None if self.initial is None else self.initial.state(self.model)
 
-        Only a single run can have a history. Runs that cannot be solved are among the failures.
-
-        Raises
-        ------
-        InputError
-            If the initial state does not fit the model, or its numbers overflow.
-        """
-        return self.engine.run_all(
-            [Excitation(motion.acceleration, motion.vertical if shaken else None, scale) for motion, scale in runs],
-            dt,
-            free_vibration=self.free_vibration,
-            state=None if self.initial is None else self.initial.state(self.model),
-            history=self.history,
-            work_limit=self.work_limit,
-        )
+    @property
+    def together(self) -> tuple[object, ...]:
+        """Equal for cases whose runs can be solved together: of one stack, with the same options."""
+        return self.engine.group, self.free_vibration, self.work_limit
 
     def run(self, motion: GroundMotion, scale: float = 1.0) -> Response:
         """Run the motion at a scale and return the response; raises the errors of `solve`."""
         return respond(self.model, motion.name, self.solve(motion, scale), floors=self.floors)
-
-    def attempt(self, motion: GroundMotion, scale: float = 1.0) -> Response | InputError | SolverError:
-        """Run the motion at a scale and return the response, or the error of `solve`."""
-        try:
-            return self.run(motion, scale)
-        except (InputError, SolverError) as error:
-            return error
-
-
-def prepare_together(cases: Iterable[object]) -> None:
-    """Let those of many cases that differ only in numbers share their preparation."""
-    gather(case.engine for case in cases if isinstance(case, Case))
 
 
 def has_vertical(motion: GroundMotion) -> bool:
@@ -232,7 +212,7 @@ def yielding(models: Iterable[str | Model]) -> list[str]:
     return [model.label for model in map(parse_model, models) if model.yields]
 
 
-Scaled = tuple[GroundMotion, float]  # a motion, and the factor on its acceleration
+Scaled = tuple[Case | InputError, GroundMotion, float]  # a case or why there is none, a motion, and a factor on it
 
 
 @dataclass(frozen=True, eq=False)
@@ -249,13 +229,13 @@ class Peaks:
     failures
         Errors of the runs that failed, by index.
     responses
-        Response of each run of a case with histories, None if it failed; empty for other cases.
+        Response of each run of a case with histories by index.
     """
 
     count: int
     columns: Mapping[str, NDArray[Any]]
     failures: Mapping[int, InputError | SolverError]
-    responses: Sequence[Response | None] = ()
+    responses: Mapping[int, Response]
 
     def rows(self) -> list[dict[str, Any]]:
         """Return the results of each run by name, or its `error`."""
@@ -270,36 +250,87 @@ class Peaks:
         return rows
 
 
-def peaks_of(case: Case | InputError, runs: Sequence[Scaled]) -> Peaks:
-    """Run motions, each at a scale, on a case; all of them fail if there is none."""
-    if isinstance(case, InputError):
-        return Peaks(len(runs), {}, dict.fromkeys(range(len(runs)), case))
-    if case.history:
-        results = [case.attempt(*run) for run in runs]
-        found = [each if isinstance(each, Response) else None for each in results]
-        failures = {place: each for place, each in enumerate(results) if not isinstance(each, Response)}
-        return Peaks(len(runs), columns_among(found), failures, found)
-    columns, failures = dict[str, NDArray[Any]](), dict[int, InputError | SolverError]()
-    parts = _alike(runs)
-    for dt, shaken, places in parts:
-        some = [runs[place] for place in places]
-        try:
-            solutions = case.solve_all(some, dt, shaken=shaken)
-        except (InputError, SolverError) as error:  # none of them can begin
-            failures |= dict.fromkeys(places, error)
-            continue
+def solve_all(runs: Sequence[tuple[Case, GroundMotion, float]]) -> Solutions:
+    """Run motions, each at a scale on a case, where all cases are `together` and the motions have one time step.
+
+    The ground moves vertically in all runs, or in none. Only a single run can have a history. Runs that cannot be
+    solved are among the failures.
+
+    Raises
+    ------
+    InputError
+        If the numbers of the model overflow.
+    """
+    case, motion, _ = runs[0]
+    shaken = has_vertical(motion)
+    return run_all(
+        [each.engine for each, *_ in runs],
+        [Excitation(motion.acceleration, motion.vertical if shaken else None, scale) for _, motion, scale in runs],
+        motion.dt,
+        free_vibration=case.free_vibration,
+        starts=None if case.initial is None else [each.start for each, *_ in runs],
+        history=case.history,
+        work_limit=case.work_limit,
+    )
+
+
+def gather_cases(cases: Iterable[Case | InputError]) -> None:
+    """Let those of many cases that differ only in numbers share their preparation."""
+    gather({id(case): case.engine for case in cases if isinstance(case, Case)}.values())
+
+
+def solutions_of(runs: Sequence[Scaled]) -> list[Solution | InputError | SolverError]:
+    """Run motions, each at a scale on a case without history, together where that can be."""
+    gather_cases(case for case, *_ in runs)
+    found = dict[int, Solution | InputError | SolverError]()
+    failures = dict[int, InputError | SolverError]()
+    for places, solutions in _solved(runs, failures):
+        for index, place in enumerate(places):
+            found[place] = solutions.failures.get(index) or solutions.one(index)
+    return [failures.get(place) or found[place] for place in range(len(runs))]
+
+
+def peaks_of(runs: Sequence[Scaled], *, keep: bool = True) -> Peaks:
+    """Run motions, each at a scale on a case; those that can be are prepared and solved together.
+
+    Unless engines are to `keep` their tables for further runs, each releases them as soon as its runs have ended.
+    """
+    gather_cases(case for case, *_ in runs)
+    columns, left = dict[str, NDArray[Any]](), Counter(case for case, *_ in runs)
+    failures, responses = dict[int, InputError | SolverError](), dict[int, Response]()
+    for places, solutions in _solved(runs, failures):
+        cases = [cast("Case", runs[place][0]) for place in places]
         failures |= {places[place]: error for place, error in solutions.failures.items()}
-        found = columns_of(case.model, solutions)
-        if len(parts) == 1:
-            return Peaks(len(runs), found, failures)
+        if cases[0].history:
+            found = columns_among([None])
+            if not solutions.failures:
+                motion = runs[places[0]][1]
+                response = respond(cases[0].model, motion.name, solutions.one(0), floors=cases[0].floors)
+                responses[places[0]], found = response, columns_among([response])
+        else:
+            found = columns_of([case.model for case in cases], solutions)
         for name, values in found.items():
             columns.setdefault(name, np.zeros(len(runs), values.dtype))[places] = values
-    return Peaks(len(runs), columns, failures)
+        left.subtract(cases)
+        if not keep:
+            for case in {id(case): case for case in cases if not left[case]}.values():
+                case.engine.release()
+    return Peaks(len(runs), columns, failures, responses)
 
 
-def _alike(runs: Sequence[Scaled]) -> list[tuple[float, bool, list[int]]]:
-    """Return the places of the runs with the same time step, and with or without vertical motion."""
-    found = dict[tuple[float, bool], list[int]]()
-    for place, (motion, _) in enumerate(runs):
-        found.setdefault((motion.dt, has_vertical(motion)), []).append(place)
-    return [(dt, shaken, places) for (dt, shaken), places in found.items()]
+def _solved(
+    runs: Sequence[Scaled], failures: dict[int, InputError | SolverError]
+) -> Iterator[tuple[list[int], Solutions]]:
+    """Yield the places of runs that are solved together, one by one if there are histories, and their solutions."""
+    alike = dict[object, list[int]]()
+    for place, (case, motion, _) in enumerate(runs):
+        if isinstance(case, InputError):
+            failures[place] = case
+        else:
+            kind = place if case.history else (*case.together, motion.dt, has_vertical(motion))
+            alike.setdefault(kind, []).append(place)
+    for places in alike.values():
+        try:
+            yield places, solve_all(cast("list[tuple[Case, GroundMotion, float]]", [runs[place] for place in places]))
+        except (InputError, SolverError) as error:  # none of them can begin
+            failures |= dict.fromkeys(places, error)

@@ -2,7 +2,7 @@
 
 import hashlib
 import math
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, Self, cast
@@ -30,7 +30,7 @@ from rockflex.study._arguments import (
     properties_of,
     structures_of,
 )
-from rockflex.study._case import Case, Peaks, RunOptions, peaks_of, prepare_together
+from rockflex.study._case import Case, RunOptions, Scaled, peaks_of
 from rockflex.study._tables import Columns, Row, kinds_of, result_columns
 
 Demands = Mapping[str, Callable[[Response], float]]
@@ -211,22 +211,9 @@ class RunMatrix:
         """Release the engines."""
         self._cases.clear()
 
-    def peaks(self, runs: Sequence[Run]) -> Iterator[tuple[list[int], Case | InputError, Peaks]]:
-        """Simulate runs, those of a structure with a model together.
-
-        Yields
-        ------
-        tuple
-            The places of such runs, their case or the reason why there is none, and their peaks.
-        """
-        alike = dict[tuple[int, int], list[int]]()
-        for place, (structure, _, model, _) in enumerate(runs):
-            alike.setdefault((structure, model), []).append(place)
-        prepare_together(self.case(*pair) for pair in alike)
-        for pair, places in alike.items():
-            case = self.case(*pair)
-            scaled = [(self.motions[runs[place][1]], runs[place][3]) for place in places]
-            yield places, case, peaks_of(case, scaled)
+    def scaled(self, runs: Iterable[Run]) -> list[Scaled]:
+        """Return the case, the motion and the scale of runs."""
+        return [(self.case(structure, model), self.motions[record], scale) for structure, record, model, scale in runs]
 
     def task(self, structure: int, record: int, model: int, scale: float) -> Task | None:
         """Return the task of a run, from which its work is estimated; None if the structure cannot have the model."""
@@ -317,17 +304,22 @@ class StudyMatrix(RunMatrix):
 
     def run_all(self, runs: Sequence[Run]) -> list[Row]:
         """Simulate runs and return their rows, as `run` does; those of a structure with a model together."""
-        rows: list[Row] = [self.head(*run) for run in runs]
-        for places, case, peaks in self.peaks(runs):
-            limit = {} if isinstance(case, InputError) else limit_of(case.model.properties)
-            for place, found in zip(places, peaks.rows(), strict=True):
-                structure, record, _, scale = runs[place]
-                rows[place] |= scaled_measures(self.measures(structure, record), scale) | found
-                rows[place] |= {} if "error" in found else limit
-            for place, response in zip(places, peaks.responses, strict=False):
-                if response is not None:
-                    rows[place] |= derived(response, self.options.demands, friction=self.options.friction)
-        return rows
+        return rows_of([(self, run) for run in runs])
+
+
+def rows_of(runs: Sequence[tuple[StudyMatrix, Run]], *, keep: bool = True) -> list[Row]:
+    """Simulate runs of some matrices, as `peaks_of` does, and return their rows."""
+    peaks, rows = peaks_of([each for matrix, run in runs for each in matrix.scaled([run])], keep=keep), list[Row]()
+    for place, ((matrix, (structure, record, model, scale)), found) in enumerate(zip(runs, peaks.rows(), strict=True)):
+        measures = scaled_measures(matrix.measures(structure, record), scale)
+        row = matrix.head(structure, record, model, scale) | measures | found
+        case = matrix.case(structure, model)
+        if "error" not in found and isinstance(case, Case):
+            row |= limit_of(case.model.properties)
+        if place in peaks.responses:
+            row |= derived(peaks.responses[place], matrix.options.demands, friction=matrix.options.friction)
+        rows.append(row)
+    return rows
 
 
 def limit_of(properties: RockingProperties) -> Row:

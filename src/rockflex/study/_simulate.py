@@ -42,10 +42,10 @@ from rockflex.study._arguments import (
     structures_of,
     wants_history,
 )
-from rockflex.study._case import Case, RunOptions, prepare_together
+from rockflex.study._case import Case, RunOptions, peaks_of
 from rockflex.study._run_matrix import RunMatrix
 from rockflex.study._tables import RESULTS, ResultColumns
-from rockflex.study.parallel import in_order
+from rockflex.study.parallel import in_order, worker_count
 from rockflex.study.progress import ProgressChoice, reporting
 
 if TYPE_CHECKING:
@@ -190,7 +190,8 @@ def simulate(
     return run_cached(choice, properties, replace(options, ground=below, all_yield=True), motion, history=history)
 
 
-RUNS_PER_TASK = 64  # runs a task: long enough to hide a task's cost, short enough to share the work evenly
+RUNS_PER_TASK = 16, 256  # at least, to hide a task's cost; at most, in the share of a thread
+TASKS_PER_THREAD = 4  # so that the threads end together
 
 Part = tuple[int, int, int, RunMatrix]  # some runs of a structure: its index, the first, the last, and its matrix
 
@@ -281,38 +282,31 @@ def simulate_many(
     matrix = RunMatrix(everything, records, chosen, options, history=history, floors=history)
     runs_of_one = [(0, *run) for run in product(range(len(records)), range(len(chosen)), factors)]
     each = len(runs_of_one)
+    least, most = RUNS_PER_TASK
+    per_task = min(most, max(least, len(everything) * each // (TASKS_PER_THREAD * worker_count(workers))))
     responses = np.full(len(everything) * each if history else 0, None, dtype=object)
 
     def tasks() -> Iterator[list[Part]]:
         task, runs = list[Part](), 0
         for index, structure in enumerate(everything):
             own = matrix.with_structure(structure)
-            for first in range(0, each, RUNS_PER_TASK):
-                task.append((index, first, min(first + RUNS_PER_TASK, each), own))
+            for first in range(0, each, per_task):
+                task.append((index, first, min(first + per_task, each), own))
                 runs += task[-1][2] - first
-                if runs >= RUNS_PER_TASK:
+                if runs >= per_task:
                     yield task
                     task, runs = [], 0
         if task:
             yield task
 
     def work(task: list[Part]) -> tuple[ResultColumns, list[WorkLimitError]]:
-        refused, begun = list[WorkLimitError](), 0
-        sheet = ResultColumns(sum(last - first for _, first, last, _ in task), columns)
-        # All of them first, so that the code that prepares stays in the cache.
-        prepare_together([case for *_, own in task for case in own.cases(0)])
-        for index, first, last, own in task:
-            for places, _, peaks in own.peaks(runs_of_one[first:last]):
-                sheet.put([begun + place for place in places], peaks.columns)
-                for place, error in peaks.failures.items():
-                    sheet.fail([begun + places[place]], str(error))
-                for place, response in zip(places, peaks.responses, strict=False):
-                    responses[index * each + first + place] = response
-                refused += [error for error in peaks.failures.values() if isinstance(error, WorkLimitError)]
-            begun += last - first
-            if first == 0 and last == each:
-                own.forget()  # no other task needs its engines, and the next tables find room in the cache
-        return sheet, refused
+        runs = [run for _, first, last, own in task for run in own.scaled(runs_of_one[first:last])]
+        peaks = peaks_of(runs, keep=each > per_task)  # other tasks may need the engines
+        places = [index * each + place for index, first, last, _ in task for place in range(first, last)]
+        for place, response in peaks.responses.items():
+            responses[places[place]] = response
+        refused = [error for error in peaks.failures.values() if isinstance(error, WorkLimitError)]
+        return ResultColumns(peaks, columns), refused
 
     columns = {"status": STATUSES, "error": str, **RESULTS}
     with reporting(progress, len(everything) * each, "runs") as advance:

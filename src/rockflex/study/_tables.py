@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rockflex._cases import cases
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.response import NAMES, Response, complete_of, leaves_range
+from rockflex.study._case import Peaks
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,38 +48,28 @@ def _column(values: list[Any], kind: type | Sequence[str]) -> Any:
 
 
 class ResultColumns:
-    """Results of some runs, filled column by column, for a table in memory.
+    """Results of some runs, column by column, for a table in memory.
 
     Parameters
     ----------
-    size
-        Number of rows.
+    peaks
+        The results of the runs.
     columns
-        Columns of results; those that are never filled stay missing. `error` is a text for each row that has none.
+        Columns of results; those without values stay missing. `error` is a text for each row that has none.
     """
 
-    def __init__(self, size: int, columns: Columns) -> None:
-        self._columns, self.size = columns, size
-        self._values = {
-            name: np.zeros(size, kind if isinstance(kind, type) else np.int32)
-            for name, kind in columns.items()
-            if kind is not str
+    def __init__(self, peaks: Peaks, columns: Columns) -> None:
+        self._columns, self.size = columns, peaks.count
+        kinds = {
+            name: kind if isinstance(kind, type) else np.int32 for name, kind in columns.items() if kind is not str
         }
-        self._missing = np.ones(size, dtype=np.bool_)
-        self._errors: list[str | None] = [None] * size
-
-    def put(self, places: Sequence[int], values: Mapping[str, NDArray[Any]]) -> None:
-        """Fill some rows, if there are values at all."""
-        if values:
-            for name, column in self._values.items():
-                column[places] = values[name]
-            self._missing[places] = False
-
-    def fail(self, places: Sequence[int], error: str) -> None:
-        """Give rows an error, and no results."""
-        for place in places:
-            self._errors[place] = error
-        self._missing[places] = True
+        none = np.zeros(self.size)
+        self._values = {name: peaks.columns.get(name, none).astype(kind, copy=False) for name, kind in kinds.items()}
+        self._missing = np.full(self.size, not peaks.columns)
+        self._missing[list(peaks.failures)] = True
+        self._errors = [
+            None if place not in peaks.failures else str(peaks.failures[place]) for place in range(self.size)
+        ]
 
     @staticmethod
     def joined(sheets: "Sequence[ResultColumns]") -> dict[str, Any]:

@@ -14,10 +14,9 @@ from rockflex.modal import Ground, RockingProperties
 from rockflex.motion import Suite, intensities
 from rockflex.structure.file import StructureEntry, Table, checked, label_of
 from rockflex.study._arguments import factors_of, properties_of
-from rockflex.study._case import prepare_together
 from rockflex.study._plan import ChunkedPlan
 from rockflex.study._random_variables import Variables, check_known, draws, is_formula, names_of, value_of
-from rockflex.study._run_matrix import StudyMatrix
+from rockflex.study._run_matrix import StudyMatrix, rows_of
 from rockflex.study._tables import RESULTS, Columns, Row, kinds_of
 from rockflex.study.cloud import Factors
 from rockflex.study.spec import GroundTable, RunsSpec
@@ -160,7 +159,7 @@ def _items(content: object) -> Iterator[tuple[str | int, Any]]:
 
 MAX_STRUCTURES = 2**32 - 1  # structures with different random numbers
 MAX_TRIALS = 20  # structures, at most, until one can be built
-STRUCTURES_PER_BATCH = 64  # structures that are prepared together
+STRUCTURES_PER_BATCH = 256  # structures that are prepared together
 OF_STRUCTURE = "resisting_moment recentring_ratio"
 _RUN = "structure number motion group magnitude distance_km model scale nominal_limit zeta_1 error"
 _COLUMNS = (*_RUN.split(), *OF_STRUCTURE.split(), *(measure.name for measure in intensities()), "status", *RESULTS)
@@ -342,13 +341,12 @@ class MonteCarloPlan(ChunkedPlan):
         return [row for part in parts for row in self._rows(part)]
 
     def _rows(self, units: Sequence[int]) -> Iterator[Row]:
-        drawn = [self._drawn(unit) for unit in units]
-        prepare_together(case for _, matrix in drawn if matrix is not None for case in matrix.cases(0))
-        for unit, (row, matrix) in zip(units, drawn, strict=True):
-            if matrix is None:
-                yield from (self.matrix.head(*run) | row for run in self._runs(unit))
-            else:
-                yield from (found | row for found in matrix.run_all([*self._runs(unit)]))
+        drawn = [(unit, *self._drawn(unit)) for unit in units]
+        runs = [(matrix, run) for unit, _, matrix in drawn if matrix is not None for run in self._runs(unit)]
+        found = iter(rows_of(runs, keep=False))
+        for unit, row, matrix in drawn:
+            for run in self._runs(unit):
+                yield (self.matrix.head(*run) if matrix is None else next(found)) | row
 
     def _drawn(self, unit: int) -> tuple[Row, StudyMatrix | None]:
         """Return what describes a structure, and the matrix for its runs, or the error and none."""

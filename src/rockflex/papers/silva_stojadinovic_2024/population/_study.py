@@ -1,19 +1,19 @@
 """Random structures under random records, with one mode and with all modes (Sections 3.3 and 3.4)."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 
 import numpy as np
 from pydantic import Field
 
 from rockflex._checks import whole_number
 from rockflex._constants import GRAVITY
-from rockflex._errors import InputError, SolverError
+from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
 from rockflex.models import LinearModel, modal_displacement
-from rockflex.motion import GroundMotion, Suite
+from rockflex.motion import Suite
 from rockflex.response import Response, respond
 from rockflex.structure import Frame
 from rockflex.study import (
@@ -28,13 +28,13 @@ from rockflex.study import (
     free_vibration_time,
     kinds_of,
     motions_of,
-    prepare_together,
     record_columns,
     record_facts,
     result_columns,
     results_of,
     run_plan,
     second_mode,
+    solutions_of,
     work_limit_of,
 )
 from rockflex.study.progress import ProgressChoice
@@ -55,10 +55,7 @@ STRUCTURE = "nominal_limit structure_mass total_mass l0r_g uplift_acceleration"
 SECOND = "period_2 sd_2 sa_2 top_ordinate_2 effective_mass_2 effective_height_2"
 COMBINED = "max_second_displacement_mdof srss_top_displacement srss_base_shear srss_base_moment"
 
-
-Result = TypeVar("Result")
-
-BATCH_SIZE = 64  # structures that are prepared together
+BATCH_SIZE = 256  # structures that are prepared together
 MAX_PAIRS = 2**32 - 1  # pairs with different random numbers
 
 
@@ -237,16 +234,18 @@ class PopulationPlan(ChunkedPlan):
         motions = [self.motions[each.record] for each in drawn]
         structures = [each.frame().rocking() for each in drawn]
         seconds = [second_mode(*each) for each in zip(structures, motions, strict=True)]
-        cases = [_attempt(self._cases, properties) for properties in structures]
-        prepare_together(case for each in cases if isinstance(each, list) for case in each)
-        solved = [_attempt(_solutions, *each) for each in zip(cases, motions, strict=True)]
+        cases = [self._cases(properties) for properties in structures]
+        runs = [(case, motion, 1.0) for both, motion in zip(cases, motions, strict=True) for case in both]
+        solved = solutions_of(runs)
         rows = list[Row]()
-        given = zip(units, drawn, motions, structures, seconds, cases, solved, strict=True)
+        pairs = zip(solved[::2], solved[1::2], strict=True)
+        given = zip(units, drawn, motions, structures, seconds, cases, pairs, strict=True)
         for unit, prototype, motion, properties, second, both, solutions in given:
             row: Row = {"pair": unit, "pga": motion.pga, "pgv": motion.pgv}
             row |= _facts_of(prototype, properties) | self._facts[prototype.record] | _second_mode(properties, second)
-            if isinstance(both, Exception) or isinstance(solutions, Exception):
-                rows.append(row | {"error": str(solutions)})
+            errors = [each for each in (*both, *solutions) if isinstance(each, Exception)]
+            if errors:
+                rows.append(row | {"error": str(errors[0])})
                 continue
             all_modes, one_mode = (
                 respond(case.model, motion.name, solution) for case, solution in zip(both, solutions, strict=True)
@@ -257,29 +256,17 @@ class PopulationPlan(ChunkedPlan):
             rows.append(row | _combined(one_mode, second))
         return rows
 
-    def _cases(self, properties: RockingProperties) -> list[Case]:
+    def _cases(self, properties: RockingProperties) -> Sequence[Case | InputError]:
         """Return the cases of both models, with the peak of the second mode (of the first, if there is only one)."""
         models = LinearModel("MDOF-S", properties), LinearModel("2DOF-S", properties.truncated(1))
         extra = [modal_displacement(model, min(model.properties.n_modes, 2) - 1) for model in models]
-        return [
-            Case(model, self.free_vibration, work_limit=self.work_limit, extra=each)
-            for model, each in zip(models, extra, strict=True)
-        ]
-
-
-def _attempt(function: Callable[..., Result], *given: Any) -> "Result | InputError | SolverError":
-    """Return the result of a function, or the error that it raises."""
-    try:
-        return function(*given)
-    except (SolverError, InputError) as error:
-        return error
-
-
-def _solutions(cases: list[Case] | Exception, motion: GroundMotion) -> list[Any]:
-    """Return the solution of each case."""
-    if isinstance(cases, Exception):
-        raise cases
-    return [case.solve(motion) for case in cases]
+        try:
+            return [
+                Case(model, self.free_vibration, work_limit=self.work_limit, extra=each)
+                for model, each in zip(models, extra, strict=True)
+            ]
+        except InputError as error:
+            return error, error
 
 
 def _facts_of(drawn: Prototype, properties: RockingProperties) -> Row:
@@ -377,4 +364,4 @@ def run_population(
     count, start = whole_number("pairs", pairs, 1, MAX_PAIRS), whole_number("seed", seed, 0)
     suite = motions if isinstance(motions, Suite) else Suite(motions_of(motions))
     free, limit = free_vibration_time(free_vibration), work_limit_of(work_limit)
-    return run_plan(PopulationPlan(suite, count, start, free, 32, limit), workers, progress)
+    return run_plan(PopulationPlan(suite, count, start, free, 128, limit), workers, progress)
