@@ -8,7 +8,7 @@ import pytest
 import rockflex as rf
 from rockflex import InputError
 from rockflex._computable import computable
-from rockflex.structure import _beam_modes
+from rockflex.structure import _finite_elements
 
 CANTILEVER = {
     "height": 12.0,
@@ -120,47 +120,47 @@ def test_what_cannot_be_computed_is_an_input_error(build, words):
 
 
 def test_a_mode_that_is_none_is_refused(monkeypatch):
-    solve = _beam_modes.eigsh
+    solve = _finite_elements.eigsh
 
     def disturbed(*arguments, **options):
         values, vectors = solve(*arguments, **options)
         return values, vectors + 0.01 * vectors[:, ::-1]
 
-    monkeypatch.setattr(_beam_modes, "eigsh", disturbed)
+    monkeypatch.setattr(_finite_elements, "eigsh", disturbed)
     with pytest.raises(InputError, match=r"cannot hold \(a mode has a relative residual of \d"):
         cantilever().modal()
 
 
 def test_a_solver_that_gives_up_is_told(monkeypatch):
     def gives_up(*_, **__):
-        raise _beam_modes.ArpackError(-9999)
+        raise _finite_elements.ArpackError(-9999)
 
-    monkeypatch.setattr(_beam_modes, "eigsh", gives_up)
+    monkeypatch.setattr(_finite_elements, "eigsh", gives_up)
     with pytest.raises(InputError, match=r"cannot hold \(ARPACK error -9999"):
         cantilever().modal()
 
 
 def test_what_the_solver_found_before_it_gave_up_is_kept(monkeypatch):
-    solve, calls = _beam_modes.eigsh, []
+    solve, calls = _finite_elements.eigsh, []
     expected = cantilever().modal().omega
 
     def gives_up(*arguments, **options):
         calls.append(options["k"])
         found = solve(*arguments, **options)
         if len(calls) == 1:
-            raise _beam_modes.ArpackNoConvergence("three are missing", found[0][:2], found[1][:, :2])
+            raise _finite_elements.ArpackNoConvergence("three are missing", found[0][:2], found[1][:, :2])
         return found
 
-    monkeypatch.setattr(_beam_modes, "eigsh", gives_up)
+    monkeypatch.setattr(_finite_elements, "eigsh", gives_up)
     np.testing.assert_allclose(cantilever().modal().omega, expected, rtol=1e-9)
     assert calls == [5, 3]
 
 
 def test_a_solver_that_finds_nothing_is_told(monkeypatch):
     def finds_nothing(*_, **__):
-        raise _beam_modes.ArpackNoConvergence("none", np.empty(0), np.empty((2000, 0)))
+        raise _finite_elements.ArpackNoConvergence("none", np.empty(0), np.empty((2000, 0)))
 
-    monkeypatch.setattr(_beam_modes, "eigsh", finds_nothing)
+    monkeypatch.setattr(_finite_elements, "eigsh", finds_nothing)
     with pytest.raises(InputError, match=r"cannot hold \(no mode was found\)"):
         cantilever().modal()
 

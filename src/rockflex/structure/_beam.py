@@ -13,7 +13,7 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes
-from rockflex.structure._beam_modes import RitzShapes, cosine_shapes, finite_element_modes, ritz_modes
+from rockflex.structure._beam_modes import RitzShapes, cosine_shapes, ritz_modes
 from rockflex.structure._beam_sections import Along, LumpedMasses, Profile, Sections, on_beam, profile
 from rockflex.structure._cross_section import Section, checked_section, section_value
 from rockflex.structure._structure import AssembledStructure, ModalStructure
@@ -143,6 +143,8 @@ class Beam(AssembledStructure, Value):
     def _modes(self) -> MassNormalisedModes:
         with computable(f"The modes of a beam with {self.sections}"):
             if self.method == "fe":
+                from rockflex.structure._finite_elements import finite_element_modes
+
                 return finite_element_modes(self.sections, self._elements, self.n_modes)
             shapes = self.shapes
             if shapes is None:
