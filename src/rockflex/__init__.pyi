@@ -30,10 +30,16 @@ from .kinds import load_study as load_study
 from .kinds import run_study as run_study
 from .modal import Adequacy as Adequacy
 from .modal import AdequacyTolerance as AdequacyTolerance
+from .modal import Branch as Branch
+from .modal import BranchEnd as BranchEnd
+from .modal import ElementLaw as ElementLaw
+from .modal import FlagShapedBar as FlagShapedBar
 from .modal import FloorModes as FloorModes
 from .modal import FrictionDamper as FrictionDamper
+from .modal import GapBar as GapBar
 from .modal import Ground as Ground
 from .modal import ModalProperties as ModalProperties
+from .modal import MultilinearBar as MultilinearBar
 from .modal import PinnedBeam as PinnedBeam
 from .modal import Pivot as Pivot
 from .modal import RockingProperties as RockingProperties

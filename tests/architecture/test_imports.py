@@ -58,6 +58,7 @@ FOUNDATION = {
     "_json",
     "_matrices",
     "_numbers",
+    "_registry",
     "_schema",
     "_shown",
     "_values",

@@ -11,7 +11,16 @@ from rockflex._schema import FrameFlags, FrameKeys
 from rockflex._shown import counted
 from rockflex.cli._console import grid, number
 from rockflex.cli._options import flags_of, naming
-from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.modal import (
+    BaseElement,
+    ElementLaw,
+    FrictionDamper,
+    RockingProperties,
+    Tendon,
+    ViscousDamper,
+    YieldingDissipator,
+    law_parameters,
+)
 from rockflex.structure import Eccentric, Frame, Restrained, structure_warnings
 from rockflex.structure.file import ELEMENTS, KINDS, Built, StructureEntry, build_in, checked, read_toml
 from rockflex.study.spec import RunOptionKeys
@@ -57,6 +66,10 @@ def elements_table(elements: Sequence[BaseElement]) -> "Table":
 
 def _element_row(element: BaseElement) -> tuple[str, ...]:
     stiffness = damping = prestress = strength = ratio = breaks = None
+    if isinstance(element, ElementLaw):
+        given = {key: value for key, value in law_parameters(element).items() if isinstance(value, float)}
+        stiffness, strength = (given[key] / 1e3 if key in given else None for key in ("stiffness", "yield_force"))
+        ratio = given.get("post_yield_ratio")
     if isinstance(element, Tendon | YieldingDissipator):
         stiffness, strength = element.stiffness / 1e3, element.yield_force and element.yield_force / 1e3
         ratio, breaks = element.post_yield_ratio, element.rupture_elongation
@@ -72,7 +85,7 @@ def _element_row(element: BaseElement) -> tuple[str, ...]:
 
 
 def _kind(element: BaseElement) -> str:
-    return next(kind for kind, table in ELEMENTS.items() if table.makes is type(element))
+    return next((kind for kind, table in ELEMENTS.items() if table.makes is type(element)), type(element).__name__)
 
 
 FLAGS = flags_of(FrameFlags)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError
+from rockflex._registry import Catalogue
 
 OVERTURNED = 0.5 * math.pi  # rad
 ROCKED = 1e-4  # rad; uplift with a smaller rotation does not count as rocking
@@ -154,7 +155,7 @@ TENDON_YIELD = LimitState(
     symbol="tendon yield",
     exceeded=lambda runs: (runs["tendon_utilisation"] >= 1.0) | _overturned(runs),
 )
-LIMIT_STATES = {state.name: state for state in (UPLIFT, ROCKING, NOMINAL, TENDON_YIELD, OVERTURNING)}
+LIMIT_STATES = Catalogue[LimitState]((UPLIFT, ROCKING, NOMINAL, TENDON_YIELD, OVERTURNING), "limit_states")
 
 
 def limit_label(limit: float | str) -> str:

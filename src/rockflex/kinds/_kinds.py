@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from rockflex._errors import InputError, SolverError
+from rockflex._registry import Catalogue
 from rockflex._shown import counted, shown
 
 if TYPE_CHECKING:
@@ -444,17 +445,7 @@ DESIGN = StudyKind(
 )
 
 
-KINDS: dict[str, StudyKind] = {
-    kind.name: kind
-    for kind in (
-        CLOUD,
-        INCREMENTAL,
-        STRIPES,
-        POPULATION,
-        MONTE_CARLO,
-        DESIGN,
-    )
-}
+KINDS = Catalogue[StudyKind]((CLOUD, INCREMENTAL, STRIPES, POPULATION, MONTE_CARLO, DESIGN), "studies")
 
 
 def kind_named(name: object) -> StudyKind:

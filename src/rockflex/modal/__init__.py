@@ -2,8 +2,10 @@
 
 from rockflex.modal._adequacy import Adequacy, AdequacyTolerance, adequacy
 from rockflex.modal._analysis import FloorModes, ModalProperties, modal_properties
+from rockflex.modal._element_law import Branch, BranchEnd, ElementLaw, law_parameters, slow_path, tension_of
 from rockflex.modal._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator, element_set
 from rockflex.modal._ground import Ground, Springs, asce41_bed, winkler_bed
+from rockflex.modal._law_bars import FlagShapedBar, GapBar, MultilinearBar
 from rockflex.modal._participation import MassNormalisedModes, modes_that_take_part, rocking_properties
 from rockflex.modal._pivot import Pivot
 from rockflex.modal._rocking import RockingProperties
@@ -13,11 +15,17 @@ __all__ = [
     "Adequacy",
     "AdequacyTolerance",
     "BaseElement",
+    "Branch",
+    "BranchEnd",
+    "ElementLaw",
+    "FlagShapedBar",
     "FloorModes",
     "FrictionDamper",
+    "GapBar",
     "Ground",
     "MassNormalisedModes",
     "ModalProperties",
+    "MultilinearBar",
     "PinnedBeam",
     "Pivot",
     "RockingProperties",
@@ -30,10 +38,13 @@ __all__ = [
     "asce41_bed",
     "element_set",
     "frequency_equation",
+    "law_parameters",
     "modal_properties",
     "modes_that_take_part",
     "pinned_beam",
     "rocking_properties",
+    "slow_path",
+    "tension_of",
     "uplifted_modes",
     "winkler_bed",
 ]

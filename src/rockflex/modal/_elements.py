@@ -8,6 +8,7 @@ from typing import Any
 from rockflex._checks import finite, instance, positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex.modal._element_law import ElementLaw, law_parameters
 
 
 @dataclass(frozen=True)
@@ -255,7 +256,7 @@ class FrictionDamper:
         )
 
 
-BaseElement = Tendon | YieldingDissipator | ViscousDamper | FrictionDamper
+BaseElement = Tendon | YieldingDissipator | ViscousDamper | FrictionDamper | ElementLaw
 """Any element between a base and the ground."""
 
 
@@ -271,8 +272,8 @@ def element_set(given: Any) -> tuple[BaseElement, ...]:
     for item in items:
         if not isinstance(item, BaseElement):
             raise InputError(
-                "elements must be Tendon, YieldingDissipator, ViscousDamper or FrictionDamper objects, but "
-                f"{shown(item)} was given. Write Tendon(initial_force, stiffness), for example.",
+                "elements must be Tendon, YieldingDissipator, ViscousDamper or FrictionDamper objects, or have an "
+                f"ElementLaw, but {shown(item)} was given. Write Tendon(initial_force, stiffness), for example.",
                 field="elements",
             )
     return items
@@ -284,6 +285,8 @@ def locked_force(element: BaseElement) -> float:
     A fuse that has yielded returns to δ = 0 with z = - F_y, so its force there is -(1 - α) F_y. One that cannot push, a
     tendon or a viscous damper locks nothing in.
     """
+    if isinstance(element, ElementLaw):
+        return element.locked_force
     if isinstance(element, YieldingDissipator) and not element.tension_only:
         return (1.0 - element.post_yield_ratio) * element.yield_force
     return element.force if isinstance(element, FrictionDamper) else 0.0
@@ -291,6 +294,8 @@ def locked_force(element: BaseElement) -> float:
 
 def pushed_force(element: BaseElement, elongation: float) -> float:
     """Return the force in N of an element as built that is stretched slowly by an elongation in m, or shortened."""
+    if isinstance(element, ElementLaw):
+        return element.slow_force(elongation)
     if isinstance(element, FrictionDamper):
         return math.copysign(element.force, elongation)
     if isinstance(element, ViscousDamper) or elongation >= (element.rupture_elongation or math.inf):
@@ -324,5 +329,19 @@ def _values(element: BaseElement, distance: float) -> tuple[str, tuple[float, ..
             *beyond,
             element.rupture_elongation or 0.0,
         )
+    if isinstance(element, ElementLaw):
+        rest = law_parameters(element) | {"position": distance}
+        words = [f"{key}={value!r}" for key, value in rest.items() if not isinstance(value, float)]
+        return " ".join([type(element).__name__, *words]), tuple(v for v in rest.values() if isinstance(v, float))
     rest = {**vars(element), "position": distance}
     return type(element).__name__, tuple(float(value or 0.0) for value in rest.values())
+
+
+def closes(element: BaseElement) -> bool:
+    """Return whether an element helps to close the base, and is no dissipator that can keep it open."""
+    return element.locked_force == 0.0 if isinstance(element, ElementLaw) else isinstance(element, Tendon)
+
+
+def initial_force(element: BaseElement) -> float:
+    """Return the force in N of an element as built while the base is in contact."""
+    return element.initial_force if isinstance(element, Tendon | ElementLaw) else 0.0

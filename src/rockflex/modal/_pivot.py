@@ -8,7 +8,7 @@ from rockflex._checks import real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.modal._elements import BaseElement, Tendon, locked_force
+from rockflex.modal._elements import BaseElement, Tendon, initial_force, locked_force
 
 PIVOT_VALUES = ("half_width", "eccentricity", "i_theta", "translational_inertia", "m_tot", "l0r")
 """Names of the `RockingProperties` that `pivot_of` needs."""
@@ -33,7 +33,7 @@ class Pivot:
     weight_moment : float
         Moment of the weight, m_tot g times `arm`, in N m.
     prestress_moment : float
-        Sum of F_0 r over the tendons, in N m.
+        Sum of F_0 r over the elements with an initial force, in N m.
     tendon_stiffness : float
         Sum of k r² over the tendons, in N m/rad.
     axial_stiffness_moment : float
@@ -143,10 +143,10 @@ def pivot_of(
     tendons = [each for each in elements if isinstance(each, Tendon)]
     distances = [arm - towards * each.position for each in tendons]
     if alike:
-        prestress = sum((each.initial_force for each in tendons), 0.0) * arm
+        prestress = sum(map(initial_force, elements), 0.0) * arm
         pull = sum((each.stiffness for each in tendons), 0.0) * arm
     else:
-        prestress = sum((each.initial_force * r for each, r in zip(tendons, distances, strict=True)), 0.0)
+        prestress = sum((initial_force(each) * (arm - towards * each.position) for each in elements), 0.0)
         pull = sum((each.stiffness * r for each, r in zip(tendons, distances, strict=True)), 0.0)
     stiffness = sum((each.stiffness * r**2 for each, r in zip(tendons, distances, strict=True)), 0.0)
     return Pivot(

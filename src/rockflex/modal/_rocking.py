@@ -26,7 +26,7 @@ from rockflex._errors import InputError
 from rockflex._html import HtmlTable
 from rockflex._values import Value, changed
 from rockflex.modal._analysis import FloorModes
-from rockflex.modal._elements import BaseElement, Tendon, element_set, mirrored, pushed_force
+from rockflex.modal._elements import BaseElement, Tendon, closes, element_set, initial_force, mirrored, pushed_force
 from rockflex.modal._pivot import PIVOT_VALUES, Pivot, checked_side, pivot_inertia, pivots_of
 
 SUM_TOLERANCE = 1e-9  # relative tolerance for rounding of sums that are equal if all modes are kept
@@ -352,8 +352,8 @@ class RockingProperties(HtmlTable, Value):
 
     @property
     def prestress(self) -> float:
-        """Sum of the tendons' initial forces in N."""
-        return sum((tendon.initial_force for tendon in self.tendons), 0.0) if self.elements else 0.0
+        """Sum of the initial forces of the elements in N, those of tendons for example."""
+        return sum(map(initial_force, self.elements), 0.0)
 
     @cached_property
     def resting_reaction(self) -> float:
@@ -401,9 +401,10 @@ class RockingProperties(HtmlTable, Value):
     def recentring_ratio_at(self, rotation: float) -> float:
         """Return λ at a design rotation |θ| in rad, the smaller of both pivots; infinite where no dissipator acts.
 
-        The ratio of NZS 3101:2006, Appendix B: the moments of the weight and of the tendons over the dissipators',
-        all pushed slowly from zero to the rotation, so that tendons pull more and fuses harden. The standard asks for
-        their overstrength factor, 1.15 at least. The moment L_0^r g θ, by which the weight's falls, is not in it.
+        The ratio of NZS 3101:2006, Appendix B: the moments of the weight, of the tendons and of bars that return to
+        zero force over the dissipators', all pushed slowly from zero to the rotation, so that tendons pull more and
+        fuses harden. The standard asks for their overstrength factor, 1.15 at least. The moment L_0^r g θ, by which
+        the weight's falls, is not in it.
 
         Raises
         ------
@@ -422,9 +423,9 @@ class RockingProperties(HtmlTable, Value):
         found: list[float] = []
         for pivot in self.pivots:
             arms = [(each, pivot.arm - pivot.side * each.position) for each in self.elements]
-            moments = [(isinstance(each, Tendon), pushed_force(each, r * turn) * r) for each, r in arms]
-            locked = sum((abs(moment) for tendon, moment in moments if not tendon), 0.0)
-            closing = pivot.weight_moment + sum((moment for tendon, moment in moments if tendon), 0.0)
+            moments = [(closes(each), pushed_force(each, r * turn) * r) for each, r in arms]
+            locked = sum((abs(moment) for helps, moment in moments if not helps), 0.0)
+            closing = pivot.weight_moment + sum((moment for helps, moment in moments if helps), 0.0)
             found.append(closing / locked if locked > 0.0 else math.inf)
         return min(found)
 

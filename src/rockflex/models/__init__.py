@@ -2,14 +2,13 @@
 
 from rockflex.models._between import LinearMotion, MotionBetween, Part, Shaking, inside
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._element import BROKEN, Bar, Dashpot, Element, Slider
+from rockflex.models._element import BROKEN, Bar, Dashpot, Element, LawElement, Slider
 from rockflex.models._element_states import (
     arms,
     element_energies,
     element_forces,
     elongations,
     plastic_stretches,
-    stored_energy,
 )
 from rockflex.models._elements import CLOSED, LEFT, RIGHT, SUMS, arm_of, elements_of, pulls_of, stiffness_of_fuses
 from rockflex.models._impact import (
@@ -90,6 +89,7 @@ __all__ = [
     "GainsEnergyError",
     "ImpactLaw",
     "Key",
+    "LawElement",
     "LinearModel",
     "LinearMotion",
     "Model",
@@ -144,7 +144,6 @@ __all__ = [
     "spring_forces",
     "stiffness_of_fuses",
     "stored_energies",
-    "stored_energy",
     "swing_by_side",
     "system_of",
     "under_more_gravity",

@@ -1,12 +1,14 @@
 """The elements between base and ground: tendons, fuses, viscous and friction dampers, each with its branches."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
+from rockflex.modal import Branch, ElementLaw, slow_path
 
 ELASTIC, UP, DOWN, SLACK, BROKEN = range(5)  # branches of a bar; UP and DOWN: it yields as it is stretched or shortened
 HELD, OUTWARD, INWARD = ELASTIC, UP, DOWN  # branches of a friction damper
@@ -41,8 +43,21 @@ class Element(Protocol):
         ...
 
     @property
-    def remembers(self) -> bool:
-        """Whether its force depends on a memory: its plastic stretch."""
+    def memories(self) -> int:
+        """How many numbers it remembers: none, its plastic stretch or other internal variable, and its branch."""
+        ...
+
+    @property
+    def stretches(self) -> float | None:
+        """Stretch in m at δ = 0 of an element whose internal variable m follows δ while it yields; None for others."""
+        ...
+
+    def yields(self, branch: int) -> bool:
+        """Return whether the elastic stretch is constant on a branch, in place of the internal variable."""
+        ...
+
+    def broken(self, branch: int) -> bool:
+        """Return whether the element is broken on a branch."""
         ...
 
     @property
@@ -75,24 +90,48 @@ class Element(Protocol):
         ...
 
     def mark(self, branch: int) -> float | None:
-        """Return the memory that tells a branch; None if its memory is free."""
+        """Return the last of its memories where that tells the branch; None where it does not."""
         ...
 
-    def memory_at(self, elongation: float) -> float:
-        """Return the memory after an element as built has been brought to an elongation δ in m."""
+    def brought(self, elongation: float) -> tuple[int, tuple[float, ...]]:
+        """Return the branch and the memories of an element as built that has been brought to an elongation δ in m."""
         ...
 
     def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
-        """Return the branch at elongations δ in m with the memories at the start of the branch, shape (n,)."""
+        """Return the branch, (n,), at elongations δ in m with the memories at its start, shape (n, memories)."""
+        ...
+
+    def stored_energy(self, elongation: Array, force: Array, plastic: Array) -> Array:
+        """Return the energy stored in J, relative to the base in contact as built, shape (n,)."""
         ...
 
 
-class WithoutMemory:
+class Unbreakable:
+    """What is common to elements without an internal variable."""
+
+    @property
+    def stretches(self) -> float | None:
+        return None
+
+    def yields(self, branch: int) -> bool:
+        del branch
+        return False
+
+    def broken(self, branch: int) -> bool:
+        del branch
+        return False
+
+    def stored_energy(self, elongation: Array, force: Array, plastic: Array) -> Array:
+        del force, plastic
+        return np.zeros(elongation.shape)
+
+
+class WithoutMemory(Unbreakable):
     """What is common to elements without memory, most of which have one branch."""
 
     @property
-    def remembers(self) -> bool:
-        return False
+    def memories(self) -> int:
+        return 0
 
     @property
     def branches(self) -> tuple[int, ...]:
@@ -119,9 +158,8 @@ class WithoutMemory:
     def mark(self, branch: int) -> float | None:
         del branch
 
-    def memory_at(self, elongation: float) -> float:
-        del elongation
-        return 0.0
+    def brought(self, elongation: float) -> tuple[int, tuple[float, ...]]:
+        return int(self.branch_at(np.array([elongation]), np.zeros((1, 0)))[0]), ()
 
     def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
         del memory
@@ -154,6 +192,13 @@ class Spring(WithoutMemory):
         more = self.stiffness * elongation
         return np.where(self.initial_force + more < -BORDER * np.abs(more), SLACK, ELASTIC)
 
+    def stored_energy(self, elongation: Array, force: Array, plastic: Array) -> Array:
+        """F_0 δ + ½ k δ², as far as the tendon is taut."""
+        del force, plastic
+        slack = -self.initial_force / self.stiffness if self.stiffness > 0.0 else -np.inf
+        taut = np.maximum(elongation, slack)
+        return (self.initial_force + 0.5 * self.stiffness * taut) * taut
+
 
 @dataclass(frozen=True)
 class Dashpot(WithoutMemory):
@@ -183,8 +228,18 @@ class Bar:
     rupture: float = np.inf  # elongation δ at which it breaks
 
     @property
-    def remembers(self) -> bool:
-        return True
+    def memories(self) -> int:
+        return 1
+
+    @property
+    def stretches(self) -> float | None:
+        return self.stretched
+
+    def yields(self, branch: int) -> bool:
+        return branch not in (ELASTIC, SLACK)
+
+    def broken(self, branch: int) -> bool:
+        return branch == BROKEN
 
     @property
     def branches(self) -> tuple[int, ...]:
@@ -229,16 +284,18 @@ class Bar:
     def mark(self, branch: int) -> float | None:
         return BROKEN_FOR_GOOD if branch == BROKEN else None
 
-    def memory_at(self, elongation: float) -> float:
-        if elongation >= self.rupture:
-            return BROKEN_FOR_GOOD
+    def brought(self, elongation: float) -> tuple[int, tuple[float, ...]]:
         stretch, reach = elongation + self.stretched, self.yield_force / self.stiffness
-        if self.pulls_only:
-            return max(stretch - reach, 0.0)
-        return stretch - min(max(stretch, -reach), reach)
+        if elongation >= self.rupture:
+            memory = BROKEN_FOR_GOOD
+        elif self.pulls_only:
+            memory = max(stretch - reach, 0.0)
+        else:
+            memory = stretch - min(max(stretch, -reach), reach)
+        return int(self.branch_at(np.array([elongation]), np.array([[memory]]))[0]), (memory,)
 
     def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
-        reach, e = self.yield_force / self.stiffness, elongation + self.stretched
+        reach, e, memory = self.yield_force / self.stiffness, elongation + self.stretched, memory[:, 0]
         found = np.full(e.size, ELASTIC, dtype=np.int64)
         room = BORDER * (reach + np.abs(e) + np.abs(memory))
         found[e - memory > reach + room] = UP
@@ -250,17 +307,28 @@ class Bar:
         found[memory == BROKEN_FOR_GOOD] = BROKEN
         return found
 
+    def stored_energy(self, elongation: Array, force: Array, plastic: Array) -> Array:
+        """F²/2k + α (1 - α) k m²/2: two springs in parallel, of which one slides.
+
+        The second term stays locked in while the bar is slack. A broken bar, whose m is NaN, stores nothing.
+        """
+        del elongation
+        k, first = self.stiffness, self.stiffness * self.stretched
+        locked = 0.5 * self.ratio * (1.0 - self.ratio) * k * plastic**2
+        stored = (force - first) * (force + first) / (2.0 * k) + locked
+        return np.where(np.isnan(plastic), -(first**2) / (2.0 * k), stored)
+
 
 @dataclass(frozen=True)
-class Slider:
+class Slider(Unbreakable):
     """A friction damper: F = ± F_0 while it slides, less while it sticks. Its memory is its direction, 1, 0 or -1."""
 
     force: float
     position: float
 
     @property
-    def remembers(self) -> bool:
-        return True
+    def memories(self) -> int:
+        return 1
 
     @property
     def branches(self) -> tuple[int, ...]:
@@ -290,12 +358,89 @@ class Slider:
     def mark(self, branch: int) -> float | None:
         return float(self.direction(branch))
 
-    def memory_at(self, elongation: float) -> float:
+    def brought(self, elongation: float) -> tuple[int, tuple[float, ...]]:
         del elongation
-        return 0.0
+        return HELD, (0.0,)
 
     def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
         found = np.full(elongation.size, HELD, dtype=np.int64)
-        found[memory > 0.0] = OUTWARD
-        found[memory < 0.0] = INWARD
+        found[memory[:, 0] > 0.0] = OUTWARD
+        found[memory[:, 0] < 0.0] = INWARD
         return found
+
+
+@dataclass(frozen=True)
+class LawElement:
+    """An element of any law: its branches in their order. It remembers its internal variable and its branch."""
+
+    law: ElementLaw
+
+    @cached_property
+    def parts(self) -> tuple[Branch, ...]:
+        """Its branches."""
+        return tuple(self.law.law.values())
+
+    @cached_property
+    def places(self) -> dict[str, int]:
+        """Their numbers, by name."""
+        return {name: place for place, name in enumerate(self.law.law)}
+
+    @property
+    def position(self) -> float:
+        return self.law.position
+
+    @property
+    def memories(self) -> int:
+        return 2
+
+    @property
+    def stretches(self) -> float | None:
+        return 0.0
+
+    @property
+    def branches(self) -> tuple[int, ...]:
+        return tuple(range(len(self.parts)))
+
+    def pull(self, branch: int) -> Pull:
+        part = self.parts[branch]
+        return Pull(part.stiffness, 0.0, part.force, part.internal)
+
+    def stops(self, branch: int) -> tuple[Stop, ...]:
+        ends = self.parts[branch].ends
+        return tuple(Stop(end.rising, end.elongation, end.internal, self.places[end.branch]) for end in ends)
+
+    def yields(self, branch: int) -> bool:
+        return self.parts[branch].yields != 0
+
+    def broken(self, branch: int) -> bool:
+        del branch
+        return False
+
+    def direction(self, branch: int) -> int:
+        return self.parts[branch].yields
+
+    def turning(self, branch: int) -> float | None:
+        return self.parts[branch].offset if self.parts[branch].yields else None
+
+    def stopped(self, branch: int) -> int:
+        return self.places[self.parts[branch].turns_to] if self.parts[branch].yields else branch
+
+    def moving(self, branch: int, direction: int) -> int:
+        del direction
+        return branch
+
+    def mark(self, branch: int) -> float | None:
+        return float(branch)
+
+    def brought(self, elongation: float) -> tuple[int, tuple[float, ...]]:
+        state = slow_path(self.law, [elongation])[-1]
+        place = self.places[state.branch]
+        return place, (state.internal, float(place))
+
+    def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
+        del elongation
+        return memory[:, 1].astype(np.int64)
+
+    def stored_energy(self, elongation: Array, force: Array, plastic: Array) -> Array:
+        del force
+        return np.asarray(self.law.stored_energy(elongation, plastic), dtype=float)

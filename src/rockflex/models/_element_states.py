@@ -3,7 +3,7 @@
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex.models._element import BROKEN, Bar, Element, Slider, Spring
+from rockflex.models._element import Slider
 from rockflex.models._elements import LEFT, RIGHT, arm_of
 from rockflex.models._kept import acting_side, by_phase
 from rockflex.models._label import RockingModel
@@ -65,38 +65,20 @@ def plastic_stretches(model: RockingModel, states: Array) -> Array:
     for chosen, key, vector in by_phase(model, states, acting_side(states)):
         memory = layout.memory
         for place, (each, branch) in enumerate(zip(model.elements, model.element_key(key)[1:], strict=True)):
-            if isinstance(each, Bar):
+            if each.stretches is not None:
                 offset = each.turning(branch)
-                kept = np.nan if branch == BROKEN else vector[:, memory]
+                kept = np.nan if each.broken(branch) else vector[:, memory]
                 found[chosen, place] = kept if offset is None else delta[chosen, place] - offset
-            memory += each.remembers
+            memory += each.memories
     return found
 
 
 def element_energies(model: RockingModel, states: Array) -> Array:
-    """Return the energy stored in every element at the states of a history in J, (n, E): see `stored_energy`."""
+    """Return the energy stored in every element at the states of a history in J, shape (n, E)."""
     delta, forces = elongations(model, states), element_forces(model, states)
     plastic = plastic_stretches(model, states)
     found = [
-        stored_energy(each, delta[:, place], forces[:, place], plastic[:, place])
+        each.stored_energy(delta[:, place], forces[:, place], plastic[:, place])
         for place, each in enumerate(model.elements)
     ]
     return np.stack(found, axis=1) if found else np.zeros(delta.shape)
-
-
-def stored_energy(element: Element, elongation: Array, force: Array, plastic: Array) -> Array:
-    """Return the energy stored in an element, relative to the base in contact before it yields, in J.
-
-    A bar with the plastic stretch m stores F²/2k + α (1 - α) k m²/2: two springs in parallel, of which one slides. The
-    second term stays locked in while the bar is slack. A broken bar, whose m is NaN, stores nothing.
-    """
-    if isinstance(element, Spring):
-        slack = -element.initial_force / element.stiffness if element.stiffness > 0.0 else -np.inf
-        taut = np.maximum(elongation, slack)
-        return (element.initial_force + 0.5 * element.stiffness * taut) * taut
-    if not isinstance(element, Bar):
-        return np.zeros(elongation.shape)
-    k, first = element.stiffness, element.stiffness * element.stretched
-    locked = 0.5 * element.ratio * (1.0 - element.ratio) * k * plastic**2
-    stored = (force - first) * (force + first) / (2.0 * k) + locked
-    return np.where(np.isnan(plastic), -(first**2) / (2.0 * k), stored)

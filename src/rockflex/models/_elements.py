@@ -6,8 +6,15 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
-from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, ViscousDamper, YieldingDissipator
-from rockflex.models._element import HELD, Bar, Dashpot, Element, Slider, Spring, Stop
+from rockflex.modal import (
+    BaseElement,
+    ElementLaw,
+    FrictionDamper,
+    RockingProperties,
+    ViscousDamper,
+    YieldingDissipator,
+)
+from rockflex.models._element import HELD, Bar, Dashpot, Element, LawElement, Slider, Spring, Stop
 from rockflex.models._phase import Border, Key
 
 CLOSED, RIGHT, LEFT = 0, 1, -1  # branches of the base: in contact, or rotating about one pivot; the sign of θ
@@ -60,8 +67,18 @@ def is_held(properties: RockingProperties, elements: tuple[Element, ...], key: K
 
 
 def memories(elements: tuple[Element, ...]) -> dict[int, int]:
-    """Return the index of each memory by the place of its element."""
-    return {place: index for index, place in enumerate(k for k, each in enumerate(elements) if each.remembers)}
+    """Return the index of the first memory of each element that has some, by its place."""
+    ends = np.cumsum([each.memories for each in elements], dtype=int).tolist()
+    return {
+        place: end - each.memories
+        for place, (each, end) in enumerate(zip(elements, ends, strict=True))
+        if each.memories
+    }
+
+
+def memory_count(elements: tuple[Element, ...]) -> int:
+    """Return the number of memories of all elements."""
+    return sum(each.memories for each in elements)
 
 
 def border_of(
@@ -71,12 +88,12 @@ def border_of(
 
     An element adds the moment -s F r: -k r² θ - c r² θ' - s r (force + recall m).
     """
-    side, known = key[0], memories(elements)
-    total = base_border(properties, side, len(known), gravity)
+    side, known, count = key[0], memories(elements), memory_count(elements)
+    total = base_border(properties, side, count, gravity)
     for place, (each, branch) in enumerate(zip(elements, key[1:], strict=True)):
         r, pull = arm_of(properties, each, side), each.pull(branch)
-        recall = np.zeros(len(known))
-        if each.remembers:
+        recall = np.zeros(count)
+        if place in known:
             recall[known[place]] = -side * pull.recall * r
         total = total + Border.on_rotation(
             damping=pull.damping * r**2, stiffness=pull.stiffness * r**2, constant=-side * pull.force * r, recall=recall
@@ -91,7 +108,7 @@ def pulls_of(properties: RockingProperties, elements: tuple[Element, ...], key: 
     F = k δ + c δ' + f + g m, adds the moment -s F r cos(θ/2). For small rotations these are δ = r |θ| and -s F r.
     """
     known = memories(elements)
-    total = np.zeros((SUMS, 1 + len(known)))
+    total = np.zeros((SUMS, 1 + memory_count(elements)))
     terms: list[tuple[float, ...]] = []
     for place, (each, branch) in enumerate(zip(elements, key[1:], strict=True)):
         r = arm_of(properties, each, key[0]) if key[0] != CLOSED else 0.0
@@ -127,15 +144,20 @@ def turning_way(properties: RockingProperties, elements: tuple[Element, ...], ke
 def marks_of(elements: tuple[Element, ...], key: Key) -> tuple[tuple[int, float], ...]:
     """Return the memories that have a value of their own on the branches, by index."""
     known = memories(elements)
-    marks = ((known[place], each.mark(key[1 + place])) for place, each in enumerate(elements) if place in known)
+    last = {place: first + elements[place].memories - 1 for place, first in known.items()}
+    marks = ((index, elements[place].mark(key[1 + place])) for place, index in last.items())
     return tuple((index, mark) for index, mark in marks if mark is not None)
 
 
 def stiffness_of_fuses(properties: RockingProperties, side: int) -> float:
-    """Return Σ k r² of the fuses about a pivot before they yield, in N m/rad; tendons belong to `rocking_stiffness`."""
-    fuses = [each for each in properties.elements if isinstance(each, YieldingDissipator)]
-    arm = properties.pivot(side).arm
-    return sum((each.stiffness * (arm - side * each.position) ** 2 for each in fuses), 0.0)
+    """Return the largest Σ k r² of all but tendons, which belong to `rocking_stiffness`, in N m/rad."""
+    arm, found = properties.pivot(side).arm, 0.0
+    for each in properties.elements:
+        stiffest = each.stiffness if isinstance(each, YieldingDissipator) else 0.0
+        if isinstance(each, ElementLaw):
+            stiffest = max(branch.stiffness for branch in each.law.values())
+        found += stiffest * (arm - side * each.position) ** 2
+    return found
 
 
 def elements_of(properties: RockingProperties) -> tuple[Element, ...]:
@@ -144,6 +166,8 @@ def elements_of(properties: RockingProperties) -> tuple[Element, ...]:
 
 
 def _element_of(given: BaseElement) -> Element:
+    if isinstance(given, ElementLaw):
+        return LawElement(given)
     if isinstance(given, ViscousDamper):
         return Dashpot(given.coefficient, given.position)
     if isinstance(given, FrictionDamper):

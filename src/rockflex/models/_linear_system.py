@@ -9,7 +9,6 @@ import numpy as np
 
 from rockflex._arrays import Array, Integers
 from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System
-from rockflex.models._element import BROKEN, BROKEN_FOR_GOOD, ELASTIC, SLACK, Bar
 from rockflex.models._elements import (
     CLOSED,
     LEFT,
@@ -19,6 +18,7 @@ from rockflex.models._elements import (
     border_of,
     is_in_reach,
     memories,
+    memory_count,
     set_off,
     turning_way,
 )
@@ -73,7 +73,7 @@ class ElementBase:
 
         The plastic stretch m would be as good, but its rounding is that of the largest elongation so far.
         """
-        bars = [place for place, each in enumerate(self.model.elements) if isinstance(each, Bar)]
+        bars = [place for place, each in enumerate(self.model.elements) if each.stretches is not None]
         return {place: self.model.layout.core + k for k, place in enumerate(bars)}
 
     @cached_property
@@ -102,9 +102,8 @@ class ElementBase:
 
     def stretch_in(self, place: int, key: Key) -> Array:
         """The whole stretch δ + e_0 of a bar: a row."""
-        row, bar = self.stretch(place, key), self.model.elements[place]
-        assert isinstance(bar, Bar)
-        row[-1] += bar.stretched
+        row = self.stretch(place, key)
+        row[-1] += self.model.elements[place].stretches or 0.0
         return row
 
     def blank(self) -> Array:
@@ -181,7 +180,7 @@ class ElementBase:
                 found[place + 1] = accelerations[N + k]
         branches = model.element_key(key)[1:]
         for place, at in self.bars.items():
-            if branches[place] in (ELASTIC, SLACK):
+            if not model.elements[place].yields(branches[place]):
                 found[at] = self.stretching(place, key)
         return found
 
@@ -210,6 +209,14 @@ class ElementBase:
             found.append((way * row, stop.branch, abs(stop.place)))
         return found
 
+    def begun(self, place: int, branch: int) -> Array | None:
+        """The jump as an element begins a branch: one that yields without any elastic stretch has none, to the bit."""
+        each = self.model.elements[place]
+        offset = each.turning(branch) if place in self.bars else None
+        return (
+            self.without(self.bars[place]) if offset is not None and offset + (each.stretches or 0.0) == 0.0 else None
+        )
+
     def without(self, *places: int) -> Array:
         """The jump that sets some states to zero."""
         jump = np.eye(self.layout.size)
@@ -223,16 +230,15 @@ class ElementBase:
         for place, at in self.bars.items():
             memory, offset = state[model.layout.memory + known[place]], self._offset(place, key)
             stretch = self.stretch_in(place, key) @ np.append(found, (0.0, 1.0))
-            broken = model.element_key(key)[1 + place] == BROKEN
+            broken = model.elements[place].broken(model.element_key(key)[1 + place])
             found[at] = 0.0 if broken else stretch - memory if offset is None else offset
         return found
 
     def _offset(self, place: int, key: Key) -> float | None:
         """The elastic stretch of a bar that yields; None if it does not."""
         bar = self.model.elements[place]
-        assert isinstance(bar, Bar)
         offset = bar.turning(self.model.element_key(key)[1 + place])
-        return None if offset is None else offset + bar.stretched
+        return None if offset is None else offset + (bar.stretches or 0.0)
 
     def states_of_model(self, keys: Sequence[Key], places: Integers, states: Array, *, history: bool = False) -> Array:
         """The states of the model, shape (R, S), from states in phases whose keys are keys[places].
@@ -251,12 +257,12 @@ class ElementBase:
                 if history:
                     begins = np.append(True, branch[1:] != branch[:-1])[: len(column)]
                     column[:] = column[np.maximum.accumulate(np.where(begins, np.arange(len(column)), 0))]
-                column[branch == BROKEN] = BROKEN_FOR_GOOD
-            else:
-                column[:] = [each.mark(each_branch) or 0.0 for each_branch in branch.tolist()]
-        if model.layout.remembered > len(known):
+            marks = np.array([each.mark(one) for one in branch.tolist()], dtype=float)  # NaN where there is none
+            last = found[:, model.layout.memory + index + each.memories - 1]
+            last[:] = np.where(np.isnan(marks), last, marks)
+        if model.layout.remembered > memory_count(model.elements):
             more = np.array([self.marks(key) for key in keys])[places]
-            found[:, model.layout.memory + len(known) :] = more
+            found[:, model.layout.memory + memory_count(model.elements) :] = more
         return found
 
     def marks(self, key: Key) -> tuple[float, ...]:
@@ -341,7 +347,9 @@ class OnRigidGround(ElementBase):
             for within, (row, branch, scale) in zip(reached, self.stops(place, key, base[1 + place]), strict=True):
                 following = (*base[: place + 1], branch, *base[place + 2 :])
                 if within:
-                    found.append(self.event("change", row, self.along(key, following), scale))
+                    found.append(
+                        self.event("change", row, self.along(key, following), scale, self.begun(place, branch))
+                    )
         return found
 
     def turning(self, key: Key) -> list[Event]:
@@ -499,7 +507,8 @@ class OnSprings(ElementBase):
         for k, each in enumerate(model.elements):
             place = model.springs.n + 2 + k
             for row, branch, scale in self.stops(k, key, key[place]):
-                found.append(self.event("change", row, _with(key, place, branch), scale or self.heave_scale))
+                jump = self.begun(k, branch)
+                found.append(self.event("change", row, _with(key, place, branch), scale or self.heave_scale, jump))
             way = each.direction(key[place])
             if way:
                 row = way * self.stretching(k, key)

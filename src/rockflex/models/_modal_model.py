@@ -1,5 +1,6 @@
 """What all models with N modes have in common: elements, and equations of motion as rows; and the simplified models."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -23,10 +24,11 @@ from rockflex.models._elements import (
     first_key,
     is_held,
     memories,
+    memory_count,
     set_off,
 )
 from rockflex.models._impact import ImpactLaw, VVELSimplified
-from rockflex.models._layout import StateLayout, layout_of
+from rockflex.models._layout import HEADER, StateLayout, layout_of
 from rockflex.models._phase import Arrow, Border, Key
 
 JAMMED = 1e-12  # relative: determinant below which the base has no inertia against a motion
@@ -70,7 +72,7 @@ class ModalModel(Value):
             self.properties.n_modes,
             integrated=self.integrated,
             viscous=any(isinstance(each, Dashpot) for each in self.elements),
-            remembered=len(memories(self.elements)),
+            remembered=memory_count(self.elements),
         )
 
     @cached_property
@@ -99,12 +101,12 @@ class ModalModel(Value):
         """
         outward = rotation or spin
         side = (outward > 0.0) - (outward < 0.0)
-        known, kept, branches = memories(self.elements), list[float](), list[int]()
-        for place, each in enumerate(self.elements):
+        kept, branches = list[float](), list[int]()
+        for each in self.elements:
             elongation = np.zeros(1) if side == CLOSED else self.elongations(each, side, np.array([abs(rotation)]))
-            memory = each.memory_at(float(elongation[0]))
-            branches.append(int(each.branch_at(elongation, np.array([memory]))[0]))
-            kept += [memory] if place in known else []
+            branch, remembered = each.brought(float(elongation[0]))
+            branches.append(branch)
+            kept += remembered
         key = (side, *branches)
         if side != CLOSED and spin != 0.0:
             key = set_off(self.properties, self.elements, key, 1 if spin > 0.0 else -1)
@@ -114,6 +116,10 @@ class ModalModel(Value):
         """Return the branches of the base and of the elements, without those that a kind of ground adds."""
         return key
 
+    def with_branches(self, key: Key, branches: Sequence[int]) -> Key:
+        """Return the key of the same phase with other branches of the elements."""
+        return (key[0], *branches, *key[1 + len(branches) :])
+
     def branches_at(self, side: Array, rotation: Array, states: Array) -> NDArray[np.int64]:
         """Return the branches at the states of a history, by its sides, rotations and memories, shape (n, K)."""
         branches = np.empty((side.size, 1 + len(self.elements)), dtype=np.int64)
@@ -122,8 +128,8 @@ class ModalModel(Value):
         for place, each in enumerate(self.elements):
             right, left = (self.elongations(each, which, np.abs(rotation)) for which in (RIGHT, LEFT))
             elongation = np.where(side < 0.0, left, right)
-            index = self.layout.memory + known[place] if place in known else 0
-            found = each.branch_at(elongation, self.layout.of(states, index))
+            first = HEADER + self.layout.memory + known.get(place, 0)
+            found = each.branch_at(elongation, states[:, first : first + each.memories])
             at_rest = np.array([each.stopped(branch) for branch in range(max(each.branches) + 1)])
             branches[:, 1 + place] = np.where(side == 0.0, at_rest[found], found)
         return branches

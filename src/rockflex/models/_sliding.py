@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties
-from rockflex.models._elements import CLOSED, border_of, memories
+from rockflex.models._elements import CLOSED, border_of, memory_count
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._layout import HEADER, StateLayout, layout_of
 from rockflex.models._modal_model import LinearModel, accelerations_of, arrow_of
@@ -46,7 +46,7 @@ class SlidingModel(LinearModel):
     @cached_property
     def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Layout of the state vector."""
-        return layout_of(self.properties.n_modes, remembered=len(memories(self.elements)) + 1, slides=True)
+        return layout_of(self.properties.n_modes, remembered=memory_count(self.elements) + 1, slides=True)
 
     def element_key(self, key: Key) -> Key:
         """Return the branches of the base and of the elements."""

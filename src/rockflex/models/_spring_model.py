@@ -1,5 +1,6 @@
 """The simplified models on springs that cannot pull: the base rotates, heaves and, with friction, slides."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -10,7 +11,7 @@ from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties, Springs
 from rockflex.models._element import Element
-from rockflex.models._elements import CLOSED, memories
+from rockflex.models._elements import CLOSED, memories, memory_count
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._layout import HEADER, StateLayout, layout_of
 from rockflex.models._modal_model import LinearModel, accelerations_of, arrow_of
@@ -63,7 +64,7 @@ class SpringModel(LinearModel):
     @cached_property
     def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Layout of the state vector."""
-        remembered = len(memories(self.elements)) + codes_for(self._key_size)
+        remembered = memory_count(self.elements) + codes_for(self._key_size)
         return layout_of(self.properties.n_modes, remembered=remembered, slides=self.friction is not None, heaves=True)
 
     @property
@@ -79,6 +80,10 @@ class SpringModel(LinearModel):
         """Return the branches of the base and of the elements."""
         return (key[0], *key[self.springs.n + 2 :])
 
+    def with_branches(self, key: Key, branches: Sequence[int]) -> Key:
+        """Return the key of the same phase with other branches of the elements."""
+        return (*key[: self.springs.n + 2], *branches)
+
     def start(self, side: int) -> Key:
         """Return the branches of a base at rest."""
         return (side, *(LOADED,) * self.springs.n, STICK, *(each.branches[0] for each in self.elements))
@@ -89,7 +94,7 @@ class SpringModel(LinearModel):
 
     def branches_at(self, side: Array, rotation: Array, states: Array) -> NDArray[np.int64]:  # noqa: ARG002
         """Return the branches at the states of a history, shape (n, K)."""
-        first = HEADER + self.layout.memory + len(memories(self.elements))
+        first = HEADER + self.layout.memory + memory_count(self.elements)
         codes = states[:, first : HEADER + self.layout.size]
         return np.column_stack((np.zeros(side.size, dtype=np.int64), decoded(codes, self._key_size)))
 
@@ -197,13 +202,13 @@ class SpringModel(LinearModel):
         speed = start[layout.heave + 1] - springs.positions * spin
         force = -springs.stiffness * depth - springs.damping * speed
         branches = np.where(depth >= 0.0, LIFTED, np.where(force > 0.0, LOADED, RECEDING))
-        known, kept, of_elements = memories(self.elements), list[float](), list[int]()
-        for place, each in enumerate(self.elements):
+        kept, of_elements = list[float](), list[int]()
+        for each in self.elements:
             stretch = self.stretch(each)
             elongation = float(stretch[-1] + stretch[layout.rotation] * rotation + stretch[layout.heave] * heave)
-            memory = each.memory_at(elongation)
-            of_elements.append(int(each.branch_at(np.array([elongation]), np.array([memory]))[0]))
-            kept += [memory] if place in known else []
+            branch, remembered = each.brought(elongation)
+            of_elements.append(branch)
+            kept += remembered
         key = (CLOSED, *(int(branch) for branch in branches), STICK, *of_elements)
         start[layout.memory :] = (*kept, *code_of(key[1:]))
         return key, start

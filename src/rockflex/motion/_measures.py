@@ -8,6 +8,7 @@ from typing import Literal
 
 from rockflex._checks import one_of
 from rockflex._errors import InputError
+from rockflex._registry import Catalogue
 from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
 
@@ -209,7 +210,7 @@ _ALL = (
     ),
 )
 
-MEASURES: dict[str, Measure] = {each.name: each for each in _ALL}
+MEASURES = Catalogue[Measure](_ALL, "measures")
 """Every measure by its name, in the order of table columns."""
 
 

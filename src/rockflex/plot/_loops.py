@@ -15,7 +15,15 @@ from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._numbers import prefixed, short
-from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.modal import (
+    BaseElement,
+    ElementLaw,
+    FrictionDamper,
+    RockingProperties,
+    Tendon,
+    ViscousDamper,
+    YieldingDissipator,
+)
 from rockflex.plot._curves import Curve, curves_of, title_of
 from rockflex.plot._history import add_legend, axis_scale, draw_panel, quantities_of, shade_uplifts
 from rockflex.plot._style import (
@@ -54,6 +62,10 @@ _ELEMENT_NAMES: dict[type[BaseElement], str] = {
     FrictionDamper: "friction damper",
 }
 _PER_ROW = 2
+
+
+def _element_name(element: BaseElement) -> str:
+    return element.words if isinstance(element, ElementLaw) else _ELEMENT_NAMES[type(element)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,13 +180,18 @@ def resistance_of(history: History) -> tuple[Array, Array]:
 
 
 def is_path_independent(properties: RockingProperties) -> bool:
-    """Whether the resisting moment depends on the rotation alone: all elements are tendons that stay elastic."""
-    return all(isinstance(each, Tendon) and each.post_yield_ratio is None for each in properties.elements)
+    """Whether the resisting moment depends on the rotation alone: all elements stay elastic."""
+    return all(
+        not any(branch.yields for branch in each.law.values())
+        if isinstance(each, ElementLaw)
+        else isinstance(each, Tendon) and each.post_yield_ratio is None
+        for each in properties.elements
+    )
 
 
 def name_of(element: BaseElement, number: int) -> str:
     """Name of an element in a figure, with its number, counted from 1, and its position."""
-    return f"{number} {_ELEMENT_NAMES[type(element)]}, x = {short(element.position)} m"
+    return f"{number} {_element_name(element)}, x = {short(element.position)} m"
 
 
 def plot_loops(

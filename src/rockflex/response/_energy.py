@@ -26,6 +26,7 @@ from rockflex.models import (
     Bar,
     Dashpot,
     Key,
+    LawElement,
     LinearMotion,
     MotionBetween,
     Part,
@@ -35,6 +36,7 @@ from rockflex.models import (
     SpringModel,
     arms,
     element_energies,
+    element_forces,
     elongations,
     horizontal_reaction,
     inside,
@@ -193,7 +195,8 @@ def element_losses(model: RockingModel, states: Array, sweeps: Array) -> Array:
     found = np.zeros((states.shape[0] - 1, len(model.elements)))
     if not model.elements:
         return found
-    moved = np.abs(np.diff(elongations(model, states), axis=0))
+    delta, forces = elongations(model, states), element_forces(model, states)
+    moved = np.abs(np.diff(delta, axis=0))
     plastic, stored = plastic_stretches(model, states), element_energies(model, states)
     broken = np.isnan(plastic)
     breaks = broken[1:] & ~broken[:-1]
@@ -203,6 +206,9 @@ def element_losses(model: RockingModel, states: Array, sweeps: Array) -> Array:
             found[:, place] = (1.0 - each.ratio) * each.yield_force * yielded[:, place]
             released = stored[:-1, place] - stored[1:, place]
             found[breaks[:, place], place] = released[breaks[:, place]]
+        elif isinstance(each, LawElement):
+            work = 0.5 * (forces[1:, place] + forces[:-1, place]) * np.diff(delta[:, place])
+            found[:, place] = work - np.diff(stored[:, place])
         elif isinstance(each, Dashpot):
             found[:, place] = each.coefficient * sweeps[:, place]
         elif isinstance(each, Slider):

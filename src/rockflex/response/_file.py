@@ -14,11 +14,15 @@ import numpy as np
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._files import check_regular, write_whole
+from rockflex._registry import registered
 from rockflex._shown import shown
 from rockflex.modal import (
     BaseElement,
+    FlagShapedBar,
     FloorModes,
     FrictionDamper,
+    GapBar,
+    MultilinearBar,
     RockingProperties,
     Springs,
     Tendon,
@@ -78,9 +82,10 @@ LAWS: dict[str, Callable[..., ImpactLaw]] = {
 }
 SPRINGS = ("positions", "stiffness", "damping", "area")
 FLOOR_MODES = ("heights", "displacement", "force")
-ELEMENTS: dict[str, Callable[..., BaseElement]] = {
-    kind.__name__: kind for kind in (Tendon, YieldingDissipator, ViscousDamper, FrictionDamper)
-}
+ELEMENTS: tuple[type[BaseElement], ...] = (
+    *(Tendon, YieldingDissipator, ViscousDamper, FrictionDamper),
+    *(FlagShapedBar, GapBar, MultilinearBar),
+)
 FLOOR_PEAKS = ("story_drift", "story_shear", "floor_acceleration", "total_floor_displacement")
 
 
@@ -242,6 +247,23 @@ def _law(parameters: dict[str, Any]) -> ImpactLaw:
     return LAWS[name](**parameters)
 
 
+def _element(kind: str = "Tendon", **values: Any) -> BaseElement:
+    """Return an element from the name of its class and its parameters.
+
+    Raises
+    ------
+    InputError
+        If no installed package has such an element.
+    """
+    known = {each.__name__: each for each in (*ELEMENTS, *registered("elements").values())}
+    if kind not in known:
+        raise InputError(
+            f"The structure has an element {kind!r}, which no installed package registers. Install the package that "
+            f"has it, with an entry point of the group rockflex.elements; known are {', '.join(known)}."
+        )
+    return known[kind](**values)
+
+
 def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     values = {name: arrays[f"properties.{name}"] for name in PROPERTIES}
     values = {name: value if value.ndim else float(value) for name, value in values.items()}
@@ -249,7 +271,7 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     if "floor_modes.heights" in arrays:
         floors = FloorModes(*(arrays[f"floor_modes.{name}"] for name in FLOOR_MODES))
     name = "tendons" if scalars["format"] == OLDEST else "elements"
-    elements = [ELEMENTS[each.pop("kind", "Tendon")](**each) for each in map(dict, _typed(scalars, name, list))]
+    elements = [_element(**each) for each in _typed(scalars, name, list)]
     known = {name: scalars[name] for name in KNOWN_OR_NOT}
     known["eccentricity"] = scalars.get("eccentricity", 0.0)  # files of symmetric bases may lack it
     properties = RockingProperties(**values, floors=floors, elements=elements, **known)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex.modal import BaseElement, FrictionDamper, Springs, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.modal import BaseElement, ElementLaw, FrictionDamper, Springs, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.models import (
     HEADER,
     SIDE,
@@ -229,6 +229,8 @@ def _elongations(
 
 
 def _largest_force(element: BaseElement, move: ElementExtremes) -> float:
+    if isinstance(element, ElementLaw):
+        return element.extremes(move.low, move.high)[0]
     if isinstance(element, ViscousDamper):
         return element.coefficient * move.speed
     if isinstance(element, FrictionDamper):
@@ -250,6 +252,8 @@ def _first_loading(element: Tendon | YieldingDissipator, stretch: float) -> floa
 
 def _yields(element: BaseElement, move: ElementExtremes) -> bool:
     """Return whether an element yields or slides; of an elastic tendon, whether it exceeds its yield force."""
+    if isinstance(element, ElementLaw):
+        return element.extremes(move.low, move.high)[1]
     if isinstance(element, ViscousDamper):
         return False
     if isinstance(element, FrictionDamper):

@@ -15,7 +15,7 @@ from rockflex._constants import GRAVITY
 from rockflex._shown import counted
 from rockflex._values import Value
 from rockflex.modal import BaseElement, RockingProperties
-from rockflex.models import BROKEN, CLOSED, LEFT, RIGHT, Bar, Element, Slider, arm_of, elements_of, stored_energy
+from rockflex.models import CLOSED, LEFT, RIGHT, Element, Slider, arm_of, elements_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -281,14 +281,14 @@ def next_branch(element: Element, place: ElementState, branch: int) -> ElementSt
 
 def jumps(element: Element, before: ElementState, after: ElementState) -> bool:
     """Return whether the force jumps between two branches."""
-    return before.branch != after.branch and (after.branch == BROKEN or isinstance(element, Slider))
+    return before.branch != after.branch and (element.broken(after.branch) or isinstance(element, Slider))
 
 
 def plastic_stretch(element: Element, place: ElementState) -> float:
     """Return the plastic part of the elongation in m; NaN once the element is broken."""
-    if not isinstance(element, Bar):
+    if element.stretches is None:
         return 0.0
-    return math.nan if place.branch == BROKEN else memory_at(element, place)
+    return math.nan if element.broken(place.branch) else memory_at(element, place)
 
 
 TOLERANCE = 1e-12  # relative: a change of branch this close to the end of a leg belongs to the next leg
@@ -312,7 +312,7 @@ def base_path(properties: RockingProperties, rotations: Array) -> MomentRotation
     force, elongation, plastic = values.reshape(*shape, 3).transpose(2, 0, 1)
     stored = np.zeros(shape)
     for k, each in enumerate(elements):
-        stored[:, k] = stored_energy(each, elongation[:, k], force[:, k], plastic[:, k])
+        stored[:, k] = each.stored_energy(elongation[:, k], force[:, k], plastic[:, k])
     work = np.zeros(shape)
     np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(elongation, axis=0), axis=0, out=work[1:])
     return MomentRotation(

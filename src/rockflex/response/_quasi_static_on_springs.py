@@ -13,7 +13,7 @@ from rockflex._arrays import Array, Bools
 from rockflex._constants import GRAVITY
 from rockflex._shown import counted
 from rockflex.modal import Springs
-from rockflex.models import BROKEN, Element, SpringModel, stored_energy
+from rockflex.models import Element, SpringModel
 from rockflex.response._history import History, pressure_of
 from rockflex.response._quasi_static import (
     ElementState,
@@ -222,7 +222,7 @@ def springs_path(model: SpringModel, rotations: Array) -> MomentRotationOnSpring
     losses = np.zeros(shape)
     losses[1:] = np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(elongation, axis=0), axis=0)
     for k, each in enumerate(elements):
-        losses[:, k] -= stored_energy(each, elongation[:, k], force[:, k], plastic[:, k])
+        losses[:, k] -= each.stored_energy(elongation[:, k], force[:, k], plastic[:, k])
     return MomentRotationOnSprings(
         properties=model.properties,
         springs=springs,
@@ -315,7 +315,7 @@ def _moved(
         if at is not None and happens[springs.n + k]:
             force = tension(each, places[k])
             places[k] = next_branch(each, places[k]._replace(elongation=at[0]), at[1])
-            carried[k] = force if at[1] == BROKEN else 0.0
+            carried[k] = force if each.broken(at[1]) else 0.0
     empty = happens[: springs.n] | (state.empty & (path <= near))
     return Equilibrium(rotation, heave, pressed, empty, tuple(places), carried), path
 
@@ -323,7 +323,7 @@ def _moved(
 def _onward(element: Element, place: ElementState, way: int) -> ElementState:
     """Return the place of an element that begins to be stretched (1) or shortened (-1)."""
     place = start_moving(element, place, way)
-    while (at := next_branch_change(element, place, way)) and at[0] == place.elongation and at[1] != BROKEN:
+    while (at := next_branch_change(element, place, way)) and at[0] == place.elongation and not element.broken(at[1]):
         place = next_branch(element, place, at[1])
     return place
 

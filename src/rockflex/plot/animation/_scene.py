@@ -26,6 +26,7 @@ ELEMENT_COLORS = {
     "ViscousDamper": "#0f7f8c",
     "FrictionDamper": "#7d5a30",
 }
+LAW_COLOR = "#5b4b8a"  # of elements given by their branches
 SPRING, SPRING_FREE = "#64748b", "#a9b1bb"
 DARK_RED = "#b3261e"
 COLUMN_OFFSET = 0.82  # of the distance from the axis to the nearer edge, at which columns are drawn
@@ -138,7 +139,7 @@ class StructureArtists:
         self._base = _line(axes, color, 4.0, capstyle="butt")
         self._mass = _line(axes, color, 0.0, marker="s", markersize=11.0)
         kinds = sorted({type(each).__name__ for each in self._elements})
-        self._element_lines = {kind: _line(axes, ELEMENT_COLORS[kind], 1.3) for kind in kinds}
+        self._element_lines = {kind: _line(axes, ELEMENT_COLORS.get(kind, LAW_COLOR), 1.3) for kind in kinds}
         self._impacts = _line(axes, RED, 0.0, marker="o", markersize=11.0, markerfacecolor="none", markeredgewidth=1.8)
 
     @property

@@ -12,13 +12,16 @@ from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
 from rockflex._numbers import moment_unit, rounded
+from rockflex._shown import shown
 from rockflex.modal import (
     BaseElement,
+    ElementLaw,
     FrictionDamper,
     RockingProperties,
     Tendon,
     UpliftedModes,
     ViscousDamper,
+    law_parameters,
     uplifted_modes,
 )
 from rockflex.models import Restitution, RockingModel, SidedRestitution
@@ -386,6 +389,9 @@ def _row(place: int, elements: Sequence[BaseElement], runs: Sequence[Response]) 
 
 def _describe_element(element: BaseElement) -> tuple[str, str, tuple[str, str]]:
     """Return kind, properties, and the words for an element that did not, or did, yield."""
+    if isinstance(element, ElementLaw):
+        values = {name: value for name, value in law_parameters(element).items() if name != "position"}
+        return element.words, ", ".join(f"{name} = {shown(value)}" for name, value in values.items()), ("", "yielded")
     if isinstance(element, ViscousDamper):
         return "viscous damper", f"c = {rounded(element.coefficient / 1e3)} kN s/m", ("", "")
     if isinstance(element, FrictionDamper):

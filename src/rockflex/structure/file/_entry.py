@@ -2,20 +2,32 @@
 
 import tomllib
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import MISSING, fields, replace
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeAlias, Union, get_origin, get_type_hints
 
-from pydantic import Field, model_validator
+from pydantic import Field, create_model, model_validator
 
 from rockflex._errors import InputError
 from rockflex._files import check_regular, path_of
-from rockflex._schema import PLAIN, Eccentricity, Key
+from rockflex._registry import registered
+from rockflex._schema import PLAIN, Eccentricity, Key, each
 from rockflex._shown import shortened
-from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.modal import (
+    BaseElement,
+    ElementLaw,
+    FlagShapedBar,
+    FrictionDamper,
+    GapBar,
+    MultilinearBar,
+    RockingProperties,
+    Tendon,
+    ViscousDamper,
+    YieldingDissipator,
+)
 from rockflex.structure import Eccentric, Restrained
 from rockflex.structure._from_matrices import checksum
-from rockflex.structure.file._table import Table, checked, inner_table
+from rockflex.structure.file._table import AnyTable, Table, checked, inner_table
 from rockflex.structure.file._tables import (
     BeamTable,
     BlockTable,
@@ -34,7 +46,11 @@ from rockflex.structure.file._tables import (
 
 _POST_YIELD_RATIO = "the stiffness after yielding over the elastic one"
 _POSITION = Key("the distance to the right of the axis of the masses", "m")
-_ELEMENT_KIND = Key('"tendon", "yielding_dissipator", "viscous_damper" or "friction_damper"', form=PLAIN)
+_ELEMENT_KINDS = (
+    *("tendon", "yielding_dissipator", "viscous_damper", "friction_damper"),
+    *("flag_shaped_bar", "gap_bar", "multilinear_bar", *registered("elements")),
+)
+_ELEMENT_KIND = Key(", ".join(f'"{kind}"' for kind in _ELEMENT_KINDS[:-1]) + f' or "{_ELEMENT_KINDS[-1]}"', form=PLAIN)
 _TABLE_KEY = Key("a table", form=PLAIN)
 _RUN_KEYS = ("impact", "restitution", "bouc_wen", "ground")  # only for `rockflex run`
 
@@ -119,22 +135,82 @@ class FrictionDamperTable(ElementTable):
     force: Annotated[float, Key("the force at which the damper slides", "N")]
 
 
-AnyElementTable: TypeAlias = Annotated[
-    TendonElementTable | YieldingDissipatorTable | ViscousDamperTable | FrictionDamperTable,
-    Field(discriminator="kind"),
-]
-"""The table of any element, chosen by its `kind`."""
+class FlagShapedBarTable(ElementTable):
+    """The arguments of `FlagShapedBar`."""
+
+    makes = FlagShapedBar
+    title = "Flag-shaped bar"
+
+    kind: Annotated[Literal["flag_shaped_bar"], _ELEMENT_KIND]
+    position: Annotated[float, _POSITION] = 0.0
+    stiffness: Annotated[float, Key("the elastic stiffness", "N/m")]
+    yield_force: Annotated[float, Key("the force at which the upper plateau begins", "N")]
+    post_yield_ratio: Annotated[float, Key(_POST_YIELD_RATIO)] = 0.0
+    flag_depth: Annotated[float, Key("the height of the loop over the yield force")]
+    tension_only: Annotated[bool, Key("whether the bar cannot push", form="true or false: {}")] = False
+
+
+class GapBarTable(ElementTable):
+    """The arguments of `GapBar`."""
+
+    makes = GapBar
+    title = "Bar with a gap"
+
+    kind: Annotated[Literal["gap_bar"], _ELEMENT_KIND]
+    position: Annotated[float, _POSITION] = 0.0
+    stiffness: Annotated[float, Key("the stiffness beyond the gap", "N/m")]
+    gap: Annotated[float, Key("the elongation from which the bar is stretched", "m")]
+    both_ways: Annotated[bool, Key("whether it acts when it is shortened, too", form="true or false: {}")] = False
+
+
+class MultilinearBarTable(ElementTable):
+    """The arguments of `MultilinearBar`."""
+
+    makes = MultilinearBar
+    title = "Multi-linear elastic bar"
+
+    kind: Annotated[Literal["multilinear_bar"], _ELEMENT_KIND]
+    position: Annotated[float, _POSITION] = 0.0
+    elongations: Annotated[list[float], Key("the elongations of the points", "m", form=each("point"))]
+    forces: Annotated[list[float], Key("the forces at these elongations", "N", form=each("point"))]
+    tension_only: Annotated[bool, Key("whether the bar cannot push", form="true or false: {}")] = False
+
+
+def registered_table(made: Any, base: type[AnyTable], **more: Any) -> type[AnyTable]:
+    """Return the table of a class of another package, a dataclass, from its fields."""
+    hints = get_type_hints(made)
+    keys: dict[str, Any] = {
+        part.name: (
+            Annotated[list[float] if get_origin(hints[part.name]) is tuple else hints[part.name], Key(part.name)],
+            ... if part.default is MISSING else part.default,
+        )
+        for part in fields(made)
+    }
+    found: Any = create_model(f"{made.__name__}Table", __base__=base, **keys, **more)
+    found.makes, found.title = made, made.__name__
+    return found
+
+
+def _element_table(kind: str, law: type[ElementLaw]) -> type[ElementTable]:
+    return registered_table(law, ElementTable, kind=(Annotated[Literal[kind], _ELEMENT_KIND], ...))
+
 
 ELEMENTS: dict[str, type[ElementTable]] = {
     "tendon": TendonElementTable,
     "yielding_dissipator": YieldingDissipatorTable,
     "viscous_damper": ViscousDamperTable,
     "friction_damper": FrictionDamperTable,
-}
+    "flag_shaped_bar": FlagShapedBarTable,
+    "gap_bar": GapBarTable,
+    "multilinear_bar": MultilinearBarTable,
+} | {kind: _element_table(kind, law) for kind, law in registered("elements").items()}
 """The table of each kind of element by its name in a file."""
 
+AnyElementTable: TypeAlias = Annotated[Union[tuple(ELEMENTS.values())], Field(discriminator="kind")]  # pyright: ignore # noqa: UP007
+"""The table of any element, chosen by its `kind`."""
 
-class StructureEntry(Table):
+
+class _OwnStructures(Table):
     """A structure, with its optional name, its place on the base, and the elements that hold the base.
 
     Attributes
@@ -172,7 +248,7 @@ class StructureEntry(Table):
     ] = None  # not an empty list, which would be new in the documents of stored studies
 
     @model_validator(mode="after")
-    def _one_structure(self) -> "StructureEntry":
+    def _one_structure(self) -> Self:
         found = [f"[{kind}]" for kind in KINDS if getattr(self, kind) is not None]
         if len(found) != 1:
             *others, last = (f"[{kind}]" for kind in KINDS)
@@ -268,6 +344,20 @@ class StructureEntry(Table):
         return {**self.table.values(), **more}
 
 
+if TYPE_CHECKING:
+    StructureEntry = _OwnStructures
+else:
+    StructureEntry = create_model(
+        "StructureEntry",
+        __base__=_OwnStructures,
+        __doc__=_OwnStructures.__doc__,
+        __module__=__name__,
+        **{
+            kind: (Annotated[registered_table(made, StructureTable) | None, _TABLE_KEY], None)
+            for kind, made in registered("structures").items()
+        },
+    )
+
 KINDS: dict[str, type[StructureTable]] = {
     name: table
     for name, field in StructureEntry.model_fields.items()
@@ -284,10 +374,11 @@ def read_structure(path: str | Path) -> Built:
     (`CantileverWithTipMass`), ``[beam]`` (`Beam`, with lists of values at the heights ``z``), ``[lumped]``
     (`LumpedStructure`), ``[matrices]`` (`from_matrices`), ``[modes]`` (`from_modes`), ``[properties]``
     (`RockingProperties`) or ``[block]`` (`rigid_block`). Tables ``[[elements]]`` restrain it; their key ``kind`` is
-    "tendon" (`Tendon`), "yielding_dissipator" (`YieldingDissipator`), "viscous_damper" (`ViscousDamper`) or
-    "friction_damper" (`FrictionDamper`). Tables ``[[tendons]]`` are tendons without that key. A number ``eccentricity``
-    above all tables moves the structure from the middle of its base (`Eccentric`). Units are kg, m, s, N and rad; paths
-    of matrices are relative to the folder of the file.
+    "tendon" (`Tendon`), "yielding_dissipator" (`YieldingDissipator`), "viscous_damper" (`ViscousDamper`),
+    "friction_damper" (`FrictionDamper`), "flag_shaped_bar" (`FlagShapedBar`), "gap_bar" (`GapBar`), "multilinear_bar"
+    (`MultilinearBar`), or the name that another package registers (`ElementLaw`). Tables ``[[tendons]]`` are tendons
+    without that key. A number ``eccentricity`` above all tables moves the structure from the middle of its base
+    (`Eccentric`). Units are kg, m, s, N and rad; paths of matrices are relative to the folder of the file.
 
     Parameters
     ----------

@@ -4,7 +4,7 @@ import { color } from "./dom.js";
 
 const COLORS = { tendon: "tendons", yielding_dissipator: "fuse", viscous_damper: "damper", friction_damper: "friction" };
 
-export const colorOf = (kind) => COLORS[kind];
+export const colorOf = (kind) => COLORS[kind] ?? "fuse";
 
 // "2: Viscous damper at 0.8 m".
 export function nameOf(about, each, place) {

@@ -70,6 +70,9 @@ const NEW_ELEMENTS = {
   yielding_dissipator: { position: 0, stiffness: 5e7, yield_force: 1e5 },
   viscous_damper: { position: 0, coefficient: 5e5 },
   friction_damper: { position: 0, force: 5e4 },
+  flag_shaped_bar: { position: 0, stiffness: 5e7, yield_force: 1e5, post_yield_ratio: 0.05, flag_depth: 0.8 },
+  gap_bar: { position: 0, stiffness: 5e7, gap: 0.005 },
+  multilinear_bar: { position: 0, elongations: [0.005, 0.02], forces: [1e5, 2e5] },
 };
 
 // `current` returns a copy of the structure, `put` takes the changed one.

@@ -1,0 +1,59 @@
+"""What other packages add to this one, by entry points of their distributions."""
+
+import warnings
+from collections.abc import Iterator, Mapping
+from functools import cache, cached_property
+from importlib.metadata import entry_points
+from typing import Any, Generic, TypeVar
+
+Part = TypeVar("Part")
+
+
+@cache
+def registered(group: str) -> dict[str, Any]:
+    """Return the objects that installed packages register in the group ``rockflex.<group>``, by their names.
+
+    An object that cannot be imported is left out, with a warning that names its package.
+    """
+    found = dict[str, Any]()
+    for entry in entry_points(group=f"rockflex.{group}"):
+        try:
+            found[entry.name] = entry.load()
+        except Exception as error:
+            package = entry.dist.name if entry.dist else "a package"
+            warnings.warn(
+                f"{package} registers {entry.name!r} in rockflex.{group} as {entry.value!r}, which cannot be imported: "
+                f"{type(error).__name__}: {error}",
+                stacklevel=2,
+            )
+    return found
+
+
+class Catalogue(Mapping[str, Part], Generic[Part]):
+    """Objects by their names: those of this package, then those of others, which are imported when first asked for.
+
+    Parameters
+    ----------
+    own
+        Objects of this package, each with a `name`.
+    group
+        Group of the entry points of others.
+    """
+
+    def __init__(self, own: tuple[Part, ...], group: str) -> None:
+        self._own: dict[str, Part] = {each.name: each for each in own}  # pyright: ignore[reportAttributeAccessIssue]
+        self._group = group
+
+    @cached_property
+    def _all(self) -> dict[str, Part]:
+        return registered(self._group) | self._own
+
+    def __getitem__(self, name: str) -> Part:
+        return self._own[name] if name in self._own else self._all[name]
+
+    def __iter__(self) -> Iterator[str]:
+        yield from self._own
+        yield from (name for name in self._all if name not in self._own)
+
+    def __len__(self) -> int:
+        return len(self._all)
