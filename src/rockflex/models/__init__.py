@@ -4,10 +4,8 @@ from rockflex.models._between import LinearMotion, MotionBetween, Part, Shaking,
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._element import BROKEN, Bar, Dashpot, Element, Slider
 from rockflex.models._element_states import (
-    arms,
     element_energies,
     element_forces,
-    elongations,
     plastic_stretches,
     stored_energy,
 )
@@ -33,7 +31,7 @@ from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._landing import GainsEnergyError
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout
 from rockflex.models._linear_system import ElementBase, element_base, linear_system_of
-from rockflex.models._modal_model import LinearModel, horizontal_reaction
+from rockflex.models._modal_model import LinearModel, Pose, horizontal_reaction
 from rockflex.models._named import (
     element_moves,
     element_speeds,
@@ -56,7 +54,7 @@ from rockflex.models._quantities import (
     Quantities,
     rows_of,
 )
-from rockflex.models._reactions import Reactions, lifted_springs, printed_reactions, reactions, spring_forces
+from rockflex.models._reactions import Reactions, printed_reactions, reactions, spring_forces
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._spring_model import LOADED, SpringModel
 from rockflex.models._stored import floor_accelerations, soil_strain, stored_energies
@@ -96,6 +94,7 @@ __all__ = [
     "MotionBetween",
     "NonlinearModel",
     "Part",
+    "Pose",
     "Quantities",
     "Reactions",
     "Restitution",
@@ -111,21 +110,18 @@ __all__ = [
     "accelerations",
     "acting_side",
     "arm_of",
-    "arms",
     "element_base",
     "element_energies",
     "element_forces",
     "element_moves",
     "element_speeds",
     "elements_of",
-    "elongations",
     "floor_accelerations",
     "floor_quantities",
     "horizontal_reaction",
     "housner",
     "inside",
     "key_of",
-    "lifted_springs",
     "linear_system_of",
     "may_stack",
     "modal_displacement",

@@ -4,7 +4,7 @@ from rockflex.response._energy import EnergyLedger
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._history import History, SampledHistory
-from rockflex.response._peaks import GLOBAL, rotation_at_rest, springs_of, tracked_extremes, tracked_quantities
+from rockflex.response._peaks import GLOBAL, tracked_extremes, tracked_quantities
 from rockflex.response._quasi_static import (
     MomentRotation,
     base_path,
@@ -59,8 +59,6 @@ __all__ = [
     "push_on_springs",
     "resistance_on_springs",
     "respond",
-    "rotation_at_rest",
-    "springs_of",
     "springs_path",
     "tracked_extremes",
     "tracked_quantities",

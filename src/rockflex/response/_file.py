@@ -33,6 +33,7 @@ from rockflex.models import (
     ImpactLaw,
     LinearModel,
     NonlinearModel,
+    Pose,
     Restitution,
     RockingModel,
     SidedRestitution,
@@ -50,7 +51,6 @@ from rockflex.response._peaks import (
     balance_ratio,
     element_peaks,
     elongations_about_pivots,
-    rotation_at_rest,
 )
 
 Kept = tuple[dict[str, Any], FloorPeaks | None, History | None]
@@ -112,12 +112,11 @@ def save(
             scalars["complete"] = model.complete
             scalars["bouc_wen"] = None if model.bouc_wen is None else asdict(model.bouc_wen)
         scalars["gravity"] = model.gravity
-        if isinstance(model, SlidingModel):
-            scalars["friction"] = model.friction
-        if isinstance(model, SpringModel):
-            scalars |= {"inertia": model.inertia, "rest": list(model.rest)}
-            parts = {name: getattr(model.springs, name) for name in SPRINGS} | {"friction": model.friction}
-            arrays |= {f"springs.{name}": value for name, value in parts.items() if value is not None}
+        for name, value in model.ground_parameters.items():
+            if isinstance(value, np.ndarray):  # of every spring
+                arrays[f"springs.{name}"] = value
+            else:
+                scalars[name] = value
         scalars["elements"] = [{"kind": type(each).__name__, **asdict(each)} for each in model.properties.elements]
         arrays["states"] = history.states
         arrays |= {f"properties.{name}": getattr(model.properties, name) for name in PROPERTIES}
@@ -166,8 +165,8 @@ def _kept(scalars: dict[str, Any], arrays: dict[str, Any], kinds: dict[str, type
         later |= _of_ground(scalars, history)
     if "balance_ratio" not in scalars:  # nor was the residual rotation measured from that at rest
         later["balance_ratio"] = math.nan if history is None else _balance_ratio(scalars, history)
-        if history is not None and isinstance(history.model, SpringModel):
-            later["residual_rotation"] = scalars["residual_rotation"] - rotation_at_rest(history.model)
+        if history is not None and history.model.springs is not None:
+            later["residual_rotation"] = scalars["residual_rotation"] - history.model.rest.rotation
     peaks = later | {name: _typed(scalars, name, kind) for name, kind in kinds.items() if name not in later}
     if "floors.story_drift" in arrays:
         floors = FloorPeaks(*(arrays[f"floors.{name}"] for name in FLOOR_PEAKS))
@@ -268,7 +267,7 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
             springs=springs,
             inertia=_typed(scalars, "inertia", float),
             friction=arrays.get("springs.friction"),
-            rest=(rotation, heave),
+            rest=Pose(rotation, heave),
         )
     if "friction" in scalars:
         return SlidingModel(

@@ -8,13 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex.modal import BaseElement, FrictionDamper, Springs, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.modal import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.models import (
     HEADER,
     SIDE,
     Quantities,
     RockingModel,
-    SpringModel,
     element_moves,
     element_speeds,
     floor_quantities,
@@ -40,7 +39,7 @@ def edges_of(model: RockingModel, rotation: tuple[float, float], solution: Solut
     On rigid ground an edge rises by the width of the base times the rotation about the other edge; on springs the peaks
     of `tracked_extremes` tell, measured from the level at which the springs are unloaded.
     """
-    if isinstance(model, SpringModel):
+    if model.springs is not None:
         right_up, right_down, left_up, left_down = (max(value, 0.0) for value in solution.extremes[:4].tolist())
         return Edges((right_up, left_up), (right_down, left_down))
     width = 2.0 * model.properties.half_width
@@ -48,16 +47,6 @@ def edges_of(model: RockingModel, rotation: tuple[float, float], solution: Solut
     if model.complete:
         right, left = float(np.sin(right)), float(np.sin(left))
     return Edges((width * left, width * right), (0.0, 0.0))
-
-
-def springs_of(model: RockingModel) -> Springs | None:
-    """Return the springs under the base; None on rigid ground."""
-    return model.springs if isinstance(model, SpringModel) else None
-
-
-def rotation_at_rest(model: RockingModel) -> float:
-    """Return the rotation of the base under its weight in rad: zero on rigid ground."""
-    return model.rest[0] if isinstance(model, SpringModel) else 0.0
 
 
 def balance_ratio(model: RockingModel, right: Any, left: Any) -> Any:
@@ -85,7 +74,7 @@ def tracked_quantities(model: RockingModel, *, floors: bool = False) -> Quantiti
         total = total + swing_by_side(model)
     if model.layout.slip >= 0:
         total = total + quantities(model, ("slip",))
-    if isinstance(model, SpringModel):
+    if model.springs is not None:
         total = total + element_speeds(model)
     if floors and model.properties.floors is not None:
         total = total + floor_quantities(model, model.properties.floors, tracked_floor_quantities(model))
@@ -97,7 +86,7 @@ def tracked_extremes(model: RockingModel) -> Quantities | None:
 
     Those are the elongation of each element and its negative.
     """
-    if not isinstance(model, SpringModel):
+    if model.springs is None:
         return None
     p = model.properties
     edges = p.pivot(1).arm, -p.pivot(-1).arm
@@ -116,15 +105,14 @@ def global_histories(model: RockingModel, states: Array) -> Array:
 
 def tracks_both_sides(model: RockingModel) -> bool:
     """Return whether the largest rotation to each side matters on rigid ground, rather than the larger of both."""
-    if isinstance(model, SpringModel):
-        return False
-    return not model.properties.symmetric or any(each.position != 0.0 for each in model.properties.elements)
+    p = model.properties
+    return model.springs is None and (not p.symmetric or any(each.position != 0.0 for each in p.elements))
 
 
 def tracks_elongation_rate(model: RockingModel) -> bool:
     """Return whether viscous dampers act on a base that can lift."""
     return (
-        not isinstance(model, SpringModel)
+        model.springs is None
         and model.lifts
         and any(isinstance(each, ViscousDamper) for each in model.properties.elements)
     )
@@ -207,12 +195,11 @@ def elongations_about_pivots(model: RockingModel, reach: RotationExtremes) -> li
     return [_elongations(model, each, stretch, reach.swing) for each in model.properties.elements]
 
 
-def elongations_on_springs(model: SpringModel, extremes: Array, speeds: Array) -> list[ElementExtremes]:
+def elongations_on_springs(model: RockingModel, extremes: Array, speeds: Array) -> list[ElementExtremes]:
     """Return the extremes of the elements of a base on springs, from the peaks of `element_moves` and their speeds."""
-    rotation, heave = model.rest
     found = list[ElementExtremes]()
     for place, each in enumerate(model.elements):
-        rest = heave - each.position * rotation
+        rest = model.rest.heave - each.position * model.rest.rotation
         high, low = extremes[2 * place] - rest, extremes[2 * place + 1] + rest
         found.append(ElementExtremes(min(0.0, -float(low)), max(0.0, float(high)), float(speeds[place])))
     return found
@@ -268,8 +255,7 @@ def _pulls_only(element: Tendon | YieldingDissipator) -> bool:
 def _remaining_prestress(model: RockingModel, final_state: Array) -> list[float]:
     """Return the force of each tendon in contact after the end of a run, in N; zero if it is slack or broken."""
     row = np.concatenate((np.zeros(HEADER), final_state))
-    if not isinstance(model, SpringModel):
-        row[SIDE] = np.sign(final_state[model.layout.rotation])
+    row[SIDE] = np.sign(final_state[model.layout.rotation])  # on springs it means nothing
     plastic = plastic_stretches(model, row[None])[0]
     found: list[float] = []
     for each, lost in zip(model.properties.elements, plastic.tolist(), strict=True):

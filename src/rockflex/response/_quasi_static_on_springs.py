@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -358,7 +358,7 @@ class SpringsResistance(NamedTuple):
 def resistance_on_springs(history: History) -> SpringsResistance | None:
     """Return the resisting moment at the states of a run; None on rigid ground."""
     model, p = history.model, history.model.properties
-    if not isinstance(model, SpringModel):
+    if model.springs is None:
         return None
     gravity = GRAVITY + history.vertical_ground_acceleration
     return SpringsResistance(
@@ -371,4 +371,6 @@ def resistance_on_springs(history: History) -> SpringsResistance | None:
 def push_on_springs(history: History, rotation: float) -> MomentRotationOnSprings | None:
     """Return the slow push of the base of a run to a rotation in rad on either side; None on rigid ground."""
     model = history.model
-    return springs_path(model, np.array([rotation, -rotation])) if isinstance(model, SpringModel) else None
+    if model.springs is None:
+        return None
+    return springs_path(cast("SpringModel", model), np.array([rotation, -rotation]))

@@ -9,14 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex.models import (
-    HEADER,
-    RockingModel,
-    SpringModel,
-    floor_accelerations,
-    lifted_springs,
-    swing_by_side,
-)
+from rockflex.models import RockingModel, floor_accelerations, swing_by_side
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History
 from rockflex.response._peaks import (
@@ -28,7 +21,6 @@ from rockflex.response._peaks import (
     element_peaks,
     elongations_about_pivots,
     elongations_on_springs,
-    rotation_at_rest,
     tracked_floor_quantities,
     tracks_both_sides,
     tracks_elongation_rate,
@@ -58,7 +50,7 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
     if model.layout.slip >= 0:
         slid = float(peaks[end])
         end += 1
-    if isinstance(model, SpringModel):
+    if model.springs is not None:
         count = len(model.elements)
         right, left = (max(each, 0.0) for each in solution.extremes[len(EDGES) - 2 : len(EDGES)].tolist())
         moves = elongations_on_springs(model, solution.extremes[len(EDGES) :], peaks[end : end + count])
@@ -67,7 +59,7 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
         moves = elongations_about_pivots(model, RotationExtremes((right, left), swing))
     edges = edges_of(model, (right, left), solution)
     left_ground = solution.n_uplifts > 0 or solution.n_impacts > 0
-    left_ground = left_ground or _open_throughout(model, rotation, solution.final_state)
+    left_ground = left_ground or model.stayed_uplifted(rotation, solution.final_state)
     status = "rocking" if left_ground else "no_uplift"
     known = dict(zip(MAXIMA, peaks[: len(GLOBAL)].tolist(), strict=True))
     times = dict(zip(TIMES, solution.peak_times[1 : 1 + len(GLOBAL)].tolist(), strict=True))
@@ -75,6 +67,7 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
         known["max_total_top_displacement"] = times["time_of_max_total_top_displacement"] = math.nan
     of_elements = element_peaks(model, moves, solution.final_state)
     final = solution.final_state
+    least = p.resting_reaction - solution.lost_support  # springs cannot pull: in flight only rounding would say so
     return Response(
         model=model.label,
         motion=motion,
@@ -83,12 +76,12 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
         time_of_max_rotation=float(solution.peak_times[0]),
         **known,
         **times,
-        min_vertical_reaction=_least_support(model, p.resting_reaction - solution.lost_support),
+        min_vertical_reaction=least if model.springs is None else max(least, 0.0),
         time_of_min_vertical_reaction=solution.time_of_lost_support,
         **of_elements._asdict(),
         residual_rotation=math.nan
         if solution.overturned
-        else float(final[model.layout.rotation]) - rotation_at_rest(model),
+        else float(final[model.layout.rotation]) - model.rest.rotation,
         balance_ratio=float(balance_ratio(model, right, left)),
         max_slip=slid,
         residual_slip=float(final[model.layout.slip]) if model.layout.slip >= 0 else 0.0,
@@ -103,19 +96,6 @@ def respond(model: RockingModel, motion: str, solution: Solution, *, floors: boo
         floors=_floor_peaks(model, solution, peaks[end:]) if floors and p.floors is not None else None,
         history=None if solution.states is None else History(model, solution.states),
     )
-
-
-def _open_throughout(model: RockingModel, rotation: float, final: Array) -> bool:
-    """Return whether the base of a run without uplift and impact was off the ground from its start to its end."""
-    if not isinstance(model, SpringModel):
-        return rotation > 0.0
-    edges = lifted_springs(model, np.concatenate((np.zeros(HEADER), final))[None])[0, [0, -1]]
-    return bool(edges.any())
-
-
-def _least_support(model: RockingModel, found: float) -> float:
-    """Return the smallest vertical reaction in N; springs cannot pull, and in flight only rounding would say so."""
-    return max(found, 0.0) if isinstance(model, SpringModel) else found
 
 
 def _floor_peaks(model: RockingModel, solution: Solution, peaks: Array) -> FloorPeaks:
@@ -143,7 +123,7 @@ def columns_of(models: Sequence[RockingModel], solutions: Solutions) -> Columns:
     There is a model for every run; they are of one kind, and differ only in numbers.
     """
     first = models[0]
-    if first.properties.elements or isinstance(first, SpringModel) or first.layout.slip >= 0:
+    if not first.has_bare_base:
         return columns_among(
             [
                 None if place in solutions.failures else respond(model, "", solutions.one(place))
