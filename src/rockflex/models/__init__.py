@@ -52,6 +52,7 @@ from rockflex.models._quantities import (
     SWING,
     VERTICAL,
     Quantities,
+    joined,
     rows_of,
 )
 from rockflex.models._reactions import Reactions, printed_reactions, reactions, spring_forces
@@ -121,6 +122,7 @@ __all__ = [
     "horizontal_reaction",
     "housner",
     "inside",
+    "joined",
     "key_of",
     "linear_system_of",
     "may_stack",

@@ -115,6 +115,8 @@ def collected(modes: int, shares: Sequence[Share]) -> Quantities:
 
 def joined(parts: Sequence[Quantities]) -> Quantities:
     """Return all quantities of the parts, in their order."""
+    if len(parts) == 1:
+        return parts[0]
     names = ("shares", "swings", "shifts", "kinds")
     return Quantities(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 

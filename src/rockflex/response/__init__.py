@@ -4,7 +4,7 @@ from rockflex.response._energy import EnergyLedger
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._history import History, SampledHistory
-from rockflex.response._peaks import GLOBAL, tracked_extremes, tracked_quantities
+from rockflex.response._peaks import GLOBAL, Tracked, tracked_quantities
 from rockflex.response._quasi_static import (
     MomentRotation,
     base_path,
@@ -46,6 +46,7 @@ __all__ = [
     "MomentRotationOnSprings",
     "Response",
     "SampledHistory",
+    "Tracked",
     "base_path",
     "columns_among",
     "columns_of",
@@ -60,7 +61,6 @@ __all__ = [
     "resistance_on_springs",
     "respond",
     "springs_path",
-    "tracked_extremes",
     "tracked_quantities",
     "warnings_of",
     "warnings_of_energy",

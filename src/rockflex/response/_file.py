@@ -47,10 +47,9 @@ from rockflex.response._history import History
 from rockflex.response._peaks import (
     ELEMENT_PEAKS,
     NONE,
-    RotationExtremes,
     balance_ratio,
     element_peaks,
-    elongations_about_pivots,
+    extremes_about_pivots,
 )
 
 Kept = tuple[dict[str, Any], FloorPeaks | None, History | None]
@@ -200,8 +199,7 @@ def _later(scalars: dict[str, Any], history: History | None) -> dict[str, Any]:
             found["residual_rotation"] = float(rotation[-1])
         sides = max(float(rotation.max()), 0.0), max(-float(rotation.min()), 0.0)
         largest = [scalars["max_rotation"] if side == max(sides) else side for side in sides]
-        reach = RotationExtremes((largest[0], largest[1]), (0.0, 0.0))
-        moves = elongations_about_pivots(history.model, reach)
+        moves = extremes_about_pivots(history.model, (largest[0], largest[1]))
         of_elements = element_peaks(history.model, moves, history.states[-1, HEADER:])
     return found | {name: getattr(of_elements, name) for name in ELEMENT_PEAKS}
 

@@ -208,7 +208,7 @@ class History(Value):
     @property
     def top_displacement(self) -> Array:
         """u_top = Σ Γ_n φ_top,n D_n relative to the rotating base, in m, shape (n_states,)."""
-        return self._global[:, 0]
+        return self._global["top_displacement"]
 
     @property
     def total_top_displacement(self) -> Array:
@@ -221,17 +221,17 @@ class History(Value):
                 "The height of the top is not known, so there is no total displacement. Give RockingProperties the "
                 "top_height, in m above the base."
             )
-        return self._global[:, 3]
+        return self._global["total_top_displacement"]
 
     @property
     def base_moment(self) -> Array:
         """M_b = Σ m*_n h*_n ω_n² D_n (or by Eq. 37) in N m, shape (n_states,); models with -R add the mass left out."""
-        return self._global[:, 1]
+        return self._global["base_moment"]
 
     @property
     def base_shear(self) -> Array:
         """V_b = Σ m*_n ω_n² D_n (or by Eq. 37) in N, shape (n_states,); models with -R add the mass left out."""
-        return self._global[:, 2]
+        return self._global["base_shear"]
 
     @property
     def uplift_times(self) -> Array:
@@ -560,7 +560,7 @@ class History(Value):
         return dataset_of(self, quantities)
 
     @cached_property
-    def _global(self) -> Array:
+    def _global(self) -> dict[str, Array]:
         return global_histories(self.model, self.states)
 
     @cached_property
