@@ -31,7 +31,7 @@ from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._landing import GainsEnergyError
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout
 from rockflex.models._linear_system import ElementBase, element_base, linear_system_of
-from rockflex.models._modal_model import LinearModel, Pose, horizontal_reaction
+from rockflex.models._modal_model import LEVEL, LinearModel, Pose, horizontal_reaction
 from rockflex.models._named import (
     element_moves,
     element_speeds,
@@ -69,6 +69,7 @@ __all__ = [
     "HORIZONTAL",
     "LEFT",
     "LEFT_OUT",
+    "LEVEL",
     "LINEAR",
     "LOADED",
     "RIGHT",
