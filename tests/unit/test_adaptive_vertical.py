@@ -8,8 +8,7 @@ import pytest
 import rockflex as rf
 from builders import frame_values
 from rockflex.models import LinearModel, Model, accelerations, acting_side, parse_model, reactions
-from rockflex.response._peaks import tracked_quantities
-from rockflex.response._respond import respond
+from rockflex.response import respond, tracked_quantities
 from rockflex.solve import Engine
 from twins import impact_laws
 from twins.complete import complete_frame, simulate_complete
@@ -45,8 +44,9 @@ def model_of(label, **options):
 
 
 def run(model, acceleration, dt, vertical=None, *, history=True, **options):
-    engine = Engine(model, tracked_quantities(model))
-    return respond(model, "", engine.run(acceleration, dt, vertical=vertical, history=history, **options))
+    tracked = tracked_quantities(model)
+    engine = Engine(model, tracked.peaks.quantities)
+    return respond(model, "", engine.run(acceleration, dt, vertical=vertical, history=history, **options), tracked)
 
 
 @pytest.mark.parametrize("case", CASES)

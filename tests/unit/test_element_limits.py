@@ -28,7 +28,7 @@ def peaks(elements, model="MDOF-S"):
 
 def engine_of(elements, n=2):
     model = rf.Model(n).of(rf.Restrained(FRAME, elements).rocking())
-    return Engine(model, tracked_quantities(model))
+    return Engine(model, tracked_quantities(model).peaks.quantities)
 
 
 def residual(run):
@@ -114,7 +114,7 @@ def test_the_damped_rigid_block_in_closed_form():
     a = (theta_0 - balance) * two / (two - one)
     e = theta_0 - balance - a
     model = rf.Model(0).of(held)
-    engine = Engine(model, tracked_quantities(model))
+    engine = Engine(model, tracked_quantities(model).peaks.quantities)
     dt = 0.01
     run = engine.run(np.zeros(30), dt, state=np.array([theta_0, 0.0]), history=True)
     time, theta = run.states[:, 0], run.states[:, HEADER]

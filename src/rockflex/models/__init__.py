@@ -4,10 +4,8 @@ from rockflex.models._between import LinearMotion, MotionBetween, Part, Shaking,
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._element import BROKEN, Bar, Dashpot, Element, LawElement, Slider
 from rockflex.models._element_states import (
-    arms,
     element_energies,
     element_forces,
-    elongations,
     plastic_stretches,
 )
 from rockflex.models._elements import CLOSED, LEFT, RIGHT, SUMS, arm_of, elements_of, pulls_of, stiffness_of_fuses
@@ -32,7 +30,7 @@ from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._landing import GainsEnergyError
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout
 from rockflex.models._linear_system import ElementBase, element_base, linear_system_of
-from rockflex.models._modal_model import LinearModel, horizontal_reaction
+from rockflex.models._modal_model import LEVEL, LinearModel, Pose, horizontal_reaction
 from rockflex.models._named import (
     element_moves,
     element_speeds,
@@ -53,9 +51,10 @@ from rockflex.models._quantities import (
     SWING,
     VERTICAL,
     Quantities,
+    joined,
     rows_of,
 )
-from rockflex.models._reactions import Reactions, lifted_springs, printed_reactions, reactions, spring_forces
+from rockflex.models._reactions import Reactions, printed_reactions, reactions, spring_forces
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._spring_model import LOADED, SpringModel
 from rockflex.models._stored import floor_accelerations, soil_strain, stored_energies
@@ -69,6 +68,7 @@ __all__ = [
     "HORIZONTAL",
     "LEFT",
     "LEFT_OUT",
+    "LEVEL",
     "LINEAR",
     "LOADED",
     "RIGHT",
@@ -96,6 +96,7 @@ __all__ = [
     "MotionBetween",
     "NonlinearModel",
     "Part",
+    "Pose",
     "Quantities",
     "Reactions",
     "Restitution",
@@ -111,21 +112,19 @@ __all__ = [
     "accelerations",
     "acting_side",
     "arm_of",
-    "arms",
     "element_base",
     "element_energies",
     "element_forces",
     "element_moves",
     "element_speeds",
     "elements_of",
-    "elongations",
     "floor_accelerations",
     "floor_quantities",
     "horizontal_reaction",
     "housner",
     "inside",
+    "joined",
     "key_of",
-    "lifted_springs",
     "linear_system_of",
     "may_stack",
     "modal_displacement",

@@ -7,9 +7,9 @@ from rockflex._errors import InputError
 from rockflex.modal import FrictionDamper, Ground, RockingProperties, Springs
 from rockflex.models._elements import elements_of
 from rockflex.models._impact import ImpactLaw, VVELSimplified
-from rockflex.models._modal_model import LinearModel
+from rockflex.models._modal_model import LinearModel, Pose
 from rockflex.models._sliding import SlidingModel
-from rockflex.models._spring_model import Pose, SpringModel
+from rockflex.models._spring_model import SpringModel
 
 STABLE = 1e-9  # relative: least stiffness of a base against toppling
 SAME = 1e-9  # relative to the half width: positions at the edges may be rounded
@@ -70,7 +70,7 @@ def pose_at_rest(label: str, properties: RockingProperties, springs: Springs) ->
         rotation, heave = np.linalg.solve(stiffness, forces)
         depth = heave - springs.positions * rotation
         if ((depth < 0.0) == pressed).all():
-            return float(rotation), float(heave)
+            return Pose(float(rotation), float(heave))
         pressed = depth < 0.0
     raise InputError(
         f"{label} topples on its springs under its own weight: their rotational stiffness of "

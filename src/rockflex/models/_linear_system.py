@@ -23,10 +23,11 @@ from rockflex.models._elements import (
     turning_way,
 )
 from rockflex.models._impact import Restitution, VVELSimplified
+from rockflex.models._label import RockingModel
 from rockflex.models._landing import landing_of, sided, turn_by_rows
-from rockflex.models._modal_model import LinearModel, horizontal_reaction
+from rockflex.models._modal_model import horizontal_reaction
 from rockflex.models._phase import Key
-from rockflex.models._quantities import Quantities, lost_support_row, rows_of
+from rockflex.models._quantities import Quantities, rows_of
 from rockflex.models._sliding import LOST, STICK, SlidingModel
 from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, SpringModel, code_of
 
@@ -35,7 +36,7 @@ MORE = 1e6  # m/s², of gravity: the terms that it adds outweigh the rounding of
 
 
 def element_base(
-    model: LinearModel, quantities: Quantities, extremes: Quantities, *, shaken: bool = False
+    model: RockingModel, quantities: Quantities, extremes: Quantities, *, shaken: bool = False
 ) -> "ElementBase":
     """Return the base of a linear model, on rigid ground or on springs; `shaken` where the ground moves vertically."""
     if isinstance(model, SpringModel):
@@ -62,7 +63,7 @@ class ElementBase:
     A row has the columns of the states, the ground acceleration and 1.
     """
 
-    model: LinearModel
+    model: RockingModel
     quantities: Quantities
     extremes: Quantities
     shaken: bool = False
@@ -158,7 +159,7 @@ class ElementBase:
                 self.unit(model.layout.rotation),
                 self.taken(rows_of(model, self.quantities, key), key),
                 self.taken(rows_of(model, self.extremes, key), key),
-                self.taken(lost_support_row(model, key), key),
+                self.taken(model.lost_support(key), key),
             )
         )
         rates = self.rates(key)

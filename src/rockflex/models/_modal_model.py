@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +12,9 @@ from rockflex._arrays import Array, Bools
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._values import Value
-from rockflex.modal import RockingProperties
+from rockflex.modal import RockingProperties, Springs
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._element import Dashpot, Element
+from rockflex.models._element import Dashpot, Element, Slider
 from rockflex.models._elements import (
     CLOSED,
     LEFT,
@@ -28,13 +29,23 @@ from rockflex.models._elements import (
     set_off,
 )
 from rockflex.models._impact import ImpactLaw, VVELSimplified
-from rockflex.models._layout import HEADER, StateLayout, layout_of
+from rockflex.models._layout import HEADER, SIDE, TIME, StateLayout, layout_of
 from rockflex.models._phase import Arrow, Border, Key
 
 JAMMED = 1e-12  # relative: determinant below which the base has no inertia against a motion
 
 
 MOST_PHASES = 1000  # whose equations of motion are kept
+
+
+class Pose(NamedTuple):
+    """Position of a base: its rotation in rad and its heave in m."""
+
+    rotation: float
+    heave: float
+
+
+LEVEL = Pose(0.0, 0.0)
 
 
 class ModalModel(Value):
@@ -49,6 +60,8 @@ class ModalModel(Value):
     law: ImpactLaw
     missing_mass: bool
     gravity: float
+    springs: Springs | None = None  # under the base; None on rigid ground
+    rest: Pose = LEVEL  # of the base under its weight, from which the elements are stretched
 
     @property
     def complete(self) -> bool:
@@ -64,6 +77,16 @@ class ModalModel(Value):
     def integrated(self) -> bool:
         """Whether some phase is integrated step by step rather than solved in closed form."""
         return False
+
+    @property
+    def has_bare_base(self) -> bool:
+        """Whether nothing but the rotation moves the base: rigid ground, no elements, no slip."""
+        return self.springs is None and not self.elements and self.layout.slip < 0
+
+    @property
+    def ground_parameters(self) -> dict[str, Any]:
+        """What describes the ground, by name; nothing if it is rigid and the base cannot slide."""
+        return {}
 
     @cached_property
     def layout(self) -> StateLayout:
@@ -141,6 +164,79 @@ class ModalModel(Value):
     def stretch_per_arm(self, rotation: Array) -> Array:
         """Return the elongations of an element per unit distance from the pivot at |θ|: 2 sin(|θ|/2), or |θ|."""
         return 2.0 * np.sin(0.5 * rotation) if self.complete else rotation
+
+    def arms(self, side: Array) -> Array:
+        """Return the distance of every element from the pivot of a side, or of a sign of θ, in m, shape (n, E)."""
+        right, left = (
+            np.array([arm_of(self.properties, each, which) for each in self.elements]) for which in (RIGHT, LEFT)
+        )
+        return np.where(side[:, None] < 0.0, left, right)
+
+    def elongations_at(self, states: Array) -> Array:
+        """Return δ of every element at the states of a history in m, shape (n, E).
+
+        That is r |θ|, in complete models 2 r sin(|θ|/2); on springs how far the base has risen there since it was at
+        rest.
+        """
+        rotation = self.layout.of(states, self.layout.rotation)
+        return self.arms(rotation) * self.stretch_per_arm(np.abs(rotation))[:, None]
+
+    def uplifted(self, states: Array) -> Bools:
+        """Return whether the base is off the ground, on springs whether an edge has left its spring, shape (n,)."""
+        return states[:, SIDE] != 0.0
+
+    def uplift_times(self, states: Array) -> Array:
+        """Return the times of uplift in s; on springs those at which an edge leaves its spring."""
+        uplifted = self.uplifted(states)
+        return states[1:, TIME][~uplifted[:-1] & uplifted[1:]]
+
+    def impact_times(self, states: Array) -> Array:
+        """Return the times of impact in s; on springs those at which an edge comes back to its spring."""
+        return states[1:, TIME][self.impacts(states)]
+
+    def impacts(self, states: Array) -> Bools:
+        """Return True for the interval between the two states of every impact, shape (n - 1,); on springs none."""
+        spin, rotation = (self.layout.of(states, place) for place in (self.layout.spin, self.layout.rotation))
+        time, side = states[:, TIME], states[:, SIDE]
+        landed = (time[1:] == time[:-1]) & (side[:-1] != 0.0) & (rotation[:-1] == 0.0)
+        return landed & ((side[1:] != side[:-1]) | (spin[1:] != spin[:-1]))
+
+    def stayed_uplifted(self, largest: float, final: Array) -> bool:  # noqa: ARG002
+        """Return whether the base of a run without uplift and impact was off the ground all the time.
+
+        Parameters
+        ----------
+        largest
+            Largest |θ| of the run in rad.
+        final : ndarray, shape (size,)
+            Its last state.
+        """
+        return largest > 0.0
+
+    def edge_uplift(self, states: Array) -> Array:
+        """Return the rise of the left and of the right edge in m, negative where they settle, shape (n, 2)."""
+        rotation = self.layout.of(states, self.layout.rotation)
+        turn = np.sin(rotation) if self.complete else rotation
+        return 2.0 * self.properties.half_width * np.stack((np.maximum(turn, 0.0), np.maximum(-turn, 0.0)), axis=1)
+
+    def heave(self, states: Array) -> Array:
+        """Return the rise of the base at the axis of the masses in m, shape (n,).
+
+        On springs from the level at which they are unloaded, on rigid ground the distance to the pivot times |θ|.
+        """
+        p, (left, right) = self.properties, self.edge_uplift(states).T
+        return (p.pivot(1).arm * left + p.pivot(-1).arm * right) / (2.0 * p.half_width)
+
+    def raised_weight(self, states: Array) -> Array:
+        """Return the gravity energy per unit of gravity in kg m, for small rotations, shape (n,)."""
+        p, rotation, side = self.properties, self.layout.of(states, self.layout.rotation), states[:, SIDE]
+        arm = np.where(side < 0.0, p.pivot(-1).arm, p.pivot(1).arm)
+        return side * p.m_tot * arm * rotation - 0.5 * p.l0r * rotation**2
+
+    def rotary_inertia(self, side: Array) -> Array:
+        """Return the inertia of the rotation on each side in kg m², shape (n,): I_θ about the pivot."""
+        p = self.properties
+        return np.where(side < 0.0, p.pivot(-1).i_theta, p.pivot(1).i_theta)
 
     @property
     def sides(self) -> tuple[int, ...]:
@@ -260,6 +356,59 @@ class ModalModel(Value):
     def is_free(self, key: Key) -> bool:
         """Return whether the base rotates in a phase: it neither rests on the ground nor is held at a rotation."""
         return key[0] != CLOSED and not is_held(self.properties, self.elements, key)
+
+    def spring_forces(self, key: Key) -> Array:  # noqa: ARG002
+        """Return the force of each spring under the base in a phase in N, upwards: rows, shape (n_springs, C)."""
+        return np.zeros((0, self.layout.columns))
+
+    def lost_support(self, key: Key) -> Array:
+        """Return the decrease of ΣF_z below its value at rest in a phase, in N: a row, shape (C,).
+
+        ΣF_z = m_tot (g + s B θ'') plus the tensions of the elements, Eq. 22 for small rotations with the sign
+        corrected; at rest it is m_tot g plus the prestress. While a complete model rocks the row is zero, and
+        `RockingField.observe` gives the value.
+        """
+        row, side, p = np.zeros(self.layout.columns), key[0], self.properties
+        if self.complete and side != CLOSED:
+            return row
+        if self.is_free(key):
+            row -= side * p.m_tot * p.pivot(side).arm * self.angular_acceleration(key)
+        row -= self.tensions(key).sum(axis=0)
+        row[-1] += sum(each.pull(each.branches[0]).force for each in self.elements)
+        row[-1] -= p.m_tot * (self.gravity - GRAVITY)
+        return row
+
+    def tensions(self, key: Key) -> Array:
+        """Return the tension of every element in a phase in N, for small rotations: rows, shape (E, C)."""
+        branches, side, layout = self.element_key(key), key[0], self.layout
+        rows, known = np.zeros((len(self.elements), layout.columns)), memories(self.elements)
+        if is_held(self.properties, self.elements, branches):
+            self._hold(key, rows)
+        for place, (each, branch) in enumerate(zip(self.elements, branches[1:], strict=True)):
+            pull = each.pull(branch)
+            rows[place, -1] += pull.force
+            if place in known:
+                rows[place, layout.memory + known[place]] = pull.recall
+            if side != CLOSED:
+                reach = side * arm_of(self.properties, each, side)
+                rows[place, layout.rotation], rows[place, layout.spin] = pull.stiffness * reach, pull.damping * reach
+        return rows
+
+    def _hold(self, key: Key, rows: Array) -> None:
+        """Add the tensions of friction dampers that hold the base: together they balance all other moments.
+
+        Each takes a part in proportion to its force F_0, as at the instant in which they slide.
+        """
+        side, layout, p = key[0], self.layout, self.properties
+        moment = -self.overturning_moment()
+        others = border_of(p, self.elements, key, self.gravity)
+        moment[layout.rotation] -= others.stiffness[0, 0]
+        moment[-1] += others.constant[0]
+        moment[layout.memory : layout.memory + layout.remembered] += others.recall[0]
+        sliders = {k: each for k, each in enumerate(self.elements) if isinstance(each, Slider)}
+        capacity = sum(each.force * abs(arm_of(p, each, side)) for each in sliders.values())
+        for place, each in sliders.items():
+            rows[place] = side * np.sign(arm_of(p, each, side)) * each.force / capacity * moment
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,17 +27,18 @@ from rockflex.models._elements import (
 )
 from rockflex.models._fields import Change, Landing, Reversal, RockingField
 from rockflex.models._impact import Restitution, VVELComplete, VVELSimplified
+from rockflex.models._label import RockingModel
 from rockflex.models._landing import gains_energy, landing_of, shortest_excursion, sided
-from rockflex.models._nonlinear import NonlinearModel, numbers_of
+from rockflex.models._nonlinear import numbers_of
 from rockflex.models._phase import Key
-from rockflex.models._quantities import LINEAR, VERTICAL, Quantities, lost_support_row, rows_of
+from rockflex.models._quantities import LINEAR, VERTICAL, Quantities, rows_of
 
 TREMOR = 0.01  # m/s²: the error of a step is relative to the response to it, or to a larger motion so far
 LIGHT = 0.05  # of the vertical reaction at rest: the least size of the loss of support
 BARELY = 1e-10  # of that response: a velocity that is zero at a reversal
 
 
-def nonlinear_system(model: NonlinearModel, quantities: Quantities) -> System:
+def nonlinear_system(model: RockingModel, quantities: Quantities) -> System:
     """Return a model on rigid ground as a hybrid system.
 
     The outputs are the rotation, the quantities, and the loss of support, of which the largest value counts. A key is
@@ -50,14 +51,14 @@ def nonlinear_system(model: NonlinearModel, quantities: Quantities) -> System:
     return System(StateLayout(**parts), names, rocks.phase, key_of(model, model.start(CLOSED)), names[-1:])
 
 
-def key_of(model: NonlinearModel, key: Key, state: Array | None = None) -> Key:
+def key_of(model: RockingModel, key: Key, state: Array | None = None) -> Key:
     """Return the key of a phase of the hybrid system from that of the model."""
     if model.bouc_wen is None:
         return key
     return (*key, -1 if state is not None and state[model.properties.n_modes] < 0.0 else 1)
 
 
-def with_marks(model: NonlinearModel, keys: Sequence[Key], places: Integers, states: Array) -> Array:
+def with_marks(model: RockingModel, keys: Sequence[Key], places: Integers, states: Array) -> Array:
     """Return states in which the memories of friction dampers are those of their phases, at keys[places]."""
     marks = [marks_of(model.elements, key[:-1] if model.bouc_wen is not None else key) for key in keys]
     if any(marks):
@@ -71,7 +72,7 @@ def with_marks(model: NonlinearModel, keys: Sequence[Key], places: Integers, sta
 class Rocks:
     """The phases of a model."""
 
-    def __init__(self, model: NonlinearModel, quantities: Quantities) -> None:
+    def __init__(self, model: RockingModel, quantities: Quantities) -> None:
         self.model, self.quantities = model, quantities
         # All forces are linear in gravity, and the vertical acceleration of the ground acts like more of it.
         self.heavier = replace(model, gravity=model.gravity + 1.0)
@@ -130,11 +131,11 @@ class Rocks:
             more[:, n + 1],
         )
 
-    def rows(self, model: NonlinearModel, key: Key) -> Array:
+    def rows(self, model: RockingModel, key: Key) -> Array:
         """The outputs of a model in a phase: rows with columns for the state, a and 1."""
         layout, found = model.layout, np.zeros((len(self.quantities) + 2, model.layout.size + 2))
         found[0, layout.rotation] = 1.0
-        for place, row in enumerate((*rows_of(model, self.quantities, key), lost_support_row(model, key))):
+        for place, row in enumerate((*rows_of(model, self.quantities, key), model.lost_support(key))):
             found[1 + place, [*range(layout.moving), -2, -1]] = row
         return found
 
@@ -157,7 +158,7 @@ class Rocks:
             found.append(replace(event, row_v=heavy[:-2], direct_v=float(heavy[-1])))
         return tuple(found)
 
-    def margins(self, model: NonlinearModel, key: Key, following: Sequence[Key]) -> tuple[Array, list[float]]:
+    def margins(self, model: RockingModel, key: Key, following: Sequence[Key]) -> tuple[Array, list[float]]:
         """By how much the moment is within its limits, rows over the state, a and 1, and these limits.
 
         A limit is the moment at which the forces of the phase that follows would turn the base.

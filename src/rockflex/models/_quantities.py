@@ -9,13 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array
-from rockflex._constants import GRAVITY
 from rockflex.engine import by_rows
-from rockflex.models._element import Slider
-from rockflex.models._elements import CLOSED, RIGHT, arm_of, border_of, is_held, memories
+from rockflex.models._elements import CLOSED, RIGHT
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._phase import Key
-from rockflex.models._spring_model import SpringModel
 
 # Kinds of quantities (Silva & Stojadinović 2024, Eqs. 3-22). In contact, and always in the simplified models, each is a
 # linear row over the motion. While a complete model rocks, displacements are nonlinear in the rotation, and forces
@@ -118,6 +115,8 @@ def collected(modes: int, shares: Sequence[Share]) -> Quantities:
 
 def joined(parts: Sequence[Quantities]) -> Quantities:
     """Return all quantities of the parts, in their order."""
+    if len(parts) == 1:
+        return parts[0]
     names = ("shares", "swings", "shifts", "kinds")
     return Quantities(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
@@ -163,67 +162,3 @@ def _moving(model: ModalModel, key: Key, *, large: bool) -> Array:
         if model.is_free(key):
             rows[TURN] = model.angular_acceleration(key)
     return rows
-
-
-def lost_support_row(model: ModalModel, key: Key) -> Array:
-    """Return the decrease of ΣF_z below its value at rest, in N: a row, shape (C,).
-
-    ΣF_z = m_tot (g + s B θ'') plus the tensions of the elements, Eq. 22 for small rotations with the sign corrected; at
-    rest it is m_tot g plus the prestress. While a complete model rocks the row is zero, and `RockingField.observe`
-    gives the value.
-    """
-    row = np.zeros(model.layout.columns)
-    side, p = key[0], model.properties
-    if isinstance(model, SpringModel):
-        row -= model.spring_forces(key).sum(axis=0)
-        row[-1] += p.resting_reaction
-        return row
-    if model.complete and side != CLOSED:
-        return row
-    if model.is_free(key):
-        row -= side * p.m_tot * p.pivot(side).arm * model.angular_acceleration(key)
-    row -= tensions(model, key).sum(axis=0)
-    row[-1] += sum(each.pull(each.branches[0]).force for each in model.elements)
-    row[-1] -= p.m_tot * (model.gravity - GRAVITY)
-    return row
-
-
-def tensions(model: ModalModel, key: Key) -> Array:
-    """Return the tension of every element in a phase in N, for small rotations: rows, shape (E, C)."""
-    if isinstance(model, SpringModel):
-        branches = model.element_key(key)[1:]
-        rows = np.zeros((len(branches), model.layout.columns))
-        for place, branch in enumerate(branches):
-            rows[place] = model.tension(place, branch)
-        return rows
-    rows = np.zeros((len(model.elements), model.layout.columns))
-    if is_held(model.properties, model.elements, model.element_key(key)):
-        hold(model, key, rows)
-    side, layout = key[0], model.layout
-    known = memories(model.elements)
-    for place, (each, branch) in enumerate(zip(model.elements, model.element_key(key)[1:], strict=True)):
-        pull = each.pull(branch)
-        rows[place, -1] += pull.force
-        if place in known:
-            rows[place, layout.memory + known[place]] = pull.recall
-        if side != CLOSED:
-            reach = side * arm_of(model.properties, each, side)
-            rows[place, layout.rotation], rows[place, layout.spin] = pull.stiffness * reach, pull.damping * reach
-    return rows
-
-
-def hold(model: ModalModel, key: Key, rows: Array) -> None:
-    """Add the tensions of friction dampers that hold the base: together they balance all other moments.
-
-    Each takes a part in proportion to its force F_0, as at the instant in which they slide.
-    """
-    side, layout, p = key[0], model.layout, model.properties
-    moment = -model.overturning_moment()
-    others = border_of(p, model.elements, key, model.gravity)
-    moment[layout.rotation] -= others.stiffness[0, 0]
-    moment[-1] += others.constant[0]
-    moment[layout.memory : layout.memory + layout.remembered] += others.recall[0]
-    sliders = {k: each for k, each in enumerate(model.elements) if isinstance(each, Slider)}
-    capacity = sum(each.force * abs(arm_of(p, each, side)) for each in sliders.values())
-    for place, each in sliders.items():
-        rows[place] = side * np.sign(arm_of(p, each, side)) * each.force / capacity * moment

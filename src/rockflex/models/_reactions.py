@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockflex._arrays import Array, Bools
+from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.models._element_states import element_forces
 from rockflex.models._kept import acting_side, by_phase, observed, rates_of
@@ -15,7 +15,6 @@ from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, RISE, SIDE
 from rockflex.models._nonlinear import numbers_of
 from rockflex.models._quantities import HORIZONTAL, VERTICAL
-from rockflex.models._spring_model import LIFTED, SpringModel
 
 
 class Reactions(NamedTuple):
@@ -40,7 +39,7 @@ def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     horizontal = p.m_tot * states[:, GROUND] + p.l0r * turn + push
     if layout.slip >= 0:
         horizontal += p.m_tot * rates[:, n + 1]
-    if isinstance(model, SpringModel):
+    if model.springs is not None:
         return Reactions(horizontal, spring_forces(model, states).sum(axis=1))
     vertical = p.m_tot * (model.gravity + states[:, RISE]) + element_forces(model, states).sum(axis=1)
     for each in (1, -1):
@@ -49,14 +48,10 @@ def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     return Reactions(horizontal, vertical)
 
 
-def lifted_springs(model: SpringModel, states: Array) -> Bools:
-    """Return which springs the base has left at the states of a history, shape (n, n_springs)."""
-    branches = model.branches_at(states[:, SIDE], states[:, SIDE], states)
-    return branches[:, 1 : model.springs.n + 1] == LIFTED
-
-
-def spring_forces(model: SpringModel, states: Array) -> Array:
-    """Return the force of every spring on the base at the states of a history in N, upwards, shape (n, n_springs)."""
+def spring_forces(model: RockingModel, states: Array) -> Array:
+    """Return the force of every spring under the base at the states of a history in N, upwards, (n, n_springs)."""
+    if model.springs is None:
+        return np.zeros((states.shape[0], 0))
     found = np.zeros((states.shape[0], model.springs.n))
     for chosen, key, vector in by_phase(model, states, states[:, SIDE]):
         found[chosen] = vector @ model.spring_forces(key).T
@@ -65,7 +60,7 @@ def spring_forces(model: SpringModel, states: Array) -> Array:
 
 def printed_reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     """Return Eqs. 21 and 22 as printed, with Σ m_i (-g + z''_i), for every model, plus tendon forces."""
-    given = reactions if isinstance(model, SpringModel) else _of_large_rotations
+    given = reactions if model.springs is not None else _of_large_rotations
     x, z = given(model, states, rates)
     return Reactions(x, z - 2.0 * model.properties.m_tot * GRAVITY)
 

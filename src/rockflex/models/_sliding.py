@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,6 @@ from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._layout import HEADER, StateLayout, layout_of
 from rockflex.models._modal_model import LinearModel, accelerations_of, arrow_of
 from rockflex.models._phase import Arrow, Border, Key
-from rockflex.models._quantities import lost_support_row, tensions
 
 STICK = 0  # the last branch of a key: it sticks, slips to the right (1) or left (-1), or does so without friction (±2)
 LOST = 2  # magnitude of the branch on which the ground has no pressure to rub against
@@ -47,6 +47,11 @@ class SlidingModel(LinearModel):
     def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Layout of the state vector."""
         return layout_of(self.properties.n_modes, remembered=memory_count(self.elements) + 1, slides=True)
+
+    @property
+    def ground_parameters(self) -> dict[str, Any]:
+        """Coulomb's coefficient."""
+        return {"friction": self.friction}
 
     def element_key(self, key: Key) -> Key:
         """Return the branches of the base and of the elements."""
@@ -93,7 +98,7 @@ class SlidingModel(LinearModel):
     def _add_friction(self, border: Border, key: Key) -> None:
         """Add -sign(x') μ N with N = m_tot (g + s B θ'') + the tensions of the elements."""
         p, side, layout = self.properties, key[0], self.layout
-        drag, pull = key[-1] * self.friction, tensions(self, key).sum(axis=0)
+        drag, pull = key[-1] * self.friction, self.tensions(key).sum(axis=0)
         border.constant[1] -= drag * (p.m_tot * self.gravity + pull[-1])
         border.recall[1] -= drag * pull[layout.memory : layout.memory + layout.remembered]
         if side != CLOSED:
@@ -106,6 +111,6 @@ class SlidingModel(LinearModel):
 
     def pressure(self, key: Key) -> Array:
         """Return the vertical reaction m_tot (g + s B θ'') and the tensions of the elements in N: a row, shape (C,)."""
-        row = -lost_support_row(self, key)
+        row = -self.lost_support(key)
         row[-1] += self.properties.resting_reaction
         return row

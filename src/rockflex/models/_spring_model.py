@@ -3,18 +3,19 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._arrays import Array
+from rockflex._arrays import Array, Bools
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties, Springs
 from rockflex.models._element import Element
 from rockflex.models._elements import CLOSED, memories, memory_count
 from rockflex.models._impact import ImpactLaw, VVELSimplified
-from rockflex.models._layout import HEADER, StateLayout, layout_of
-from rockflex.models._modal_model import LinearModel, accelerations_of, arrow_of
+from rockflex.models._layout import HEADER, SIDE, TIME, StateLayout, layout_of
+from rockflex.models._modal_model import LEVEL, LinearModel, Pose, accelerations_of, arrow_of
 from rockflex.models._phase import Arrow, Border, Key
 
 # Branches of a spring. RECEDING: still compressed, but unloaded, since its dashpot would have to pull the base.
@@ -25,8 +26,6 @@ STICK = 0  # the branch of the slip; 1 and -1: it slips to the right or left
 # Branches of many elements are kept in the state as a few numbers.
 BASE, DIGITS = 8, 17  # a double holds 17 octal digits exactly
 SHIFT = 1  # the lowest branch is -1
-
-Pose = tuple[float, float]  # rotation in rad and heave in m
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,16 +55,23 @@ class SpringModel(LinearModel):
     law: ImpactLaw = field(default_factory=VVELSimplified)
     missing_mass: bool = False
     gravity: float = GRAVITY
-    springs: Springs = field(kw_only=True)
+    springs: Springs = field(kw_only=True)  # pyright: ignore[reportIncompatibleVariableOverride]
     inertia: float = field(kw_only=True)
     friction: Array | None = None
-    rest: Pose = (0.0, 0.0)
+    rest: Pose = LEVEL
 
     @cached_property
     def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Layout of the state vector."""
         remembered = memory_count(self.elements) + codes_for(self._key_size)
         return layout_of(self.properties.n_modes, remembered=remembered, slides=self.friction is not None, heaves=True)
+
+    @property
+    def ground_parameters(self) -> dict[str, Any]:
+        """The springs, the rotary inertia, the position at rest, and the friction if the base can slide."""
+        springs = {name: getattr(self.springs, name) for name in ("positions", "stiffness", "damping", "area")}
+        known = {"inertia": self.inertia, "rest": list(self.rest), **springs, "friction": self.friction}
+        return {name: value for name, value in known.items() if value is not None}
 
     @property
     def sides(self) -> tuple[int, ...]:
@@ -98,6 +104,55 @@ class SpringModel(LinearModel):
         codes = states[:, first : HEADER + self.layout.size]
         return np.column_stack((np.zeros(side.size, dtype=np.int64), decoded(codes, self._key_size)))
 
+    def lifted(self, states: Array) -> Bools:
+        """Return which springs the base has left at the states of a history, shape (n, n_springs)."""
+        branches = self.branches_at(states[:, SIDE], states[:, SIDE], states)
+        return branches[:, 1 : self.springs.n + 1] == LIFTED
+
+    def uplifted(self, states: Array) -> Bools:
+        """Return whether an edge has left its spring, shape (n,)."""
+        lifted = self.lifted(states)
+        return lifted[:, 0] | lifted[:, -1]
+
+    def uplift_times(self, states: Array) -> Array:
+        """Return the times in s at which an edge leaves its spring."""
+        lifted = self.lifted(states)[:, [0, -1]]
+        return np.repeat(states[1:, TIME], (lifted[1:] & ~lifted[:-1]).sum(axis=1))
+
+    def impact_times(self, states: Array) -> Array:
+        """Return the times in s at which an edge comes back to its spring."""
+        lifted = self.lifted(states)[:, [0, -1]]
+        return np.repeat(states[1:, TIME], (~lifted[1:] & lifted[:-1]).sum(axis=1))
+
+    def stayed_uplifted(self, largest: float, final: Array) -> bool:  # noqa: ARG002
+        """Return whether an edge is off its spring in the last state, as it then was all the time."""
+        return bool(self.uplifted(np.concatenate((np.zeros(HEADER), final))[None])[0])
+
+    def heave(self, states: Array) -> Array:
+        """Return the rise of the base at the axis of the masses in m, shape (n,)."""
+        return self.layout.of(states, self.layout.heave)
+
+    def edge_uplift(self, states: Array) -> Array:
+        """Return the rise of the left and of the right edge in m, negative where they settle, shape (n, 2)."""
+        p, rotation = self.properties, self.layout.of(states, self.layout.rotation)
+        places = np.array([-p.pivot(-1).arm, p.pivot(1).arm])
+        return self.heave(states)[:, None] - places * rotation[:, None]
+
+    def elongations_at(self, states: Array) -> Array:
+        """Return how far the base has risen at every element since it was at rest, in m, shape (n, E)."""
+        rotation, heave = self.layout.of(states, self.layout.rotation), self.heave(states)
+        positions = np.array([each.position for each in self.elements])
+        return (heave - self.rest.heave)[:, None] - positions * (rotation - self.rest.rotation)[:, None]
+
+    def raised_weight(self, states: Array) -> Array:
+        """Return the gravity energy per unit of gravity in kg m, shape (n,)."""
+        p, rotation = self.properties, self.layout.of(states, self.layout.rotation)
+        return p.m_tot * self.heave(states) - 0.5 * p.l0r * rotation**2
+
+    def rotary_inertia(self, side: Array) -> Array:
+        """Return the inertia about the axis of the masses in kg m², shape (n,)."""
+        return np.full(side.size, self.inertia)
+
     def spring_forces(self, key: Key) -> Array:
         """Return the force of each spring on the base in a phase in N, upwards: rows, shape (n, C)."""
         loaded = np.array(key[1 : self.springs.n + 1]) == LOADED
@@ -127,7 +182,7 @@ class SpringModel(LinearModel):
     def stretch(self, element: Element) -> Array:
         """Return the elongation of an element as a row, shape (C,): zero at rest."""
         place, _ = self.risen(element.position)
-        place[-1] = element.position * self.rest[0] - self.rest[1]
+        place[-1] = element.position * self.rest.rotation - self.rest.heave
         return place
 
     def tension(self, place: int, branch: int) -> Array:
@@ -138,6 +193,19 @@ class SpringModel(LinearModel):
         row[-1] += pull.force
         if place in known:
             row[self.layout.memory + known[place]] += pull.recall
+        return row
+
+    def tensions(self, key: Key) -> Array:
+        """Return the tension of every element in a phase in N: rows, shape (E, C)."""
+        rows = np.zeros((len(self.elements), self.layout.columns))
+        for place, branch in enumerate(self.element_key(key)[1:]):
+            rows[place] = self.tension(place, branch)
+        return rows
+
+    def lost_support(self, key: Key) -> Array:
+        """Return the decrease of the sum of the spring forces below its value at rest, in N: a row, shape (C,)."""
+        row = np.zeros(self.layout.columns) - self.spring_forces(key).sum(axis=0)
+        row[-1] += self.properties.resting_reaction
         return row
 
     def _new_arrow(self, key: Key) -> Arrow:

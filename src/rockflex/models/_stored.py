@@ -7,7 +7,6 @@ from rockflex.modal import FloorModes
 from rockflex.models._kept import accelerations, acting_side
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, SIDE
-from rockflex.models._spring_model import SpringModel
 
 
 def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, Array]:
@@ -21,15 +20,12 @@ def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, A
     p, layout = model.properties, model.layout
     side, d, v = states[:, SIDE], layout.displacements(states), layout.velocities(states)
     rotation, spin = layout.of(states, layout.rotation), layout.of(states, layout.spin)
-    inertia, arm = (_by_side(side, *values) for values in _pivot_values(model))
-    if isinstance(model, SpringModel):
-        inertia = model.inertia
-    kinetic = 0.5 * inertia * spin**2 + spin * (v @ (p.effective_mass * p.effective_height))
+    kinetic = 0.5 * model.rotary_inertia(side) * spin**2 + spin * (v @ (p.effective_mass * p.effective_height))
     kinetic += 0.5 * v**2 @ p.effective_mass
     share = model.bouc_wen.post_yield_ratio if model.bouc_wen else 1.0
     strain = 0.5 * share * d**2 @ (p.effective_mass * p.omega**2)
     if model.complete:
-        offset = side * arm
+        offset = side * _arm(model, side)
         displaced = d @ p.effective_mass
         kinetic += spin**2 * (0.5 * d**2 @ p.effective_mass - offset * displaced)
         raised = (p.m_tot * offset - displaced) * np.sin(rotation) - 2.0 * p.l0r * np.sin(0.5 * rotation) ** 2
@@ -39,23 +35,12 @@ def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, A
     if layout.slip >= 0:
         slide = layout.of(states, layout.slip + 1)
         kinetic += slide * (0.5 * p.m_tot * slide + p.l0r * spin + v @ p.effective_mass)
-    return kinetic, strain, model.gravity * raised_weight(model, states)
-
-
-def raised_weight(model: RockingModel, states: Array) -> Array:
-    """Return the gravity energy per unit of gravity at the states of a history in kg m, for small rotations."""
-    p, layout = model.properties, model.layout
-    rotation = layout.of(states, layout.rotation)
-    if isinstance(model, SpringModel):
-        return p.m_tot * layout.of(states, layout.heave) - 0.5 * p.l0r * rotation**2
-    side = states[:, SIDE]
-    arm = _by_side(side, *(p.pivot(each).arm for each in (1, -1)))
-    return side * p.m_tot * arm * rotation - 0.5 * p.l0r * rotation**2
+    return kinetic, strain, model.gravity * model.raised_weight(states)
 
 
 def soil_strain(model: RockingModel, states: Array) -> Array:
     """Return the energy stored in each spring under the base in J, shape (n_states, n_springs)."""
-    if not isinstance(model, SpringModel):
+    if model.springs is None:
         return np.zeros((states.shape[0], 0))
     layout = model.layout
     depth = layout.of(states, layout.heave)[:, None]
@@ -78,7 +63,7 @@ def floor_accelerations(model: RockingModel, floors: FloorModes, states: Array) 
     rotation, spin = layout.of(states, layout.rotation)[:, None], layout.of(states, layout.spin)[:, None]
     sine, cosine = np.sin(rotation), np.cos(rotation)
     side = acting_side(states)
-    offset = (side * _by_side(side, *(model.properties.pivot(each).arm for each in (1, -1))))[:, None]
+    offset = (side * _arm(model, side))[:, None]
     u = layout.displacements(states) @ floors.displacement.T
     v = layout.velocities(states) @ floors.displacement.T
     turning = angular * (offset * sine + floors.heights * cosine - u * sine) - 2.0 * spin * v * sine
@@ -86,11 +71,7 @@ def floor_accelerations(model: RockingModel, floors: FloorModes, states: Array) 
     return ground + bend * cosine + turning + centrifugal
 
 
-def _pivot_values(model: RockingModel) -> list[tuple[float, float]]:
-    right, left = (model.properties.pivot(side) for side in (1, -1))
-    return [(right.i_theta, left.i_theta), (right.arm, left.arm)]
-
-
-def _by_side(side: Array, right: float, left: float) -> Array:
-    """Return the value of the right or the left pivot, depending on the sign of a side or a rotation."""
-    return np.where(side < 0.0, left, right)
+def _arm(model: RockingModel, side: Array) -> Array:
+    """Return the distance of the pivot of a side from the axis of the masses in m, shape (n,)."""
+    p = model.properties
+    return np.where(side < 0.0, p.pivot(-1).arm, p.pivot(1).arm)

@@ -10,8 +10,8 @@ from rockflex._constants import GRAVITY
 from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System, by_rows
 from rockflex.models._elements import CLOSED, LEFT, QUARTER_TURN, RIGHT
 from rockflex.models._impact import Restitution, VVELSimplified
+from rockflex.models._label import RockingModel
 from rockflex.models._landing import landing_of, sided, turn_by_rows
-from rockflex.models._modal_model import LinearModel
 from rockflex.models._phase import Key
 from rockflex.models._quantities import GROUND, RIGHT_ROTATION, ROTATION, TURN, Quantities
 
@@ -19,7 +19,7 @@ SMALL, LARGE = 1e-30, 1e30  # of numbers in SI units that certainly do not overf
 CONTACT, ALONE = (CLOSED,), {RIGHT: (RIGHT,), LEFT: (LEFT,)}
 
 
-def may_stack(model: LinearModel) -> bool:
+def may_stack(model: RockingModel) -> bool:
     """Return whether a model can be in a stack: at its impacts, if any, the state is multiplied by a matrix."""
     p = model.properties
     numbers = np.abs((*p.omega, p.i_theta, p.l0r, p.m_tot, p.half_width))
@@ -27,7 +27,7 @@ def may_stack(model: LinearModel) -> bool:
     return usual and (not model.lifts or type(model.law) is VVELSimplified)
 
 
-def system_of(models: Sequence[LinearModel], quantities: Sequence[Quantities]) -> System:
+def system_of(models: Sequence[RockingModel], quantities: Sequence[Quantities]) -> System:
     """Return models without elements, on rigid ground, as a stack of hybrid systems.
 
     The models have equal numbers of modes and quantities, and all of them can lift, or none. The outputs are the
@@ -62,7 +62,7 @@ def system_of(models: Sequence[LinearModel], quantities: Sequence[Quantities]) -
 class RigidGround:
     """The numbers of S models with N modes; rows have columns D, D', θ, θ', the ground acceleration and 1."""
 
-    model: LinearModel  # one of them
+    model: RockingModel  # one of them
     omega: Array  # (S, N)
     zeta: Array
     mass: Array

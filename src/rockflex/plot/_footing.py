@@ -10,7 +10,7 @@ from rockflex._numbers import prefixed
 from rockflex.modal import RockingProperties, Springs
 from rockflex.plot._curves import curves_of, title_of
 from rockflex.plot._style import BLACK, BLUE, GRAY, RED, Size, label_panel, literal, new_figure, styled
-from rockflex.response import History, Response, springs_of
+from rockflex.response import History, Response
 
 MAX_LINES = 4  # springs whose forces are drawn as lines; more springs as a map
 _COLORS = (BLUE, RED, BLACK, GRAY)
@@ -56,7 +56,7 @@ def plot_footing(response: Response, *, title: str | None = None, size: Size | N
     """
     (curve,) = curves = curves_of(response)
     history = curve.history
-    springs = springs_of(history.model)
+    springs = history.model.springs
     if springs is None:
         raise InputError(
             "The base of this response is not on springs. Simulate it with "

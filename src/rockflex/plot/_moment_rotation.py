@@ -28,7 +28,7 @@ from rockflex.plot._style import (
     new_figure,
     styled,
 )
-from rockflex.response import Response, base_path, push_on_springs, resistance_on_springs
+from rockflex.response import Response, resistance_on_springs, static_path
 from rockflex.study import RockingStructure, properties_of
 
 _LIMIT = 1.1
@@ -145,12 +145,13 @@ def _path(curve: Curve) -> tuple[Array, Array]:
 
 
 def resistance_line(curve: Curve, rotation: float, factor: float) -> Line2D:
-    p = curve.history.model.properties
+    model, p = curve.history.model, curve.history.model.properties
     if not is_path_independent(p):
         theta, moment = _path(curve)
         return Line2D(theta, moment / factor, color=BLUE, linewidth=0.8, label=_PATH, zorder=3.0)
-    dashes, push = (0, (4, 2)), push_on_springs(curve.history, rotation)
-    if push is not None:
+    dashes = (0, (4, 2))
+    if model.springs is not None:
+        push = static_path(p, np.array([rotation, -rotation]), model.springs, model.rest)
         return Line2D(
             push.rotation, push.moment / factor, color=BLUE, linestyle=dashes, linewidth=1.1, label=_SPRINGS, zorder=3.0
         )
@@ -270,7 +271,7 @@ def plot_moment_rotation_laws(
 
 def _push(p: RockingProperties, side: int, end: float) -> tuple[Array, Array]:
     """Rotation |θ| and moment, positive, of a first push to one side, from lift-off on."""
-    push = base_path(p, np.array([side * end]))
+    push = static_path(p, np.array([side * end]))
     return np.abs(push.rotation[1:]), side * push.moment[1:]
 
 

@@ -4,20 +4,16 @@ from rockflex.response._energy import EnergyLedger
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._history import History, SampledHistory
-from rockflex.response._peaks import GLOBAL, rotation_at_rest, springs_of, tracked_extremes, tracked_quantities
-from rockflex.response._quasi_static import (
+from rockflex.response._moment_rotation import (
     MomentRotation,
-    base_path,
+    MomentRotationOnSprings,
     element_resistance,
     large_resistance,
+    resistance_on_springs,
     weight_resistance,
 )
-from rockflex.response._quasi_static_on_springs import (
-    MomentRotationOnSprings,
-    push_on_springs,
-    resistance_on_springs,
-    springs_path,
-)
+from rockflex.response._peaks import GLOBAL, Tracked, tracked_quantities
+from rockflex.response._quasi_static import static_path
 from rockflex.response._respond import NAMES, STATUSES, columns_among, columns_of, respond
 from rockflex.response._response import (
     BALANCED,
@@ -46,7 +42,7 @@ __all__ = [
     "MomentRotationOnSprings",
     "Response",
     "SampledHistory",
-    "base_path",
+    "Tracked",
     "columns_among",
     "columns_of",
     "complete_of",
@@ -56,13 +52,9 @@ __all__ = [
     "history_columns",
     "large_resistance",
     "leaves_range",
-    "push_on_springs",
     "resistance_on_springs",
     "respond",
-    "rotation_at_rest",
-    "springs_of",
-    "springs_path",
-    "tracked_extremes",
+    "static_path",
     "tracked_quantities",
     "warnings_of",
     "warnings_of_energy",

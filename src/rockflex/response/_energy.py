@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockflex._arrays import Array, Bools
+from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.models import (
@@ -22,7 +22,6 @@ from rockflex.models import (
     HEADER,
     LOADED,
     SIDE,
-    TIME,
     Bar,
     Dashpot,
     Key,
@@ -33,11 +32,8 @@ from rockflex.models import (
     RockingModel,
     Shaking,
     Slider,
-    SpringModel,
-    arms,
     element_energies,
     element_forces,
-    elongations,
     horizontal_reaction,
     inside,
     plastic_stretches,
@@ -141,7 +137,7 @@ def energy_ledger(model: RockingModel, states: Array) -> EnergyLedger:
         If the model is too fast for the sampling: too many quadratures would be needed.
     """
     kinetic, strain, gravity = stored_energies(model, states)
-    impact = np.flatnonzero(is_impact(model, states))
+    impact = np.flatnonzero(model.impacts(states))
     losses = kinetic[impact] - kinetic[impact + 1]
     lost = np.zeros(states.shape[0])
     np.add.at(lost, impact + 1, losses)
@@ -177,14 +173,6 @@ def _summed(parts: Array) -> Array:
     return np.concatenate((np.zeros((1, *parts.shape[1:])), np.cumsum(parts, axis=0)))
 
 
-def is_impact(model: RockingModel, states: Array) -> Bools:
-    """Return True for the interval between the two states of every impact, shape (n_states - 1,)."""
-    spin, rotation = (model.layout.of(states, place) for place in (model.layout.spin, model.layout.rotation))
-    time, side = states[:, TIME], states[:, SIDE]
-    landed = (time[1:] == time[:-1]) & (side[:-1] != 0.0) & (rotation[:-1] == 0.0)
-    return landed & ((side[1:] != side[:-1]) | (spin[1:] != spin[:-1]))
-
-
 def element_losses(model: RockingModel, states: Array, sweeps: Array) -> Array:
     """Return the energy that each element dissipates between adjacent states, in J, shape (n_states - 1, E).
 
@@ -195,7 +183,7 @@ def element_losses(model: RockingModel, states: Array, sweeps: Array) -> Array:
     found = np.zeros((states.shape[0] - 1, len(model.elements)))
     if not model.elements:
         return found
-    delta, forces = elongations(model, states), element_forces(model, states)
+    delta, forces = model.elongations_at(states), element_forces(model, states)
     moved = np.abs(np.diff(delta, axis=0))
     plastic, stored = plastic_stretches(model, states), element_energies(model, states)
     broken = np.isnan(plastic)
@@ -254,7 +242,7 @@ def _work_of(model: RockingModel, motion: MotionBetween, states: Array) -> Work:
     for part in motion.intervals(states).parts:
         found = PhaseWork(model, part.key, part.motion).of(part)
         damped[part.rows], ground[part.rows], friction[part.rows], swing[part.rows] = found[:, :4].T
-        if not isinstance(model, SpringModel):
+        if model.springs is None:
             continue
         # The force of a spring that is loaded is that of its stiffness, which is stored, and that of its dashpot.
         loaded = np.flatnonzero(np.array(part.key[1 : model.springs.n + 1]) == LOADED)
@@ -265,9 +253,9 @@ def _work_of(model: RockingModel, motion: MotionBetween, states: Array) -> Work:
 
 def sweeps_of(model: RockingModel, states: Array, work: Work) -> Array:
     """Return ∫ δ'² dt of each element between adjacent states in m²/s, shape (n_states - 1, E)."""
-    if isinstance(model, SpringModel) or not model.elements:
+    if model.springs is not None or not model.elements:
         return work.sweeps
-    return arms(model, states[:-1, SIDE]) ** 2 * work.swing[:, None]
+    return model.arms(states[:-1, SIDE]) ** 2 * work.swing[:, None]
 
 
 class Table(NamedTuple):
@@ -301,7 +289,7 @@ class PhaseWork:
         self._push = p.l0r * unit[layout.spin] + p.effective_mass @ unit[N : 2 * N]
         self._tilt, self._lift = p.l0r * unit[layout.rotation], np.zeros(len(unit))
         self._base, self._places = unit[[layout.spin]], np.zeros(0)
-        if isinstance(model, SpringModel):
+        if model.springs is not None:
             self._base = unit[[layout.spin, layout.heave + 1]]
             self._places = np.array([*model.springs.positions, *(each.position for each in model.elements)])
             self._lift = p.m_tot * unit[layout.heave + 1]

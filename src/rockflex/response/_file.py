@@ -37,6 +37,7 @@ from rockflex.models import (
     ImpactLaw,
     LinearModel,
     NonlinearModel,
+    Pose,
     Restitution,
     RockingModel,
     SidedRestitution,
@@ -50,11 +51,9 @@ from rockflex.response._history import History
 from rockflex.response._peaks import (
     ELEMENT_PEAKS,
     NONE,
-    RotationExtremes,
     balance_ratio,
     element_peaks,
-    elongations_about_pivots,
-    rotation_at_rest,
+    extremes_about_pivots,
 )
 
 Kept = tuple[dict[str, Any], FloorPeaks | None, History | None]
@@ -117,12 +116,11 @@ def save(
             scalars["complete"] = model.complete
             scalars["bouc_wen"] = None if model.bouc_wen is None else asdict(model.bouc_wen)
         scalars["gravity"] = model.gravity
-        if isinstance(model, SlidingModel):
-            scalars["friction"] = model.friction
-        if isinstance(model, SpringModel):
-            scalars |= {"inertia": model.inertia, "rest": list(model.rest)}
-            parts = {name: getattr(model.springs, name) for name in SPRINGS} | {"friction": model.friction}
-            arrays |= {f"springs.{name}": value for name, value in parts.items() if value is not None}
+        for name, value in model.ground_parameters.items():
+            if isinstance(value, np.ndarray):  # of every spring
+                arrays[f"springs.{name}"] = value
+            else:
+                scalars[name] = value
         scalars["elements"] = [{"kind": type(each).__name__, **asdict(each)} for each in model.properties.elements]
         arrays["states"] = history.states
         arrays |= {f"properties.{name}": getattr(model.properties, name) for name in PROPERTIES}
@@ -171,8 +169,8 @@ def _kept(scalars: dict[str, Any], arrays: dict[str, Any], kinds: dict[str, type
         later |= _of_ground(scalars, history)
     if "balance_ratio" not in scalars:  # nor was the residual rotation measured from that at rest
         later["balance_ratio"] = math.nan if history is None else _balance_ratio(scalars, history)
-        if history is not None and isinstance(history.model, SpringModel):
-            later["residual_rotation"] = scalars["residual_rotation"] - rotation_at_rest(history.model)
+        if history is not None and history.model.springs is not None:
+            later["residual_rotation"] = scalars["residual_rotation"] - history.model.rest.rotation
     peaks = later | {name: _typed(scalars, name, kind) for name, kind in kinds.items() if name not in later}
     if "floors.story_drift" in arrays:
         floors = FloorPeaks(*(arrays[f"floors.{name}"] for name in FLOOR_PEAKS))
@@ -206,8 +204,7 @@ def _later(scalars: dict[str, Any], history: History | None) -> dict[str, Any]:
             found["residual_rotation"] = float(rotation[-1])
         sides = max(float(rotation.max()), 0.0), max(-float(rotation.min()), 0.0)
         largest = [scalars["max_rotation"] if side == max(sides) else side for side in sides]
-        reach = RotationExtremes((largest[0], largest[1]), (0.0, 0.0))
-        moves = elongations_about_pivots(history.model, reach)
+        moves = extremes_about_pivots(history.model, (largest[0], largest[1]))
         of_elements = element_peaks(history.model, moves, history.states[-1, HEADER:])
     return found | {name: getattr(of_elements, name) for name in ELEMENT_PEAKS}
 
@@ -290,7 +287,7 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
             springs=springs,
             inertia=_typed(scalars, "inertia", float),
             friction=arrays.get("springs.friction"),
-            rest=(rotation, heave),
+            rest=Pose(rotation, heave),
         )
     if "friction" in scalars:
         return SlidingModel(

@@ -25,7 +25,6 @@ from rockflex.models import (
     printed_reactions,
     reactions,
 )
-from rockflex.response._energy import is_impact
 from rockflex.response._interpolation import quintic
 
 IMPACT_WINDOW = 0.05  # s after an impact, in which the demand has short spikes
@@ -184,7 +183,7 @@ class Friction:
         """Return the place in each interval where the window after the last impact ends: 0 before, above 1 beyond."""
         time = self._states[:, TIME]
         begin, length = time[self._stretches], np.diff(time)[self._stretches]
-        impacts = np.append(-np.inf, time[1:][is_impact(self._model, self._states)])
+        impacts = np.append(-np.inf, time[1:][self._model.impacts(self._states)])
         last = impacts[np.searchsorted(impacts, begin, side="right") - 1]
         return np.maximum((last + window - begin) / length, 0.0)
 

@@ -21,19 +21,16 @@ from rockflex.models import (
     SIDE,
     TIME,
     RockingModel,
-    SpringModel,
     accelerations,
     element_forces,
-    elongations,
-    lifted_springs,
     spring_forces,
 )
 from rockflex.motion import GroundMotion
-from rockflex.response._energy import EnergyLedger, energy_ledger, is_impact
+from rockflex.response._energy import EnergyLedger, energy_ledger
 from rockflex.response._floors import floor_histories, floor_motion
 from rockflex.response._friction import IMPACT_WINDOW, Friction
 from rockflex.response._interpolation import even_instants, instants, only_of_run, settled_rotation, states_at
-from rockflex.response._peaks import global_histories, springs_of
+from rockflex.response._peaks import global_histories
 from rockflex.response._tables import dataset_of, frame_of
 
 if TYPE_CHECKING:
@@ -211,7 +208,7 @@ class History(Value):
     @property
     def top_displacement(self) -> Array:
         """u_top = Σ Γ_n φ_top,n D_n relative to the rotating base, in m, shape (n_states,)."""
-        return self._global[:, 0]
+        return self._global["top_displacement"]
 
     @property
     def total_top_displacement(self) -> Array:
@@ -224,31 +221,27 @@ class History(Value):
                 "The height of the top is not known, so there is no total displacement. Give RockingProperties the "
                 "top_height, in m above the base."
             )
-        return self._global[:, 3]
+        return self._global["total_top_displacement"]
 
     @property
     def base_moment(self) -> Array:
         """M_b = Σ m*_n h*_n ω_n² D_n (or by Eq. 37) in N m, shape (n_states,); models with -R add the mass left out."""
-        return self._global[:, 1]
+        return self._global["base_moment"]
 
     @property
     def base_shear(self) -> Array:
         """V_b = Σ m*_n ω_n² D_n (or by Eq. 37) in N, shape (n_states,); models with -R add the mass left out."""
-        return self._global[:, 2]
+        return self._global["base_shear"]
 
     @property
     def uplift_times(self) -> Array:
         """Times of uplift in s, shape (n_uplifts,)."""
-        if isinstance(self.model, SpringModel):
-            return edge_times(self.model, self.states, lifts=True)
-        return self.time[1:][(self.side[:-1] == 0.0) & (self.side[1:] != 0.0)]
+        return self.model.uplift_times(self.states)
 
     @property
     def impact_times(self) -> Array:
         """Times of impact, when the rotation returns to zero, in s, shape (n_impacts,)."""
-        if isinstance(self.model, SpringModel):
-            return edge_times(self.model, self.states, lifts=False)
-        return self.time[1:][is_impact(self.model, self.states)]
+        return self.model.impact_times(self.states)
 
     @property
     def story_drift(self) -> Array:
@@ -305,7 +298,7 @@ class History(Value):
     @property
     def element_elongation(self) -> Array:
         """Elongation r |θ| of each element in m, in complete models 2 r sin(|θ|/2), shape (n_states, E)."""
-        return elongations(self.model, self.states)
+        return self.model.elongations_at(self.states)
 
     @property
     def vertical_ground_acceleration(self) -> Array:
@@ -329,34 +322,21 @@ class History(Value):
 
         On springs from the level at which they are unloaded, on rigid ground the distance to the pivot times |θ|.
         """
-        if isinstance(self.model, SpringModel):
-            return self._of_base(self.model.layout.heave)
-        p, left, right = self.model.properties, self.edge_uplift[:, 0], self.edge_uplift[:, 1]
-        return (p.pivot(1).arm * left + p.pivot(-1).arm * right) / (2.0 * p.half_width)
+        return self.model.heave(self.states)
 
     @property
     def edge_uplift(self) -> Array:
         """Rise of the left and of the right edge of the base in m, negative where it settles, shape (n_states, 2)."""
-        p, rotation = self.model.properties, self.model.layout.of(self.states, self.model.layout.rotation)
-        if isinstance(self.model, SpringModel):
-            places = np.array([-p.pivot(-1).arm, p.pivot(1).arm])
-            return self.heave[:, None] - places * rotation[:, None]
-        turn = np.sin(rotation) if self.model.complete else rotation
-        return 2.0 * p.half_width * np.stack((np.maximum(turn, 0.0), np.maximum(-turn, 0.0)), axis=1)
+        return self.model.edge_uplift(self.states)
 
     @property
     def uplifted(self) -> Bools:
         """Whether the base is off the ground, on springs whether an edge has left its spring, shape (n_states,)."""
-        if isinstance(self.model, SpringModel):
-            lifted = lifted_springs(self.model, self.states)
-            return lifted[:, 0] | lifted[:, -1]
-        return self.states[:, SIDE] != 0.0
+        return self.model.uplifted(self.states)
 
     @property
     def spring_force(self) -> Array:
         """Upward force of each spring under the base in N, shape (n_states, n_springs); none on rigid ground."""
-        if not isinstance(self.model, SpringModel):
-            return np.zeros((self.states.shape[0], 0))
         return spring_forces(self.model, self.states)
 
     @property
@@ -368,7 +348,7 @@ class History(Value):
         InputError
             If the springs have no `area`.
         """
-        return pressure_of(self.spring_force, springs_of(self.model))
+        return pressure_of(self.spring_force, self.model.springs)
 
     @property
     def bearing_pressure(self) -> Array:
@@ -384,8 +364,7 @@ class History(Value):
         InputError
             If the springs have no `area`.
         """
-        model = self.model
-        springs = springs_of(model)
+        model, springs = self.model, self.model.springs
         if springs is None or springs.area is None:
             raise no_area()
         turn = model.layout.of(self.states, model.layout.rotation)[:, None]
@@ -581,7 +560,7 @@ class History(Value):
         return dataset_of(self, quantities)
 
     @cached_property
-    def _global(self) -> Array:
+    def _global(self) -> dict[str, Array]:
         return global_histories(self.model, self.states)
 
     @cached_property
@@ -629,13 +608,6 @@ class SampledHistory(History):
 
     def __repr__(self) -> str:
         return f"SampledHistory({self.model.label}, {self.time.size} instants, {self.time[0]:g} to {self.time[-1]:g} s)"
-
-
-def edge_times(model: SpringModel, states: Array, *, lifts: bool) -> Array:
-    """Return the times in s at which an edge of a base leaves its spring, or comes back to it."""
-    lifted = lifted_springs(model, states)[:, [0, -1]]
-    changes = lifted[1:] & ~lifted[:-1] if lifts else ~lifted[1:] & lifted[:-1]
-    return np.repeat(states[1:, TIME], changes.sum(axis=1))
 
 
 def pressure_of(force: Array, springs: Springs | None) -> Array:

@@ -22,7 +22,6 @@ from rockflex.models import (
     RockingModel,
     accelerations,
 )
-from rockflex.response._peaks import rotation_at_rest
 from rockflex.solve import Engine
 
 Motion = tuple[Array, Array, Array]
@@ -207,4 +206,4 @@ def settled_rotation(model: RockingModel, states: Array, work_limit: float | Non
     found = Engine(model, Quantities.none(layout.modes)).run(
         np.zeros(2), step, free_vibration=None, state=(tuple(key), last[0, HEADER:].copy()), work_limit=work_limit
     )
-    return math.nan if found.overturned else float(found.final_state[layout.rotation]) - rotation_at_rest(model)
+    return math.nan if found.overturned else float(found.final_state[layout.rotation]) - model.rest.rotation

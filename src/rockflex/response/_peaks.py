@@ -1,23 +1,24 @@
 """The quantities whose peaks a run tracks, and the peaks of edges and elements that follow from them."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex.modal import BaseElement, ElementLaw, FrictionDamper, Springs, Tendon, ViscousDamper, YieldingDissipator
+from rockflex.modal import BaseElement, ElementLaw, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.models import (
     HEADER,
     SIDE,
     Quantities,
     RockingModel,
-    SpringModel,
     element_moves,
     element_speeds,
     floor_quantities,
+    joined,
     plastic_stretches,
     quantities,
     rotation_by_side,
@@ -27,39 +28,6 @@ from rockflex.models import (
 from rockflex.solve import Solution
 
 
-class Edges(NamedTuple):
-    """Largest uplift and settlement of the right and of the left edge in m, neither below zero."""
-
-    uplift: tuple[float, float]
-    settlement: tuple[float, float]
-
-
-def edges_of(model: RockingModel, rotation: tuple[float, float], solution: Solution) -> Edges:
-    """Return the extremes of the edges of a run, with its largest |θ| to the right and to the left in rad.
-
-    On rigid ground an edge rises by the width of the base times the rotation about the other edge; on springs the peaks
-    of `tracked_extremes` tell, measured from the level at which the springs are unloaded.
-    """
-    if isinstance(model, SpringModel):
-        right_up, right_down, left_up, left_down = (max(value, 0.0) for value in solution.extremes[:4].tolist())
-        return Edges((right_up, left_up), (right_down, left_down))
-    width = 2.0 * model.properties.half_width
-    right, left = rotation
-    if model.complete:
-        right, left = float(np.sin(right)), float(np.sin(left))
-    return Edges((width * left, width * right), (0.0, 0.0))
-
-
-def springs_of(model: RockingModel) -> Springs | None:
-    """Return the springs under the base; None on rigid ground."""
-    return model.springs if isinstance(model, SpringModel) else None
-
-
-def rotation_at_rest(model: RockingModel) -> float:
-    """Return the rotation of the base under its weight in rad: zero on rigid ground."""
-    return model.rest[0] if isinstance(model, SpringModel) else 0.0
-
-
 def balance_ratio(model: RockingModel, right: Any, left: Any) -> Any:
     """Return the largest |θ|/α of runs with these largest rotations in rad to the right and to the left."""
     of = model.properties.pivot
@@ -67,79 +35,123 @@ def balance_ratio(model: RockingModel, right: Any, left: Any) -> Any:
 
 
 GLOBAL = ("top_displacement", "base_moment", "base_shear", "total_top_displacement", "horizontal_reaction")
-EDGES = ("right_uplift", "right_settlement", "left_uplift", "left_settlement", "right_rotation", "left_rotation")
+ROTATIONS = ("right_rotation", "left_rotation")
+EDGES = ("right_uplift", "right_settlement", "left_uplift", "left_settlement", *ROTATIONS)
 FLOORS = ("story_drift", "story_shear", "total_floor_displacement", "floor_acceleration")
 
 
-def tracked_quantities(model: RockingModel, *, floors: bool = False) -> Quantities:
-    """Return the quantities for a run of a model: `GLOBAL`, those of the elements, and optionally `FLOORS`.
+@dataclass(frozen=True, eq=False)
+class NamedRows:
+    """Quantities whose peaks a run keeps, and the places of these peaks in its solution.
 
-    The elements need the rotations to each side if the sides differ, and viscous dampers the velocities. Floor
-    accelerations are not linear functionals of the state for large rotations, so for an integrated model they are
-    computed from its history.
+    Parameters
+    ----------
+    quantities
+        The quantities.
+    places
+        Place by name; a slice for a name with several values.
     """
-    total = quantities(model, GLOBAL)
-    if tracks_both_sides(model):
-        total = total + rotation_by_side(model)
-    if tracks_elongation_rate(model):
-        total = total + swing_by_side(model)
-    if model.layout.slip >= 0:
-        total = total + quantities(model, ("slip",))
-    if isinstance(model, SpringModel):
-        total = total + element_speeds(model)
-    if floors and model.properties.floors is not None:
-        total = total + floor_quantities(model, model.properties.floors, tracked_floor_quantities(model))
-    return total
+
+    quantities: Quantities
+    places: Mapping[str, int | slice]
+
+    @classmethod
+    def of(
+        cls, parts: Sequence[tuple[tuple[str, ...] | str, Quantities]], before: Mapping[str, int] | None = None
+    ) -> "NamedRows":
+        """Return the rows of parts in their order, after other places.
+
+        A part has a tuple with the name of each row, or one name for all its rows.
+        """
+        places: dict[str, int | slice] = dict(before or {})
+        first = len(places)
+        for name, part in parts:
+            end = first + len(part)
+            if isinstance(name, str):
+                places[name] = slice(first, end)
+            else:
+                places |= zip(name, range(first, end), strict=True)
+            first = end
+        return cls(joined([part for _, part in parts]), places)
+
+    def named(self, peaks: Array) -> dict[str, Array]:
+        """Return peaks, or their times, by name: from the shape (..., F), of one name (...), or (k, ...) of a slice."""
+        return {name: peaks.T[place] for name, place in self.places.items()}
 
 
-def tracked_extremes(model: RockingModel) -> Quantities | None:
-    """Return the quantities of which only the largest value matters: `EDGES` of a base on springs, and its elements.
+class Tracked(NamedTuple):
+    """What a run tracks: largest magnitudes, and, on springs, largest values."""
 
-    Those are the elongation of each element and its negative.
+    peaks: NamedRows
+    extremes: NamedRows | None
+
+    def of(self, solution: Solution) -> dict[str, Array]:
+        """Return the peaks and extremes of a run by name, each of shape () or (k,)."""
+        found = self.peaks.named(solution.peaks)
+        return found if self.extremes is None else found | self.extremes.named(solution.extremes)
+
+
+def tracked_quantities(
+    model: RockingModel, *, floors: bool = False, more: Mapping[str, Quantities] | None = None
+) -> Tracked:
+    """Return the quantities for a run of a model: `GLOBAL`, those of its base, optionally `FLOORS`, and `more` by name.
+
+    Elements need the largest rotation to each side if the sides differ, and viscous dampers the velocities. On springs
+    the largest values of `EDGES` and of `element_moves` are tracked, too. Floor accelerations are not linear
+    functionals of the state for large rotations, so for an integrated model they are computed from its history.
     """
-    if not isinstance(model, SpringModel):
-        return None
     p = model.properties
-    edges = p.pivot(1).arm, -p.pivot(-1).arm
+    parts: list[tuple[tuple[str, ...] | str, Quantities]] = [(GLOBAL, quantities(model, GLOBAL))]
+    most: list[tuple[tuple[str, ...] | str, Quantities]] = []
+    if model.springs is not None:
+        most = [(EDGES, _edges(model)), ("element_moves", element_moves(model))]
+    elif not p.symmetric or any(each.position != 0.0 for each in p.elements):
+        parts.append((ROTATIONS, rotation_by_side(model)))
+    if model.springs is None and model.lifts and any(isinstance(each, ViscousDamper) for each in p.elements):
+        parts.append(("swing_by_side", swing_by_side(model)))
+    if model.layout.slip >= 0:
+        parts.append((("slip",), quantities(model, ("slip",))))
+    if model.springs is not None:
+        parts.append(("element_speeds", element_speeds(model)))
+    if floors and p.floors is not None:
+        names = FLOORS[:-1] if model.integrated else FLOORS
+        parts += [(name, floor_quantities(model, p.floors, (name,))) for name in names]
+    peaks = NamedRows.of([*parts, *(more or {}).items()], {"rotation": 0})  # the engine puts the rotation first
+    return Tracked(peaks, NamedRows.of(most) if most else None)
+
+
+def _edges(model: RockingModel) -> Quantities:
+    """Return `EDGES` of a base on springs, of which only the largest value matters."""
+    p = model.properties
+    right, left = p.pivot(1).arm, -p.pivot(-1).arm
     signs = np.array([1.0, -1.0, 1.0, -1.0, 0.0, 0.0])
-    turns = [-edges[0], edges[0], -edges[1], edges[1], 1.0, -1.0]
-    of_edges = Quantities.of(len(EDGES), p.n_modes, heave=signs, rotation=turns)
-    return of_edges + element_moves(model)
+    return Quantities.of(len(EDGES), p.n_modes, heave=signs, rotation=[-right, right, -left, left, 1.0, -1.0])
 
 
-def global_histories(model: RockingModel, states: Array) -> Array:
-    """Return the values of `GLOBAL` at the states of a history: read-only, shape (n_states, 5)."""
+def largest_rotations(peaks: Mapping[str, Array]) -> tuple[float, float]:
+    """Return the largest |θ| of a run to the right and to the left in rad; if they are not tracked, that of both."""
+    right, left = (float(peaks.get(name, peaks["rotation"])) for name in ROTATIONS)
+    return max(right, 0.0), max(left, 0.0)
+
+
+def largest_edge_moves(model: RockingModel, peaks: Mapping[str, Array]) -> tuple[float, float]:
+    """Return the largest uplift and the largest settlement of an edge in a run in m, neither below zero.
+
+    On rigid ground an edge rises by the width of the base times the rotation about the other edge; on springs moves
+    count from the level at which these are unloaded.
+    """
+    if model.springs is not None:
+        up, down = ([float(peaks[f"{side}_{move}"]) for side in ("right", "left")] for move in ("uplift", "settlement"))
+        return max(0.0, *up), max(0.0, *down)
+    largest = max(largest_rotations(peaks))
+    return 2.0 * model.properties.half_width * (float(np.sin(largest)) if model.complete else largest), 0.0
+
+
+def global_histories(model: RockingModel, states: Array) -> dict[str, Array]:
+    """Return the values of `GLOBAL` at the states of a history by name: read-only, each of shape (n_states,)."""
     values = values_of(model, quantities(model, GLOBAL), states)
     values.setflags(write=False)
-    return values
-
-
-def tracks_both_sides(model: RockingModel) -> bool:
-    """Return whether the largest rotation to each side matters on rigid ground, rather than the larger of both."""
-    if isinstance(model, SpringModel):
-        return False
-    return not model.properties.symmetric or any(each.position != 0.0 for each in model.properties.elements)
-
-
-def tracks_elongation_rate(model: RockingModel) -> bool:
-    """Return whether viscous dampers act on a base that can lift."""
-    return (
-        not isinstance(model, SpringModel)
-        and model.lifts
-        and any(isinstance(each, ViscousDamper) for each in model.properties.elements)
-    )
-
-
-def tracked_floor_quantities(model: RockingModel) -> tuple[str, ...]:
-    """Return the names of the floor quantities whose peaks are tracked during a run."""
-    return FLOORS[:-1] if model.integrated else FLOORS
-
-
-class RotationExtremes(NamedTuple):
-    """How far the base moved: the largest |θ| in rad and the largest |δ'/r| in rad/s, to the right and to the left."""
-
-    rotation: tuple[float, float]
-    swing: tuple[float, float]
+    return dict(zip(GLOBAL, values.T, strict=True))
 
 
 class ElementPeaks(NamedTuple):
@@ -199,33 +211,43 @@ def element_peaks(model: RockingModel, moves: Sequence[ElementExtremes], final_s
     )
 
 
-def elongations_about_pivots(model: RockingModel, reach: RotationExtremes) -> list[ElementExtremes]:
-    """Return the extremes of the elements of a base that rotates about its edges."""
-    if not model.properties.elements:
-        return []
-    stretch = model.stretch_per_arm(np.array(reach.rotation)).tolist()
-    return [_elongations(model, each, stretch, reach.swing) for each in model.properties.elements]
+def element_extremes(model: RockingModel, peaks: Mapping[str, Array]) -> list[ElementExtremes]:
+    """Return the extremes of the elements of a run."""
+    if model.springs is not None:
+        return _on_springs(model, peaks["element_moves"], peaks["element_speeds"])
+    swing = peaks.get("swing_by_side", np.zeros(1))  # one value if the sides do not differ
+    return extremes_about_pivots(model, largest_rotations(peaks), (float(swing[0]), float(swing[-1])))
 
 
-def elongations_on_springs(model: SpringModel, extremes: Array, speeds: Array) -> list[ElementExtremes]:
-    """Return the extremes of the elements of a base on springs, from the peaks of `element_moves` and their speeds."""
-    rotation, heave = model.rest
+def extremes_about_pivots(
+    model: RockingModel, rotation: tuple[float, float], swing: tuple[float, float] = (0.0, 0.0)
+) -> list[ElementExtremes]:
+    """Return the extremes of the elements of a base that rotates about its edges.
+
+    Parameters
+    ----------
+    model
+        The model.
+    rotation, swing
+        The largest |θ| in rad and the largest |δ'/r| in rad/s, to the right and to the left.
+    """
     found = list[ElementExtremes]()
-    for place, each in enumerate(model.elements):
-        rest = heave - each.position * rotation
-        high, low = extremes[2 * place] - rest, extremes[2 * place + 1] + rest
-        found.append(ElementExtremes(min(0.0, -float(low)), max(0.0, float(high)), float(speeds[place])))
+    stretch = model.stretch_per_arm(np.array(rotation)).tolist()
+    for each in model.properties.elements:
+        arms = [model.properties.pivot(side).arm - side * each.position for side in (1, -1)]
+        ends = [r * delta for r, delta in zip(arms, stretch, strict=True)]
+        speeds = [abs(r) * rate for r, rate in zip(arms, swing, strict=True)]
+        found.append(ElementExtremes(min(0.0, *ends), max(0.0, *ends), max(speeds)))
     return found
 
 
-def _elongations(
-    model: RockingModel, element: BaseElement, stretch: list[float], swing: tuple[float, float]
-) -> ElementExtremes:
-    arms = [model.properties.pivot(side).arm - side * element.position for side in (1, -1)]
-    ends = [r * each for r, each in zip(arms, stretch, strict=True)]
-    return ElementExtremes(
-        min(0.0, *ends), max(0.0, *ends), max(abs(r) * each for r, each in zip(arms, swing, strict=True))
-    )
+def _on_springs(model: RockingModel, moves: Array, speeds: Array) -> list[ElementExtremes]:
+    """Return the extremes of the elements of a base on springs, from the peaks of `element_moves` and their speeds."""
+    found = list[ElementExtremes]()
+    for each, (high, low), speed in zip(model.elements, moves.reshape(-1, 2).tolist(), speeds.tolist(), strict=True):
+        rest = model.rest.heave - each.position * model.rest.rotation
+        found.append(ElementExtremes(min(0.0, -(low + rest)), max(0.0, high - rest), speed))
+    return found
 
 
 def _largest_force(element: BaseElement, move: ElementExtremes) -> float:
@@ -272,8 +294,7 @@ def _pulls_only(element: Tendon | YieldingDissipator) -> bool:
 def _remaining_prestress(model: RockingModel, final_state: Array) -> list[float]:
     """Return the force of each tendon in contact after the end of a run, in N; zero if it is slack or broken."""
     row = np.concatenate((np.zeros(HEADER), final_state))
-    if not isinstance(model, SpringModel):
-        row[SIDE] = np.sign(final_state[model.layout.rotation])
+    row[SIDE] = np.sign(final_state[model.layout.rotation])  # on springs it means nothing
     plastic = plastic_stretches(model, row[None])[0]
     found: list[float] = []
     for each, lost in zip(model.properties.elements, plastic.tolist(), strict=True):

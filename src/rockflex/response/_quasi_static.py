@@ -1,231 +1,98 @@
-"""The quasi-static moment of a base on rigid ground along a prescribed path of its rotation."""
+"""The quasi-static path of a base whose rotation is prescribed, on rigid ground or on springs, with its elements."""
 
 import math
-from abc import ABC, abstractmethod
-from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex._constants import GRAVITY
-from rockflex._shown import counted
-from rockflex._values import Value
-from rockflex.modal import BaseElement, RockingProperties
-from rockflex.models import CLOSED, LEFT, RIGHT, Element, Slider, arm_of, elements_of
+from rockflex.modal import RockingProperties, Springs
+from rockflex.models import (
+    CLOSED,
+    LEFT,
+    LEVEL,
+    RIGHT,
+    Element,
+    Pose,
+    Slider,
+    arm_of,
+    elements_of,
+)
+from rockflex.response._moment_rotation import MomentRotation, MomentRotationOnSprings
 
-if TYPE_CHECKING:
-    import pandas as pd
-
-
-_OF_ELEMENTS = ("element_force", "element_elongation", "plastic_stretch", "element_losses")
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class StaticPath(Value, ABC):
-    """What paths on rigid ground and on springs have in common; between adjacent points everything is linear."""
-
-    properties: RockingProperties
-    rotation: Array
-    given: Bools
-    element_force: Array
-    element_elongation: Array
-    plastic_stretch: Array
-    element_losses: Array
-
-    @cached_property
-    @abstractmethod
-    def moment(self) -> Array:
-        """Moment M in N m, shape (n,)."""
-
-    @property
-    def elements(self) -> tuple[BaseElement, ...]:
-        """The elements, in their order."""
-        return self.properties.elements
-
-    @property
-    def work(self) -> Array:
-        """Work of the moment up to each point in J, shape (n,)."""
-        steps = 0.5 * (self.moment[1:] + self.moment[:-1]) * np.diff(self.rotation)
-        return np.concatenate(([0.0], np.cumsum(steps)))
-
-    @property
-    def element_energy(self) -> Array:
-        """Energy that each element has dissipated along the whole path in J, shape (E,)."""
-        return self.element_losses[-1]
-
-    @property
-    def dissipated_energy(self) -> Array:
-        """Energy that all elements have dissipated up to each point in J, shape (n,)."""
-        return self.element_losses.sum(axis=1)
-
-    def _frame(self, *names: str) -> "pd.DataFrame":
-        """Return these quantities and those of the elements, counted from 1, as a table."""
-        import pandas as pd
-
-        columns = {name: getattr(self, name) for name in names}
-        for place in range(len(self.elements)):
-            columns |= {f"{name}_{place + 1}": getattr(self, name)[:, place] for name in _OF_ELEMENTS}
-        return pd.DataFrame(columns)
+TOLERANCE = 1e-12  # relative: changes this close to each other happen at once, and at an end in the next part
 
 
-def weight_resistance(properties: RockingProperties, side: NDArray[np.integer], rotation: Array) -> Array:
-    """Return s m_tot g B_s - L_0^r g θ in N m for small rotations, shape (n,); zero in contact."""
-    return _weight(properties, side) - properties.l0r * GRAVITY * rotation
-
-
-def element_resistance(properties: RockingProperties, side: NDArray[np.integer], force: Array) -> Array:
-    """Return s F r of each element in N m for small rotations, shape (n, E); zero in contact."""
-    positions = np.array([each.position for each in properties.elements])
-    arms = [properties.pivot(turned).arm - turned * positions for turned in (1, -1)]
-    return np.array([np.zeros(positions.size), arms[0], -arms[1]])[side] * force
-
-
-def large_resistance(
-    properties: RockingProperties, side: NDArray[np.integer], rotation: Array, force: Array
-) -> tuple[Array, Array]:
-    """Return both parts for rotations of any size: s m_tot g B_s cos θ - L_0^r g sin θ, and s F r cos(θ/2)."""
-    weight = _weight(properties, side) * np.cos(rotation) - properties.l0r * GRAVITY * np.sin(rotation)
-    return weight, element_resistance(properties, side, force) * np.cos(0.5 * rotation)[:, None]
-
-
-def _weight(properties: RockingProperties, side: NDArray[np.integer]) -> Array:
-    return np.array([0.0, properties.pivot(1).weight_moment, -properties.pivot(-1).weight_moment])[side]
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class MomentRotation(StaticPath):
-    """The quasi-static moment of a base over a path of its rotation, with the forces of its elements.
-
-    Between adjacent points everything is linear: a point stands wherever an element changes its branch, and two of them
-    where a force or the moment jumps at a constant rotation. `moment_rotation` returns such paths.
-
-    An *excursion* is the part of a path from one lift-off to the next.
+def static_path(
+    properties: RockingProperties, rotations: Array, springs: Springs | None = None, rest: Pose = LEVEL
+) -> MomentRotation | MomentRotationOnSprings:
+    """Return the quasi-static moment along a path from rest through rotations.
 
     Parameters
     ----------
-    properties : RockingProperties
+    properties
         The structure, with its elements.
-    rotation : ndarray, shape (n,)
-        θ in rad.
-    given : ndarray of bool, shape (n,)
-        True where a rotation was prescribed, and False at points in between.
-    element_force : ndarray, shape (n, E)
-        Tension F of each element in N, in the order of `RockingProperties.elements`.
-    element_elongation : ndarray, shape (n, E)
-        Elongation δ from the base in contact, in m.
-    plastic_stretch : ndarray, shape (n, E)
-        Plastic part of the elongation in m of fuses and tendons that yield, NaN once they are broken; zero for others.
-    element_losses : ndarray, shape (n, E)
-        Energy that each element has dissipated so far, in J. A rupture dissipates what the element had stored.
-    side : ndarray of int, shape (n,)
-        1 about the right pivot, -1 about the left pivot, 0 at the start, at rest and without load.
-
-    Examples
-    --------
-    >>> import rockflex as rf
-    >>> wall = rf.CantileverWithTipMass(
-    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e9, base_mass=10e3, half_width=1.5, damping_ratio=0.02
-    ... )
-    >>> fuse = rf.YieldingDissipator(stiffness=60e6, yield_force=150e3)
-    >>> held = rf.Restrained(wall, [rf.Tendon(initial_force=300e3, stiffness=8e6), fuse])
-    >>> curve = rf.moment_rotation(held, [0.02, -0.02, 0.0])
-    >>> (curve.uplift_moments / 1e3).round(1)
-    array([ 1332.9, -1107.9])
-    >>> curve.loop_energies.round(), curve.self_centring
-    (array([7875., 7500.]), True)
+    rotations : ndarray, shape (m,)
+        Rotations in rad, at least one.
+    springs, rest
+        The springs under the base, and its position on them under its weight; None on rigid ground.
     """
-
-    side: NDArray[np.int64]
-
-    def __repr__(self) -> str:
-        largest, peak = (float(np.max(np.abs(values))) for values in (self.rotation, self.moment))
-        return (
-            f"MomentRotation({self.rotation.size} points, {counted(len(self.elements), 'element')}, "
-            f"|θ| up to {largest:.4g} rad, |M| up to {peak:.4g} N m, {self.dissipated_energy[-1]:.4g} J dissipated)"
+    elements = elements_of(properties)
+    if springs is None:
+        points = list(_about_pivots(properties, elements, rotations))
+        side = np.array([point[0] for point in points])
+        return MomentRotation(
+            properties=properties,
+            rotation=side * np.array([point[1] for point in points]) + 0.0,  # no -0.0
+            given=np.array([point[2] for point in points]),
+            **_along(elements, [places for *_, places in points]),
+            side=side,
         )
+    found = list(_on_springs(SprungBase(elements, springs, rest), rotations))
+    states = [state for state, _ in found]
+    rotation, heave = np.array([(state.rotation, state.heave) for state in states]).T
+    loaded = np.array([state.pressed & ~state.empty for state in states])
+    depth = heave[:, None] - springs.positions * rotation[:, None]
+    return MomentRotationOnSprings(
+        properties=properties,
+        rotation=rotation + 0.0,  # no -0.0
+        given=np.array([given for _, given in found]),
+        **_along(elements, [state.places for state in states], np.array([state.carried for state in states])),
+        springs=springs,
+        heave=heave,
+        spring_force=np.where(loaded, np.maximum(-springs.stiffness * depth, 0.0), 0.0),
+    )
 
-    @cached_property
-    def moment(self) -> Array:
-        """Moment M in N m about the pivot about which the base rotates, shape (n,).
 
-        Of the sign of θ where the base resists the rotation. Zero at the start.
-        """
-        return self.weight_moment + self.element_moment.sum(axis=1)
+def _along(
+    elements: tuple[Element, ...], path: "Sequence[tuple[ElementState, ...]]", carried: Array | None = None
+) -> dict[str, Array]:
+    """Return force, elongation, plastic stretch and losses of the elements along a path by name, each (n, E).
 
-    @property
-    def element_moment(self) -> Array:
-        """Contribution s F r of each element to the moment in N m, shape (n, E); it is zero at rest."""
-        return element_resistance(self.properties, self.side, self.element_force)
-
-    @property
-    def weight_moment(self) -> Array:
-        """Contribution s m_tot g B_s - L_0^r g θ of the weight to the moment in N m, shape (n,)."""
-        return weight_resistance(self.properties, self.side, self.rotation)
-
-    @property
-    def uplift_moments(self) -> Array:
-        """Moment in N m at which the base lifts off, shape (n_excursions,).
-
-        Elements that have yielded shift the later ones.
-        """
-        return self.moment[self._lift_offs]
-
-    @property
-    def loop_energies(self) -> Array:
-        """Energy dissipated in each excursion in J, shape (n_excursions,)."""
-        known = self.dissipated_energy
-        return np.diff(known[self._lift_offs], append=known[-1])
-
-    @property
-    def residual_rotations(self) -> Array:
-        """Rotation θ in rad at which each excursion comes to rest if it is unloaded, shape (n_excursions,).
-
-        The moment vanishes there on the last way back to contact; zero if the base closes under its own weight and
-        tendons. NaN for an excursion that does not return to contact.
-        """
-        starts = self._lift_offs
-        ends = [*starts[1:], self.rotation.size - 1][: starts.size]
-        return np.array([self._at_rest(first, last) for first, last in zip(starts, ends, strict=True)], dtype=float)
-
-    @property
-    def self_centring(self) -> bool:
-        """Whether every excursion that returns to contact does so when it is unloaded, without a residual rotation."""
-        found = self.residual_rotations
-        return not np.any(found[~np.isnan(found)] != 0.0)
-
-    def to_frame(self) -> "pd.DataFrame":
-        """Return the path as a table, one row a point.
-
-        Returns
-        -------
-        pandas.DataFrame
-            `rotation` (rad), `moment` (N m), `side`, `given`, and for every element, counted from 1,
-            `element_force_1` (N), `element_elongation_1`, `plastic_stretch_1` (m) and `element_losses_1` (J).
-        """
-        return self._frame("rotation", "moment", "side", "given")
-
-    @property
-    def _lift_offs(self) -> NDArray[np.int64]:
-        """Points from which the base leaves contact."""
-        return np.flatnonzero((self.rotation[:-1] == 0.0) & (self.rotation[1:] != 0.0))
-
-    def _at_rest(self, first: int, last: int) -> float:
-        """Rotation at rest after the excursion between two points."""
-        theta, resisting = self.rotation[first : last + 1], self.moment[first : last + 1]
-        landed = np.flatnonzero(theta[1:] == 0.0)
-        if not landed.size:
-            return np.nan
-        theta, resisting = theta[: landed[0] + 2], (np.sign(theta[1]) * resisting)[: landed[0] + 2]
-        outward = np.flatnonzero(np.abs(theta[1:]) > np.abs(theta[:-1]))
-        for k in range(int(outward[-1]) + 1, theta.size - 1):
-            if resisting[k] >= 0.0 > resisting[k + 1]:
-                share = resisting[k] / (resisting[k] - resisting[k + 1])
-                return float(theta[k] + share * (theta[k + 1] - theta[k]))
-        return 0.0
+    `carried` is the force in N that an element still carries while it breaks, shape (n, E).
+    """
+    values = np.array(
+        [
+            (tension(each, place), place.elongation, plastic_stretch(each, place))
+            for places in path
+            for each, place in zip(elements, places, strict=True)
+        ]
+    )
+    shape = len(path), len(elements)
+    force, elongation, plastic = values.reshape(*shape, 3).transpose(2, 0, 1)
+    force = force if carried is None else force + carried
+    losses = np.zeros(shape)
+    losses[1:] = np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(elongation, axis=0), axis=0)
+    for k, each in enumerate(elements):
+        losses[:, k] -= each.stored_energy(elongation[:, k], force[:, k], plastic[:, k])
+    return {
+        "element_force": force,
+        "element_elongation": elongation,
+        "plastic_stretch": plastic,
+        "element_losses": losses,
+    }
 
 
 class ElementState(NamedTuple):
@@ -291,43 +158,10 @@ def plastic_stretch(element: Element, place: ElementState) -> float:
     return math.nan if element.broken(place.branch) else memory_at(element, place)
 
 
-TOLERANCE = 1e-12  # relative: a change of branch this close to the end of a leg belongs to the next leg
-
 Point = tuple[int, float, bool, tuple[ElementState, ...]]  # side, |θ|, whether it was prescribed, and the elements
 
 
-def base_path(properties: RockingProperties, rotations: Array) -> MomentRotation:
-    """Return the quasi-static moment along a path from rest through the rotations in rad, shape (m,), m > 0."""
-    elements = elements_of(properties)
-    points = list(_points(properties, elements, rotations))
-    side = np.array([point[0] for point in points])
-    shape = len(points), len(elements)
-    values = np.array(
-        [
-            (tension(each, place), place.elongation, plastic_stretch(each, place))
-            for *_, places in points
-            for each, place in zip(elements, places, strict=True)
-        ]
-    )
-    force, elongation, plastic = values.reshape(*shape, 3).transpose(2, 0, 1)
-    stored = np.zeros(shape)
-    for k, each in enumerate(elements):
-        stored[:, k] = each.stored_energy(elongation[:, k], force[:, k], plastic[:, k])
-    work = np.zeros(shape)
-    np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(elongation, axis=0), axis=0, out=work[1:])
-    return MomentRotation(
-        properties=properties,
-        rotation=side * np.array([point[1] for point in points]) + 0.0,  # no -0.0
-        side=side,
-        given=np.array([point[2] for point in points]),
-        element_force=force,
-        element_elongation=elongation,
-        plastic_stretch=plastic,
-        element_losses=work - stored,
-    )
-
-
-def _points(properties: RockingProperties, elements: tuple[Element, ...], rotations: Array) -> Iterator[Point]:
+def _about_pivots(properties: RockingProperties, elements: tuple[Element, ...], rotations: Array) -> Iterator[Point]:
     """Yield the points of the path, from rest."""
     places = tuple(at_rest(each) for each in elements)
     arms = {side: tuple(arm_of(properties, each, side) for each in elements) for side in (RIGHT, LEFT)}
@@ -383,7 +217,7 @@ def _leg(
             break
         if turn * (nearest - at) > near:
             at = nearest
-            places = _moved(places, arms, at)
+            places = _stretched(places, arms, at)
             found.append((at, places))
         before, places = (
             places,
@@ -394,13 +228,148 @@ def _leg(
         )
         if _jumped(elements, before, places):
             found.append((at, places))
-    found.append((end, _moved(places, arms, end)))
+    found.append((end, _stretched(places, arms, end)))
     return found
 
 
-def _moved(places: tuple[ElementState, ...], arms: tuple[float, ...], rotation: float) -> tuple[ElementState, ...]:
+def _stretched(places: tuple[ElementState, ...], arms: tuple[float, ...], rotation: float) -> tuple[ElementState, ...]:
     return tuple(place._replace(elongation=arm * rotation) for place, arm in zip(places, arms, strict=True))
 
 
 def _jumped(elements: tuple[Element, ...], before: tuple[ElementState, ...], after: tuple[ElementState, ...]) -> bool:
     return any(map(jumps, elements, before, after))
+
+
+class SprungBase(NamedTuple):
+    """A base on springs: its elements, the springs, and its position at rest."""
+
+    elements: tuple[Element, ...]
+    springs: Springs
+    rest: Pose
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """A position in equilibrium.
+
+    Attributes
+    ----------
+    rotation, heave
+        θ in rad and z in m.
+    pressed, empty
+        Which springs are compressed, and which are just at their length, shape (S,).
+    places
+        Where the elements are.
+    carried
+        Force in N that each element still carries while it breaks, shape (E,).
+    """
+
+    rotation: float
+    heave: float
+    pressed: Bools
+    empty: Bools
+    places: tuple[ElementState, ...]
+    carried: Array
+
+
+def _on_springs(base: SprungBase, rotations: Array) -> Iterator[tuple[Equilibrium, bool]]:
+    """Yield the points of the path, from rest, and whether their rotation was prescribed."""
+    rotation, heave = base.rest
+    pressed = heave - base.springs.positions * rotation < 0.0
+    places = tuple(at_rest(each) for each in base.elements)
+    state = Equilibrium(rotation, heave, pressed, np.zeros_like(pressed), places, np.zeros(len(places)))
+    starts = bool(rotations[0] == rotation)
+    yield state, starts
+    for target in rotations[int(starts) :].tolist():
+        while state.rotation != target or state.carried.any():
+            before = state
+            state = _settled(base, state) if state.carried.any() else _turned(base, state, target)
+            if state.rotation != target and (state.rotation != before.rotation or before.carried.any()):
+                yield state, False
+        yield state, True
+
+
+def _turned(base: SprungBase, state: Equilibrium, target: float) -> Equilibrium:
+    """Return the state where something changes next, or at the target."""
+    length = abs(target - state.rotation)
+    moved, path = _moved(base, state, math.copysign(1.0, target - state.rotation), 0.0, length)
+    return replace(moved, rotation=target) if path == length else moved
+
+
+def _settled(base: SprungBase, state: Equilibrium) -> Equilibrium:
+    """Return the state where something changes next while an element that breaks lets its force go, or without it."""
+    place = int(np.flatnonzero(state.carried)[0])
+    force = float(state.carried[place])
+    moved, path = _moved(base, state, 0.0, math.copysign(1.0, force), abs(force))
+    carried = moved.carried.copy()
+    carried[place] = 0.0 if path == abs(force) else force - math.copysign(path, force)
+    return replace(moved, carried=carried)
+
+
+def _moved(base: SprungBase, state: Equilibrium, turn: float, lift: float, length: float) -> tuple[Equilibrium, float]:
+    """Return the next state on the way with θ' = `turn`, and `lift` more upward force per unit, and the way to it.
+
+    The way ends after `length`, or where a spring becomes empty or is met, or an element ends its branch.
+    """
+    springs, elements = base.springs, base.elements
+    positions = np.array([*springs.positions, *(each.position for each in elements)])
+    onward = [
+        {way: _onward(each, place, way) for way in (1, -1)} for each, place in zip(elements, state.places, strict=True)
+    ]
+    up, down = (
+        np.array([each.pull(ways[way].branch).stiffness for each, ways in zip(elements, onward, strict=True)])
+        for way in (1, -1)
+    )
+    taken = np.where(state.pressed & ~state.empty, springs.stiffness, 0.0)
+    met = np.where(state.pressed | state.empty, springs.stiffness, 0.0)
+    rise = _rise(positions * turn, np.append(taken, up), np.append(met, down), lift)
+    rates = rise - positions * turn
+    pressed = np.where(state.empty, rates[: springs.n] < 0.0, state.pressed)
+    places = [ways[-1 if rate < 0.0 else 1] for ways, rate in zip(onward, rates[springs.n :], strict=True)]
+    stops = [
+        next_branch_change(each, place, int(np.sign(rate)))
+        for each, place, rate in zip(elements, places, rates[springs.n :], strict=True)
+    ]
+    depth = state.heave - springs.positions * state.rotation
+    left = [at[0] - place.elongation if at else 0.0 for at, place in zip(stops, places, strict=True)]
+    ends = np.array([*(pressed == (rates[: springs.n] > 0.0)), *(at is not None for at in stops)])
+    ahead = np.full(positions.size, np.inf)
+    np.divide(np.append(-depth, left), rates, out=ahead, where=ends & (rates != 0.0))
+    np.maximum(ahead, 0.0, out=ahead)
+    near = TOLERANCE * length
+    ahead[ahead >= length - near] = np.inf  # it belongs to the next part of the path
+    path = min(length, float(ahead.min()))
+    happens = ahead <= path + near
+    rotation, heave = state.rotation + turn * path, state.heave + rise * path
+    carried = state.carried.copy()
+    for k, (each, at) in enumerate(zip(elements, stops, strict=True)):
+        stretch = heave - base.rest.heave - each.position * (rotation - base.rest.rotation)
+        places[k] = places[k]._replace(elongation=stretch)
+        if at is not None and happens[springs.n + k]:
+            force = tension(each, places[k])
+            places[k] = next_branch(each, places[k]._replace(elongation=at[0]), at[1])
+            carried[k] = force if each.broken(at[1]) else 0.0
+    empty = happens[: springs.n] | (state.empty & (path <= near))
+    return Equilibrium(rotation, heave, pressed, empty, tuple(places), carried), path
+
+
+def _onward(element: Element, place: ElementState, way: int) -> ElementState:
+    """Return the place of an element that begins to be stretched (1) or shortened (-1)."""
+    place = start_moving(element, place, way)
+    while (at := next_branch_change(element, place, way)) and at[0] == place.elongation and not element.broken(at[1]):
+        place = next_branch(element, place, at[1])
+    return place
+
+
+def _rise(meets: Array, up: Array, down: Array, lift: float) -> float:
+    """Return the rate v of the heave at which Σ k (v - m) = `lift`, with k = `up` where v > m, else `down`."""
+    order = np.argsort(meets, kind="stable")
+    meets, up, down = meets[order], up[order], down[order]
+    stiffness, force = (
+        np.append(0.0, np.cumsum(above)) + np.append(np.cumsum(below[::-1])[::-1], 0.0)
+        for above, below in ((up, down), (up * meets, down * meets))
+    )
+    ends = np.append(meets, np.inf)
+    rates = ends.copy()
+    np.divide(force + lift, stiffness, out=rates, where=stiffness > 0.0)
+    return float(rates[np.argmax(rates <= ends)])

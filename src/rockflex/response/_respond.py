@@ -1,7 +1,7 @@
 """From the solutions of runs to their responses, or to columns of a table for many runs."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from operator import attrgetter
 from typing import Any
 
@@ -9,120 +9,73 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex.models import (
-    HEADER,
-    RockingModel,
-    SpringModel,
-    floor_accelerations,
-    lifted_springs,
-    swing_by_side,
-)
+from rockflex.models import RockingModel, floor_accelerations
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History
 from rockflex.response._peaks import (
-    EDGES,
+    FLOORS,
     GLOBAL,
-    RotationExtremes,
+    ROTATIONS,
+    Tracked,
     balance_ratio,
-    edges_of,
+    element_extremes,
     element_peaks,
-    elongations_about_pivots,
-    elongations_on_springs,
-    rotation_at_rest,
-    tracked_floor_quantities,
-    tracks_both_sides,
-    tracks_elongation_rate,
+    largest_edge_moves,
+    largest_rotations,
 )
 from rockflex.response._response import PEAKS, Response
 from rockflex.solve import Solution, Solutions
 
-MAXIMA = tuple(f"max_{name}" for name in GLOBAL)
-TIMES = tuple(f"time_of_{name}" for name in MAXIMA)
 
-
-def respond(model: RockingModel, motion: str, solution: Solution, *, floors: bool = False) -> Response:
-    """Return the response for a solution whose rows are those of `tracked_quantities`, with or without the floors."""
-    p = model.properties
-    rotation, peaks = float(solution.peaks[0]), solution.peaks[1:]
-    right = left = rotation
-    swing = (0.0, 0.0)
-    end = len(GLOBAL)
-    if tracks_both_sides(model):
-        right, left = peaks[end : end + 2].tolist()
-        end += 2
-    if tracks_elongation_rate(model):
-        count = len(swing_by_side(model))
-        swing = float(peaks[end]), float(peaks[end + count - 1])
-        end += count
-    slid = 0.0
-    if model.layout.slip >= 0:
-        slid = float(peaks[end])
-        end += 1
-    if isinstance(model, SpringModel):
-        count = len(model.elements)
-        right, left = (max(each, 0.0) for each in solution.extremes[len(EDGES) - 2 : len(EDGES)].tolist())
-        moves = elongations_on_springs(model, solution.extremes[len(EDGES) :], peaks[end : end + count])
-        end += count
-    else:
-        moves = elongations_about_pivots(model, RotationExtremes((right, left), swing))
-    edges = edges_of(model, (right, left), solution)
+def respond(model: RockingModel, motion: str, solution: Solution, tracked: Tracked) -> Response:
+    """Return the response of a model from the solution of a run, and what this tracked."""
+    p, final = model.properties, solution.final_state
+    peaks, times = tracked.of(solution), tracked.peaks.named(solution.peak_times)
+    rotation, (right, left) = float(peaks["rotation"]), largest_rotations(peaks)
+    uplift, settlement = largest_edge_moves(model, peaks)
     left_ground = solution.n_uplifts > 0 or solution.n_impacts > 0
-    left_ground = left_ground or _open_throughout(model, rotation, solution.final_state)
+    left_ground = left_ground or model.stayed_uplifted(rotation, final)
     status = "rocking" if left_ground else "no_uplift"
-    known = dict(zip(MAXIMA, peaks[: len(GLOBAL)].tolist(), strict=True))
-    times = dict(zip(TIMES, solution.peak_times[1 : 1 + len(GLOBAL)].tolist(), strict=True))
+    known = {f"max_{name}": float(peaks[name]) for name in GLOBAL}
+    known |= {f"time_of_max_{name}": float(times[name]) for name in GLOBAL}
     if p.top_height is None:
-        known["max_total_top_displacement"] = times["time_of_max_total_top_displacement"] = math.nan
-    of_elements = element_peaks(model, moves, solution.final_state)
-    final = solution.final_state
+        known["max_total_top_displacement"] = known["time_of_max_total_top_displacement"] = math.nan
+    least = p.resting_reaction - solution.lost_support  # springs cannot pull: in flight only rounding would say so
     return Response(
         model=model.label,
         motion=motion,
         status="overturned" if solution.overturned else status,
         max_rotation=rotation,
-        time_of_max_rotation=float(solution.peak_times[0]),
+        time_of_max_rotation=float(times["rotation"]),
         **known,
-        **times,
-        min_vertical_reaction=_least_support(model, p.resting_reaction - solution.lost_support),
+        min_vertical_reaction=least if model.springs is None else max(least, 0.0),
         time_of_min_vertical_reaction=solution.time_of_lost_support,
-        **of_elements._asdict(),
+        **element_peaks(model, element_extremes(model, peaks), final)._asdict(),
         residual_rotation=math.nan
         if solution.overturned
-        else float(final[model.layout.rotation]) - rotation_at_rest(model),
+        else float(final[model.layout.rotation]) - model.rest.rotation,
         balance_ratio=float(balance_ratio(model, right, left)),
-        max_slip=slid,
+        max_slip=float(peaks.get("slip", 0.0)),
         residual_slip=float(final[model.layout.slip]) if model.layout.slip >= 0 else 0.0,
-        max_edge_uplift=max(edges.uplift),
-        max_edge_settlement=max(edges.settlement),
+        max_edge_uplift=uplift,
+        max_edge_settlement=settlement,
         n_uplifts=solution.n_uplifts,
         n_impacts=solution.n_impacts,
         nominal_overturning=right > p.pivot(1).nominal_overturning_rotation
         or left > p.pivot(-1).nominal_overturning_rotation,
         end_time=solution.end_time,
         settled=solution.settled,
-        floors=_floor_peaks(model, solution, peaks[end:]) if floors and p.floors is not None else None,
+        floors=_floor_peaks(model, solution, peaks),
         history=None if solution.states is None else History(model, solution.states),
     )
 
 
-def _open_throughout(model: RockingModel, rotation: float, final: Array) -> bool:
-    """Return whether the base of a run without uplift and impact was off the ground from its start to its end."""
-    if not isinstance(model, SpringModel):
-        return rotation > 0.0
-    edges = lifted_springs(model, np.concatenate((np.zeros(HEADER), final))[None])[0, [0, -1]]
-    return bool(edges.any())
-
-
-def _least_support(model: RockingModel, found: float) -> float:
-    """Return the smallest vertical reaction in N; springs cannot pull, and in flight only rounding would say so."""
-    return max(found, 0.0) if isinstance(model, SpringModel) else found
-
-
-def _floor_peaks(model: RockingModel, solution: Solution, peaks: Array) -> FloorPeaks:
-    names = tracked_floor_quantities(model)
-    found = dict(zip(names, np.split(peaks, len(names)), strict=True))
-    floors = model.properties.floors
-    if "floor_acceleration" not in found and floors is not None and solution.states is not None:
+def _floor_peaks(model: RockingModel, solution: Solution, peaks: Mapping[str, Array]) -> FloorPeaks | None:
+    """Return the peaks of the floors if they are tracked."""
+    found, floors = {name: peaks[name] for name in FLOORS if name in peaks}, model.properties.floors
+    if not found or floors is None:
+        return None
+    if "floor_acceleration" not in found and solution.states is not None:
         # Not a linear functional for large rotations: take the largest value at samples and events.
         found["floor_acceleration"] = np.abs(floor_accelerations(model, floors, solution.states)).max(axis=0)
     return FloorPeaks(**found)
@@ -137,20 +90,20 @@ _values_of = attrgetter(*NAMES)
 Columns = dict[str, NDArray[Any]]
 
 
-def columns_of(models: Sequence[RockingModel], solutions: Solutions) -> Columns:
+def columns_of(models: Sequence[RockingModel], solutions: Solutions, tracked: Tracked) -> Columns:
     """Return the status and every number and flag of the responses of R runs, as `columns_among` does.
 
-    There is a model for every run; they are of one kind, and differ only in numbers.
+    There is a model for every run; they are of one kind, differ only in numbers, and tracked the same.
     """
     first = models[0]
-    if first.properties.elements or isinstance(first, SpringModel) or first.layout.slip >= 0:
+    if not first.has_bare_base:
         return columns_among(
             [
-                None if place in solutions.failures else respond(model, "", solutions.one(place))
+                None if place in solutions.failures else respond(model, "", solutions.one(place), tracked)
                 for place, model in enumerate(models)
             ]
         )
-    return _of_bare_base(models, solutions)
+    return _of_bare_base(models, solutions, tracked)
 
 
 def columns_among(responses: Sequence[Response | None]) -> Columns:
@@ -177,27 +130,23 @@ def _numbers_of(model: RockingModel) -> tuple[float, ...]:
     return p.top_height is not None, p.half_width, p.resting_reaction, *rotations[0], *rotations[1]
 
 
-def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions) -> Columns:
+def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions, tracked: Tracked) -> Columns:
     """Return the columns of bases on rigid ground without elements, on which they do not slide."""
-    model, runs, last = models[0], len(solutions), 1 + len(GLOBAL)
+    model, runs = models[0], len(solutions)
+    peaks, times = (tracked.peaks.named(values) for values in (solutions.peaks, solutions.peak_times))
     distinct = {id(each): _numbers_of(each) for each in {id(each): each for each in models}.values()}
     numbers = np.array([distinct[id(each)] for each in models]).T
     has_top, half_width, resting, balance_right, nominal_right, balance_left, nominal_left = numbers
-    rotation = solutions.peaks[:, 0]
-    right, left = (
-        (solutions.peaks[:, last], solutions.peaks[:, last + 1]) if tracks_both_sides(model) else (rotation, rotation)
-    )
-    found: Columns = dict(zip(MAXIMA, solutions.peaks[:, 1:last].T, strict=True))
-    found |= dict(zip(TIMES, solutions.peak_times[:, 1:last].T, strict=True))
+    right, left = (peaks.get(name, peaks["rotation"]) for name in ROTATIONS)
+    found: Columns = {f"max_{name}": peaks[name] for name in ("rotation", *GLOBAL)}
+    found |= {f"time_of_max_{name}": times[name] for name in ("rotation", *GLOBAL)}
     for name in ("max_total_top_displacement", "time_of_max_total_top_displacement"):
         found[name] = np.where(has_top > 0.0, found[name], np.nan)
-    rocks = (solutions.n_uplifts > 0) | (solutions.n_impacts > 0) | (rotation > 0.0)
+    rocks = (solutions.n_uplifts > 0) | (solutions.n_impacts > 0) | (peaks["rotation"] > 0.0)
     lever = np.maximum(np.sin(left), np.sin(right)) if model.complete else np.maximum(left, right)
     nothing, never = np.zeros(runs), np.zeros(runs, dtype=np.bool_)
     return found | {
         "status": np.where(solutions.overturned, 2, rocks.astype(np.int64)),
-        "max_rotation": rotation,
-        "time_of_max_rotation": solutions.peak_times[:, 0],
         "min_vertical_reaction": resting - solutions.lost_support,
         "time_of_min_vertical_reaction": solutions.time_of_lost_support,
         "max_tendon_force": nothing,

@@ -11,7 +11,6 @@ from rockflex._arrays import Array
 from rockflex._checks import one_of
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.models import SpringModel
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -144,7 +143,7 @@ def ground_columns(history: History) -> dict[str, Array]:
         columns["vertical_ground_acceleration"] = history.vertical_ground_acceleration
     if history.model.layout.slip >= 0:
         columns |= {"slip": history.slip, "slip_velocity": history.slip_velocity}
-    if isinstance(history.model, SpringModel):
+    if history.model.springs is not None:
         left, right = history.edge_uplift.T
         columns |= {"heave": history.heave, "left_edge_uplift": left, "right_edge_uplift": right}
         columns |= {f"spring_force_{k}": force for k, force in enumerate(history.spring_force.T, 1)}

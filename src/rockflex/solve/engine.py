@@ -23,9 +23,8 @@ from rockflex.models import (
     ElementBase,
     GainsEnergyError,
     Key,
-    LinearModel,
-    NonlinearModel,
     Quantities,
+    RockingModel,
     element_base,
     key_of,
     linear_system_of,
@@ -60,17 +59,16 @@ class Stack:
 
     def __init__(
         self,
-        models: Sequence[LinearModel | NonlinearModel],
+        models: Sequence[RockingModel],
         quantities: Sequence[Quantities],
         base: ElementBase | None = None,
     ) -> None:
         self._first = models[0]  # of which a message speaks
-        linear = [each for each in models if isinstance(each, LinearModel)]
         with preparing(self._first):
-            if isinstance(self._first, NonlinearModel):
+            if self._first.integrated:
                 self.system = nonlinear_system(self._first, quantities[0])
             else:
-                self.system = system_of(linear, quantities) if base is None else linear_system_of(base)
+                self.system = system_of(models, quantities) if base is None else linear_system_of(base)
         self._solvers = defaultdict[float, list[Run]](list)
 
     @property
@@ -110,9 +108,7 @@ class Engine:
         If the model has too many modes.
     """
 
-    def __init__(
-        self, model: LinearModel | NonlinearModel, quantities: Quantities, extremes: Quantities | None = None
-    ) -> None:
+    def __init__(self, model: RockingModel, quantities: Quantities, extremes: Quantities | None = None) -> None:
         self.model, self.quantities, self.extremes = model, quantities, extremes
         if model.layout.size > MAX_STATES:
             raise InputError(
@@ -129,7 +125,7 @@ class Engine:
         return self._base(shaken=False)
 
     def _base(self, *, shaken: bool) -> ElementBase | None:
-        if isinstance(self.model, NonlinearModel) or (type(self.model) is LinearModel and not self.model.elements):
+        if self.model.integrated or self.model.has_bare_base:
             return None
         most = Quantities.none(self.model.layout.modes) if self.extremes is None else self.extremes
         return element_base(self.model, self.quantities, most, shaken=shaken)
@@ -169,7 +165,7 @@ class Engine:
     def pace(self) -> Pace:
         """The properties that determine the work of runs."""
         p, found = self.model.properties, pace_of(self.model, self.n_peaks + 1)
-        if isinstance(self.model, NonlinearModel):
+        if self.model.integrated:
             return found
         levers, drag = p.effective_mass * p.effective_height**2, 2.0 * p.zeta * p.omega
         free = min((self.model.free_inertia(side) for side in self.model.sides[1:]), default=np.inf)
@@ -231,7 +227,7 @@ class Engine:
         if state is None:
             return self.at_rest
         key, start = state if isinstance(state, tuple) else self.model.initial(state)
-        if isinstance(self.model, NonlinearModel):
+        if self.model.integrated:
             return key_of(self.model, key, start), start
         return key, start if self.base is None else self.base.state_of(key, start)
 
@@ -244,7 +240,7 @@ class Engine:
         """The states of the model, from those of the engine."""
         known, places = np.unique(places, return_inverse=True)
         keys = [keys[place] for place in known.tolist()]
-        if isinstance(self.model, NonlinearModel):
+        if self.model.integrated:
             return with_marks(self.model, keys, places, states)
         return states if self.base is None else self.base.states_of_model(keys, places, states, history=history)
 
@@ -265,7 +261,7 @@ class Engine:
         if work_limit is None:
             return 2**62
         sample, look, _, step = self.pace.prices(history=False)
-        if isinstance(self.model, NonlinearModel):
+        if self.model.integrated:
             return int(min(work_limit / step * STEP, 2.0**62))
         return int(min(work_limit / (SHARE * (sample + SEARCH * look)), 2.0**62))
 
@@ -418,7 +414,7 @@ def gather(engines: Iterable[Engine]) -> None:
 def _gather(engines: Iterable[Engine]) -> None:
     alike = defaultdict[tuple[int, ...], list[Engine]](list)
     for each in engines:
-        if isinstance(each.model, NonlinearModel) or each.base is not None:
+        if each.model.integrated or not each.model.has_bare_base:
             continue
         if may_stack(each.model) and "stack" not in vars(each):
             alike[each.model.properties.n_modes, len(each.quantities), each.model.lifts].append(each)

@@ -16,10 +16,10 @@ from rockflex.motion import GroundMotion
 from rockflex.response import (
     STATUSES,
     Response,
+    Tracked,
     columns_among,
     columns_of,
     respond,
-    tracked_extremes,
     tracked_quantities,
 )
 from rockflex.solve import Engine, Excitation, Solution, Solutions, Start, Task, gather, preparing, run_all
@@ -53,7 +53,9 @@ class Case:
     floors
         Whether the peaks of the floors are tracked.
     extra
-        Additional quantities whose peaks are tracked.
+        Additional quantities whose peaks are tracked, by name.
+    tracked
+        All quantities whose peaks are tracked.
     engine
         The engine of the model, ready to run records.
 
@@ -69,7 +71,8 @@ class Case:
     work_limit: float | None = WORK_LIMIT
     history: bool = False
     floors: bool = False
-    extra: Quantities | None = None
+    extra: Mapping[str, Quantities] | None = None
+    tracked: Tracked = field(init=False, repr=False)
     engine: Engine = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -80,10 +83,10 @@ class Case:
                 field="free_vibration",
             )
         with preparing(self.model):
-            asked = tracked_quantities(self.model, floors=self.floors)
-        asked = asked if self.extra is None else asked + self.extra
-        most = tracked_extremes(self.model)
-        object.__setattr__(self, "engine", Engine(self.model, asked, most))
+            tracked = tracked_quantities(self.model, floors=self.floors, more=self.extra)
+        object.__setattr__(self, "tracked", tracked)
+        extremes = None if tracked.extremes is None else tracked.extremes.quantities
+        object.__setattr__(self, "engine", Engine(self.model, tracked.peaks.quantities, extremes))
 
     def task(self, motion: GroundMotion, scale: float = 1.0) -> Task:
         """Return the task of a run, from which its work is estimated."""
@@ -115,7 +118,7 @@ class Case:
 
     def run(self, motion: GroundMotion, scale: float = 1.0) -> Response:
         """Run the motion at a scale and return the response; raises the errors of `solve`."""
-        return respond(self.model, motion.name, self.solve(motion, scale), floors=self.floors)
+        return respond(self.model, motion.name, self.solve(motion, scale), self.tracked)
 
 
 def has_vertical(motion: GroundMotion) -> bool:
@@ -305,10 +308,10 @@ def peaks_of(runs: Sequence[Scaled], *, keep: bool = True) -> Peaks:
             found = columns_among([None])
             if not solutions.failures:
                 motion = runs[places[0]][1]
-                response = respond(cases[0].model, motion.name, solutions.one(0), floors=cases[0].floors)
+                response = respond(cases[0].model, motion.name, solutions.one(0), cases[0].tracked)
                 responses[places[0]], found = response, columns_among([response])
         else:
-            found = columns_of([case.model for case in cases], solutions)
+            found = columns_of([case.model for case in cases], solutions, cases[0].tracked)
         for name, values in found.items():
             columns.setdefault(name, np.zeros(len(runs), values.dtype))[places] = values
         left.subtract(cases)

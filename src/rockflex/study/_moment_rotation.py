@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from typing import cast, overload
+from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from rockflex._checks import finite_vector
 from rockflex._errors import InputError
 from rockflex.modal import Ground, RockingProperties
-from rockflex.models import Model, SpringModel
-from rockflex.response import MomentRotation, MomentRotationOnSprings, base_path, springs_path
+from rockflex.models import Model
+from rockflex.response import MomentRotation, MomentRotationOnSprings, static_path
 from rockflex.study._arguments import GroundChoice, RockingStructure, check_options, ground_under, properties_of
 
 QUARTER_TURN = 0.5 * math.pi
@@ -115,17 +115,14 @@ def moment_rotation(
     properties = properties_of(structure)
     check_options(None, None, ground)
     under = ground_under(properties, ground)
-    return base_path(properties, path) if under is None else springs_path(_on_springs(properties, under), path)
-
-
-def _on_springs(properties: RockingProperties, ground: Ground) -> SpringModel:
-    """Return the model of the base on the springs of the ground; nothing slides without a horizontal force."""
-    if ground.springs is None:
+    if under is None:
+        return static_path(properties, path)
+    if under.springs is None:
         raise InputError(
             "ground must have springs, but one with friction alone was given. A base that is pushed slowly does not "
             "slide: leave the ground out, or give it springs.",
             field="ground",
         )
-    still = Ground(springs=ground.springs, base_inertia=ground.base_inertia)
+    still = Ground(springs=under.springs, base_inertia=under.base_inertia)  # no horizontal force: nothing slides
     model = Model(n_modes=None if properties.n_modes else 0).of(properties, ground=still)
-    return cast("SpringModel", model)
+    return static_path(model.properties, path, model.springs, model.rest)

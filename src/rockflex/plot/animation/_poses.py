@@ -13,7 +13,7 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.plot._curves import Curve
-from rockflex.response import History, springs_of
+from rockflex.response import History
 from rockflex.structure import CantileverWithTipMass, Eccentric, FishBone, Frame, LumpedStructure, Restrained
 
 MAX_FRAMES = 20_000
@@ -249,7 +249,7 @@ class Poses:
 def poses_of(curve: Curve, outline: Outline, times: Array, speed: float) -> Poses:
     """Return the poses of a response at some instants in s; `speed` is in seconds of the response per second."""
     history = curve.history
-    model, springs = history.model, springs_of(history.model)
+    model, springs = history.model, history.model.springs
     known = history.time
     at = history.at(np.clip(times, known[0], known[-1]))
     sprung = springs is not None

@@ -9,7 +9,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex._numbers import rounded
 from rockflex.report.run._runs import ReportedRuns
 from rockflex.report.run._tables import Cell, Table, ground_friction, overturning_margin, starts_uplifted, value_cell
-from rockflex.response import BALANCED, IMPACT_WINDOW, History, Response, springs_of
+from rockflex.response import BALANCED, IMPACT_WINDOW, History, Response
 
 NOT_COMPUTED = "not computed"
 MAX_CLOSED_ROTATION, MAX_TILT = 1e-9, 1e-4  # rad
@@ -37,13 +37,13 @@ def long_runs(report: ReportedRuns) -> set[str]:
 
 
 def _work_of(history: History) -> int:
-    springs = springs_of(history.model)
+    springs = history.model.springs
     return 0 if springs is None else history.time.size * springs.n * max(history.model.properties.n_modes, 1)
 
 
 def has_bearing_area(history: History) -> bool:
     """Return whether the base stands on springs with an area."""
-    springs = springs_of(history.model)
+    springs = history.model.springs
     return springs is not None and springs.area is not None
 
 
@@ -96,7 +96,7 @@ def _overturning(report: ReportedRuns, run: Run) -> Cell:
 
 def _contact(run: Run) -> Cell:
     least = run.response.min_vertical_reaction
-    if springs_of(run.history.model) is not None:
+    if run.history.model.springs is not None:
         if not (run.long and has_bearing_area(run.history)):
             return Cell("springs only push", least, "min_vertical_reaction")
         bearing, soil = (float(q.max()) for q in (run.history.bearing_pressure, run.history.soil_pressure))
@@ -158,7 +158,7 @@ def _residual(report: ReportedRuns, run: Run) -> Cell:
     if abs(left) < MAX_CLOSED_ROTATION:
         return Cell(f"closes{ratios}", left, "settled_rotation")
     # On springs fuses that yielded tilt a base that is closed.
-    wrong = abs(left) > MAX_TILT or springs_of(run.history.model) is None
+    wrong = abs(left) > MAX_TILT or run.history.model.springs is None
     return Cell(f"θ = {rounded(1e3 * left)} mrad left{ratios}", left, "settled_rotation", wrong)
 
 

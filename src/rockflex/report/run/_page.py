@@ -34,7 +34,7 @@ from rockflex.report.run._tables import (
     record_of,
     structure_facts,
 )
-from rockflex.response import Response, friction_coefficient, springs_of, warnings_of
+from rockflex.response import Response, friction_coefficient, warnings_of
 
 WIDTH, HEIGHT = 186.0, 272.0  # of a sheet of A4 within its margins, in mm
 FIGURE_HEIGHTS = (58.0, 160.0)  # least and largest height of the figure in mm
@@ -395,7 +395,7 @@ def fingerprint(report: ReportedRuns, record: Record) -> str:
 def _ground_numbers(model: Any) -> list[Any]:
     friction = getattr(model, "friction", None)
     known = [] if friction is None else [friction]
-    springs = springs_of(model)
+    springs = model.springs
     return known if springs is None else [*known, springs.positions, springs.stiffness, springs.damping, model.inertia]
 
 

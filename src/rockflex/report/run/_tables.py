@@ -27,7 +27,7 @@ from rockflex.modal import (
 from rockflex.models import Restitution, RockingModel, SidedRestitution
 from rockflex.motion import GroundMotion
 from rockflex.report.run._runs import ReportedRuns
-from rockflex.response import History, Response, rotation_at_rest, springs_of
+from rockflex.response import History, Response
 
 MAX_MODES = 4  # modes
 _MOST_UPLIFTED = 200  # modes, for which the uplifted ones are found at once
@@ -253,7 +253,7 @@ def initial_state(history: History) -> str:
     """Return the rotation, the modal displacements and their velocities at the start, as far as they are not zero."""
     layout, state = history.model.layout, history.states[:1]
     # On springs the base may rest at an angle, from which the rotation of an initial state counts.
-    rest = rotation_at_rest(history.model)
+    rest = history.model.rest.rotation
     n = layout.modes
     values = [
         ("θ", 1e3 * (layout.of(state, layout.rotation)[0] - rest), "mrad"),
@@ -300,7 +300,7 @@ def _lines_of(history: History) -> list[tuple[str, str]]:
 
 def follows_law(model: Any) -> bool:
     """Whether an impact law ends the rocking of a model: on springs none does."""
-    return model.lifts and springs_of(model) is None
+    return model.lifts and model.springs is None
 
 
 def _law(law: Any) -> str:
@@ -322,7 +322,7 @@ def _hysteresis(b: Any) -> str:
 def _ground(model: Any) -> list[tuple[str, str]]:
     """Return the ground of a model; nothing for rigid ground on which it does not slide."""
     lines: list[tuple[str, str]] = []
-    springs, mass = springs_of(model), model.properties.m_tot
+    springs, mass = model.springs, model.properties.m_tot
     if springs is not None:
         ratio = 0.5 * springs.total_damping / math.sqrt(springs.total_stiffness * mass)
         inertia = model.inertia - model.properties.translational_inertia

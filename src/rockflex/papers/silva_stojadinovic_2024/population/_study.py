@@ -248,10 +248,11 @@ class PopulationPlan(ChunkedPlan):
                 rows.append(row | {"error": str(errors[0])})
                 continue
             all_modes, one_mode = (
-                respond(case.model, motion.name, solution) for case, solution in zip(both, solutions, strict=True)
+                respond(case.model, motion.name, solution, case.tracked)
+                for case, solution in zip(both, solutions, strict=True)
             )
             row |= results_of(all_modes, "_mdof")
-            row["max_second_displacement_mdof"] = float(solutions[0].peaks[-1])
+            row["max_second_displacement_mdof"] = both[0].tracked.peaks.named(solutions[0].peaks)["second_mode"].item()
             row |= results_of(one_mode, "_2dof")
             rows.append(row | _combined(one_mode, second))
         return rows
@@ -262,7 +263,7 @@ class PopulationPlan(ChunkedPlan):
         extra = [modal_displacement(model, min(model.properties.n_modes, 2) - 1) for model in models]
         try:
             return [
-                Case(model, self.free_vibration, work_limit=self.work_limit, extra=each)
+                Case(model, self.free_vibration, work_limit=self.work_limit, extra={"second_mode": each})
                 for model, each in zip(models, extra, strict=True)
             ]
         except InputError as error:
