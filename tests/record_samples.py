@@ -157,6 +157,54 @@ def cosmos(
     )
 
 
+def geonet(
+    component: str = "N76E",
+    samples: Sequence[float] = SAMPLES,
+    *,
+    corrected: bool = True,
+    integers: dict[int, int] | None = None,
+    reals: dict[int, float] | None = None,
+    digits: int = 3,
+) -> str:
+    """A component of a GeoNet file, in mm/s²; header values are changed by their places, which count from 1."""
+    whole = dict.fromkeys(range(1, 41), 0)
+    whole |= {1: 2019, 2: 3, 3: 5, 4: 7, 5: 9, 6: 112, 9: 2019, 10: 3, 19: 5, 20: 7, 39: 8, 40: 59125, 28: 76, 30: 21}
+    n_more = len(samples) if corrected else 0
+    whole |= {31: len(samples), 34: len(samples), 35: n_more, 36: n_more} | (integers or {})
+    real = dict.fromkeys(range(1, 61), 0.0)
+    peak = max(samples, key=abs)
+    real |= {8: 1.0, 15: 5.4, 25: 0.005, 26: 0.005, 30: 9806.6, 36 if corrected else 31: peak} | (reals or {})
+    text = [
+        f"{'Corrected' if corrected else 'Uncorrected'} accelerogram 20190305_070859_MADE_20 GNS Science",
+        "Site MADE      41 10 20S  174 30 40E     Made for tests",
+        "A Made-up Place",
+        "Instrument None",
+        "Resolution: 24-bit   Instr Period: 0.0050 s   Damping: 0.700",
+        "Accelerogram 20190305_070859_MADE_20",
+        "20 km from A MADE-UP TOWN",
+        "2019 March 5             07:09:11 UT",
+        "Epicentre  41 20 20S 174 40 40E",
+        f"Number of points  {len(samples):5d}",
+        "Raw readings in units of 1.00 mm/s/s  at intervals of 0.005 s",
+        "Data is made up",
+        f"Component {component}",
+        f"Acceleration:  Peak {peak:9.1f} mm/s/s",
+        "Velocity:",
+        "Displacement:",
+    ]
+
+    def block(written: Sequence[str]) -> list[str]:
+        return ["".join(written[k : k + 10]) for k in range(0, len(written), 10)]
+
+    rows = [
+        *block([f"{value:8d}" for value in whole.values()]),
+        *block([f"{value:8.5g}" for value in real.values()]),
+        *block([f"{value:8.{digits}f}" for value in samples]),
+        *block([f"{0.5:8.1f}"] * n_more) * 2,
+    ]
+    return "\n".join([*text, *rows]) + "\n"
+
+
 SEARCH_RESULTS = """
  PEER Ground Motion Database, Time Series Search Report -- NGA-West2 -- 2025-12-30
 

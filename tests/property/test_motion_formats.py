@@ -5,7 +5,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import rockflex as rf
-from record_samples import cosmos, esm, knet
+from record_samples import cosmos, esm, geonet, knet
 
 SETTINGS = settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 SAMPLES = st.lists(st.floats(-900.0, 900.0).map(lambda value: round(value, 3)), min_size=3, max_size=40)
@@ -37,6 +37,16 @@ def test_cosmos(tmp_path, samples, form):
     first, second = rf.read_components(file)
     # Seven digits of the exponential form.
     assert np.abs(first.acceleration - 0.01 * np.array(samples)).max() <= 1e-6 * 9.0
+    assert np.array_equal(first.acceleration, second.acceleration)
+
+
+@SETTINGS
+@given(samples=SAMPLES, corrected=st.booleans())
+def test_geonet(tmp_path, samples, corrected):
+    file = tmp_path / "a.v2a"
+    file.write_text(geonet("N30E", samples, corrected=corrected) + geonet("Up", samples, corrected=corrected))
+    first, second = rf.read_components(file)
+    assert first.acceleration.tolist() == [each * 1e-3 for each in samples]
     assert np.array_equal(first.acceleration, second.acceleration)
 
 

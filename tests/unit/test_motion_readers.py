@@ -8,7 +8,7 @@ import warnings
 import pytest
 
 import rockflex as rf
-from record_samples import SAMPLES, cosmos, esm, knet
+from record_samples import SAMPLES, cosmos, esm, geonet, knet
 
 SIZE = 400_000  # characters; a quadratic pattern takes many minutes
 PATIENCE = 60.0  # s for all, where some are needed
@@ -30,6 +30,7 @@ ROWS = "\\n0 .1\\n0.01 .2\\n0.02 .3\\n"
 SERIES = "\\n0.1\\n0.2\\n0.3\\n"
 KNET = knet().splitlines()[:17]
 COSMOS = cosmos()
+GEONET = geonet()
 HEADER = "NPTS= 3, DT= .01 SEC"
 CRAFTED = {
     "digits": f"'1' * {SIZE} + 'x'",
@@ -76,6 +77,9 @@ CRAFTED = {
     "blanks of a format": f"{COSMOS!r}.replace('Format=', 'Format' + ' ' * {SIZE})",
     "numbers of a block": f"{COSMOS!r} + '\\n' + '9' * {SIZE} + ' acceleration\\n' + ' ' * {SIZE} + '1 '",
     "columns of a format": f"{COSMOS!r} + '\\n999999999 velocity pts, Format=(999F999.1)\\n'",
+    "first line of GeoNet": f"{GEONET!r}.replace('_MADE_', '_20' * {SIZE // 3})",
+    "blanks of a component": f"{GEONET!r}.replace('Component ', 'Component' + ' ' * {SIZE})",
+    "numbers of GeoNet": f"{GEONET!r}.replace('   0.000', '       1' * {SIZE // 8}, 1)",
     "codes": f"{COSMOS!r}.replace('Code:', 'Code:' * {SIZE // 5})",
     "labels of a table": f"'file,units' + ',m' * {SIZE // 2} + '{ROWS}'",
     "numbers with a comma": f"'{HEADER}\\n' + '1' * {SIZE // 2} + ',x' + '1' * {SIZE // 2} + '\\n'",

@@ -13,11 +13,8 @@ from rockflex._checks import positive
 from rockflex._errors import InputError, RecordWarning
 from rockflex._files import path_of
 from rockflex._shown import counted, listed, shown
-from rockflex.motion._cosmos import is_cosmos
-from rockflex.motion._esm import is_esm
 from rockflex.motion._ground_motion import GroundMotion, is_vertical
-from rockflex.motion._knet import is_knet
-from rockflex.motion._readers import components_in, peak_mismatch
+from rockflex.motion._readers import FORMATS, components_in, is_of_a_network, peak_mismatch
 from rockflex.motion._record_info import RecordInfo
 from rockflex.motion._record_table import RecordTable, read_table, table_in
 from rockflex.motion._recordings import are_different_components, file_names, pair_vertical
@@ -74,8 +71,8 @@ def folder_files(folder: Path) -> list[Path]:
     files = [file for file in folder.iterdir() if file.is_file() and is_record(file)]
     if not files:
         raise InputError(
-            f"{folder} holds no record: no file ends in {', '.join(RECORD_SUFFIXES)}, or begins as a K-NET, ESM or "
-            "COSMOS file."
+            f"{folder} holds no record: no file ends in {', '.join(RECORD_SUFFIXES)}, or begins as a file in one "
+            f"of the formats {listed([name for name, _, _ in FORMATS])}."
         )
     return sorted(files)
 
@@ -92,7 +89,7 @@ def is_record(file: Path) -> bool:
     except OSError:
         return False
     lines = (text or "").splitlines()
-    return bool(lines) and (is_knet(lines) or is_esm(lines) or is_cosmos(lines))
+    return bool(lines) and is_of_a_network(lines)
 
 
 @dataclass(frozen=True)
@@ -308,7 +305,7 @@ def read_suite(
     ----------
     paths : path or iterable of paths
         A directory, in which every file is read whose suffix is that of a record (.at2, .csv, .dat, .tsv, .txt, .xlsx,
-        .mseed and the like, in any case) or whose content begins as a K-NET, ESM or COSMOS file; or the files
+        .mseed and the like, in any case) or whose content begins as a K-NET, ESM, COSMOS or GeoNet file; or the files
         themselves.
     units, dt : optional
         As in `read_motion`, for files that do not state them. A dictionary gives the units of files by their names, in

@@ -14,12 +14,18 @@ from rockflex.motion._at2 import find_header, parse_at2
 from rockflex.motion._columns import is_excel, parse_columns, parse_excel
 from rockflex.motion._cosmos import is_cosmos, parse_cosmos
 from rockflex.motion._esm import is_esm, parse_esm
+from rockflex.motion._geonet import is_geonet, parse_geonet
 from rockflex.motion._ground_motion import GroundMotion, is_vertical
 from rockflex.motion._knet import is_knet, parse_knet
 from rockflex.motion._text import Unit, declared_unit, decoded, lines_of, read_content, table_of
 
-# Formats that state unit and step.
-FORMATS = (("K-NET", is_knet, parse_knet), ("ESM", is_esm, parse_esm), ("COSMOS", is_cosmos, parse_cosmos))
+# Formats that state unit and step, each known by its first lines, whatever the suffix of the file.
+FORMATS = (
+    ("K-NET", is_knet, parse_knet),
+    ("ESM", is_esm, parse_esm),
+    ("COSMOS", is_cosmos, parse_cosmos),
+    ("GeoNet", is_geonet, parse_geonet),
+)
 PEAK_TOLERANCE = 0.01  # relative difference that the printing of a header explains
 PRINTED_DIGIT = 1e-5  # m/s², the last digit of peaks in K-NET headers, 0.001 gal
 MAX_PEAK_MISMATCH = 0.2  # relative difference that only a wrong scale or another record explains
@@ -39,6 +45,7 @@ def read_motion(
       for the peak that the header states.
     - ESM and ITACA ASCII (DYNA 1.2), in the unit that the header states.
     - COSMOS (V1, V2; V0 if the header states the value of a count), with one or more channels.
+    - GeoNet (V1A, V2A), with all components of an instrument, in mm/s².
     - CSV, and text in columns. Columns are separated by commas, semicolons, tabs or blanks; decimals may be marked by
       commas where something else separates; ``#``, ``%`` and ``!`` begin comments. A single column is the
       acceleration, two columns are time (s) and acceleration, unless a header line names them as two components. With
@@ -115,7 +122,7 @@ def read_motion(
 
 
 def read_components(path: str | Path, units: str | None = None, dt: float | None = None) -> tuple[GroundMotion, ...]:
-    r"""Read all components in a file: the channels of a COSMOS file, the columns of a table, the sheets of a workbook.
+    r"""Read all components in a file: the channels of an instrument, the columns of a table, the sheets of a workbook.
 
     Parameters
     ----------
@@ -196,6 +203,11 @@ def components_in(
                 "the peak in the header, if the samples are right."
             )
     return found
+
+
+def is_of_a_network(lines: list[str]) -> bool:
+    """Return whether lines of text begin as a file in one of `FORMATS` does."""
+    return any(known(lines) for _, known, _ in FORMATS)
 
 
 def _read_components(

@@ -154,7 +154,7 @@ export function folder(app, complain) {
   const element = h("div", { "data-path": "record.folder" },
     field("given.folder", "Folder", input({ webkitdirectory: true, id: "folder" }), { hint: `up to ${many} files, ${together / 1e6} MB together and ${most / 1e6} MB each` }),
     field("given.files", "Or files, or a ZIP archive", input({ id: "files" }),
-      { hint: "AT2, CSV, text columns, Excel, K-NET, ESM, COSMOS; PEER’s search results or a flatfile among them give magnitude, distance and soil" }),
+      { hint: "AT2, CSV, text columns, Excel, K-NET, ESM, COSMOS, GeoNet; PEER’s search results or a flatfile among them give magnitude, distance and soil" }),
     select("given.units", "Unit of the acceleration", UNITS, "", (value) => (unit = value), { hint: "of files that do not state it" }),
     box("given.dt", "Sampling step", undefined, (value) => (step = value), { unit: "s", hint: "of files that do not state it" }),
     said, upwards, trouble(),
