@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 
 import rockflex
 from rockflex import InputError
-from rockflex._numbers import moment_unit
+from rockflex._number_format import moment_unit
 from rockflex.cli import _console, app
 from rockflex.cli._output import check_folder, file_stems, staged, to_json, versions
 from rockflex.study import progress

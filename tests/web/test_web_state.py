@@ -14,8 +14,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rockflex as rf
-from rockflex._json import plain
-from rockflex._schema import Key
+from rockflex._json import as_json_value
+from rockflex._schema import SchemaKey
 from rockflex.motion import MEASURES
 from rockflex.structure.file import ELEMENTS, KINDS, Table
 from rockflex.web._encoding import envelope
@@ -40,7 +40,7 @@ def frame(**changes):
 @pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset["title"])
 def test_every_preset_can_be_built_and_goes_through_a_link(preset) -> None:
     state = parse_state({"structure": preset["structure"]})
-    link = json.dumps(plain(state.model_dump(exclude_none=True)), allow_nan=False)
+    link = json.dumps(as_json_value(state.model_dump(exclude_none=True)), allow_nan=False)
     assert parse_state(parse_json(link.encode())) == state
     view = structure_view(state.structure)
     json.dumps(view, allow_nan=False)
@@ -260,10 +260,10 @@ def test_an_old_link_still_opens() -> None:
     state = parse_state(content)
     content["cloud"]["confidence"] = content["cloud"].pop("level")  # its name now
     content["record"] |= {"folder": "", "given": "", "vertical": False}  # which it did not have
-    content["target"] = plain(TargetChoice.model_validate({}).model_dump(exclude_none=True))
+    content["target"] = as_json_value(TargetChoice.model_validate({}).model_dump(exclude_none=True))
     (tendon,) = content["structure"]["tendons"]
     content["structure"] |= {"tendons": [], "elements": [{"kind": "tendon", **tendon}]}
-    assert plain(state.model_dump(exclude_none=True)) == content
+    assert as_json_value(state.model_dump(exclude_none=True)) == content
     assert build(state.structure).properties.elements == (rf.Tendon(8e5, 1e7, -0.6, 2e6),)
     assert state.structure.eccentricity == 0.1
     assert state.law() == rf.Restitution(0.8)
@@ -323,8 +323,8 @@ def test_what_has_no_balance_says_why() -> None:
 
 def test_units_and_helps_are_data_and_not_found_in_texts() -> None:
     class Plate(Table):
-        depth: Annotated[float, Key("how deep, in m below, it lies", "ft")]
-        area: Annotated[float, Key("its area in m", form="a table of {}, a number in s")]
+        depth: Annotated[float, SchemaKey("how deep, in m below, it lies", "ft")]
+        area: Annotated[float, SchemaKey("its area in m", form="a table of {}, a number in s")]
 
     depth, area = _fields(Plate)
     assert (depth["unit"], depth["help"]) == ("ft", "How deep, in m below, it lies.")

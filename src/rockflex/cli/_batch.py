@@ -11,7 +11,7 @@ from typing import Any
 import typer
 
 from rockflex._errors import SolverError
-from rockflex._schema import BedKeys, BoucWenKeys, FrameFlags, GroundKeys, ImpactKeys, InitialKeys
+from rockflex._schema import BoucWenKeys, FrameFlags, GroundKeys, ImpactKeys, InitialStateKeys, SpringBedKeys
 from rockflex.cli._console import note, progress
 from rockflex.cli._find_motions import FoundMotion, find_motions, quiet_ground
 from rockflex.cli._options import flag_values, naming
@@ -225,8 +225,8 @@ def prepare(context: typer.Context, arguments: RunArguments, *, histories: int) 
     """
     file, names = split_arguments(arguments.structure, arguments.arguments)
     loaded = load_structure(file, flag_values(context, FrameFlags))
-    law, bouc_wen, initial = (flag_values(context, table) for table in (ImpactKeys, BoucWenKeys, InitialKeys))
-    ground = flag_values(context, GroundKeys) | flag_values(context, BedKeys)
+    law, bouc_wen, initial = (flag_values(context, table) for table in (ImpactKeys, BoucWenKeys, InitialStateKeys))
+    ground = flag_values(context, GroundKeys) | flag_values(context, SpringBedKeys)
     options, ground_values = make_run_options(
         file, loaded.run_options, law, bouc_wen, initial, ground, loaded.properties
     )

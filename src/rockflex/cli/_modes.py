@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rockflex._errors import InputError
-from rockflex._numbers import moment_unit
+from rockflex._number_format import moment_unit
 from rockflex._schema import FrameFlags
 from rockflex.cli import _options as options
 from rockflex.cli._console import grid, note, number, output, show, warn
@@ -76,7 +76,7 @@ def modes(
     force: options.Force = False,
 ) -> None:
     """Print the modes of a structure on a fixed base, and its rocking parameters."""
-    from rockflex._checks import whole_number
+    from rockflex._checks import checked_whole_number
     from rockflex.cli._structures import ELEMENT_UNITS, describe_properties, load_structure, split_arguments
 
     check_folder(out, force=force)
@@ -86,7 +86,7 @@ def modes(
     loaded = load_structure(path, flag_values(context, FrameFlags))
     properties = loaded.properties
     if n_modes is not None:
-        properties = properties.truncated(whole_number("n_modes", n_modes, 1, properties.n_modes))
+        properties = properties.truncated(checked_whole_number("n_modes", n_modes, 1, properties.n_modes))
     rows = _rows(loaded, properties)
     lifted = _uplifted_rows(properties)
     rocking = describe_properties(properties)

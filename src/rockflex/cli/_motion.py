@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rockflex._shown import counted
+from rockflex._shown import number_with_noun
 from rockflex.cli import _options as options
 from rockflex.cli._console import fits, grid, note, number, output, show
 from rockflex.cli._output import check_folder, file_stems, staged, to_json, versions
@@ -209,5 +209,5 @@ def _write(
                 save_figure(plot_motion(item.motion), stage / f"{stem}.png")
     note(
         f"Written to {folder}"
-        + ("" if few else f"; series and figures only of up to {counted(figures, 'motion')}, by --figures")
+        + ("" if few else f"; series and figures only of up to {number_with_noun(figures, 'motion')}, by --figures")
     )

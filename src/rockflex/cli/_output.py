@@ -10,22 +10,22 @@ from typing import Any
 
 from rockflex import __version__
 from rockflex._errors import InputError
-from rockflex._files import check_regular
-from rockflex._versions import versions_of
+from rockflex._files import check_regular_file
+from rockflex._versions import package_versions
 
 SUMMARY = "summary.json"
 
 
 def to_json(document: dict[str, Any], *, ascii_only: bool = True) -> str:
     """Return strictly valid JSON: NaN becomes null, and an infinity the string "inf" or "-inf"."""
-    from rockflex._json import plain
+    from rockflex._json import as_json_value
 
-    return json.dumps(plain(document), indent=2, ensure_ascii=ascii_only, allow_nan=False)
+    return json.dumps(as_json_value(document), indent=2, ensure_ascii=ascii_only, allow_nan=False)
 
 
 def versions() -> dict[str, str]:
     """Return the versions of the packages that the results depend on."""
-    return {"rockflex": __version__, **versions_of(("numpy", "scipy"))}
+    return {"rockflex": __version__, **package_versions(("numpy", "scipy"))}
 
 
 def check_folder(folder: Path | None, *, force: bool) -> None:
@@ -101,7 +101,7 @@ def _move(stage: Path, folder: Path, names: list[str]) -> None:
 def _earlier(folder: Path) -> list[str]:
     """Names of the files that an earlier summary in the folder lists as its own."""
     try:
-        check_regular(folder / SUMMARY)
+        check_regular_file(folder / SUMMARY)
         document = json.loads((folder / SUMMARY).read_text("utf-8"))
         names = document["files"] if "rockflex" in document["versions"] else []
     except (OSError, ValueError, LookupError, TypeError):

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex._schema import BedKeys, BoucWenKeys, GroundKeys, ImpactKeys, InitialKeys
+from rockflex._schema import BoucWenKeys, GroundKeys, ImpactKeys, InitialStateKeys, SpringBedKeys
 from rockflex.cli._options import flags_of, naming
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, Restitution, parse_model
@@ -19,7 +19,7 @@ from rockflex.study.spec import GroundTable, RunOptionKeys, name_of
 
 _INERTIA = {"base_inertia", "mat_mass"}
 _FIELDS = {f"ground.{name}": (name, flag) for name, flag in flags_of(GroundKeys).items()} | {
-    f"ground.bed.{name}": (name, flag) for name, flag in flags_of(BedKeys).items()
+    f"ground.bed.{name}": (name, flag) for name, flag in flags_of(SpringBedKeys).items()
 }
 
 
@@ -33,7 +33,7 @@ def make_ground(
     file, in_file
         The structure file, and its table [ground]; empty without one.
     flags
-        Values by flags, named as in `GroundKeys` and `BedKeys`.
+        Values by flags, named as in `GroundKeys` and `SpringBedKeys`.
     properties
         The structure on the ground.
 
@@ -78,7 +78,7 @@ def ground_lines(ground: Ground, properties: RockingProperties) -> list[str]:
 
 def _merged(in_file: dict[str, Any], flags: dict[str, Any]) -> dict[str, Any]:
     own = {name: flags[name] for name in flags_of(GroundKeys) if name in flags}
-    bed = {name: flags[name] for name in flags_of(BedKeys) if name in flags}
+    bed = {name: flags[name] for name in flags_of(SpringBedKeys) if name in flags}
     replaced = _INERTIA if own.keys() & _INERTIA else set[str]()
     merged = {name: value for name, value in in_file.items() if name not in replaced} | own
     if not bed:
@@ -86,7 +86,7 @@ def _merged(in_file: dict[str, Any], flags: dict[str, Any]) -> dict[str, Any]:
     if "springs" in merged:
         raise InputError(
             "The ground of the structure file has springs, and the command line gives a bed "
-            f"({', '.join(flags_of(BedKeys)[name] for name in bed)}). Leave one of them out."
+            f"({', '.join(flags_of(SpringBedKeys)[name] for name in bed)}). Leave one of them out."
         )
     merged["bed"] = merged.get("bed", {}) | bed
     if "breadth" not in merged["bed"]:
@@ -146,7 +146,7 @@ def make_run_options(
     file, in_file
         The structure file, and its `impact`, `restitution`, `bouc_wen` and `ground` as far as it has them.
     law, bouc_wen, initial, ground
-        Values by flags, named as in `ImpactKeys`, `BoucWenKeys`, `InitialKeys`, and in `GroundKeys` and `BedKeys`.
+        Values by flags, named as in `ImpactKeys`, `BoucWenKeys`, `InitialStateKeys`, `GroundKeys` and `SpringBedKeys`.
     properties
         The structure, whose base the ground is under.
 
@@ -163,7 +163,7 @@ def make_run_options(
     below = {} if "impact" in law else {name: in_file[name] for name in flags_of(ImpactKeys) if name in in_file}
     with naming(flags_of(ImpactKeys)):
         chosen = checked(RunOptionKeys, {**below, **law}).law()
-    with naming(flags_of(InitialKeys) | {"rotation": "--initial-rotation"}):
+    with naming(flags_of(InitialStateKeys) | {"rotation": "--initial-rotation"}):
         start = InitialState(rotation=initial["initial_rotation"]) if initial else None
     hysteresis = _bouc_wen(file, in_file.get("bouc_wen", {}), bouc_wen)
     base, values = make_ground(file, in_file.get("ground", {}), ground, properties)

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockflex._errors import InputError
-from rockflex._numbers import moment_unit
-from rockflex._shown import counted, shortened
+from rockflex._number_format import moment_unit
+from rockflex._shown import number_with_noun, shortened
 from rockflex.cli._batch import SLIDING, Batch, Run
 from rockflex.cli._console import Styled, fits, grid, note, number, output, show
 from rockflex.cli._output import file_stems, staged
@@ -94,7 +94,7 @@ def print_runs(title: str, batch: Batch, runs: Sequence[Run], elapsed: float, *,
     if batch.friction is not None:
         console.print(FRICTION.format(window=IMPACT_WINDOW, mu=batch.friction), markup=False, soft_wrap=True)
     each = "" if len(runs) == 1 else f", {number(1e3 * elapsed / len(runs), 3)} ms a run"
-    console.print(f"{counted(len(runs), 'run')} in {number(elapsed, 3)} s{each}", markup=False)
+    console.print(f"{number_with_noun(len(runs), 'run')} in {number(elapsed, 3)} s{each}", markup=False)
 
 
 def print_warnings(runs: Sequence[Run]) -> None:
@@ -362,8 +362,9 @@ def check_runs(batch: Batch) -> None:
     if motions * scales > 1:
         first = batch.motions[0].name
         raise InputError(
-            f"--report is of one motion at one scale, but there are {counted(motions, 'motion')} at "
-            f"{counted(scales, 'scale')}. Name one record, such as SUITE/NAME ({first}), with one --scale; a loop "
+            f"--report is of one motion at one scale, but there are {number_with_noun(motions, 'motion')} at "
+            f"{number_with_noun(scales, 'scale')}. Name one record, such as SUITE/NAME ({first}), with one --scale; a "
+            "loop "
             "writes a report of each."
         )
     if models > MAX_RUNS:

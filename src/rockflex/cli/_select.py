@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from rockflex._errors import InputError
-from rockflex._shown import counted, shown
+from rockflex._shown import number_with_noun, shown
 from rockflex.cli import _options as options
 from rockflex.cli._console import grid, note, number, output, show
 from rockflex.cli._output import check_folder, file_stems, staged, to_json, versions
@@ -367,4 +367,4 @@ def _write_records(folder: Path, document: dict[str, Any], chosen: "Selection[An
     with staged(folder, document, force=force) as stage:
         for stem, motion in zip(file_stems(motion.name for motion in chosen.suite), chosen.suite, strict=True):
             (stage / f"{stem}.csv").write_text(record_csv(motion), "utf-8", newline="\n")
-    note(f"{counted(len(chosen.suite), 'scaled record')} written to {folder}")
+    note(f"{number_with_noun(len(chosen.suite), 'scaled record')} written to {folder}")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockflex._errors import InputError
 from rockflex._schema import FrameFlags, FrameKeys
-from rockflex._shown import counted
+from rockflex._shown import number_with_noun
 from rockflex.cli._console import grid, number
 from rockflex.cli._options import flags_of, naming
 from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
@@ -120,7 +120,7 @@ class LoadedStructure:
         shift = f", e = {p.eccentricity:.4g} m" if p.eccentricity else ""
         if p.n_modes == 0:
             return f"{self.name}: rigid, B/h = {p.half_width * p.m_tot / p.l0r:.4g}{shift}"
-        modes = counted(p.n_modes, "mode")
+        modes = number_with_noun(p.n_modes, "mode")
         slenderness = p.effective_height[0] / p.half_width
         period = 2.0 * math.pi / p.omega[0]
         return f"{self.name}: {modes}, T_1 = {period:.4g} s, h*_1/B = {slenderness:.4g}, ζ_1 = {p.zeta[0]:.4g}{shift}"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 import typer
 
 from rockflex._errors import InputError, SolverError
-from rockflex._shown import counted, shown
+from rockflex._shown import number_with_noun, shown
 from rockflex.cli import _options as options
 from rockflex.cli._console import complain, grid, note, number, output, show
 from rockflex.cli._output import check_folder, staged, to_json, versions
@@ -143,8 +143,8 @@ def _announce(study: "Spec", file: Path, workers: int | None, *, json: bool) -> 
         typer.echo(to_json(document))
         return
     typer.echo(
-        f"{file}: {at_most}{counted(plan.n_runs, 'run')} in {counted(plan.n_chunks, 'part')}, "
-        f"{counted(len(plan.motions), 'record')}; "
+        f"{file}: {at_most}{number_with_noun(plan.n_runs, 'run')} in {number_with_noun(plan.n_chunks, 'part')}, "
+        f"{number_with_noun(len(plan.motions), 'record')}; "
         f"about {at_most}{duration(seconds)} here"
     )
 
@@ -231,14 +231,14 @@ def summarise(kind: StudyKind, study: "Spec", table: "pd.DataFrame", seconds: fl
         _print_tables(tables)
         for text in (text for each in lifts for text in each.warnings):
             typer.echo(f"\n{text}")
-        typer.echo(f"\n{counted(len(table), 'row')} in {duration(seconds)}")
+        typer.echo(f"\n{number_with_noun(len(table), 'row')} in {duration(seconds)}")
     for remark in found.remarks:
         note(remark)
     for reason in dict.fromkeys(found.unfitted):
         note(f"No fit: {reason}")
     if failed:
         first = table.loc[table["error"].notna(), "error"].iloc[0]
-        note(f"{counted(failed, 'row has', 'rows have')} an error, the first: {first}")
+        note(f"{number_with_noun(failed, 'row has', 'rows have')} an error, the first: {first}")
     return failed, len(found.unfitted)
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rockflex._errors import InputError
-from rockflex._shown import counted
+from rockflex._shown import number_with_noun
 from rockflex.cli import _options as options
 from rockflex.cli._console import grid, number, output, show
 from rockflex.cli._output import to_json, versions
@@ -108,7 +108,7 @@ def _stations(found: "RecordSurvey") -> str:
     upright = [each.vertical is not None for each in found.stations]
     both = sum(pair and vertical for pair, vertical in zip(pairs, upright, strict=True))
     return (
-        f"{counted(len(pairs), 'recording')}: {sum(pairs)} with a horizontal pair, {sum(upright)} with a "
+        f"{number_with_noun(len(pairs), 'recording')}: {sum(pairs)} with a horizontal pair, {sum(upright)} with a "
         f"vertical component, {both} with both"
     )
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._checks import in_range, instance, positive
+from rockflex._checks import checked_in_range, checked_instance, checked_positive
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.fragility._arguments import Curve, Fragility, checked_confidence, checked_curve
@@ -62,7 +62,7 @@ class AnnualRate(Value):
 
     def probability_in(self, years: float) -> float:
         """Probability of at least one failure in `years`, 1 - exp(-rate years), as a Poisson process."""
-        return -math.expm1(-self.rate * positive("years", years, "years", zero=True))
+        return -math.expm1(-self.rate * checked_positive("years", years, "years", zero=True))
 
 
 def annual_rate(hazard: HazardCurve, fragility: Fragility | Curve, *, confidence: float | None = None) -> AnnualRate:
@@ -97,7 +97,7 @@ def annual_rate(hazard: HazardCurve, fragility: Fragility | Curve, *, confidence
     >>> print(f"{found.beyond:.3g}")
     0.0001
     """
-    instance("hazard", hazard, HazardCurve)
+    checked_instance("hazard", hazard, HazardCurve)
     probability = checked_curve(fragility)
     hazard.check_damping(getattr(fragility, "damping", None))
     im, share = quadrature(hazard)
@@ -171,10 +171,10 @@ def risk_targeted_median(
     """
     from scipy.optimize import brentq
 
-    instance("hazard", hazard, HazardCurve)
-    beta = positive("dispersion", dispersion, "natural logarithms")
-    target = positive("target_rate", target_rate, "1/year")
-    share = in_range("allowed_beyond", allowed_beyond, 0.0, math.inf)
+    checked_instance("hazard", hazard, HazardCurve)
+    beta = checked_positive("dispersion", dispersion, "natural logarithms")
+    target = checked_positive("target_rate", target_rate, "1/year")
+    share = checked_in_range("allowed_beyond", allowed_beyond, 0.0, math.inf)
 
     def rate(log_median: float) -> float:
         return _rate_within(hazard, LognormalFragility(math.exp(log_median), beta).probability)

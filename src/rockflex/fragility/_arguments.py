@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import finite_vector, float_array, in_range
+from rockflex._checks import checked_finite_vector, checked_in_range, float_array
 from rockflex._errors import InputError
 from rockflex._shown import shown
 
@@ -16,7 +16,7 @@ Curve = Callable[[Array], Array]
 
 def log_column(name: str, values: ArrayLike, leave_out: str) -> Array:
     """Natural logarithm of a column of positive numbers; `leave_out` says which rows to drop otherwise."""
-    column = finite_vector(name, values, "one unit")
+    column = checked_finite_vector(name, values, "one unit")
     bad = np.flatnonzero(column <= 0.0)
     if bad.size:
         raise InputError(
@@ -88,7 +88,7 @@ def fractions(name: str, values: ArrayLike) -> Array:
 
 def checked_confidence(confidence: float) -> float:
     """Confidence of a band, in [0, 1)."""
-    return in_range("confidence", confidence, 0.0, 1.0, hint="A 90 % band is confidence=0.9.")
+    return checked_in_range("confidence", confidence, 0.0, 1.0, hint="A 90 % band is confidence=0.9.")
 
 
 class Fragility(Protocol):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import finite_vector, float_array, whole_number
+from rockflex._checks import checked_finite_vector, checked_whole_number, float_array
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex._values import Value
@@ -125,11 +125,11 @@ def bootstrap_band(
     >>> print(f"{band.estimate[0]:.3g} from {band.low[0]:.3g} to {band.high[0]:.3g}")
     0.0137 from 0.0118 to 0.0152
     """
-    measures, grid = finite_vector("im", im, "one unit"), finite_vector("at", at, "one unit")
+    measures, grid = checked_finite_vector("im", im, "one unit"), checked_finite_vector("at", at, "one unit")
     values = _checked_rows("outcome_or_response", outcome_or_response)
     recordings = Recordings.of(np.arange(measures.size) if groups is None else groups)
     same_length(im=measures, outcome_or_response=values, groups=recordings.codes)
-    wanted, times = checked_confidence(confidence), whole_number("n", n, MIN_RESAMPLES, MAX_RESAMPLES)
+    wanted, times = checked_confidence(confidence), checked_whole_number("n", n, MIN_RESAMPLES, MAX_RESAMPLES)
     evaluate = _evaluate if curve is None else curve
     for name, function in (("fit_function", fit_function), ("curve", evaluate)):
         if not callable(function):
@@ -142,7 +142,7 @@ def bootstrap_band(
     curves: list[Array] = []
     failures: list[str] = []
     separated = 0
-    for drawn in draw_groups(len(blocks), times, whole_number("seed", seed, 0)):
+    for drawn in draw_groups(len(blocks), times, checked_whole_number("seed", seed, 0)):
         rows = np.concatenate([blocks[i] for i in drawn])
         try:
             fit = fit_function(measures[rows], values[rows])

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rockflex._arrays import Array, Bools
-from rockflex._cases import cases
+from rockflex._cases import runs_by_case
 from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
 from rockflex._shown import shown
@@ -168,7 +168,7 @@ def _cases(runs: "pd.DataFrame", measure: str) -> "Iterator[tuple[str, str, pd.D
     lacking = [name for name in needed if name not in runs]
     if lacking:
         raise InputError(f"runs must be the table of a cloud study, but it has no column {', '.join(lacking)}.")
-    return cases(runs)
+    return runs_by_case(runs)
 
 
 def _cloud_fits(

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import all_positive, finite_vector, positive
+from rockflex._checks import check_all_positive, checked_finite_vector, checked_positive
 from rockflex._errors import InputError
-from rockflex._files import path_of, write_whole
+from rockflex._files import checked_file_path, write_file_atomically
 from rockflex._shown import shown
 from rockflex.fragility._arguments import Curve, Fragility, checked_curve
 from rockflex.fragility._hazard import HAZARD_DAMPING, damping_text, kind_and_period, unit_of
@@ -72,8 +72,8 @@ def functions_of(
         different limit states, a probability is not one, or a more severe limit state is more probable than a milder
         one.
     """
-    im = finite_vector("levels", levels, "the SI unit of the measure")
-    all_positive("levels", im, "in SI units")
+    im = checked_finite_vector("levels", levels, "the SI unit of the measure")
+    check_all_positive("levels", im, "in SI units")
     if im.size < 2 or (np.diff(im) <= 0.0).any():
         raise InputError(
             f"levels must be two or more measures that rise, but {shown(levels)} was given.", field="levels"
@@ -84,7 +84,7 @@ def functions_of(
             f"{shown(curves)} was given.",
             field="curves",
         )
-    limits = {name: positive(f"rotations[{name!r}]", value, "rad") for name, value in (rotations or {}).items()}
+    limits = {name: checked_positive(f"rotations[{name!r}]", value, "rad") for name, value in (rotations or {}).items()}
     if limits and not any(isinstance(states, OutcomeFragility) for states in curves.values()):
         raise InputError("rotations are limits of fitted outcomes, but curves has none.", field="rotations")
     if list(limits.values()) != sorted(set(limits.values())):
@@ -249,7 +249,7 @@ def write_nrml(
     >>> print(path.read_text().splitlines()[6].strip())
     <imls imt="PGV" minIML="5.0" maxIML="200.0" />
     """
-    target = path_of("path", path)
+    target = checked_file_path("path", path)
     _, unit = unit_of(measure)
     functions, im = functions_of(curves, levels, rotations, measure)
     texts = {"description": description, "asset_category": asset_category, "loss_category": loss_category}
@@ -258,7 +258,7 @@ def write_nrml(
             raise InputError(f"{name} must be a line of text, but {shown(text)} was given.", field=name)
     shared = {"imt": measure}
     if no_damage_limit is not None:
-        limit = positive("no_damage_limit", no_damage_limit, "the SI unit of the measure")
+        limit = checked_positive("no_damage_limit", no_damage_limit, "the SI unit of the measure")
         if limit >= im[0]:
             raise InputError(
                 f"no_damage_limit must be below the first level, {im[0]:g}, but {limit:g} was given.",
@@ -277,7 +277,7 @@ def write_nrml(
         else:
             _continuous(model, function.name, function.lognormal, shared, (im / unit)[[0, -1]], unit)
     ET.indent(root)
-    return write_whole(target, ET.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n")
+    return write_file_atomically(target, ET.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n")
 
 
 def _discrete(model: ET.Element, function: Function, shared: dict[str, str], im: Array, unit: float) -> None:
@@ -372,7 +372,7 @@ def write_pelicun(
     >>> print(path.read_text().splitlines()[1])
     pier,0,Peak Ground Acceleration,mps2,0,1,lognormal,2.0,0.5,,lognormal,5.0,0.5,
     """
-    target = path_of("path", path)
+    target = checked_file_path("path", path)
     kind, period = kind_and_period(measure)
     if kind not in _PELICUN_DEMANDS:
         raise InputError(
@@ -390,7 +390,7 @@ def write_pelicun(
     for function in functions:
         cells = [cell for limit in function.curves for cell in _state_cells(function, limit, im)]
         table.writerow([function.name, 0, demand, unit, 0, 1, *cells])
-    return write_whole(target, text.getvalue().encode())
+    return write_file_atomically(target, text.getvalue().encode())
 
 
 def _state_cells(function: Function, limit: str, im: Array) -> tuple[str, str, str, str]:

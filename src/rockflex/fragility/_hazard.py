@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite_vector, in_range, positive
+from rockflex._checks import checked_finite_vector, checked_in_range, checked_positive
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._files import check_regular, path_of
-from rockflex._shown import counted, shown
+from rockflex._files import check_regular_file, checked_file_path
+from rockflex._shown import number_with_noun, shown
 from rockflex._values import Value
 from rockflex.fragility._arguments import log_at
 
@@ -91,8 +91,8 @@ def read_exported_curve(path: str | Path, site: Site | None) -> ExportedCurve:
     InputError
         If the file cannot be read, is not such an export, or has no or more than one such site.
     """
-    file = path_of("path", path)
-    check_regular(file, "path")
+    file = checked_file_path("path", path)
+    check_regular_file(file, "path")
     try:
         lines = file.read_text("utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
@@ -130,7 +130,7 @@ def _years_and_measure(file: Path, comment: str) -> tuple[float, str]:
 def _site_row(file: Path, names: Sequence[str], rows: list[list[str]], site: Site | None) -> list[str]:
     whole = [row for row in rows if len(row) == len(names)]
     if len(whole) < len(rows) or not rows:
-        wrong = counted(len(rows) - len(whole), "row differs", "rows differ") if rows else "it has none"
+        wrong = number_with_noun(len(rows) - len(whole), "row differs", "rows differ") if rows else "it has none"
         raise InputError(f"{file} must have a row of {len(names)} values for each site, but {wrong}.", field="path")
     if site is None:
         if len(rows) > 1:
@@ -214,7 +214,7 @@ class HazardCurve(Value):
     damping: float
 
     def __init__(self, im: ArrayLike, rate: ArrayLike, *, damping: float = HAZARD_DAMPING) -> None:
-        measures, rates = finite_vector("im", im, "one unit"), finite_vector("rate", rate, "1/year")
+        measures, rates = checked_finite_vector("im", im, "one unit"), checked_finite_vector("rate", rate, "1/year")
         if measures.size != rates.size or measures.size < 2:
             raise InputError(
                 f"A hazard curve needs two points or more, a rate for each measure, but {measures.size} measures and "
@@ -230,7 +230,7 @@ class HazardCurve(Value):
                 f"rate must be positive and fall from point to point, but rate[{bad[0]}] = {rates[bad[0]]:g} does not. "
                 "Give annual rates of exceedance; drop the points at which the rate is zero."
             )
-        ratio = in_range("damping", damping, 0.0, 1.0, hint="5 % of critical is damping=0.05.")
+        ratio = checked_in_range("damping", damping, 0.0, 1.0, hint="5 % of critical is damping=0.05.")
         vars(self).update(im=measures, rate=rates, damping=ratio)
 
     def check_damping(self, damping: float | None) -> None:
@@ -272,7 +272,7 @@ class HazardCurve(Value):
         >>> print(f"1 in {1 / hazard.rate_at(2.0):.0f} years")
         1 in 475 years
         """
-        chances, span = finite_vector("poe", poe, "[0, 1]"), positive("years", years, "years")
+        chances, span = checked_finite_vector("poe", poe, "[0, 1]"), checked_positive("years", years, "years")
         bad = np.flatnonzero((chances <= 0.0) | (chances >= 1.0))
         if bad.size:
             i = int(bad[0])

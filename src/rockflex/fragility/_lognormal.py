@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import finite_matrix, finite_vector, positive
+from rockflex._checks import checked_finite_matrix, checked_finite_vector, checked_positive
 from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
 from rockflex._values import Value
@@ -68,10 +68,10 @@ class LognormalFragility(HtmlTable, Value):
     damping: float | None = None
 
     def __post_init__(self) -> None:
-        median = positive("median", self.median, "the unit of IM")
-        vars(self).update(median=median, beta=positive("beta", self.beta, "natural logarithms"))
+        median = checked_positive("median", self.median, "the unit of IM")
+        vars(self).update(median=median, beta=checked_positive("beta", self.beta, "natural logarithms"))
         if self.covariance is not None:
-            matrix = finite_matrix("covariance", self.covariance, "natural logarithms squared", (2, 2))
+            matrix = checked_finite_matrix("covariance", self.covariance, "natural logarithms squared", (2, 2))
             matrix.setflags(write=False)
             vars(self).update(covariance=matrix)
 
@@ -331,7 +331,7 @@ def fit_stripes(
 
 
 def _counts(name: str, values: ArrayLike, least: int) -> Array:
-    numbers = finite_vector(name, values, "runs")
+    numbers = checked_finite_vector(name, values, "runs")
     bad = np.flatnonzero((numbers != np.rint(numbers)) | (numbers < least))
     if bad.size:
         raise InputError(

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import finite_vector, positive
+from rockflex._checks import checked_finite_vector, checked_positive
 from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
 from rockflex._shown import shown
@@ -193,7 +193,7 @@ class OutcomeFragility(HtmlTable, Value):
         InputError
             If the limit is below the threshold of rocking or not below `highest_limit`.
         """
-        self._checked(positive("limit", limit, "rad"))
+        self._checked(checked_positive("limit", limit, "rad"))
         return RotationFragility(self, float(limit))
 
     def _checked(self, limit: ArrayLike) -> Array:
@@ -340,11 +340,11 @@ def fit_outcomes(
     from scipy.linalg import block_diag
 
     log_measures(im)
-    measures = finite_vector("im", im, "one unit")
-    rotations, falls = finite_vector("rotation", rotation, "rad"), flags("overturned", overturned)
+    measures = checked_finite_vector("im", im, "one unit")
+    rotations, falls = checked_finite_vector("rotation", rotation, "rad"), flags("overturned", overturned)
     lifts = np.ones(falls.size, dtype=bool) if uplifted is None else flags("uplifted", uplifted)
     recordings = Recordings.beside(groups, im=measures, rotation=rotations, overturned=falls, uplifted=lifts)
-    limit = positive("threshold", threshold, "rad")
+    limit = checked_positive("threshold", threshold, "rad")
     _check_rotations(rotations, falls, limit)
 
     stands, moves = ~falls, (rotations > limit) & (lifts | falls)

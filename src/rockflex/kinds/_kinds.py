@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from rockflex._errors import InputError, SolverError
-from rockflex._shown import counted, shown
+from rockflex._shown import number_with_noun, shown
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -86,7 +86,7 @@ class StudyKind:
 
 def _report_cloud(_: Any, runs: Runs, found: Findings) -> None:
     """Count the outcomes, and fit the regressions."""
-    from rockflex._cases import cases
+    from rockflex._cases import runs_by_case
     from rockflex.fragility import OVERTURNING, ROCKING, LogisticFit, fit_each_cloud
     from rockflex.motion import MEASURES
 
@@ -96,7 +96,7 @@ def _report_cloud(_: Any, runs: Runs, found: Findings) -> None:
     fits_of = {(each.structure, each.model): each for each in fits}
     outcomes = found.tables[f"Outcomes, and P({ROCKING.label}) by logistic regression on log {pgv.label}"] = []
     lines = found.tables[f"log y = c1 + c2 log {pgv.label} of runs that rocked and stand (rad, m, {pgv.unit})"] = []
-    for structure, model, group in cases(runs):
+    for structure, model, group in runs_by_case(runs):
         name = {"structure": structure, "model": model}
         solved, fallen = group["status"].notna(), OVERTURNING.exceeded(group)
         rocked = solved & ~fallen & ROCKING.exceeded(group)
@@ -158,7 +158,7 @@ CLOUD = StudyKind(
 
 
 def _report_incremental(study: Any, runs: Runs, found: Findings) -> None:
-    from rockflex._cases import cases
+    from rockflex._cases import runs_by_case
     from rockflex.fragility import LIMIT_STATES, fit_capacities
     from rockflex.motion import MEASURES
     from rockflex.study.incremental import incremental_capacities
@@ -166,7 +166,7 @@ def _report_incremental(study: Any, runs: Runs, found: Findings) -> None:
     rows = []
     for measure in (MEASURES["pga"], MEASURES["pgv"]):
         capacities = incremental_capacities(runs, measure.name).dropna(subset=["capacity"])
-        for structure, model, each in cases(capacities):
+        for structure, model, each in runs_by_case(capacities):
             what = f"{structure} with {model}, {measure.label}"
             fit = found.fitted(lambda each=each: fit_capacities(each["capacity"], each["censored"]), what)
             rows.append(
@@ -202,14 +202,14 @@ INCREMENTAL = StudyKind(
 
 
 def _report_stripes(study: Any, runs: Runs, found: Findings) -> None:
-    from rockflex._cases import cases
+    from rockflex._cases import runs_by_case
     from rockflex.fragility import NOMINAL, OVERTURNING, UPLIFT, fit_stripes
     from rockflex.study.stripes import stripe_counts
 
     counts = found.tables[f"Runs beyond the limit at each level of {study.measure}"] = []
     fits = found.tables[f"Fragility by maximum likelihood, lognormal in {study.measure}"] = []
     for limit in (UPLIFT, NOMINAL, OVERTURNING):
-        for structure, model, each in cases(stripe_counts(runs, limit.name)):  # pyright: ignore[reportArgumentType]
+        for structure, model, each in runs_by_case(stripe_counts(runs, limit.name)):  # pyright: ignore[reportArgumentType]
             stripes = each["level"], each["n_exceeding"], each["n_total"]
             what = f"{structure} with {model}, {limit.label}"
             fit = found.fitted(lambda stripes=stripes: fit_stripes(*stripes), what)
@@ -291,7 +291,7 @@ def _report_monte_carlo(study: Any, runs: Runs, found: Findings) -> None:
     lost = int(structures["weight"].isna().sum())
     if lost:
         found.remarks.append(f"{lost} of {len(structures)} structures cannot be built; their runs have an error")
-    found.tables[f"Values of {counted(len(structures), 'random structure')}"] = [
+    found.tables[f"Values of {number_with_noun(len(structures), 'random structure')}"] = [
         {"variable": name, "least": values.min(), "median": values.median(), "largest": values.max()}
         for name in (*study.variables, "recentring_ratio")
         for values in (structures[name],)

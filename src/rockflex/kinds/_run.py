@@ -7,11 +7,11 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, SupportsIndex, TypeVar
 
-from rockflex._checks import whole_number
+from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError
-from rockflex._files import path_of
+from rockflex._files import checked_file_path
 from rockflex._shown import shown
-from rockflex._versions import commit_of, versions_of
+from rockflex._versions import git_commit, package_versions
 from rockflex.engine import VECTOR_LEVEL
 from rockflex.kinds._kinds import kind_named
 from rockflex.structure.file import read_toml
@@ -63,7 +63,7 @@ def load_study(path: str | Path) -> Spec:
     >>> study.plan().n_runs
     10
     """
-    file = path_of("path", path)
+    file = checked_file_path("path", path)
     content = read_toml(file, "study")
     try:
         return kind_named(content.get("study")).spec()(**content).read_from(file.parent, file)
@@ -223,10 +223,10 @@ class _PartPlan:
 def _versions(spec: "Spec") -> dict[str, str]:
     """Return versions of libraries, the level of vector instructions, and commits of rockflex and the study's file."""
     commits = {
-        "rockflex commit": commit_of(Path(__file__), known=True),
-        "study commit": None if spec.file is None else commit_of(spec.file, known=False),
+        "rockflex commit": git_commit(Path(__file__), known=True),
+        "study commit": None if spec.file is None else git_commit(spec.file, known=False),
     }
-    found = versions_of(LIBRARIES) | {LEVEL: VECTOR_LEVEL}
+    found = package_versions(LIBRARIES) | {LEVEL: VECTOR_LEVEL}
     return found | {name: commit for name, commit in commits.items() if commit is not None}
 
 
@@ -248,8 +248,8 @@ def _plan_of(spec: "Spec", workers: SupportsIndex | None, dask: str | None, prog
 def _share_of(plan: "ChunkedPlan", share: tuple[SupportsIndex, SupportsIndex]) -> range:
     if not isinstance(share, tuple) or len(share) != 2:  # pyright: ignore[reportUnnecessaryComparison, reportUnnecessaryIsInstance]
         raise InputError(f"share must be two whole numbers, such as (3, 10), but {shown(share)} was given.")
-    count = whole_number("the number of shares", share[1], 1)
-    place = whole_number("the number of the share", share[0], 1, count)
+    count = checked_whole_number("the number of shares", share[1], 1)
+    place = checked_whole_number("the number of the share", share[0], 1, count)
     if count > 1 and len(plan.rounds) > 1:
         raise InputError(
             "This study cannot be divided into shares, because later parts depend on earlier ones. Run it as a whole, "
@@ -315,7 +315,7 @@ def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:
     """
     plan = study.plan()
     plan.check_work()
-    threads = core_count() if workers is None else whole_number("workers", workers, 1)
+    threads = core_count() if workers is None else checked_whole_number("workers", workers, 1)
     sample = sorted({round(place * (plan.n_ready - 1) / max(MAX_SAMPLE - 1, 1)) for place in range(MAX_SAMPLE)})
     for unit in sample[:: max(len(sample) // 6, 1)]:  # fill the caches that the study fills once
         plan.rows([unit])

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import instance, positive
-from rockflex._computable import computable
+from rockflex._checks import checked_instance, checked_positive
 from rockflex._errors import InputError
+from rockflex._overflow import explaining_overflow
 from rockflex._values import Value
 from rockflex.modal._rocking import SUM_TOLERANCE, RockingProperties
 from rockflex.modal._uplifted import lowest_uplifted
@@ -66,7 +66,9 @@ class AdequacyTolerance:
 
     def __post_init__(self) -> None:
         for each in fields(self):
-            value = positive(each.name, getattr(self, each.name), "fractions (5 % is 0.05)", zero=True, infinite=True)
+            value = checked_positive(
+                each.name, getattr(self, each.name), "fractions (5 % is 0.05)", zero=True, infinite=True
+            )
             vars(self)[each.name] = value
 
 
@@ -191,7 +193,7 @@ class Adequacy(Value):
         return (1.0 + self.frequency_error) * (1.0 + self.reference_error) - 1.0
 
 
-@computable("The share of each mode")
+@explaining_overflow("The share of each mode")
 def adequacy(
     properties: RockingProperties, tolerance: AdequacyTolerance | None = None, *, base_mass: float | None = None
 ) -> Adequacy:
@@ -242,13 +244,13 @@ def adequacy(
     >>> found.model, found.model_for_shear
     ('3DOF-S', None)
     """
-    p = instance("properties", properties, RockingProperties)
+    p = checked_instance("properties", properties, RockingProperties)
     if p.n_modes == 0:
         raise InputError(
             "properties must have at least one mode, but a rigid structure was given, which needs none.",
             field="properties",
         )
-    limits = AdequacyTolerance() if tolerance is None else instance("tolerance", tolerance, AdequacyTolerance)
+    limits = AdequacyTolerance() if tolerance is None else checked_instance("tolerance", tolerance, AdequacyTolerance)
     rest = p.translational_inertia - float(p.effective_mass @ p.effective_height**2)
     complete = rest <= SUM_TOLERANCE * p.translational_inertia
     base = p.base_mass if base_mass is None else base_mass
@@ -279,7 +281,7 @@ def adequacy(
 
 def _mass_above(p: RockingProperties, base_mass: float) -> float:
     modal = float(p.effective_mass.sum())
-    mass = p.m_tot - positive("base_mass", base_mass, "kg", zero=True)
+    mass = p.m_tot - checked_positive("base_mass", base_mass, "kg", zero=True)
     if mass < modal * (1.0 - SUM_TOLERANCE):
         raise InputError(
             f"base_mass must leave the effective mass of the modes, {modal:.6g} kg, but {base_mass:g} kg of m_tot = "

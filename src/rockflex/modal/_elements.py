@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from rockflex._checks import finite, instance, positive, real_or_nan
+from rockflex._checks import checked_finite, checked_instance, checked_positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 
@@ -59,12 +59,12 @@ class Tendon:
 
     def __post_init__(self) -> None:
         vars(self).update(
-            initial_force=positive("initial_force", self.initial_force, "N", zero=True),
-            stiffness=positive("stiffness", self.stiffness, "N/m", zero=True),
-            position=finite("position", self.position, "m"),
+            initial_force=checked_positive("initial_force", self.initial_force, "N", zero=True),
+            stiffness=checked_positive("stiffness", self.stiffness, "N/m", zero=True),
+            position=checked_finite("position", self.position, "m"),
         )
         if self.yield_force is not None:
-            limit = positive("yield_force", self.yield_force, "N")
+            limit = checked_positive("yield_force", self.yield_force, "N")
             vars(self).update(yield_force=limit)
             if self.initial_force > limit:
                 raise InputError(
@@ -118,7 +118,7 @@ def checked_rupture(value: float | None, yields_at: float) -> float | None:
     """
     if value is None:
         return None
-    limit = positive("rupture_elongation", value, "m")
+    limit = checked_positive("rupture_elongation", value, "m")
     if limit <= yields_at:
         raise InputError(
             f"rupture_elongation must be beyond the elongation at yield, {yields_at:.4g} m, but {limit:g} m was given. "
@@ -175,11 +175,11 @@ class YieldingDissipator:
 
     def __post_init__(self) -> None:
         vars(self).update(
-            stiffness=positive("stiffness", self.stiffness, "N/m"),
-            yield_force=positive("yield_force", self.yield_force, "N"),
+            stiffness=checked_positive("stiffness", self.stiffness, "N/m"),
+            yield_force=checked_positive("yield_force", self.yield_force, "N"),
             post_yield_ratio=checked_ratio(self.post_yield_ratio),
-            position=finite("position", self.position, "m"),
-            tension_only=instance("tension_only", self.tension_only, bool),
+            position=checked_finite("position", self.position, "m"),
+            tension_only=checked_instance("tension_only", self.tension_only, bool),
             rupture_elongation=checked_rupture(self.rupture_elongation, self.yield_force / self.stiffness),
         )
 
@@ -215,8 +215,8 @@ class ViscousDamper:
 
     def __post_init__(self) -> None:
         vars(self).update(
-            coefficient=positive("coefficient", self.coefficient, "N s/m", zero=True),
-            position=finite("position", self.position, "m"),
+            coefficient=checked_positive("coefficient", self.coefficient, "N s/m", zero=True),
+            position=checked_finite("position", self.position, "m"),
         )
 
 
@@ -250,8 +250,8 @@ class FrictionDamper:
 
     def __post_init__(self) -> None:
         vars(self).update(
-            force=positive("force", self.force, "N", zero=True),
-            position=finite("position", self.position, "m"),
+            force=checked_positive("force", self.force, "N", zero=True),
+            position=checked_finite("position", self.position, "m"),
         )
 
 

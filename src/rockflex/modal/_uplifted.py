@@ -9,9 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import MOST_MODES, float_array, instance, one_of, positive, whole_number
-from rockflex._computable import computable
+from rockflex._checks import (
+    MOST_MODES,
+    checked_instance,
+    checked_positive,
+    checked_whole_number,
+    float_array,
+    is_one_of,
+)
 from rockflex._errors import InputError
+from rockflex._overflow import explaining_overflow
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.modal._pivot import Pivot
@@ -106,7 +113,7 @@ class UpliftedModes(Value):
     growth_shape: Array
 
 
-@computable("The uplifted modes of the given properties")
+@explaining_overflow("The uplifted modes of the given properties")
 def uplifted_modes(
     properties: RockingProperties, n_modes: SupportsIndex | None = None, *, side: int | None = None
 ) -> UpliftedModes:
@@ -151,7 +158,7 @@ def uplifted_modes(
     >>> modes.ratio.round(2)
     array([2.78, 2.39])
     """
-    p = instance("properties", properties, RockingProperties)
+    p = checked_instance("properties", properties, RockingProperties)
     p = p if n_modes is None else p.truncated(n_modes)
     n = p.n_modes
     pivot = _pivot(p, side)
@@ -170,7 +177,7 @@ def uplifted_modes(
     )
 
 
-@computable("The uplifted frequencies of the given properties")
+@explaining_overflow("The uplifted frequencies of the given properties")
 def lowest_uplifted(properties: RockingProperties, count: int, side: int | None = None) -> Array:
     """Return at most the first `count` of `UpliftedModes.omega`, which is faster than computing all."""
     return np.sqrt(_lowest(properties, _pivot(properties, side), min(count, properties.n_modes))[0][1:])
@@ -267,7 +274,7 @@ def frequency_equation(properties: RockingProperties, omega: ArrayLike, *, side:
     >>> bool(abs(rf.frequency_equation(props, omega)[0]) < 1e-6 * props.i_theta * omega[0] ** 2)
     True
     """
-    pivot = _pivot(instance("properties", properties, RockingProperties), side)
+    pivot = _pivot(checked_instance("properties", properties, RockingProperties), side)
     frequencies = float_array(omega)
     if frequencies is None or not (np.abs(frequencies) < MAX_FREQUENCY).all():
         raise InputError(
@@ -341,12 +348,12 @@ def pinned_beam(behaviour: Literal["flexure", "shear"], spring: float = 0.0, n_m
     >>> beam.ratio.round(3)
     array([4.385, 2.268])
     """
-    if not one_of(behaviour, ("flexure", "shear")):
+    if not is_one_of(behaviour, ("flexure", "shear")):
         raise InputError(
             f'behaviour must be "flexure" or "shear", but {shown(behaviour)} was given.', field="behaviour"
         )
-    k = positive("spring", spring, "k_r L/EI (flexure) or k_r/(GA L) (shear)", zero=True)
-    n = whole_number("n_modes", n_modes, 1, MOST_MODES)
+    k = checked_positive("spring", spring, "k_r L/EI (flexure) or k_r/(GA L) (shear)", zero=True)
+    n = checked_whole_number("n_modes", n_modes, 1, MOST_MODES)
     flexure = behaviour == "flexure"
     clamp, pin = (_clamped_flexure, _pinned_flexure) if flexure else (math.cos, _pinned_shear)
     pinned, clamped = [0.0], [_bisected(clamp, 0.0, math.pi)]

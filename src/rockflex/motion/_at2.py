@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex._files import path_of
+from rockflex._files import checked_file_path
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo, azimuth_of, direction_of
 from rockflex.motion._text import DECIMAL, Unit, build_motion, number, read_lines, wrong_count
@@ -58,9 +58,9 @@ def read_at2(path: str | Path, vertical: str | Path | None = None) -> GroundMoti
     >>> rf.read_at2("DEMO.AT2")
     GroundMotion('DEMO', 4 samples, dt=0.01 s, duration=0.03 s, pga=1.962 m/s²)
     """
-    file = path_of("path", path)
+    file = checked_file_path("path", path)
     motion = parse_at2(file, read_lines(file))
-    return motion if vertical is None else motion.with_vertical(read_at2(path_of("vertical", vertical)))
+    return motion if vertical is None else motion.with_vertical(read_at2(checked_file_path("vertical", vertical)))
 
 
 def find_header(lines: list[str]) -> tuple[int, int, str] | None:

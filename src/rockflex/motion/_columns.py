@@ -13,7 +13,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._shown import counted, shown
+from rockflex._shown import number_with_noun, shown
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import (
     HORIZONTAL_NAME,
@@ -240,7 +240,7 @@ def _check_seconds(file: Path, label: str) -> None:
 def _common_step(file: Path, times: Array, lines: list[int], dt: float | None) -> float:
     """Return the common time step in s."""
     if times.size < 3:
-        raise InputError(f"{file} has {counted(times.size, 'sample')}, but a record needs at least 3.")
+        raise InputError(f"{file} has {number_with_noun(times.size, 'sample')}, but a record needs at least 3.")
     steps = np.diff(times)
     if np.any(steps <= 0):
         k = int(np.argmax(steps <= 0))

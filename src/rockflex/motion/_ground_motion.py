@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite, finite_vector, instance, positive
+from rockflex._checks import checked_finite, checked_finite_vector, checked_instance, checked_positive
 from rockflex._errors import InputError, RecordWarning
 from rockflex._html import HtmlTable
-from rockflex._shown import listed, shown
+from rockflex._shown import first_texts_shown, shown
 from rockflex._values import Value
 from rockflex.motion import _signal
 from rockflex.motion._record_info import RecordInfo
@@ -92,7 +92,7 @@ class GroundMotion(HtmlTable, Value):
         metadata: RecordInfo | None = None,
         vertical: ArrayLike | None = None,
     ) -> None:
-        samples = finite_vector("acceleration", acceleration, "m/s²")
+        samples = checked_finite_vector("acceleration", acceleration, "m/s²")
         if samples.size < 3:
             raise InputError(
                 f"acceleration must have at least 3 samples, but {samples.size} were given. For a record "
@@ -106,7 +106,7 @@ class GroundMotion(HtmlTable, Value):
                 "Write metadata=RecordInfo(event=..., year=...)."
             )
         upwards = None if vertical is None else _checked_vertical(vertical, samples.size)
-        step = positive("dt", dt, "s")
+        step = checked_positive("dt", dt, "s")
         vars(self).update(acceleration=samples, dt=step, name=name, metadata=metadata, vertical=upwards)
 
     def __repr__(self) -> str:
@@ -330,7 +330,7 @@ class GroundMotion(HtmlTable, Value):
         InputError
             If `factor` or a scaled sample is not finite.
         """
-        factor = finite("factor", factor, "")
+        factor = checked_finite("factor", factor, "")
         with np.errstate(over="ignore"):
             return self._changed(lambda samples: samples * factor, metadata=_info_of_scaled(self.metadata, factor))
 
@@ -349,7 +349,7 @@ class GroundMotion(HtmlTable, Value):
         `periods`, as in `Suite.select`. `InputError` where neither, or both, are given, or the motion does not move.
         """
         if target is not None and periods is not None and sa is None and period is None and damping_ratio is None:
-            fitted = instance("target", target, TargetSpectrum)
+            fitted = checked_instance("target", target, TargetSpectrum)
             compared = comparison_periods(periods)
             spectrum = self.spectrum(compared, fitted.damping_ratio).sa
             return self.scaled(fitting_factor(spectrum, fitted.at(compared), self.name))
@@ -359,7 +359,7 @@ class GroundMotion(HtmlTable, Value):
                 "motion.scaled_to(target, (0.2, 2.0)) or motion.scaled_to(sa=5.0, period=1.0). A target has its own "
                 "damping ratio."
             )
-        ordinate, at = positive("sa", sa, "m/s²"), positive("period", period, "s", zero=True)
+        ordinate, at = checked_positive("sa", sa, "m/s²"), checked_positive("period", period, "s", zero=True)
         own = self.sa(at, 0.05 if damping_ratio is None else damping_ratio)
         return self.scaled(ordinate / scalable_ordinate(own, self.name, at))
 
@@ -455,7 +455,7 @@ def _info_of_scaled(info: RecordInfo | None, factor: float) -> RecordInfo | None
 
 def _checked_vertical(vertical: ArrayLike, n_samples: int) -> Array:
     """Return the vertical samples, as many as the horizontal ones."""
-    samples = finite_vector("vertical", vertical, "m/s²")
+    samples = checked_finite_vector("vertical", vertical, "m/s²")
     if samples.size != n_samples:
         raise InputError(
             f"vertical must have as many samples as acceleration, {n_samples}, but {samples.size} were given. Append "
@@ -544,7 +544,7 @@ def check_horizontal(*motions: GroundMotion) -> None:
     vertical = [repr(motion.name) for motion in motions if is_vertical(motion)]
     if vertical:
         raise InputError(
-            f"A horizontal ground motion is expected, but {listed(vertical, 3)} "
+            f"A horizontal ground motion is expected, but {first_texts_shown(vertical, 3)} "
             f"{'is a vertical component' if len(vertical) == 1 else 'are vertical components'} according to the header "
             "or name of the file. Give a horizontal component. If it is one, declare it: dataclasses.replace(motion, "
             'metadata=RecordInfo(direction="horizontal")), or rename the file.'

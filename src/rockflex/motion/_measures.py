@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
-from rockflex._checks import one_of
+from rockflex._checks import is_one_of
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
@@ -237,6 +237,6 @@ def intensity(name: str) -> Measure:
         If there is no such measure.
     """
     names = [each.name for each in intensities()]
-    if not one_of(name, names):
+    if not is_one_of(name, names):
         raise InputError(f"measure must be one of {', '.join(names)}, but {shown(name)} was given.")
     return MEASURES[name]

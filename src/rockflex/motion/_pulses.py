@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import finite, one_of, positive, real_or_nan
+from rockflex._checks import checked_finite, checked_positive, is_one_of, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
@@ -72,9 +72,9 @@ def ricker_pulse(
     >>> rf.ricker_pulse(amplitude=3.0, period=1.0, kind="symmetric")
     GroundMotion('Ricker symmetric 3 m/s², T=1 s', 601 samples, dt=0.005 s, duration=3 s, pga=3 m/s²)
     """
-    if not one_of(kind, ("antisymmetric", "symmetric")):
+    if not is_one_of(kind, ("antisymmetric", "symmetric")):
         raise InputError(f'kind must be "antisymmetric" or "symmetric", but {shown(kind)} was given.')
-    positive("period", period, "s")
+    checked_positive("period", period, "s")
     periods = 2.0 if kind == "antisymmetric" else 1.5
     n, step = intervals("period", periods * period, dt)
     turns = np.arange(-n, n + 1) * (periods / n)
@@ -254,7 +254,7 @@ def quiet_motion(duration: float, dt: float = 0.005) -> GroundMotion:
 
 def intervals(name: str, length: float, dt: float) -> tuple[int, float]:
     """Return the number of intervals of a pulse and the sampling step in s."""
-    length, dt = positive(name, length, "s"), positive("dt", dt, "s")
+    length, dt = checked_positive(name, length, "s"), checked_positive("dt", dt, "s")
     # Two intervals at least: a motion has three samples or more.
     if length / dt > MAX_SAMPLES:
         raise InputError(
@@ -272,7 +272,7 @@ def _sine(n: int, turns: float) -> Float:
 
 def named_pulse(kind: str, amplitude: float, shape: Float, dt: float, detail: str, unit: str = "m/s²") -> GroundMotion:
     """Return the motion of a shape times an amplitude, named after both."""
-    amplitude = finite("amplitude", amplitude, unit)
+    amplitude = checked_finite("amplitude", amplitude, unit)
     with np.errstate(over="ignore"):  # samples that are not finite are rejected later
         samples = amplitude * shape
     return GroundMotion(samples, dt, name=f"{kind} {amplitude:g} {unit}, {detail}")
@@ -321,10 +321,10 @@ def mavroeidis_papageorgiou_pulse(
     >>> round(pulse.pgv, 3)
     1.0
     """
-    positive("period", period, "s")
+    checked_positive("period", period, "s")
     if not 1 < real_or_nan(gamma) < math.inf:
         raise InputError(f"gamma must be finite and above 1, but {shown(gamma)} was given. Usual values are 1 to 3.")
-    finite("nu", nu, "rad")
+    checked_finite("nu", nu, "rad")
     n, step = intervals("period", gamma * period, dt)
     envelope = np.pi * np.linspace(-1, 1, n + 1)
     phase = gamma * envelope + nu

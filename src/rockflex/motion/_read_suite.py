@@ -9,10 +9,10 @@ from typing import Literal, get_args
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._checks import positive
+from rockflex._checks import checked_positive
 from rockflex._errors import InputError, RecordWarning
-from rockflex._files import path_of
-from rockflex._shown import counted, listed, shown
+from rockflex._files import checked_file_path
+from rockflex._shown import first_texts_shown, number_with_noun, shown
 from rockflex.motion._cosmos import is_cosmos
 from rockflex.motion._esm import is_esm
 from rockflex.motion._ground_motion import GroundMotion, is_vertical
@@ -50,14 +50,14 @@ def files_of(paths: str | Path | Iterable[str | Path]) -> tuple[str, list[Path]]
         If there is no such directory, it holds no record, or something else is given.
     """
     if isinstance(paths, str | Path):
-        folder = path_of("paths", paths)
+        folder = checked_file_path("paths", paths)
         if not folder.is_dir():
             raise InputError(
                 f"{folder} is not a directory. Give a directory or a list of files; use read_motion for a single file."
             )
         name, files = folder.resolve().name, folder_files(folder)
     elif isinstance(paths, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
-        name, files = "", [path_of("paths", path) for path in paths]
+        name, files = "", [checked_file_path("paths", path) for path in paths]
     else:
         raise InputError(f"paths must be a directory or a sequence of files, but {type(paths).__name__} was given.")
     return name, sorted(files, key=lambda file: (file.name, str(file)))
@@ -122,9 +122,9 @@ def read_many(
         If units or dt are not valid, or `table` is no table about records.
     """
     given = _units_by_name(units)
-    step = None if dt is None else positive("dt", dt, "s")
+    step = None if dt is None else checked_positive("dt", dt, "s")
     if table is not None:
-        given = given.joined(read_table(path_of("table", table)))
+        given = given.joined(read_table(checked_file_path("table", table)))
     found: list[FileRead] = []
     for file in files:
         try:
@@ -421,20 +421,20 @@ def _warn_left_out(result: ChosenComponents) -> None:
         If none is left.
     """
     if result.boreholes:
-        count = counted(len(result.boreholes), "borehole component")
+        count = number_with_noun(len(result.boreholes), "borehole component")
         warnings.warn(
             f"Left out: {count} beneath records at the surface, {file_names(result.boreholes)}.",
             RecordWarning,
             stacklevel=4,
         )
     if result.copies:
-        names = listed([f"{path.name} (of {kept.name})" for path, kept in result.copies.items()])
-        count = counted(len(result.copies), "copy", "copies")
+        names = first_texts_shown([f"{path.name} (of {kept.name})" for path, kept in result.copies.items()])
+        count = number_with_noun(len(result.copies), "copy", "copies")
         warnings.warn(f"Left out: {count} of records in other files, {names}.", RecordWarning, stacklevel=4)
     if not result.vertical:
         return
     names = ", ".join(path.name for path in result.vertical)
-    components = counted(len(result.vertical), "vertical component")
+    components = number_with_noun(len(result.vertical), "vertical component")
     if not result.taken:
         raise InputError(
             f"No horizontal component was given, only {components}: {names}. Give horizontal ones; if a "

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from rockflex._checks import instance, positive
+from rockflex._checks import checked_instance, checked_positive
 from rockflex._errors import InputError, RecordWarning
-from rockflex._files import path_of
+from rockflex._files import checked_file_path
 from rockflex._shown import shown
 from rockflex.motion import _obspy
 from rockflex.motion._at2 import find_header, parse_at2
@@ -102,13 +102,13 @@ def read_motion(
     """
     unit, step = _options(units, dt)
     if component is not None:
-        instance("component", component, str)
-    file = path_of("path", path)
+        checked_instance("component", component, str)
+    file = checked_file_path("path", path)
     motion = select_component(file, components_in(file, unit, step), component, vertical=False)
     _warn_of_peak(file, motion)
     if vertical is None:
         return motion
-    other = path_of("vertical", vertical)
+    other = checked_file_path("vertical", vertical)
     upwards = select_component(other, components_in(other, unit, step), None, vertical=True)
     _warn_of_peak(other, upwards)
     return motion.with_vertical(upwards)
@@ -149,7 +149,7 @@ def read_components(path: str | Path, units: str | None = None, dt: float | None
     ['station-NS', 'station-EW', 'station-UD']
     """
     unit, step = _options(units, dt)
-    file = path_of("path", path)
+    file = checked_file_path("path", path)
     found = components_in(file, unit, step)
     for motion in found:
         _warn_of_peak(file, motion)
@@ -164,7 +164,7 @@ def read_plain(path: str | Path, units: str | None = None, dt: float | None = No
     InputError
         As for `read_motion`.
     """
-    file = path_of("path", path)
+    file = checked_file_path("path", path)
     return select_component(file, components_in(file, *_options(units, dt), use_obspy=False), None, vertical=False)
 
 
@@ -261,7 +261,7 @@ def _check_step(file: Path, motion: GroundMotion, dt: float | None) -> None:
 
 
 def _options(units: str | None, dt: float | None) -> tuple[Unit | None, float | None]:
-    return None if units is None else declared_unit(units), None if dt is None else positive("dt", dt, "s")
+    return None if units is None else declared_unit(units), None if dt is None else checked_positive("dt", dt, "s")
 
 
 def _warn_of_peak(file: Path, motion: GroundMotion) -> None:

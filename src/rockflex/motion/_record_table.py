@@ -13,7 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TypeAlias, TypeVar
 
-from rockflex._checks import positive
+from rockflex._checks import checked_positive
 from rockflex._errors import InputError
 from rockflex.motion._columns import is_excel, sheets_of
 from rockflex.motion._record_info import RecordInfo
@@ -213,7 +213,7 @@ def _table(file: Path, rows: Iterable[list[str]]) -> RecordTable | None:
                 if "units" in stated:
                     units.setdefault(name, declared_unit(stated["units"]))
                 if "dt" in stated and "units" in columns.values():
-                    steps.setdefault(name, positive("dt", _number(stated["dt"]) or 0.0, "s"))
+                    steps.setdefault(name, checked_positive("dt", _number(stated["dt"]) or 0.0, "s"))
             except InputError as error:
                 raise InputError(f"{file}, line {line}: {error}", field=error.field) from error
     return None if columns is None else RecordTable(by_number, by_file, units, steps, by_recording)

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import instance, real_or_nan
+from rockflex._checks import checked_instance, real_or_nan
 from rockflex._errors import InputError
-from rockflex._shown import listed, shown
+from rockflex._shown import first_texts_shown, shown
 from rockflex._values import Value
 from rockflex.engine.oscillator import rotated_peaks
 from rockflex.motion._ground_motion import GroundMotion, is_vertical
@@ -143,7 +143,7 @@ def _component_words(file: Path) -> dict[Key, str]:
 
 def file_names(files: Iterable[Path]) -> str:
     """Return the names of files, of the first ones if they are many."""
-    return listed([file.name for file in files])
+    return first_texts_shown([file.name for file in files])
 
 
 def _index(vertical: Mapping[Path, GroundMotion]) -> dict[Key, list[Path]]:
@@ -392,7 +392,7 @@ def rotated_spectrum(
     >>> spectrum.rotd50.round(2), spectrum.rotd100.round(2), spectrum.geometric_mean.round(2)
     (array([9.58]), array([13.06]), array([9.61]))
     """
-    one, other = instance("first", first, GroundMotion), instance("second", second, GroundMotion)
+    one, other = checked_instance("first", first, GroundMotion), checked_instance("second", second, GroundMotion)
     if abs(one.dt - other.dt) > 1e-9 * one.dt:
         raise InputError(
             f"first and second need the same time step, but {one.dt:g} s and {other.dt:g} s were given. Resample the "

@@ -11,10 +11,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite_vector, instance, one_of, positive, real_or_nan, whole_number
+from rockflex._checks import (
+    checked_finite_vector,
+    checked_instance,
+    checked_positive,
+    checked_whole_number,
+    is_one_of,
+    real_or_nan,
+)
 from rockflex._errors import InputError, RecordWarning
-from rockflex._html import HtmlTable, span
-from rockflex._shown import counted, few, listed, shown
+from rockflex._html import HtmlTable, value_range_text
+from rockflex._shown import few_texts_shown, first_texts_shown, number_with_noun, shown
 from rockflex._values import Value
 from rockflex.motion._ground_motion import GroundMotion, check_horizontal
 from rockflex.motion._recordings import Combination, Recording, horizontal_pairs
@@ -172,16 +179,16 @@ class Selection(HtmlTable, Value, Generic[S]):
 
     def __repr__(self) -> str:
         return (
-            f"Selection({counted(len(self.names), 'record')}, misfit of the mean {self.misfit:.2g}, "
+            f"Selection({number_with_noun(len(self.names), 'record')}, misfit of the mean {self.misfit:.2g}, "
             f"least mean/target {self.least_ratio:.2g})"
         )
 
     def _shown_as(self) -> Mapping[str, Any]:
         return {
-            "records": f"{len(self.names)}: {few([' + '.join(names) for names in self.names])}",
+            "records": f"{len(self.names)}: {few_texts_shown([' + '.join(names) for names in self.names])}",
             "measure": self.measure,
-            "periods": f"{span(self.periods)} s",
-            "factors": span(self.factors),
+            "periods": f"{value_range_text(self.periods)} s",
+            "factors": value_range_text(self.factors),
             "misfit of the mean": self.misfit,
             "least mean/target": self.least_ratio,
             "mean/target at a period of zero": None if math.isnan(self.zero_period_ratio) else self.zero_period_ratio,
@@ -301,21 +308,21 @@ def select_records(
     motions: Sequence[GroundMotion], target: TargetSpectrum, n: int, periods: ArrayLike, options: SelectionOptions
 ) -> tuple[Array, list[Recording], Array, Array]:
     """Return the periods, the chosen records, unscaled, their factors and their scaled spectra; see `Suite.select`."""
-    fitted = instance("target", target, TargetSpectrum)
+    fitted = checked_instance("target", target, TargetSpectrum)
     examined = comparison_periods(periods)
     aim = fitted.at(examined)
-    if not one_of(options.measure, get_args(Combination)):
+    if not is_one_of(options.measure, get_args(Combination)):
         words = ", ".join(map(repr, get_args(Combination)))
         raise InputError(f"measure must be one of {words}, but {shown(options.measure)} was given.", field="measure")
     low, high = _checked_scale_limits(options.scale_limits)
     weight = _checked_weight("record_weight", options.record_weight)
     caps = [
-        (name, None if most is None else whole_number(name, most, 1))
+        (name, None if most is None else checked_whole_number(name, most, 1))
         for name, most in (("per_event", options.per_event), ("per_station", options.per_station))
     ]
     check_horizontal(*motions)
     records = _candidates(motions, options.measure)
-    count = whole_number("n", n, 1)
+    count = checked_whole_number("n", n, 1)
     if count > len(records):
         kind = "records" if options.measure == "component" else "pairs"
         raise InputError(f"n must be at most {len(records)}, the number of {kind}, but {count} was given.", field="n")
@@ -334,7 +341,9 @@ def select_records(
         )
     factors, unscaled = factors[found], unscaled[found]
     if options.least_ratio is not None:
-        factors = _raised_factors(factors, unscaled / aim, positive("least_ratio", options.least_ratio, ""), high)
+        factors = _raised_factors(
+            factors, unscaled / aim, checked_positive("least_ratio", options.least_ratio, ""), high
+        )
     return examined, [records[i] for i in found], factors, factors[:, None] * unscaled
 
 
@@ -346,7 +355,7 @@ def _checked_weight(name: str, given: float) -> float:
 
 
 def _checked_scale_limits(given: tuple[float, float]) -> tuple[float, float]:
-    limits = finite_vector("scale_limits", given, "")
+    limits = checked_finite_vector("scale_limits", given, "")
     if limits.size != 2 or not 0.0 < limits[0] <= limits[1]:
         raise InputError(
             f"scale_limits must be the smallest and the largest factor, both positive, but {shown(given)} was given.",
@@ -378,9 +387,9 @@ def _candidates(motions: Sequence[GroundMotion], measure: Combination) -> list[R
             field="measure",
         )
     if single:
-        count = counted(len(single), "motion that is", "motions that are")
+        count = number_with_noun(len(single), "motion that is", "motions that are")
         warnings.warn(
-            f"Left out: {count} not one of two components with the same time step, {listed(single, 5)}.",
+            f"Left out: {count} not one of two components with the same time step, {first_texts_shown(single, 5)}.",
             RecordWarning,
             stacklevel=4,
         )

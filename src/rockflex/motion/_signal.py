@@ -6,7 +6,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from rockflex._arrays import Array
-from rockflex._checks import positive, real_or_nan, whole_number
+from rockflex._checks import checked_positive, checked_whole_number, real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
@@ -100,14 +100,14 @@ def _cumulative(increments: Array) -> Array:
 
 def refine(a: Array, k: int) -> Array:
     """Split every interval into `k` collinear ones."""
-    k = whole_number("k", k, 1, MAX_REFINEMENT)
+    k = checked_whole_number("k", k, 1, MAX_REFINEMENT)
     inside = a[:-1, None] + np.diff(a)[:, None] * (np.arange(k) / k)
     return np.append(inside.ravel(), a[-1])
 
 
 def refinement_of(old: float, new: float) -> int:
     """Return the whole number old/new, or raise an error that suggests valid steps."""
-    positive("dt", new, "s")
+    checked_positive("dt", new, "s")
     ratio = min(old / new, MAX_REFINEMENT)
     k = round(ratio)
     if k >= 1 and abs(ratio - k) <= 1e-9:
@@ -122,7 +122,7 @@ def refinement_of(old: float, new: float) -> int:
 
 def baseline_correct(a: Array, dt: float, degree: int) -> Array:
     """Remove the polynomial whose exact integral fits the velocity best (least squares at the samples)."""
-    degree = whole_number("degree", degree, 0)
+    degree = checked_whole_number("degree", degree, 0)
     if degree > a.size - 2:
         raise InputError(
             f"degree must be at most {a.size - 2} for {a.size} samples, but {degree} was given: "
@@ -145,7 +145,7 @@ def band_pass(a: Array, dt: float, low: float, high: float, order: int) -> Array
             f"The corner frequencies must satisfy 0 < low < high < {nyquist:g} Hz, the Nyquist frequency "
             f"of dt = {dt:g} s, but low={shown(low)} and high={shown(high)} were given."
         )
-    order = whole_number("order", order, 1, 100)
+    order = checked_whole_number("order", order, 1, 100)
     try:
         sections = butter(order, (low, high), btype="bandpass", output="sos", fs=1 / dt)
     except ValueError as error:

@@ -7,7 +7,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import all_positive, finite_vector, in_range, instance, positive
+from rockflex._checks import (
+    check_all_positive,
+    checked_finite_vector,
+    checked_in_range,
+    checked_instance,
+    checked_positive,
+)
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
@@ -25,7 +31,7 @@ def checked_periods(periods: ArrayLike) -> Array:
     InputError
         If one is negative, too short or not finite.
     """
-    period = finite_vector("periods", periods, "s")
+    period = checked_finite_vector("periods", periods, "s")
     bad = np.flatnonzero((period < 0) | ((period > 0) & (period < MIN_PERIOD)))
     if bad.size:
         raise InputError(
@@ -37,7 +43,7 @@ def checked_periods(periods: ArrayLike) -> Array:
 
 def checked_damping(damping_ratio: float) -> float:
     """Return a fraction of critical damping, 0 <= ζ < 1, or raise an InputError."""
-    return in_range("damping_ratio", damping_ratio, 0.0, 1.0, hint="It is a fraction: 5 % is 0.05.")
+    return checked_in_range("damping_ratio", damping_ratio, 0.0, 1.0, hint="It is a fraction: 5 % is 0.05.")
 
 
 def comparison_periods(periods: ArrayLike) -> Array:
@@ -48,7 +54,7 @@ def comparison_periods(periods: ArrayLike) -> Array:
     InputError
         If there is none, the ends are not in order, or one is negative or not finite.
     """
-    given = finite_vector("periods", periods, "s")
+    given = checked_finite_vector("periods", periods, "s")
     if given.size == 2:
         if not 0.0 < given[0] < given[1]:
             raise InputError(
@@ -161,7 +167,7 @@ class TargetSpectrum(Value):
     name: str = ""
 
     def __init__(self, periods: ArrayLike, sa: ArrayLike, damping_ratio: float = 0.05, name: str = "") -> None:
-        period, ordinates = finite_vector("periods", periods, "s"), finite_vector("sa", sa, "m/s²")
+        period, ordinates = checked_finite_vector("periods", periods, "s"), checked_finite_vector("sa", sa, "m/s²")
         if period.size < 2 or period.size != ordinates.size:
             raise InputError(
                 "periods and sa must have the same length of at least 2, but "
@@ -174,9 +180,9 @@ class TargetSpectrum(Value):
                 "the table by period, and keep each period once.",
                 field="periods",
             )
-        all_positive("sa", ordinates, "m/s²")
+        check_all_positive("sa", ordinates, "m/s²")
         zeta = checked_damping(damping_ratio)
-        vars(self).update(periods=period, sa=ordinates, damping_ratio=zeta, name=instance("name", name, str))
+        vars(self).update(periods=period, sa=ordinates, damping_ratio=zeta, name=checked_instance("name", name, str))
 
     def __repr__(self) -> str:
         span = f"{self.periods[0]:g} to {self.periods[-1]:g} s"
@@ -190,7 +196,7 @@ class TargetSpectrum(Value):
         InputError
             If a period is outside the table.
         """
-        period = finite_vector("periods", periods, "s")
+        period = checked_finite_vector("periods", periods, "s")
         outside = (period < self.periods[0]) | (period > self.periods[-1])
         if outside.any():
             raise InputError(
@@ -217,7 +223,7 @@ class TargetSpectrum(Value):
             If the factor is not positive, or an ordinate becomes too large.
         """
         with np.errstate(over="ignore"):
-            ordinates = positive("factor", factor, "") * self.sa
+            ordinates = checked_positive("factor", factor, "") * self.sa
         return TargetSpectrum(self.periods, ordinates, self.damping_ratio, self.name)
 
 

@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array
-from rockflex._checks import instance, one_of
+from rockflex._checks import checked_instance, is_one_of
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._html import HtmlTable, span
-from rockflex._shown import counted, few, shown
+from rockflex._html import HtmlTable, value_range_text
+from rockflex._shown import few_texts_shown, number_with_noun, shown
 from rockflex._values import Value
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
@@ -71,7 +71,7 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
                 f"motions must be a sequence of GroundMotion objects, but {type(motions).__name__} was given."
             )
         members = tuple(motions)
-        instance("name", name, str)
+        checked_instance("name", name, str)
         if not members:
             raise InputError("A suite needs at least one motion, but none was given.")
         for motion in members:
@@ -92,7 +92,9 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
         return tuple(motion.name for motion in self.motions)
 
     def __repr__(self) -> str:
-        return f"Suite({self.name!r}, {counted(len(self), 'motion')}: {self.names[0]!r} ... {self.names[-1]!r})"
+        return (
+            f"Suite({self.name!r}, {number_with_noun(len(self), 'motion')}: {self.names[0]!r} ... {self.names[-1]!r})"
+        )
 
     def _shown_as(self) -> Mapping[str, Any]:
         known = [motion.metadata for motion in self if motion.metadata is not None]
@@ -100,11 +102,11 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
         vertical = sum(motion.vertical is not None for motion in self)
         return {
             "name": self.name or None,
-            "motions": f"{len(self)}: {few(self.names)}",
-            "pga": f"{span(motion.pga for motion in self)} m/s²",
-            "pgv": f"{span(motion.pgv for motion in self)} m/s",
-            "duration": f"{span(motion.duration for motion in self)} s",
-            **{name: span(values) for name, values in facts.items() if values and None not in values},
+            "motions": f"{len(self)}: {few_texts_shown(self.names)}",
+            "pga": f"{value_range_text(motion.pga for motion in self)} m/s²",
+            "pgv": f"{value_range_text(motion.pgv for motion in self)} m/s",
+            "duration": f"{value_range_text(motion.duration for motion in self)} s",
+            **{name: value_range_text(values) for name, values in facts.items() if values and None not in values},
             "vertical components": vertical or None,
         }
 
@@ -302,7 +304,7 @@ def load_suite(name: str) -> Suite:
     >>> suite["FF-12-a"]
     GroundMotion('FF-12-a', 11186 samples, dt=0.0025 s, duration=27.9625 s, pga=2.775 m/s²)
     """
-    if not one_of(name, SUITE_NAMES):
+    if not is_one_of(name, SUITE_NAMES):
         near = get_close_matches(shown(name), SUITE_NAMES, n=1)
         hint = f" Did you mean {near[0]!r}?" if near else ""
         names = ", ".join(map(repr, SUITE_NAMES))

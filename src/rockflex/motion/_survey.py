@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockflex._shown import counted
+from rockflex._shown import number_with_noun
 from rockflex._values import Value
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._read_suite import (
@@ -230,7 +230,7 @@ def _survey(
 def _entries(each: FileRead, result: ChosenComponents, names: list[str]) -> list[SurveyEntry]:
     if each.table is not None:
         missing = [Path(name) for name in each.table.missing(names)]
-        count = counted(len(missing), "file that is", "files that are")
+        count = number_with_noun(len(missing), "file that is", "files that are")
         told = f"; it lists {count} not there: {file_names(missing)}" if missing else ""
         reason = f"a table about the records{told}"
         return [SurveyEntry(file=each.file.name, taken=False, reason=reason, format="table")]

@@ -10,8 +10,8 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._files import check_regular
-from rockflex._shown import counted, shown
+from rockflex._files import check_regular_file
+from rockflex._shown import number_with_noun, shown
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 
@@ -101,7 +101,7 @@ def read_content(path: str | Path) -> bytes:
     file = Path(path)
     if file.is_dir():
         raise InputError(f"{file} is a directory. Read all its records with read_suite({shown(str(file))}).")
-    check_regular(file)
+    check_regular_file(file)
     try:
         return file.read_bytes()
     except FileNotFoundError as error:
@@ -171,7 +171,7 @@ def non_negative(value: float | None) -> float | None:
 def wrong_count(file: Path, n_found: int, n_stated: float, stated: str) -> InputError:
     """Return the error of a file with fewer or more values than its header states."""
     fault = "is truncated" if n_found < n_stated else "contains too many values"
-    found = counted(n_found, "value follows", "values follow")
+    found = number_with_noun(n_found, "value follows", "values follow")
     return InputError(f"{file} {fault}: its header says {stated}, but {found}. Download the record again.")
 
 

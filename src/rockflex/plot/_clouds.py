@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rockflex._arrays import Array
-from rockflex._cases import cases
+from rockflex._cases import runs_by_case
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.fragility import NOMINAL, OVERTURNING, ROCKED, CloudFit, fit_each_cloud, rocked
@@ -139,7 +139,7 @@ def _clouds(runs: "pd.DataFrame", quantity: str, measure: str, threshold: float,
     fit_of = {(fit.structure, fit.model): fit for fit in fits}
     _check_solved(runs[runs["status"].notna()], measure)
     clouds: list[_Cloud] = []
-    for structure, model, group in cases(runs):
+    for structure, model, group in runs_by_case(runs):
         solved = group[group["status"].notna()]
         fell = (NOMINAL if nominal else OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
         rocks = ~fell & rocked(solved, threshold).to_numpy(dtype=bool)

@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockflex._checks import instance, one_of
+from rockflex._checks import checked_instance, is_one_of
 from rockflex._errors import InputError
-from rockflex._numbers import prefixed, short
+from rockflex._number_format import short_number, unit_with_prefix
 from rockflex._shown import shown
 from rockflex.fragility import OVERTURNED, OVERTURNING, beyond, symbol_of_nominal
 from rockflex.plot._study_tables import MARKERS, check_columns, legend_handles, names_in, structure_panels
@@ -136,7 +136,9 @@ def plot_design(
             _slenderness(axes, table)
         handles = legend_handles({literal(tendon): style for tendon, style in styles.items()})
         if target is not None:
-            handles.append(Line2D([], [], color=BLUE, linewidth=0.8, dashes=(5, 3), label=f"target {short(target)}"))
+            handles.append(
+                Line2D([], [], color=BLUE, linewidth=0.8, dashes=(5, 3), label=f"target {short_number(target)}")
+            )
         legend_above(figure, handles)
     return figure
 
@@ -254,7 +256,7 @@ class _Scale:
         if not designs[self.column].to_numpy(float).any():  # factors on forces of zero
             self.column, words, unit = variable, variable.replace("_", " "), ""
         forces = unit == "N"
-        self.divisor, self.unit = prefixed(float(designs[self.column].max()), unit) if forces else (1.0, unit)
+        self.divisor, self.unit = unit_with_prefix(float(designs[self.column].max()), unit) if forces else (1.0, unit)
         self.name = f"{words} [{self.unit}]" if unit else words
 
     def of(self, table: "pd.DataFrame") -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
@@ -306,8 +308,8 @@ def plot_design_search(
     >>> [axes.get_xlabel() for axes in figure.axes]
     ['half width $B$ [m]', 'half width $B$ [m]']
     """
-    instance("found", found, BestDesign)
-    if not one_of(theme, THEMES):
+    checked_instance("found", found, BestDesign)
+    if not is_one_of(theme, THEMES):
         raise InputError(f'theme must be "light" or "dark", but {shown(theme)} was given.')
     between = Interpolated.of(found)
     varied = [*between.given]
@@ -347,11 +349,11 @@ def _best_text(found: BestDesign) -> str:
     if found.best is None:
         return "No design meets all targets"
     best = found.designs.iloc[found.best]
-    words = [f"B = {short(best['half_width'])} m"]
+    words = [f"B = {short_number(best['half_width'])} m"]
     for column, symbol in (("prestress", "$ΣF_0$"), ("dissipator_force", "$ΣF_y$")):
         if best[column] > 0.0:
-            divisor, unit = prefixed(float(best[column]), "N")
-            words.append(f"{symbol} = {short(best[column] / divisor)} {unit}")
+            divisor, unit = unit_with_prefix(float(best[column]), "N")
+            words.append(f"{symbol} = {short_number(best[column] / divisor)} {unit}")
     return f"Cheapest: {', '.join(words)}; {literal(found.governs)} governs"
 
 
@@ -399,7 +401,7 @@ def _draw_plane(
         lines = axes.contour(
             x, y, cost.reshape(shape), levels=6, colors=[_text_color()], linewidths=0.6, linestyles="dotted"
         )
-        axes.clabel(lines, fontsize=SMALL, fmt=short)
+        axes.clabel(lines, fontsize=SMALL, fmt=short_number)
     others = [name for name in between.given if name not in names]
     near = np.all([np.isclose(designs[name], values[name][0]) for name in others], axis=0) if others else slice(None)
     there = designs[near] if others else designs
@@ -407,7 +409,9 @@ def _draw_plane(
     if found.best is not None:
         _mark_best(axes, float(across.of(designs)[place]), float(up.of(designs)[place]))
     fixed = [_Scale(name, designs) for name in others]
-    words = [f"{s.name.rpartition(' [')[0] or s.name} = {short(float(s.of(designs)[place]))} {s.unit}" for s in fixed]
+    words = [
+        f"{s.name.rpartition(' [')[0] or s.name} = {short_number(float(s.of(designs)[place]))} {s.unit}" for s in fixed
+    ]
     axes.set(xlabel=across.name, ylabel=up.name, title=", ".join(words))
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
-from rockflex._numbers import prefixed
+from rockflex._number_format import unit_with_prefix
 from rockflex.modal import Tendon
 from rockflex.plot._curves import curves_of
 from rockflex.plot._style import (
@@ -75,7 +75,7 @@ def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
     layers = [layer for layer in layers if np.any(layer[2] != 0.0)]
     start = float(ledger.stored[0]) + released + settled
     supply = ledger.input[drawn] + start
-    factor, unit = prefixed(float(np.max(np.abs(supply))), "J")
+    factor, unit = unit_with_prefix(float(np.max(np.abs(supply))), "J")
     time = history.time[drawn]
     with styled(size=size):
         figure = new_figure(6.3, 3.4)

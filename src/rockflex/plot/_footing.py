@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._numbers import prefixed
+from rockflex._number_format import unit_with_prefix
 from rockflex.modal import RockingProperties, Springs
 from rockflex.plot._curves import curves_of, title_of
 from rockflex.plot._style import BLACK, BLUE, GRAY, RED, Size, label_panel, literal, new_figure, styled
@@ -98,7 +98,7 @@ def _draw_edges(axes: Axes, history: History) -> None:
 def _draw_soil(figure: Figure, axes: Axes, history: History, springs: Springs) -> None:
     area = springs.area
     name, pushes = ("force", history.spring_force) if area is None else ("pressure", history.soil_pressure)
-    factor, unit = prefixed(float(pushes.max()), "N" if area is None else "Pa")
+    factor, unit = unit_with_prefix(float(pushes.max()), "N" if area is None else "Pa")
     places = springs.positions
     if places.size <= MAX_LINES:
         for place, force, color in zip(places, pushes.T / factor, _COLORS, strict=False):

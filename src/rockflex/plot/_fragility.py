@@ -10,11 +10,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from rockflex._arrays import Array, Bools
-from rockflex._cases import rows_of
-from rockflex._checks import whole_number
+from rockflex._cases import runs_of_case
+from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError, SolverError
-from rockflex._numbers import short
-from rockflex._shown import counted
+from rockflex._number_format import short_number
+from rockflex._shown import number_with_noun
 from rockflex.fragility import (
     CloudFits,
     LogisticFit,
@@ -121,7 +121,7 @@ def plot_fragility(
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('PGA [m/s²]', '$P(\\mathrm{uplift},\\ θ_{\\mathrm{max}}>10^{-4}\\ \\mathrm{rad})$')
     """
-    groups = whole_number("bins", bins, 0)
+    groups = checked_whole_number("bins", bins, 0)
     fits, runs = _fits(clouds, measure, groups)
     styles = styles_of(names_in(fit.model for fit in fits))
     names = names_in(fit.structure for fit in fits)
@@ -137,7 +137,7 @@ def plot_fragility(
                 style, marker = styles[fit.model]
                 _draw_outcomes(axes, fit, style, limit, confidence, overturning=overturning)
                 if runs is not None and groups:
-                    _mark_observed(axes, rows_of(runs, fit.structure, fit.model), fit, marker, style.color, groups)
+                    _mark_observed(axes, runs_of_case(runs, fit.structure, fit.model), fit, marker, style.color, groups)
             if lowest is not None:
                 axes.axvspan(0.0, lowest, color=SHADE, linewidth=0.0, label="_no runs")
             failed = sum(fit.n_failed for fit in fits if fit.structure == name)
@@ -302,7 +302,7 @@ def plot_stripes(
                     text = _draw_stripes(
                         axes,
                         stripes,
-                        _fit_of_stripes(rows_of(runs, name, model), limit),
+                        _fit_of_stripes(runs_of_case(runs, name, model), limit),
                         model,
                         style,
                         marker,
@@ -416,7 +416,7 @@ def plot_ida(
 
     capacities = incremental_capacities(runs, measure)
     groups = [(name, model) for name in names_in(runs["structure"]) for model in names_in(runs["model"])]
-    groups = [group for group in groups if len(rows_of(runs, *group))]
+    groups = [group for group in groups if len(runs_of_case(runs, *group))]
     if len(groups) > _MAX_ROWS:
         raise InputError(
             f"{len(groups)} structures and models are too many for one figure; {_MAX_ROWS} fit. Plot fewer at a time."
@@ -427,8 +427,8 @@ def plot_ida(
         grid = figure.subplots(2 * len(groups) // across, across, sharex=True, squeeze=False).reshape(-1, 2)
         for row, (structure, model) in enumerate(groups):
             left, right = grid[row]
-            found = _capacities(rows_of(capacities, structure, model))
-            failed = _draw_curves(left, rows_of(runs, structure, model), measure)
+            found = _capacities(runs_of_case(capacities, structure, model))
+            failed = _draw_curves(left, runs_of_case(runs, structure, model), measure)
             _draw_capacities(right, found, confidence, failed)
             left.set(title=literal(f"{structure}, {model}"), ylabel=r"$θ_{\mathrm{max}}$ [rad]")
             right.set_ylabel("P(overturning)")
@@ -491,7 +491,7 @@ def _draw_curves(axes: Axes, runs: "pd.DataFrame", measure: str) -> int:
 def _draw_capacities(axes: Axes, found: _Capacities, confidence: float | None, failed: int) -> None:
     """Draw steps of the observed fraction, the lognormal curve, and the numbers."""
     axes.set_ylim(-0.03, 1.03)
-    lines = [counted(found.reached.size, "record")]
+    lines = [number_with_noun(found.reached.size, "record")]
     if found.censored.any():
         lines[0] += f", {int(found.censored.sum())} never overturned"
     if (~found.censored).any():
@@ -503,10 +503,10 @@ def _draw_capacities(axes: Axes, found: _Capacities, confidence: float | None, f
         axes.plot(im, found.fit.probability(im), color=RED, linestyle="--", linewidth=1.1, label="_fit")
         if confidence is not None and found.fit.covariance is not None:
             axes.fill_between(im, *found.fit.band(im, confidence), color=RED, alpha=0.13, linewidth=0.0, label="_band")
-        lines.append(f"median {short(found.fit.median)}, β = {found.fit.beta:.2f}")
+        lines.append(f"median {short_number(found.fit.median)}, β = {found.fit.beta:.2f}")
     lines.append(f"{found.resurrected} with resurrections")
     if failed:
-        lines.append(f"{counted(failed, 'run')} failed")
+        lines.append(f"{number_with_noun(failed, 'run')} failed")
     axes.text(
         0.97, 0.05, "\n".join(lines), transform=axes.transAxes, ha="right", fontsize=SMALL, linespacing=1.3,
         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 1.0},

@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._numbers import prefixed, short
+from rockflex._number_format import short_number, unit_with_prefix
 from rockflex._shown import shown
 from rockflex.plot._curves import Curve, curves_of, rotation_limit, time_limits, title_of
 from rockflex.plot._style import (
@@ -94,7 +94,7 @@ def axis_scale(quantity: Quantity, curves: list[Curve]) -> tuple[float, str, flo
     largest = max(_largest(curve, quantity) for curve in curves)
     if quantity.name == "rotation":
         largest = rotation_limit(curves)
-    factor, unit = prefixed(largest, quantity.unit) if quantity.prefixed else (1.0, quantity.unit)
+    factor, unit = unit_with_prefix(largest, quantity.unit) if quantity.prefixed else (1.0, quantity.unit)
     return factor, unit, _MARGIN * largest / factor if largest > 0.0 else 1e-3
 
 
@@ -162,7 +162,7 @@ def _mark_peak(axes: Axes, quantity: Quantity, curve: Curve, factor: float) -> s
         [when], [side * peak], "o", color=curve.style.color, markersize=3.5, markerfacecolor="white",
         markeredgewidth=0.9, zorder=3.0,
     )  # fmt: skip
-    return f"{short(peak)} at {when:.2f} s"
+    return f"{short_number(peak)} at {when:.2f} s"
 
 
 def _peak_time_and_sign(quantity: Quantity, curve: Curve) -> tuple[float, float]:

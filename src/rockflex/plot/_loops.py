@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._numbers import prefixed, short
+from rockflex._number_format import short_number, unit_with_prefix
 from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.plot._curves import Curve, curves_of, title_of
 from rockflex.plot._history import add_legend, axis_scale, draw_panel, quantities_of, shade_uplifts
@@ -174,7 +174,7 @@ def is_path_independent(properties: RockingProperties) -> bool:
 
 def name_of(element: BaseElement, number: int) -> str:
     """Name of an element in a figure, with its number, counted from 1, and its position."""
-    return f"{number} {_ELEMENT_NAMES[type(element)]}, x = {short(element.position)} m"
+    return f"{number} {_ELEMENT_NAMES[type(element)]}, x = {short_number(element.position)} m"
 
 
 def plot_loops(
@@ -249,7 +249,7 @@ def plot_loops(
 
 def _draw_base(axes: Axes, loops: BaseLoops) -> None:
     moment = loops.moment
-    factor, unit = prefixed(max(map(abs, (*moment, 0.0))), "N m")
+    factor, unit = unit_with_prefix(max(map(abs, (*moment, 0.0))), "N m")
     axes.plot(loops.rotation, moment / factor, color=BLACK, linewidth=1.4, label="total", zorder=3.0)
     if loops.elements or loops.springs is not None:
         axes.plot(loops.rotation, loops.weight / factor, color=GRAY, linewidth=0.9, label="weight")
@@ -276,7 +276,7 @@ def _draw_edges(axes: Axes, loops: BaseLoops) -> None:
 
 def _draw_element(axes: Axes, loops: BaseLoops, place: int) -> None:
     force = loops.force[:, place]
-    factor, unit = prefixed(max(map(abs, (*force, 0.0))), "N")
+    factor, unit = unit_with_prefix(max(map(abs, (*force, 0.0))), "N")
     axes.plot(loops.elongation[:, place], force / factor, color=_color(place), linewidth=1.1)
     axes.set(title=name_of(loops.elements[place], place + 1), xlabel="δ [m]", ylabel=f"F [{unit}]")
     axes.locator_params(axis="x", nbins=4)

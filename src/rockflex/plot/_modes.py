@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rockflex._arrays import Array
-from rockflex._checks import positive, whole_number
+from rockflex._checks import checked_positive, checked_whole_number
 from rockflex._errors import InputError
-from rockflex._numbers import short
+from rockflex._number_format import short_number
 from rockflex._shown import shown
 from rockflex.modal import (
     ModalProperties,
@@ -154,11 +154,11 @@ def _rounded_down(value: float) -> float:
 def _describe(modes: ModalProperties, n: int, total: float | None) -> str:
     mass, height = float(modes.effective_mass[n]), float(modes.effective_height[n])
     if total is None:
-        share = rf"$m^*_{{{n + 1}}}$ = {short(mass)} kg"
+        share = rf"$m^*_{{{n + 1}}}$ = {short_number(mass)} kg"
     else:
-        share = rf"$m^*_{{{n + 1}}}/Σm$ = {short(100.0 * mass / total)} %"
-    arm = f"{short(height)} m" if math.isfinite(height) else "none"
-    return f"$T_{{{n + 1}}}$ = {short(float(modes.period[n]))} s\n{share}\n" rf"$h^*_{{{n + 1}}}$ = {arm}"
+        share = rf"$m^*_{{{n + 1}}}/Σm$ = {short_number(100.0 * mass / total)} %"
+    arm = f"{short_number(height)} m" if math.isfinite(height) else "none"
+    return f"$T_{{{n + 1}}}$ = {short_number(float(modes.period[n]))} s\n{share}\n" rf"$h^*_{{{n + 1}}}$ = {arm}"
 
 
 def plot_frequency_equation(
@@ -215,7 +215,7 @@ def plot_frequency_equation(
         raise InputError(
             "There is nothing to plot. Give at least one structure, and one number of modes (None for all)."
         )
-    end = None if highest is None else positive("highest", highest, "ω/ω_1")
+    end = None if highest is None else checked_positive("highest", highest, "ω/ω_1")
     models = {name: _models_of(each, n_modes, side) for name, each in named.items()}
     styles = model_styles(label for each in models.values() for label in each)
     with styled(size=size):
@@ -244,7 +244,7 @@ def _models_of(
         raise InputError("A structure without modes has no frequency equation to plot. Give one with modes.")
     found: dict[str, tuple[RockingProperties, UpliftedModes]] = {}
     for each in n_modes:
-        count = full.n_modes if each is None else whole_number("n_modes", each, 1, full.n_modes)
+        count = full.n_modes if each is None else checked_whole_number("n_modes", each, 1, full.n_modes)
         truncated = full.truncated(count)
         found["MDOF-S" if each is None else f"{count + 1}DOF-S"] = (truncated, uplifted_modes(truncated, side=side))
     return found
@@ -346,7 +346,7 @@ def plot_frequency_ratios(
     """
     named: Mapping[str, pd.DataFrame] = tables if isinstance(tables, Mapping) else {"": tables}
     bounds = limits if isinstance(limits, Mapping) else {} if limits is None else dict.fromkeys(named, limits)
-    shown = [whole_number("modes", mode, 1) for mode in modes]
+    shown = [checked_whole_number("modes", mode, 1) for mode in modes]
     _check_ratios(named, bounds, shown)
     styles = model_styles(str(model) for table in named.values() for model in table["model"])
     dashes = dict(zip(named, _DASHES, strict=False))

@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rockflex._arrays import Array
-from rockflex._checks import positive
+from rockflex._checks import checked_positive
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._numbers import prefixed, short
+from rockflex._number_format import short_number, unit_with_prefix
 from rockflex.modal import Pivot, RockingProperties
 from rockflex.plot._curves import Curve, curves_of, rotation_limit
 from rockflex.plot._loops import is_path_independent, resistance_of
@@ -93,7 +93,7 @@ def plot_moment_rotation(
         )
     rotation = _LIMIT * (rotation_limit(curves) or max(map(whole_line, curves)))
     largest = max(largest_moment(curve) for curve in curves)
-    factor, unit = prefixed(largest, "N m")
+    factor, unit = unit_with_prefix(largest, "N m")
     with styled(size=size):
         columns = 1 if is_narrow() else min(len(curves), _PER_ROW)
         rows = math.ceil(len(curves) / columns)
@@ -217,12 +217,12 @@ def plot_moment_rotation_laws(
     zeros = [side.balance_rotation for side in sides]
     vanishing = [zero for zero in zeros if math.isfinite(zero)]
     default = _MARGIN * max(vanishing) if vanishing else max(each.nominal_overturning_rotation for each in sides)
-    end = default if rotation is None else positive("rotation", rotation, "rad")
-    stiffness = p.l0r * GRAVITY if spring is None else positive("spring", spring, "N m/rad")
+    end = default if rotation is None else checked_positive("rotation", rotation, "rad")
+    stiffness = p.l0r * GRAVITY if spring is None else checked_positive("spring", spring, "N m/rad")
     pushes = [_push(p, side, end) for side in (1, -1)]
     starts, lasts = ([moment[place] for _, moment in pushes] for place in (0, -1))
     largest = max(float(np.max(np.abs(moment))) for _, moment in pushes)
-    factor, unit = prefixed(largest, "N m")
+    factor, unit = unit_with_prefix(largest, "N m")
     line = is_path_independent(p)
     if not line:
         zeros = [_first_zero(*push) for push in pushes]
@@ -261,7 +261,7 @@ def plot_moment_rotation_laws(
         if not p.symmetric:
             _beside(right, resisting[1], -starts[1], left=False)
             for rotation in crossings:
-                _above(right, f"{short(rotation)} rad", rotation)
+                _above(right, f"{short_number(rotation)} rad", rotation)
         lines = (slope, zero) if corners else (zero, slope, resisting[0])
         at = 0.48 if low and not p.symmetric else None  # between the axis and the lower corner
         _note(right, "\n".join(filter(None, lines)), low=low, at=at)
@@ -294,7 +294,7 @@ def _vanishing(zeros: list[float], end: float, *, symmetric: bool) -> str:
     """Text about the rotations at which M vanishes, if they are shown."""
     if symmetric:
         if zeros[0] <= end:
-            return f"$M$ = 0 at ±{short(zeros[0])} rad"
+            return f"$M$ = 0 at ±{short_number(zeros[0])} rad"
         return "$M$ does not vanish" if math.isinf(zeros[0]) else ""
     # Written beside the marks, as each side has its own.
     return "$M$ does not vanish" if all(map(math.isinf, zeros)) else ""
@@ -305,8 +305,8 @@ def _each(values: list[str], *, symmetric: bool) -> str:
 
 
 def _with_unit(value: float, unit: str) -> str:
-    factor, named = prefixed(value, unit)
-    return f"{short(value / factor)} {named}"
+    factor, named = unit_with_prefix(value, unit)
+    return f"{short_number(value / factor)} {named}"
 
 
 def _beside(axes: Axes, text: str, moment: float, *, left: bool) -> None:

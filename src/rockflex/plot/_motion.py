@@ -10,8 +10,8 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._numbers import short
-from rockflex._shown import counted
+from rockflex._number_format import short_number
+from rockflex._shown import number_with_noun
 from rockflex.motion import MEASURES, GroundMotion, Selection, Shaking
 from rockflex.plot._style import (
     BLACK,
@@ -80,13 +80,19 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
     spectrum = motion.spectrum(_PERIODS, _DAMPING)
     first = motion.significant_duration(0.0, 0.05)
     histories = [
-        ("a", "m/s²", motion.acceleration, f"{_measure_text('pga', motion)} ({short(motion.pga / GRAVITY)} g)"),
+        ("a", "m/s²", motion.acceleration, f"{_measure_text('pga', motion)} ({short_number(motion.pga / GRAVITY)} g)"),
         ("v", "m/s", motion.velocity, _measure_text("pgv", motion)),
         ("d", "m", motion.displacement, _measure_text("pgd", motion)),
     ]
     if motion.vertical is not None:
         histories.insert(
-            1, ("a_v", "m/s²", motion.vertical, f"{_measure_text('pva', motion)} ({short(motion.pva / GRAVITY)} g)")
+            1,
+            (
+                "a_v",
+                "m/s²",
+                motion.vertical,
+                f"{_measure_text('pva', motion)} ({short_number(motion.pva / GRAVITY)} g)",
+            ),
         )
     with styled(size=size):
         figure = new_figure(7.2, 1.0 + 1.2 * len(histories) + 2.4 * is_narrow())
@@ -126,7 +132,7 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
 def _measure_text(name: str, motion: GroundMotion) -> str:
     """Symbol, value and unit of a measure."""
     measure = MEASURES[name]
-    return f"{measure.sign} = {short(measure.of(Shaking(motion)))} {measure.unit}"
+    return f"{measure.sign} = {short_number(measure.of(Shaking(motion)))} {measure.unit}"
 
 
 def plot_selection(selection: Selection[Any], *, size: Size | None = None) -> Figure:
@@ -210,7 +216,7 @@ def _draw_spectra(axes: Axes, selection: Selection[Any], periods: Array, rows: A
     count = len(rows)
     if count > 1:
         for k, row in enumerate(rows):
-            label = counted(count, "record") if k == 0 else f"_{k}"
+            label = number_with_noun(count, "record") if k == 0 else f"_{k}"
             axes.plot(periods, row, color=GRAY, linewidth=0.6, alpha=0.7, label=label)
         median, spread = np.exp(np.log(rows).mean(axis=0)), np.log(rows).std(axis=0, ddof=1)
         band = median * np.exp(-spread), median * np.exp(spread)

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
-from rockflex._numbers import prefixed
+from rockflex._number_format import unit_with_prefix
 from rockflex.plot._curves import Curve, curves_of, rotation_limit, time_limits
 from rockflex.plot._history import add_legend, axis_scale, draw_curves, quantities_of, shade_uplifts
 from rockflex.plot._moment_rotation import largest_moment, resistance_line, whole_line
@@ -111,7 +111,7 @@ def _draw_loops(axes: Axes, curves: list[Curve], mark: str) -> None:
     rotation = _MARGIN * (rotation_limit(curves) or max(map(whole_line, curves)))
     (moment,) = quantities_of(["base_moment"])
     largest = max(largest_moment(curves[0]), axis_scale(moment, curves)[2] * axis_scale(moment, curves)[0] / _MARGIN)
-    factor, unit = prefixed(largest, "N m")
+    factor, unit = unit_with_prefix(largest, "N m")
     for curve in curves:
         until_fall = curve.before_fall
         axes.plot(

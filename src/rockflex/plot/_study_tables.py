@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rockflex._errors import InputError
-from rockflex._numbers import short
+from rockflex._number_format import short_number
 from rockflex.motion import MEASURES
 from rockflex.plot._style import BLACK, GREEN, LINE_STYLES, RED, LineStyle, is_narrow, literal, new_figure, recoloured
 
@@ -72,7 +72,7 @@ def label_plainly(axis: Axis) -> None:
 
 
 def _plain(value: float, _: object) -> str:
-    return short(value)
+    return short_number(value)
 
 
 def legend_handles(styles: dict[str, tuple[LineStyle, str]], *, symbols: bool = True) -> list[Line2D]:

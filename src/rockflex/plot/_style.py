@@ -22,7 +22,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from rockflex._errors import InputError
-from rockflex._files import path_of, write_whole
+from rockflex._files import checked_file_path, write_file_atomically
 from rockflex._shown import shown
 
 # Okabe & Ito's palette, which colour-blind readers can tell apart.
@@ -397,14 +397,14 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     >>> rf.save_figure(rf.plot_motion(rf.ricker_pulse(4.0, 0.6)), folder / "pulse.svg").name
     'pulse.svg'
     """
-    target = path_of("path", path)
+    target = checked_file_path("path", path)
     suffix = target.suffix.lower()
     if suffix not in _UNDATED:
         raise InputError(
             f"A figure can be saved as .png, .pdf or .svg, but the path {shown(str(path))} ends in "
             f"{shown(target.suffix)}. Change the suffix."
         )
-    return write_whole(target, _content(figure, suffix))
+    return write_file_atomically(target, _content(figure, suffix))
 
 
 def svg_of(figure: Figure) -> str:

@@ -5,9 +5,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Wedge
 
-from rockflex._checks import positive
+from rockflex._checks import checked_positive
 from rockflex._errors import InputError
-from rockflex._numbers import short
+from rockflex._number_format import short_number
 from rockflex.plot._style import BLUE, GRAY, RED, SHADE, SMALL, Size, is_narrow, label_panel, new_figure, styled
 from rockflex.structure import TaperedTower
 
@@ -52,7 +52,7 @@ def plot_tower(tower: TaperedTower, section: float | None = None, *, size: Size 
     """
     if not hasattr(tower, "top_radius"):
         raise InputError(f"tower must be a TaperedTower, but {type(tower).__name__} was given.")
-    z = 0.5 * tower.height if section is None else positive("section", section, "m")
+    z = 0.5 * tower.height if section is None else checked_positive("section", section, "m")
     if z > tower.height:
         raise InputError(f"section must be at most the height of the tower, {tower.height:g} m, but {z:g} m was given.")
     with styled(size=size):
@@ -121,7 +121,7 @@ def _draw_section(axes: Axes, tower: TaperedTower, z: float) -> None:
         end = (radius * float(np.cos(angle)), radius * float(np.sin(angle)))
         axes.annotate("", end, (0.0, 0.0), arrowprops={"arrowstyle": "-|>", "color": BLUE, "linewidth": 1.0})
         middle = (0.5 * end[0], 0.5 * end[1])
-        _annotate(axes, f"${name}$ = {short(radius)} m", middle, (0, 0), BLUE, boxed=True)
+        _annotate(axes, f"${name}$ = {short_number(radius)} m", middle, (0, 0), BLUE, boxed=True)
     axes.set_xlabel(r"$I = m\,[(R^2 + r^2)/4 + Δ^2]$, $Δ^2 = z^2 + B^2$")
     axes.grid(visible=False)
     axes.set_ylabel("[m]")

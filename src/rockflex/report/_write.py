@@ -9,7 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockflex._files import write_whole
+from rockflex._files import write_file_atomically
 from rockflex.report._document import Check, Document, Result
 
 if TYPE_CHECKING:
@@ -225,4 +225,4 @@ def write_document(document: Document, folder: Path, progress: Callable[[str], N
         "report.md": to_markdown(document),
         "numbers.csv": to_csv(document),
     }
-    return [*figures.values(), *(write_whole(folder / name, text.encode()) for name, text in texts.items())]
+    return [*figures.values(), *(write_file_atomically(folder / name, text.encode()) for name, text in texts.items())]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._constants import GRAVITY
-from rockflex._shown import counted
+from rockflex._shown import number_with_noun
 from rockflex._values import Value
 from rockflex.modal import BaseElement, RockingProperties
 from rockflex.models import BROKEN, CLOSED, LEFT, RIGHT, Bar, Element, Slider, arm_of, elements_of, stored_energy
@@ -144,7 +144,7 @@ class MomentRotation(StaticPath):
     def __repr__(self) -> str:
         largest, peak = (float(np.max(np.abs(values))) for values in (self.rotation, self.moment))
         return (
-            f"MomentRotation({self.rotation.size} points, {counted(len(self.elements), 'element')}, "
+            f"MomentRotation({self.rotation.size} points, {number_with_noun(len(self.elements), 'element')}, "
             f"|θ| up to {largest:.4g} rad, |M| up to {peak:.4g} N m, {self.dissipated_energy[-1]:.4g} J dissipated)"
         )
 

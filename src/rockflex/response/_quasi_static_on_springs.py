@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._constants import GRAVITY
-from rockflex._shown import counted
+from rockflex._shown import number_with_noun
 from rockflex.modal import Springs
 from rockflex.models import BROKEN, Element, SpringModel, stored_energy
 from rockflex.response._history import History, pressure_of
@@ -81,8 +81,8 @@ class MomentRotationOnSprings(StaticPath):
     def __repr__(self) -> str:
         largest, peak = (float(np.max(np.abs(values))) for values in (self.rotation, self.moment))
         return (
-            f"MomentRotationOnSprings({self.rotation.size} points, {counted(self.springs.n, 'spring')}, "
-            f"{counted(len(self.elements), 'element')}, |θ| up to {largest:.4g} rad, |M| up to {peak:.4g} N m)"
+            f"MomentRotationOnSprings({self.rotation.size} points, {number_with_noun(self.springs.n, 'spring')}, "
+            f"{number_with_noun(len(self.elements), 'element')}, |θ| up to {largest:.4g} rad, |M| up to {peak:.4g} N m)"
         )
 
     @cached_property

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import MOST_MODES, positive, whole_number
-from rockflex._computable import computable
+from rockflex._checks import MOST_MODES, checked_positive, checked_whole_number
 from rockflex._errors import InputError
+from rockflex._overflow import explaining_overflow
 from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes
 from rockflex.structure._beam_sections import Sections
@@ -186,9 +186,9 @@ def cosine_shapes(height: float, n_shapes: int) -> RitzShapes:
     >>> beam.modal().period.round(3)
     array([0.357])
     """
-    h = positive("height", height, "m")
-    numbers = np.arange(1, whole_number("n_shapes", n_shapes, 1, MOST_MODES) + 1, dtype=np.float64)
-    with computable(f"The shapes of a structure {h:g} m high"):
+    h = checked_positive("height", height, "m")
+    numbers = np.arange(1, checked_whole_number("n_shapes", n_shapes, 1, MOST_MODES) + 1, dtype=np.float64)
+    with explaining_overflow(f"The shapes of a structure {h:g} m high"):
         rates = (2.0 * numbers - 1.0) * math.pi / (2.0 * h)
     return RitzShapes(CosineShapes(rates), CosineSlopes(rates), CosineCurvatures(rates))
 

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite_vector, positive
+from rockflex._checks import checked_finite_vector, checked_positive
 from rockflex._errors import InputError
-from rockflex._shown import counted
+from rockflex._shown import number_with_noun
 from rockflex._values import Value
 
 Along: TypeAlias = float | Callable[[Array], ArrayLike] | tuple[ArrayLike, ArrayLike]
@@ -116,7 +116,7 @@ def profile(name: str, given: Along, height: float, unit: str, *, zero: bool = F
     elif isinstance(given, tuple):
         result = _table_profile(name, given, height, unit, zero)
     else:
-        constant = positive(name, given, unit, zero=zero)
+        constant = checked_positive(name, given, unit, zero=zero)
         result = Profile(name, unit, Constant(constant), np.zeros(0), zero)
     result.at(np.linspace(0.0, height, _N_CHECKED))
     return result
@@ -125,11 +125,12 @@ def profile(name: str, given: Along, height: float, unit: str, *, zero: bool = F
 def _table_profile(name: str, given: tuple[ArrayLike, ArrayLike], height: float, unit: str, zero: bool) -> Profile:
     if len(given) != 2:  # pyright: ignore[reportUnnecessaryComparison]
         raise InputError(
-            f"{name} must be a table (heights, values), but {counted(len(given), 'column was', 'columns were')} given.",
+            f"{name} must be a table (heights, values), but "
+            f"{number_with_noun(len(given), 'column was', 'columns were')} given.",
             field=name,
         )
-    z = finite_vector(f"{name}, heights", given[0], "m", field=name)
-    values = finite_vector(f"{name}, values", given[1], unit, field=name)
+    z = checked_finite_vector(f"{name}, heights", given[0], "m", field=name)
+    values = checked_finite_vector(f"{name}, values", given[1], unit, field=name)
     if z.size != values.size or z.size < 2:
         raise InputError(
             f"{name} must contain one value for each height of its table, and at least two rows, but {z.size} heights "
@@ -196,10 +197,10 @@ class LumpedMasses(Value):
     rotary: Array
 
     def __init__(self, heights: ArrayLike, masses: ArrayLike, rotary: ArrayLike | None = None) -> None:
-        z = finite_vector("lumped_masses.heights", heights, "m", field="lumped_masses")
-        m = finite_vector("lumped_masses.masses", masses, "kg", field="lumped_masses")
+        z = checked_finite_vector("lumped_masses.heights", heights, "m", field="lumped_masses")
+        m = checked_finite_vector("lumped_masses.masses", masses, "kg", field="lumped_masses")
         j = np.zeros(z.size) if rotary is None else rotary
-        j = finite_vector("lumped_masses.rotary", j, "kg m²", field="lumped_masses")
+        j = checked_finite_vector("lumped_masses.rotary", j, "kg m²", field="lumped_masses")
         if not z.size == m.size == j.size:
             raise InputError(
                 f"lumped_masses must contain one mass and one rotary inertia for each of its {z.size} heights, but "

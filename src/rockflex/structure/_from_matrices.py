@@ -11,18 +11,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._checks import (
-    damping_ratios,
-    dimensions,
-    finite_matrix,
-    finite_vector,
+    checked_damping_ratios,
+    checked_finite_matrix,
+    checked_finite_vector,
+    checked_positive,
+    checked_whole_number,
     float_array,
-    positive,
-    whole_number,
+    number_of_dimensions,
 )
-from rockflex._computable import computable
 from rockflex._errors import InputError
-from rockflex._files import check_regular, path_of
+from rockflex._files import check_regular_file, checked_file_path
 from rockflex._matrices import checked_mass, checked_stiffness
+from rockflex._overflow import explaining_overflow
 from rockflex.modal import MassNormalisedModes, modes_that_take_part
 from rockflex.structure._structure import ModalStructure
 
@@ -103,10 +103,10 @@ def numbers(name: str, given: NumbersOrPath) -> ArrayLike:
     """
     if not isinstance(given, str | Path):
         return given
-    path = path_of(name, given)
+    path = checked_file_path(name, given)
     if path.suffix.lower() not in _MATRIX_SUFFIXES:
         raise InputError(f"{name}: the suffix of {path} must be one of {', '.join(_MATRIX_SUFFIXES)}.", field=name)
-    check_regular(path, name)
+    check_regular_file(path, name)
     if not path.exists():
         raise InputError(f"{name}: the file {path} does not exist (working directory: {Path.cwd()}).", field=name)
     try:
@@ -198,7 +198,7 @@ class DegreesOfFreedom:
                 "given.",
                 field="rotations",
             )
-        turning = [whole_number("rotations, index", i, 0, size - 1, field="rotations") for i in rotations]
+        turning = [checked_whole_number("rotations, index", i, 0, size - 1, field="rotations") for i in rotations]
         where, values = _translations(heights, turning, size)
         twice = sorted({i for i in turning if turning.count(i) > 1 or i in where})
         if twice:
@@ -269,12 +269,12 @@ class DegreesOfFreedom:
 def _translations(heights: Heights, turning: Sequence[int], size: int) -> tuple[list[int], Array]:
     """Return the degrees of freedom that translate horizontally, and their heights."""
     if isinstance(heights, Mapping):
-        where = [whole_number("heights, index", i, 0, size - 1, field="heights") for i in heights]
-        return where, finite_vector("heights", list(heights.values()), "m")
+        where = [checked_whole_number("heights, index", i, 0, size - 1, field="heights") for i in heights]
+        return where, checked_finite_vector("heights", list(heights.values()), "m")
     given = numbers("heights", heights)
     values = float_array(given)
     if values is None or values.ndim != 1:
-        finite_vector("heights", given, "m")  # raises an error
+        checked_finite_vector("heights", given, "m")  # raises an error
         raise AssertionError
     others = [i for i in range(size) if i not in turning]
     if values.size == size:
@@ -287,7 +287,9 @@ def _translations(heights: Heights, turning: Sequence[int], size: int) -> tuple[
             field="heights",
         )
     moves = ~np.isnan(values)
-    return [i for i, each in zip(others, moves, strict=True) if each], finite_vector("heights", values[moves], "m")
+    return [i for i, each in zip(others, moves, strict=True) if each], checked_finite_vector(
+        "heights", values[moves], "m"
+    )
 
 
 def from_matrices(
@@ -354,7 +356,7 @@ def from_matrices(
     array([0.719, 0.275])
     """
     k_given = numbers("stiffness", stiffness)
-    size = np.shape(k_given)[0] if dimensions(k_given) == 2 else 1
+    size = np.shape(k_given)[0] if number_of_dimensions(k_given) == 2 else 1
     k = checked_stiffness(k_given, size)
     m_given = numbers("mass", mass)
     m = _mass_matrix(m_given, size)
@@ -362,7 +364,7 @@ def from_matrices(
     keep = np.asarray(m.any(axis=1))
     freedoms = freedoms.kept(keep)
     m = checked_mass(m[np.ix_(keep, keep)], freedoms.size)
-    with computable("The modes of the given mass and stiffness matrices"):
+    with explaining_overflow("The modes of the given mass and stiffness matrices"):
         if not keep.all():
             tie = k[np.ix_(keep, ~keep)]
             k = k[np.ix_(keep, keep)] - tie @ np.linalg.solve(k[np.ix_(~keep, ~keep)], tie.T)
@@ -414,7 +416,7 @@ def from_modes(
     >>> structure.modal().effective_mass.round(-1)
     array([37890.,  2110.])
     """
-    w = finite_vector("omega", numbers("omega", omega), "rad/s")
+    w = checked_finite_vector("omega", numbers("omega", omega), "rad/s")
     falls = np.flatnonzero(np.diff(w, prepend=0.0) < 0.0)
     if w.size == 0 or w[0] <= 0.0 or falls.size:
         raise InputError(
@@ -422,9 +424,9 @@ def from_modes(
             field="omega",
         )
     given = numbers("shapes", shapes)
-    columns = finite_vector("shapes", given, "any unit")[:, None] if dimensions(given) == 1 else given
-    size = np.shape(columns)[0] if dimensions(columns) == 2 else 1
-    phi = finite_matrix("shapes", columns, "any unit", (size, w.size))
+    columns = checked_finite_vector("shapes", given, "any unit")[:, None] if number_of_dimensions(given) == 1 else given
+    size = np.shape(columns)[0] if number_of_dimensions(columns) == 2 else 1
+    phi = checked_finite_matrix("shapes", columns, "any unit", (size, w.size))
     m = _mass_matrix(numbers("mass", mass), size)
     freedoms = DegreesOfFreedom.of(heights, rotations, size)
     products = phi.T @ m @ phi
@@ -466,17 +468,17 @@ def _modal_structure(
     )
     return ModalStructure(
         taken,
-        positive("base_mass", base_mass, "kg", zero=True),
-        positive("half_width", half_width, "m"),
-        damping_ratios("damping_ratio", damping_ratio, kept.size),
+        checked_positive("base_mass", base_mass, "kg", zero=True),
+        checked_positive("half_width", half_width, "m"),
+        checked_damping_ratios("damping_ratio", damping_ratio, kept.size),
     )
 
 
 def _mass_matrix(given: ArrayLike, size: int) -> Array:
-    if dimensions(given) == 2:
-        m = finite_matrix("mass", given, "kg", (size, size))
+    if number_of_dimensions(given) == 2:
+        m = checked_finite_matrix("mass", given, "kg", (size, size))
     else:
-        values = finite_vector("mass", given, "kg")
+        values = checked_finite_vector("mass", given, "kg")
         if values.size != size:
             raise InputError(
                 f"mass must contain one mass for each of the {size} degrees of freedom, but {values.size} were given.",

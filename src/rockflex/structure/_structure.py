@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Protocol, SupportsIndex
 
 from rockflex._arrays import Array
-from rockflex._checks import finite
+from rockflex._checks import checked_finite
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
@@ -187,7 +187,7 @@ class Eccentric(ModifiedStructure):
                 "have an eccentricity of their own: RockingProperties(..., eccentricity=...).",
                 field="structure",
             )
-        vars(self).update(structure=structure, eccentricity=finite("eccentricity", eccentricity, "m"))
+        vars(self).update(structure=structure, eccentricity=checked_finite("eccentricity", eccentricity, "m"))
         self.rocking(1)  # checks that the axis and the tendons are within the base
 
     def _changes(self) -> dict[str, Any]:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import MOST_MODES, damping_ratios, positive, whole_number
-from rockflex._computable import computable
+from rockflex._checks import MOST_MODES, checked_damping_ratios, checked_positive, checked_whole_number
+from rockflex._overflow import explaining_overflow
 from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes
 from rockflex.structure._beam_modes import N_STATIONS, forces_at_stations, gauss_points, mesh_nodes
@@ -74,17 +74,17 @@ class WallFrame(AssembledStructure, Value):
     n_modes: int = 5
 
     def __post_init__(self) -> None:
-        n_modes = whole_number("n_modes", self.n_modes, 1, MOST_MODES)
+        n_modes = checked_whole_number("n_modes", self.n_modes, 1, MOST_MODES)
         vars(self).update(
-            height=positive("height", self.height, "m"),
-            mass=positive("mass", self.mass, "kg"),
-            stiffness_parameter=positive(
+            height=checked_positive("height", self.height, "m"),
+            mass=checked_positive("mass", self.mass, "kg"),
+            stiffness_parameter=checked_positive(
                 "stiffness_parameter", self.stiffness_parameter, "m/m", zero=True, infinite=True
             ),
-            base_mass=positive("base_mass", self.base_mass, "kg", zero=True),
-            period=positive("period", self.period, "s"),
-            aspect_ratio=positive("aspect_ratio", self.aspect_ratio, "m of h*_1 a m of B"),
-            damping_ratio=damping_ratios("damping_ratio", self.damping_ratio, n_modes),
+            base_mass=checked_positive("base_mass", self.base_mass, "kg", zero=True),
+            period=checked_positive("period", self.period, "s"),
+            aspect_ratio=checked_positive("aspect_ratio", self.aspect_ratio, "m of h*_1 a m of B"),
+            damping_ratio=checked_damping_ratios("damping_ratio", self.damping_ratio, n_modes),
             n_modes=n_modes,
         )
 
@@ -100,7 +100,7 @@ class WallFrame(AssembledStructure, Value):
         return ModalStructure(self._modes, self.base_mass, self.half_width, zeta)
 
     @cached_property
-    @computable("The modes of a wall and frame with this height, mass, stiffness_parameter and period")
+    @explaining_overflow("The modes of a wall and frame with this height, mass, stiffness_parameter and period")
     def _modes(self) -> MassNormalisedModes:
         alpha = self.stiffness_parameter
         roots = np.array([_root(n, alpha) for n in range(1, self.n_modes + 1)])

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite_vector, one_of, real_or_nan, within
+from rockflex._checks import checked_finite_vector, checked_magnitude, is_one_of, real_or_nan
 from rockflex._errors import InputError
-from rockflex._shown import counted, shown
+from rockflex._shown import number_with_noun, shown
 from rockflex._values import Value
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel, parse_model
@@ -147,7 +147,7 @@ def ground_under(properties: RockingProperties, ground: GroundChoice) -> Ground 
 
 def wants_history(output: str) -> bool:
     """Return whether a run keeps its history; raise an InputError if `output` is neither "history" nor "peaks"."""
-    if not one_of(output, get_args(Output)):
+    if not is_one_of(output, get_args(Output)):
         raise InputError(f'output must be "history" or "peaks", but {shown(output)} was given.')
     return output == "history"
 
@@ -176,7 +176,7 @@ def sequence_of(name: str, given: Any, accepts: Callable[[Any], bool], wanted: s
 
 def positive_numbers(name: str, values: Sequence[float], unit: str) -> list[float]:
     """Return one or more positive numbers as a list."""
-    numbers = finite_vector(name, values, unit)
+    numbers = checked_finite_vector(name, values, unit)
     if numbers.min(initial=math.inf) <= 0.0 or numbers.size == 0:
         raise InputError(
             f"{name} must be one or more positive numbers{unit and f' in {unit}'}, but {shown(values)} was given."
@@ -299,7 +299,7 @@ def expand_scales(given: Any) -> Any:
     spacing = values.pop("spacing", "linear")
     keys = set(values)
     logarithmic = spacing == "logarithmic"
-    known = one_of(spacing, ("linear", "logarithmic")) and not (logarithmic and "step" in keys)
+    known = is_one_of(spacing, ("linear", "logarithmic")) and not (logarithmic and "step" in keys)
     smallest, largest = real_or_nan(values.get("smallest")), real_or_nan(values.get("largest"))
     if known and keys == {"smallest", "largest", "step"}:
         return stepped_scales(smallest, largest, real_or_nan(values["step"]))
@@ -415,10 +415,10 @@ class InitialState(Value):
         rotation_velocity: float = 0.0,
     ) -> None:
         vars(self).update(
-            rotation=within("rotation", rotation, 0.5 * math.pi, "rad"),
+            rotation=checked_magnitude("rotation", rotation, 0.5 * math.pi, "rad"),
             modal_displacement=_modal("modal_displacement", modal_displacement, "m"),
             modal_velocity=_modal("modal_velocity", modal_velocity, "m/s"),
-            rotation_velocity=within("rotation_velocity", rotation_velocity, MAX_STATE, "rad/s"),
+            rotation_velocity=checked_magnitude("rotation_velocity", rotation_velocity, MAX_STATE, "rad/s"),
         )
 
     def state(self, model: RockingModel) -> Array:
@@ -439,7 +439,8 @@ class InitialState(Value):
                 continue
             if values.size > n:
                 raise InputError(
-                    f"{name} has {counted(values.size, 'value')}, but {model.label} has {counted(n, 'mode')}. Give at "
+                    f"{name} has {number_with_noun(values.size, 'value')}, but {model.label} has "
+                    f"{number_with_noun(n, 'mode')}. Give at "
                     f"most {n}."
                 )
             state[first : first + values.size] = values
@@ -455,7 +456,7 @@ class InitialState(Value):
 def _modal(name: str, values: ArrayLike | None, unit: str) -> Array | None:
     if values is None:
         return None
-    vector = finite_vector(name, values, unit)
+    vector = checked_finite_vector(name, values, unit)
     for place, value in enumerate(vector.tolist()):
-        within(f"{name}[{place}]", value, MAX_STATE, unit)
+        checked_magnitude(f"{name}[{place}]", value, MAX_STATE, unit)
     return vector

@@ -9,7 +9,7 @@ from typing import Any
 from distributed import WorkerPlugin, get_worker
 
 from rockflex._errors import InputError
-from rockflex._versions import versions_of
+from rockflex._versions import package_versions
 
 PACKAGES = ("rockflex", "numpy", "scipy", "pyarrow", "distributed")  # the numbers or the transport need them
 
@@ -65,7 +65,7 @@ def compute(name: str, numbers: tuple[int, ...], versions: dict[str, str]) -> tu
 @cache
 def installed_versions() -> dict[str, str]:
     """Return the version of Python and of each package that matters; "none" for one that is not installed."""
-    return versions_of(PACKAGES)
+    return package_versions(PACKAGES)
 
 
 def refuse_other_versions(worker: str, there: dict[str, str], here: dict[str, str]) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 
-from rockflex._checks import dimensions, whole_number
+from rockflex._checks import checked_whole_number, number_of_dimensions
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties, uplifted_modes
 from rockflex.motion import GroundMotion
@@ -100,7 +100,7 @@ def frequency_ratios(
 
 
 def _as_list(n_modes: Any) -> list[Any]:
-    given = list(n_modes) if dimensions(n_modes) == 1 else [n_modes]
+    given = list(n_modes) if number_of_dimensions(n_modes) == 1 else [n_modes]
     if not given:
         raise InputError("n_modes is empty. Give at least one number of modes, or None for all.")
     return given
@@ -109,7 +109,7 @@ def _as_list(n_modes: Any) -> list[Any]:
 def _labelled(given: SupportsIndex | None, available: int) -> tuple[str, int]:
     if given is None:
         return "MDOF-S", available
-    count = whole_number("n_modes", given, 1, available)
+    count = checked_whole_number("n_modes", given, 1, available)
     return f"{count + 1}DOF-S", count
 
 

@@ -7,7 +7,7 @@ from typing import cast, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._checks import finite_vector
+from rockflex._checks import checked_finite_vector
 from rockflex._errors import InputError
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import Model, SpringModel
@@ -102,7 +102,7 @@ def moment_rotation(
     >>> print((push.uplift_moments / 1e3).round(1), push.contact_length[-1].round(3))
     [294.] 1.085
     """
-    path = finite_vector("rotations", rotations, "rad")
+    path = checked_finite_vector("rotations", rotations, "rad")
     if path.size == 0:
         raise InputError("rotations is empty. Give at least one rotation of the base in rad.", field="rotations")
     beyond = np.flatnonzero(np.abs(path) > QUARTER_TURN * (1.0 + 1e-9))  # a run that overturns ends at π/2

@@ -5,7 +5,7 @@ from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from typing import TYPE_CHECKING, ClassVar, SupportsIndex, TypeVar
 
-from rockflex._checks import whole_number
+from rockflex._checks import checked_whole_number
 from rockflex.motion import Suite, check_horizontal
 from rockflex.study._run_matrix import StudyMatrix, checksums
 from rockflex.study._tables import ArrowTable, Columns, Row, tabulate, to_frame
@@ -35,7 +35,7 @@ class ChunkedPlan(ABC):
         check_horizontal(*motions)
         self.motions = motions
         self.n_units = n_units
-        self.per_chunk = whole_number("the size of a chunk", per_chunk, 1)
+        self.per_chunk = checked_whole_number("the size of a chunk", per_chunk, 1)
 
     @property
     @abstractmethod
@@ -98,7 +98,7 @@ class ChunkedPlan(ABC):
         InputError
             If there is no such chunk. A run that cannot be solved is a row with a message in `error`.
         """
-        units = self.units_of(whole_number("number", number, 0, self.n_chunks - 1))
+        units = self.units_of(checked_whole_number("number", number, 0, self.n_chunks - 1))
         return tabulate(self.rows(units), self.columns)
 
 

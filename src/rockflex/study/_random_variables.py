@@ -15,7 +15,7 @@ from pydantic import model_validator
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._schema import PLAIN, Key
+from rockflex._schema import PLAIN, SchemaKey
 from rockflex._shown import shown
 from rockflex.structure.file import Table, checked
 
@@ -121,19 +121,20 @@ _BITS = 52  # of a draw, which is the middle of one of 2**52 parts of (0, 1)
 class DistributionTable(Table):
     """The distribution of a variable: one of these keys."""
 
-    uniform: Annotated[list[float] | None, Key("a list of the smallest and the largest value", form=PLAIN)] = None
+    uniform: Annotated[list[float] | None, SchemaKey("a list of the smallest and the largest value", form=PLAIN)] = None
     log_uniform: Annotated[
         list[float] | None,
-        Key("a list of the smallest and the largest value, for a logarithm that is uniform", form=PLAIN),
+        SchemaKey("a list of the smallest and the largest value, for a logarithm that is uniform", form=PLAIN),
     ] = None
     whole: Annotated[
-        list[int] | None, Key("a list of the smallest and the largest of equally likely whole numbers", form=PLAIN)
+        list[int] | None,
+        SchemaKey("a list of the smallest and the largest of equally likely whole numbers", form=PLAIN),
     ] = None
-    normal: Annotated[list[float] | None, Key("a list of the mean and the standard deviation", form=PLAIN)] = None
+    normal: Annotated[list[float] | None, SchemaKey("a list of the mean and the standard deviation", form=PLAIN)] = None
     lognormal: Annotated[
-        list[float] | None, Key("a list of the median and the standard deviation of the logarithm", form=PLAIN)
+        list[float] | None, SchemaKey("a list of the median and the standard deviation of the logarithm", form=PLAIN)
     ] = None
-    one_of: Annotated[list[int | float] | None, Key("a list of equally likely values", form=PLAIN)] = None
+    one_of: Annotated[list[int | float] | None, SchemaKey("a list of equally likely values", form=PLAIN)] = None
 
     @model_validator(mode="after")
     def _one(self) -> "DistributionTable":

@@ -9,10 +9,10 @@ from typing import Any, Literal, Self, cast
 
 import numpy as np
 
-from rockflex._checks import instance, real_or_nan
+from rockflex._checks import checked_instance, real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
-from rockflex._shown import few, shown
+from rockflex._shown import few_texts_shown, shown
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
 from rockflex.motion import MEASURES, GroundMotion, Shaking, Suite, intensities, recording_names
@@ -62,7 +62,8 @@ def checked_demands(demands: Demands | None, taken: Collection[str]) -> Demands:
     known = [name for name in demands if name in taken]
     if known:
         raise InputError(
-            f"demands: the table has a column {few(known)} already. Give the demand another name.", field="demands"
+            f"demands: the table has a column {few_texts_shown(known)} already. Give the demand another name.",
+            field="demands",
         )
     return dict(demands)
 
@@ -420,7 +421,7 @@ def study_matrix(
         If a label is unknown, a sequence is empty or holds something else, two motions have the same name, or an
         option is out of range.
     """
-    instance("friction", friction, bool)
+    checked_instance("friction", friction, bool)
     chosen = tuple(models_of(models))
     options = StudyOptions.of(free_vibration, impact=impact, bouc_wen=bouc_wen, ground=ground, work_limit=work_limit)
     suite = motions if isinstance(motions, Suite) else Suite(motions_of(motions))

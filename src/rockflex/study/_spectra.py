@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, SupportsIndex
 
 import numpy as np
 
-from rockflex._checks import in_range
+from rockflex._checks import checked_in_range
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
@@ -215,7 +215,7 @@ def overturning_scales(
     (2.372, 1)
     """
     tried = _scan("scales", scales)
-    width = in_range("tolerance", tolerance, 1e-12, 0.1)
+    width = checked_in_range("tolerance", tolerance, 1e-12, 0.1)
     check_motion(motion)
     return _search(_runner(structure, model, impact, work_limit, ground), motion, tried, width)
 
@@ -283,7 +283,7 @@ def overturning_spectrum(
     """
     ratios = positive_numbers("frequency_ratios", frequency_ratios, "")
     tried = _scan("relative_amplitudes", relative_amplitudes)
-    width = in_range("tolerance", tolerance, 1e-12, 0.1)
+    width = checked_in_range("tolerance", tolerance, 1e-12, 0.1)
     properties = properties_of(structure)
     rate = math.sqrt(properties.l0r * GRAVITY / properties.i_theta)
     unit = properties.resisting_moment / properties.l0r  # g α

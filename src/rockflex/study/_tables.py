@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._cases import cases
+from rockflex._cases import runs_by_case
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.response import NAMES, Response, complete_of, leaves_range
 from rockflex.study._case import Peaks
@@ -188,7 +188,7 @@ def pivot_lifts(runs: "pd.DataFrame") -> list[PivotLifts]:
     """
     standing = runs[runs["status"] == "rocking"]
     found: list[PivotLifts] = []
-    for structure, model, each in cases(standing):
+    for structure, model, each in runs_by_case(standing):
         past = 0  # where a table of an earlier version does not tell
         if "balance_ratio" in each:
             past = int(leaves_range(each["model"], each["balance_ratio"], each["max_rotation"]).sum())

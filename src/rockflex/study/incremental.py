@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, SupportsIndex
 
 from pydantic import Field, model_validator
 
-from rockflex._checks import in_range, one_of, positive
+from rockflex._checks import checked_in_range, checked_positive, is_one_of
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.fragility import LIMIT_STATES, OVERTURNING
@@ -218,8 +218,8 @@ class IncrementalPlan(CrossPlan):
 
 def check_ladder(smallest: float, largest: float, growth: float, tolerance: float) -> None:
     """Raise an InputError unless the scales form a ladder."""
-    positive("smallest_scale", smallest, "times the record")
-    positive("largest_scale", largest, "times the record")
+    checked_positive("smallest_scale", smallest, "times the record")
+    checked_positive("largest_scale", largest, "times the record")
     if not smallest < largest:
         raise InputError(f"largest_scale must be above smallest_scale, {smallest:g}, but {largest:g} was given.")
     if largest / smallest > MAX_SCALE_RATIO:
@@ -227,8 +227,10 @@ def check_ladder(smallest: float, largest: float, growth: float, tolerance: floa
             f"largest_scale must be at most {MAX_SCALE_RATIO:g} times smallest_scale, {smallest:g}, but {largest:g} "
             "was given. Bring the two closer."
         )
-    in_range("growth", growth, 1.0001, 100.0, hint="It is the factor from one scale to the next: 1.15 for 15 %.")
-    in_range("tolerance", tolerance, 1e-9, 0.5)
+    checked_in_range(
+        "growth", growth, 1.0001, 100.0, hint="It is the factor from one scale to the next: 1.15 for 15 %."
+    )
+    checked_in_range("tolerance", tolerance, 1e-9, 0.5)
 
 
 def run_incremental(
@@ -292,7 +294,7 @@ def run_incremental(
     matrix = study_matrix(
         structures, motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground
     )
-    if not one_of(limit, ("overturning", "nominal")):
+    if not is_one_of(limit, ("overturning", "nominal")):
         raise InputError(f'limit must be "overturning" or "nominal", but {shown(limit)} was given.')
     steps = Steps(smallest_scale, largest_scale, growth, tolerance)
     return run_plan(IncrementalPlan(matrix, steps, limit, 64), workers, progress)

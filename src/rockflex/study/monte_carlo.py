@@ -9,7 +9,7 @@ from pydantic import Field
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._schema import PLAIN, Key
+from rockflex._schema import PLAIN, SchemaKey
 from rockflex.modal import Ground, RockingProperties
 from rockflex.motion import Suite, intensities
 from rockflex.structure.file import StructureEntry, Table, checked, label_of
@@ -213,7 +213,7 @@ class MonteCarloStudy(RunsSpec):
     seed: int = Field(0, ge=0, description="what the draws depend on, a whole number of at least 0")
     variables: dict[str, Any] = Field(description="a table of random variables")
     structure: dict[str, Any] = Field(description="a table of a structure, such as [structure.frame]")
-    ground: Annotated[dict[str, Any] | None, Key("a table", form=PLAIN)] = None  # pyright: ignore[reportIncompatibleVariableOverride]
+    ground: Annotated[dict[str, Any] | None, SchemaKey("a table", form=PLAIN)] = None  # pyright: ignore[reportIncompatibleVariableOverride]
     scales: Factors = Field([1.0])
     records_per_structure: int | None = Field(
         None, ge=1, description="how many records to draw for each structure, a whole number (default: all records)"

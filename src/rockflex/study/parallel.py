@@ -12,7 +12,7 @@ from threading import Event
 from typing import Any, Generic, Protocol, SupportsIndex, TypeAlias, TypeVar
 from uuid import uuid4
 
-from rockflex._checks import positive, whole_number
+from rockflex._checks import checked_positive, checked_whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.solve import asked_to_stop, stopping_when
@@ -34,7 +34,7 @@ def worker_count(workers: SupportsIndex | None) -> int:
     InputError
         If `workers` is neither None nor a whole number of at least 1.
     """
-    return core_count() if workers is None else whole_number("workers", workers, 1)
+    return core_count() if workers is None else checked_whole_number("workers", workers, 1)
 
 
 def map_threads(
@@ -194,7 +194,10 @@ def map_dask(
     Exception
         The error of a chunk, with a note that names the chunk.
     """
-    again, limit = whole_number("retries", retries, 0), positive("patience", patience, "s", infinite=True)
+    again, limit = (
+        checked_whole_number("retries", retries, 0),
+        checked_positive("patience", patience, "s", infinite=True),
+    )
     if not isinstance(address, str) or not address:  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InputError(
             f'address must be that of a Dask scheduler, such as "tcp://10.0.0.1:8786", but {shown(address)} was given.'

@@ -14,8 +14,19 @@ import numpy as np
 from pydantic import AfterValidator, Field, InstanceOf, PrivateAttr, ValidationError, field_validator, model_validator
 
 from rockflex._errors import InputError
-from rockflex._json import plain
-from rockflex._schema import IMPACT, PLAIN, WHOLE, BedKeys, BoucWenKeys, GroundKeys, ImpactKeys, Key, LawName, each
+from rockflex._json import as_json_value
+from rockflex._schema import (
+    IMPACT,
+    PLAIN,
+    WHOLE,
+    BoucWenKeys,
+    GroundKeys,
+    ImpactKeys,
+    LawName,
+    SchemaKey,
+    SpringBedKeys,
+    one_for_each,
+)
 from rockflex._shown import shown
 from rockflex.modal import Ground, RockingProperties, Springs, asce41_bed, winkler_bed
 from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, VVELSimplified, parse_model
@@ -82,8 +93,8 @@ class Records(Table):
         return Suite(m for m in motions if any(fnmatchcase(m.name, pattern) for pattern in self.include))
 
 
-_EACH = each("spring")
-_DAMPING_RATIO = Key("the damping of the heave mode over the critical damping", low=0.0, high=100.0)
+_EACH = one_for_each("spring")
+_DAMPING_RATIO = SchemaKey("the damping of the heave mode over the critical damping", low=0.0, high=100.0)
 
 
 class SpringsTable(Table):
@@ -91,12 +102,14 @@ class SpringsTable(Table):
 
     positions: Annotated[
         list[float] | None,
-        Key("a list of distances to the right of the axis of the masses in m (default: the edges)", "m", form=PLAIN),
+        SchemaKey(
+            "a list of distances to the right of the axis of the masses in m (default: the edges)", "m", form=PLAIN
+        ),
     ] = None
-    stiffness: Annotated[float | list[float], Key("the stiffness in N/m", "N/m", form=_EACH, low=1.0, high=1e15)]
+    stiffness: Annotated[float | list[float], SchemaKey("the stiffness in N/m", "N/m", form=_EACH, low=1.0, high=1e15)]
     damping: Annotated[
         float | list[float] | None,
-        Key("the damping coefficient in N s/m", "N s/m", form=_EACH, low=0.0, high=1e15),
+        SchemaKey("the damping coefficient in N s/m", "N s/m", form=_EACH, low=0.0, high=1e15),
     ] = None
     heave_damping_ratio: Annotated[float | None, _DAMPING_RATIO] = None
 
@@ -117,18 +130,18 @@ class SpringsTable(Table):
         return _damped(springs, self, properties)
 
 
-class BedTable(BedKeys, Table):
+class BedTable(SpringBedKeys, Table):
     """The arguments of `winkler_bed` or, with a shear modulus, of `asce41_bed`, for the width of the structure."""
 
     damping: Annotated[
-        float | None, Key("the damping coefficient of all springs together", "N s/m", low=0.0, high=1e15)
+        float | None, SchemaKey("the damping coefficient of all springs together", "N s/m", low=0.0, high=1e15)
     ] = None
-    n: Annotated[int, Key("the number of springs", label="Number of springs", form=WHOLE, low=2, high=200)] = 20
+    n: Annotated[int, SchemaKey("the number of springs", label="Number of springs", form=WHOLE, low=2, high=200)] = 20
     end_zone: Annotated[
-        float | None, Key("the length of the stiffer zone at either end", "m", low=0.0, high=1000.0)
+        float | None, SchemaKey("the length of the stiffer zone at either end", "m", low=0.0, high=1000.0)
     ] = None
     end_ratio: Annotated[
-        float | None, Key("the stiffness of the end zones over that of the rest", low=1e-3, high=1e3)
+        float | None, SchemaKey("the stiffness of the end zones over that of the rest", low=1e-3, high=1e3)
     ] = None
 
     def under(self, properties: RockingProperties) -> Springs:
@@ -162,8 +175,8 @@ class BedTable(BedKeys, Table):
 class GroundTable(GroundKeys, Table):
     """The arguments of `Ground`, with springs or a bed as tables."""
 
-    springs: Annotated[SpringsTable | None, Key("a table", form=PLAIN)] = None
-    bed: Annotated[BedTable | None, Key("a table", form=PLAIN)] = None
+    springs: Annotated[SpringsTable | None, SchemaKey("a table", form=PLAIN)] = None
+    bed: Annotated[BedTable | None, SchemaKey("a table", form=PLAIN)] = None
 
     def under(self, properties: RockingProperties) -> Ground:
         """Return the ground under a structure.
@@ -236,8 +249,8 @@ class RunOptionKeys(ImpactKeys, Table):
     """
 
     impact: Annotated[LawName | InstanceOf[ImpactLaw] | None, IMPACT] = None  # pyright: ignore[reportIncompatibleVariableOverride]
-    bouc_wen: Annotated[BoucWenTable | None, Key("a table", form=PLAIN)] = None
-    ground: Annotated[GroundTable | None, Key("a table", form=PLAIN)] = None
+    bouc_wen: Annotated[BoucWenTable | None, SchemaKey("a table", form=PLAIN)] = None
+    ground: Annotated[GroundTable | None, SchemaKey("a table", form=PLAIN)] = None
 
     @field_validator("impact", mode="before")
     @classmethod
@@ -403,7 +416,7 @@ class Spec(Table):
 
     def document(self) -> dict[str, Any]:
         """Return all that determines the study as plain JSON: infinite numbers are "inf", and None is left out."""
-        return plain(self.model_dump(exclude_none=True))
+        return as_json_value(self.model_dump(exclude_none=True))
 
     def checksums(self) -> dict[str, str]:
         """Return the SHA-256 of the numbers in each file that a structure names, by its key in the document."""

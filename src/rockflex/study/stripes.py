@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from pydantic import Field
 
-from rockflex._checks import positive
+from rockflex._checks import checked_positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.fragility import NOMINAL, OVERTURNING, TENDON_YIELD, UPLIFT, LimitState, beyond
@@ -145,7 +145,7 @@ def stripe_limit(limit: StripeLimit) -> LimitState:
     if isinstance(limit, LimitState):
         return limit
     if not isinstance(limit, str):
-        return beyond(positive("limit", limit, "rad"))
+        return beyond(checked_positive("limit", limit, "rad"))
     state = next((each for each in COUNTED if each.name == limit), None)
     if state is None:
         words = ", ".join(f'"{each.name}"' for each in COUNTED)

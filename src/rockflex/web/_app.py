@@ -18,7 +18,7 @@ from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
 from rockflex._errors import InputError, SolverError
-from rockflex._json import plain
+from rockflex._json import as_json_value
 from rockflex.solve import RunStoppedError, stopping_when
 from rockflex.web._downloads import MEDIA_TYPES, animation, download, study_file
 from rockflex.web._earthquake import PULSES, record_view, suite_view, suites
@@ -113,7 +113,7 @@ class Server:
     async def state(self, request: Request) -> Response:
         """Check the state of a link, and fill in its missing values."""
         state = await state_of(request)
-        return JSONResponse(plain(state.model_dump(exclude_none=True)))
+        return JSONResponse(as_json_value(state.model_dump(exclude_none=True)))
 
     async def structure(self, request: Request) -> Response:
         """Structure tab."""
@@ -152,7 +152,7 @@ class Server:
                 motion = read_record(name, body, units, dt)
             key = self.uploads.add(motion, body, f"{units} {dt} {motion.name} {under}")
             facts = {"samples": motion.acceleration.size, "pga": motion.pga, "pva": motion.pva}
-            return plain({"upload": key, "name": motion.name, **facts})
+            return as_json_value({"upload": key, "name": motion.name, **facts})
 
         return JSONResponse(await self.answer(work))
 
@@ -346,7 +346,7 @@ def _about() -> dict[str, Any]:
         "limit_states": limit_states(),
         "pulses": pulses,
         "limits": limits,
-        "state": plain(first.model_dump(exclude_none=True)),
+        "state": as_json_value(first.model_dump(exclude_none=True)),
     }
 
 

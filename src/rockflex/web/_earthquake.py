@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rockflex._json import plain
+from rockflex._json import as_json_value
 from rockflex.motion import (
     MEASURES,
     GroundMotion,
@@ -114,7 +114,7 @@ def suite_view(name: str) -> dict[str, Any]:
     Refusal
         If the suite is unknown.
     """
-    return plain({"name": name, "records": [_thumbnail(motion) for motion in _suite(name)]})
+    return as_json_value({"name": name, "records": [_thumbnail(motion) for motion in _suite(name)]})
 
 
 def _thumbnail(motion: GroundMotion) -> dict[str, Any]:
@@ -155,7 +155,7 @@ def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str
             _fact(of_mode, motion.sa(first, zeta), f"{of_mode.words}, {zeta:.3g}, and its first period"),
             _fact(MEASURES["sa_t1_5"], motion.sa(first, 0.05), MEASURES["sa_t1_5"].words),
         ]
-    return plain(
+    return as_json_value(
         {
             "name": motion.name,
             "title": _title(motion),

@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from rockflex._errors import InputError, RecordWarning
-from rockflex._json import plain
+from rockflex._json import as_json_value
 from rockflex.motion import GroundMotion, RecordSurvey, Suite, SurveyEntry, record_csv, survey_plain
 from rockflex.motion._record_info import unique_names
 from rockflex.web._cache import Cache
@@ -318,7 +318,7 @@ def read_folder(files: Sequence[SentFile], units: str | None, dt: float | None) 
     report["entries"] = sorted([*(_entry(each) for each in large), *report["entries"]], key=lambda entry: entry["file"])
     report["notes"] = sorted({str(warning.message) for warning in caught})
     paired = any(motion.vertical is not None for motion in both.motions)
-    return Folder(plain(report), suites[0], suites[1] if paired else suites[0])
+    return Folder(as_json_value(report), suites[0], suites[1] if paired else suites[0])
 
 
 def _surveys(files: Sequence[SentFile], units: str | None, dt: float | None) -> tuple[RecordSurvey, RecordSurvey]:

@@ -8,7 +8,7 @@ from typing import Any, Literal, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
-from rockflex._json import plain
+from rockflex._json import as_json_value
 from rockflex.structure.file import ELEMENTS, KINDS, PartTable, StructureEntry, Table, inner_table, key_of, parts
 from rockflex.study.spec import BoucWenTable, GroundTable
 
@@ -47,7 +47,7 @@ PRESETS: list[dict[str, Any]] = [
 
 def forms() -> dict[str, Any]:
     """Return the fields of every kind of structure and of element, the base and a hysteresis, and the presets."""
-    return plain(
+    return as_json_value(
         {
             "kinds": {name: {"title": table.title, "fields": _fields(table)} for name, table in KINDS.items()},
             "eccentricity": _field("eccentricity", StructureEntry.model_fields["eccentricity"]),

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, Literal, get_origin
 
 from pydantic.fields import FieldInfo
 
-from rockflex._schema import Key
-from rockflex._shown import counted
+from rockflex._schema import SchemaKey
+from rockflex._shown import number_with_noun
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
@@ -59,7 +59,7 @@ def errors_of_numbers(path: str, value: Any, table: type[Table]) -> dict[str, st
         elif isinstance(each, list):
             errors[place] = f"it holds {len(each)} values, but the page takes {_most(each)} at most."
         elif isinstance(each, int | float) and not isinstance(each, bool):
-            key = Key("") if field is None else key_of(field)
+            key = SchemaKey("") if field is None else key_of(field)
             low, high = (-MAX_NUMBER if key.low is None else key.low), (MAX_NUMBER if key.high is None else key.high)
             if not low <= each <= high:  # NaN, too
                 errors[place] = f"it must be from {low:g} to {high:g}, but {each:g} was given."
@@ -140,7 +140,7 @@ def _checked_work(task: Task, path: str) -> float:
     """Return the estimated computing time of a run in s; refuse one that takes too long."""
     work = task.work().total
     if work > MAX_RUN_COST:
-        modes = counted(task.pace.modes, "mode")
+        modes = number_with_noun(task.pace.modes, "mode")
         message = (
             f"{task.model.label} with {modes} over {task.record.size} samples takes too long for a page. Choose a "
             "model with fewer modes, a wider base or a shorter record, or use the library."

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._json import plain
+from rockflex._json import as_json_value
 from rockflex.modal import RockingProperties, Tendon, YieldingDissipator
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
@@ -110,7 +110,7 @@ def response_view(state: State, uploads: Uploads, focus: object = "", element: o
     drawn = chosen_element(element, p)
     energy, curves = _energy(motion, main, state), [_curves(built, response, drawn) for response in found]
     curves[found.index(main)]["warnings"] += warnings_of_energy(energy.get("closing_error", 0.0))
-    return plain(
+    return as_json_value(
         {
             **outline(state.structure, built),
             "motion": motion.name,

@@ -13,7 +13,7 @@ from pydantic import PrivateAttr
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, RecordWarning
-from rockflex._json import plain
+from rockflex._json import as_json_value
 from rockflex.motion import (
     GroundMotion,
     Selection,
@@ -263,7 +263,7 @@ def selection_view(state: State, uploads: Uploads) -> dict[str, Any]:
     logs = np.log(rows)
     spread = logs.std(axis=0, ddof=1) if len(rows) > 1 else np.zeros(periods.size)
     table = chosen.table().astype(object)
-    return plain(
+    return as_json_value(
         {
             "target": target.name,
             "damping": target.damping_ratio,

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rockflex._checks import whole_number
+from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError
 from rockflex.web._hosts import address_of
 
@@ -59,7 +59,7 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (
     InputError
         If the packages of ``rockflex[web]`` are missing, or the port cannot be opened.
     """
-    number = whole_number("port", port, 1, 65535)
+    number = checked_whole_number("port", port, 1, 65535)
     app = make_app(host, names)
     import signal
     import socket

@@ -11,7 +11,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._json import plain
+from rockflex._json import as_json_value
 from rockflex.modal import Ground, ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
 from rockflex.structure import structure_warnings
 from rockflex.structure._from_matrices import DegreesOfFreedom
@@ -168,7 +168,7 @@ def structure_view(entry: StructureEntry, table: GroundTable | None = None) -> d
     p = built.properties
     with refusing("structure"):
         modes, judged = _modes(built), _mode_adequacy(entry, p)
-    return plain(
+    return as_json_value(
         {
             **outline(entry, built),
             "name": entry.name,

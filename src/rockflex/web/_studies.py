@@ -9,8 +9,8 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError, SolverError
-from rockflex._json import plain
-from rockflex._shown import counted
+from rockflex._json import as_json_value
+from rockflex._shown import number_with_noun
 from rockflex.fragility import (
     NOMINAL,
     OVERTURNING,
@@ -179,21 +179,23 @@ def cloud_view(job: Job, state: State) -> dict[str, Any]:
     failed = len(runs) - len(solved)
     if failed:
         first = runs["error"].dropna()
-        view["notes"].append(f"{counted(failed, 'run')} could not be solved. {first.iloc[0] if len(first) else ''}")
+        view["notes"].append(
+            f"{number_with_noun(failed, 'run')} could not be solved. {first.iloc[0] if len(first) else ''}"
+        )
     view["notes"] += [text for each in pivot_lifts(solved) for text in each.warnings]
     if len(solved) < MIN_RUNS_FITTED:
-        return plain(view)
+        return as_json_value(view)
     im = solved[choice.measure].to_numpy(dtype=float)
     if not (im > 0.0).all() or im.min() == im.max():
         view["notes"].append("All runs so far have the same intensity.")
-        return plain(view)
+        return as_json_value(view)
     grid = np.geomspace(im.min(), im.max(), CURVE_POINTS)
     fits, reasons = fit_each_cloud(solved, choice.measure, nominal=choice.limit == NOMINAL.name)
     view["notes"] += [f"{model}: {reason}" for (_, model), reason in reasons.items()]
     for fit in fits:
         part = solved[solved["model"].astype(str) == fit.model]
         view["curves"].append(_curve(fit, part, choice, grid, view["notes"]))
-    return plain(view)
+    return as_json_value(view)
 
 
 def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Array, notes: list[str]) -> dict[str, Any]:
@@ -322,7 +324,7 @@ def design_view(job: Job, state: State) -> dict[str, Any]:
     runs = runs_of(job)
     lost = {} if runs is None else none_solved(job, runs)
     if runs is None or lost:
-        return plain(view | lost)
+        return as_json_value(view | lost)
     table = _design_table(job, state)
     for tendon, part in table.groupby("tendon", observed=True, sort=False):
         names = ("half_width", "aspect_ratio", "probability", "low", "high", "median_base_moment", "n_runs")
@@ -333,7 +335,7 @@ def design_view(job: Job, state: State) -> dict[str, Any]:
     view["answers"] = answers[["tendon", "half_width", "half_width_upper", "outcome", "monotone", "note"]].to_dict(
         "records"
     )
-    return plain(view)
+    return as_json_value(view)
 
 
 def _design_figure(job: Job, state: State) -> Any:

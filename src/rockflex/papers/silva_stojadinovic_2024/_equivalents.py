@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import brentq, root
 
 from rockflex._arrays import Array
-from rockflex._checks import damping_ratios, in_range, positive, whole_number
+from rockflex._checks import checked_damping_ratios, checked_in_range, checked_positive, checked_whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties, modal_properties
@@ -52,9 +52,9 @@ def equivalent_2hz_long_base(base_mass_ratio: float, damping_ratio: float, n_mod
     >>> rf.equivalent_2hz_long_base(base_mass_ratio=0.1, damping_ratio=0.01).effective_height.round(3).tolist()
     [0.887, 0.228]
     """
-    heavy = positive("base_mass_ratio", base_mass_ratio, "kg of base a kg above it", zero=True)
-    zeta = damping_ratios("damping_ratio", damping_ratio, 1)[0]
-    n = whole_number("n_modes", n_modes, 1, 5)
+    heavy = checked_positive("base_mass_ratio", base_mass_ratio, "kg of base a kg above it", zero=True)
+    zeta = checked_damping_ratios("damping_ratio", damping_ratio, 1)[0]
+    n = checked_whole_number("n_modes", n_modes, 1, 5)
     tip = _tip_mass_ratio(0.92)
     roots, mass, height, top = tipped_cantilever(tip, n)
     omega_1 = 2.0 * math.pi / 0.5
@@ -120,8 +120,8 @@ def equivalent_s1(
     >>> p.n_modes, round(6.2832 / float(p.omega[0]), 3)
     (5, 0.11)
     """
-    height = positive("effective_height", effective_height, "m")
-    exponent = in_range("spacing", spacing, *_SPACING, hint="Elsewhere no masses meet both ratios well.")
+    height = checked_positive("effective_height", effective_height, "m")
+    exponent = checked_in_range("spacing", spacing, *_SPACING, hint="Elsewhere no masses meet both ratios well.")
     ordinates, masses = _five_masses(exponent)
     stiffness = _cantilever_stiffness(ordinates)
     unit = modal_properties(masses, stiffness, ordinates)
@@ -131,8 +131,8 @@ def equivalent_s1(
         masses,
         stretch * stiffness,
         length * ordinates,
-        base_mass=positive("base_mass_ratio", base_mass_ratio, "kg of base a kg above it", zero=True),
-        half_width=positive("width_ratio", width_ratio, "m of B a m of h*_1") * height,
+        base_mass=checked_positive("base_mass_ratio", base_mass_ratio, "kg of base a kg above it", zero=True),
+        half_width=checked_positive("width_ratio", width_ratio, "m of B a m of h*_1") * height,
         damping_ratio=damping_ratio,
     ).rocking()
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from rockflex._checks import positive, whole_number
+from rockflex._checks import checked_positive, checked_whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.plot._curves import Curve, curves_of
@@ -112,7 +112,7 @@ def animate(
         )
     quantities = quantities_of(_default_panels(curves) if panels is None else panels)
     timing = timing_of(curves, suffix, speed, frames_per_second, start, stop)
-    pixels = whole_number("width", width, MIN_WIDTH, MAX_WIDTH)
+    pixels = checked_whole_number("width", width, MIN_WIDTH, MAX_WIDTH)
     structures = _structures(structure, len(curves))
     outlines = [
         outline_of(curve.history, each, i) for i, (curve, each) in enumerate(zip(curves, structures, strict=True))
@@ -140,7 +140,7 @@ def _structures(given: Any | Sequence[Any] | None, count: int) -> list[Any]:
 
 
 def _factor(given: float) -> float:
-    factor = positive("amplification", given, "")
+    factor = checked_positive("amplification", given, "")
     if not 0.01 <= factor <= 1e4:
         raise InputError(
             f"amplification must be from 0.01 to 10000, but {shown(given)} was given. Leave it out for one that suits.",

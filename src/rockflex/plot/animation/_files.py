@@ -12,7 +12,7 @@ from PIL import GifImagePlugin, Image
 from scipy.spatial import KDTree
 
 from rockflex._errors import InputError
-from rockflex._files import path_of, writing
+from rockflex._files import checked_file_path, writing_atomically
 from rockflex._shown import shown
 from rockflex.plot.animation._poses import Timing
 from rockflex.plot.animation._scene import AnimatedFigure, Picture
@@ -36,7 +36,7 @@ def file_of(path: str | Path) -> tuple[Path, str]:
     InputError
         If the suffix is another one, the path is that of a folder, or what writes such files is not installed.
     """
-    target = path_of("path", path)
+    target = checked_file_path("path", path)
     suffix = target.suffix.lower()
     if suffix not in (GIF, MP4):
         raise InputError(
@@ -61,7 +61,7 @@ def write_gif(target: Path, figure: AnimatedFigure, timing: Timing, advance: Cal
     palette, table = _palette([figure.picture(int(each)) for each in np.linspace(0, count - 1, _SAMPLES)])
     shown_for = timing.hundredths
     shown_for[-1] += LAST_FRAME
-    with writing(target) as temporary, temporary.open("wb") as file:
+    with writing_atomically(target) as temporary, temporary.open("wb") as file:
         before: Indices | None = None
         for place, picture in enumerate(figure.pictures(count)):
             indices = table[_packed(picture)]
@@ -132,7 +132,7 @@ def write_video(target: Path, figure: AnimatedFigure, timing: Timing, advance: C
     from imageio_ffmpeg import count_frames_and_secs, write_frames
 
     count, still = timing.times.size, round(0.01 * LAST_FRAME * timing.frames_per_second)
-    with writing(target, ".mp4") as temporary:  # ffmpeg chooses the format by it
+    with writing_atomically(target, ".mp4") as temporary:  # ffmpeg chooses the format by it
         style: dict[str, Any] = {"pix_fmt_in": "rgb24", "pix_fmt_out": "yuv420p", "codec": "libx264"}
         style |= {
             "macro_block_size": 1,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import finite, positive, real_or_nan
+from rockflex._checks import checked_finite, checked_positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
@@ -63,7 +63,7 @@ def timing_of(
     InputError
         If one is out of range, or there would be too many frames.
     """
-    ratio = positive("speed", speed, "seconds of the response per second of the animation")
+    ratio = checked_positive("speed", speed, "seconds of the response per second of the animation")
     low, high = RATES[suffix]
     rate = real_or_nan(frames_per_second)
     if not low <= rate <= high:
@@ -75,8 +75,8 @@ def timing_of(
         )
     first = min(float(curve.history.time[0]) for curve in curves)
     last = max(float(curve.history.time[-1]) for curve in curves)
-    begin = first if start is None else finite("start", start, "s")
-    end = last if stop is None else finite("stop", stop, "s")
+    begin = first if start is None else checked_finite("start", start, "s")
+    end = last if stop is None else checked_finite("stop", stop, "s")
     if not first <= begin < end <= last:
         raise InputError(
             f"start and stop must be times within the responses, from {first:g} to {last:g} s, start before stop, but "

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from rockflex._errors import InputError, SolverError
-from rockflex._numbers import rounded
+from rockflex._number_format import rounded_number
 from rockflex.report.run._runs import ReportedRuns
 from rockflex.report.run._tables import Cell, Table, ground_friction, overturning_margin, starts_uplifted, value_cell
 from rockflex.response import BALANCED, IMPACT_WINDOW, History, Response, springs_of
@@ -77,7 +77,7 @@ def _uplift(run: Run) -> Cell:
     start = "starts uplifted" if starts_uplifted(run.history) else ""
     if run.response.n_uplifts == 0 or not times.size:
         return Cell(start or "none", 0.0, "n_uplifts")
-    first = f"{run.response.n_uplifts}×, {'next' if start else 'first'} at {rounded(float(times[0]))} s"
+    first = f"{run.response.n_uplifts}×, {'next' if start else 'first'} at {rounded_number(float(times[0]))} s"
     return Cell(f"{start}; {first}" if start else first, float(times[0]), "first_uplift")
 
 
@@ -86,12 +86,12 @@ def _overturning(report: ReportedRuns, run: Run) -> Cell:
     if not run.history.model.lifts:
         return Cell("–")
     if run.response.status == "overturned":
-        return Cell(f"overturned at {rounded(run.response.end_time)} s", run.response.end_time, "end_time", True)
+        return Cell(f"overturned at {rounded_number(run.response.end_time)} s", run.response.end_time, "end_time", True)
     if run.response.max_rotation == 0.0:
         return Cell("no rotation", 0.0, "max_rotation")
     margin = overturning_margin(report.properties, run.response, run.history)
     sign = "<" if run.response.nominal_overturning else "≥"
-    return Cell(f"{rounded(margin)} {sign} 1", margin, "overturning_margin", run.response.nominal_overturning)
+    return Cell(f"{rounded_number(margin)} {sign} 1", margin, "overturning_margin", run.response.nominal_overturning)
 
 
 def _contact(run: Run) -> Cell:
@@ -100,10 +100,10 @@ def _contact(run: Run) -> Cell:
         if not (run.long and has_bearing_area(run.history)):
             return Cell("springs only push", least, "min_vertical_reaction")
         bearing, soil = (float(q.max()) for q in (run.history.bearing_pressure, run.history.soil_pressure))
-        words = f"q {rounded(bearing / 1e3)} kPa, {rounded(soil / 1e3)} at a spring"
+        words = f"q {rounded_number(bearing / 1e3)} kPa, {rounded_number(soil / 1e3)} at a spring"
         return Cell(words, bearing, "bearing_pressure")
     held = least >= 0.0
-    words = "N ≥ 0" if held else f"N < 0 at {rounded(run.response.time_of_min_vertical_reaction)} s"
+    words = "N ≥ 0" if held else f"N < 0 at {rounded_number(run.response.time_of_min_vertical_reaction)} s"
     return Cell(words, least, "min_vertical_reaction", not held)
 
 
@@ -112,7 +112,7 @@ def _friction(run: Run) -> Cell:
     limits = ground_friction(run.history.model)
     if limits is not None:
         moved = run.response.max_slip
-        return Cell(f"slides {rounded(1e3 * moved)} mm" if moved else "does not slide", moved, "max_slip")
+        return Cell(f"slides {rounded_number(1e3 * moved)} mm" if moved else "does not slide", moved, "max_slip")
     if not run.long:
         return Cell(NOT_COMPUTED)
     try:
@@ -120,12 +120,12 @@ def _friction(run: Run) -> Cell:
         needed = run.history.required_friction_excluding_impacts()
     except InputError:
         return Cell(NOT_COMPUTED)
-    spikes = "" if math.isclose(whole, needed, rel_tol=5e-3) else f" ({rounded(whole)} with impacts)"
+    spikes = "" if math.isclose(whole, needed, rel_tol=5e-3) else f" ({rounded_number(whole)} with impacts)"
     if run.friction is None:
-        return Cell(f"μ ≥ {rounded(needed)}{spikes}", needed, "required_friction")
+        return Cell(f"μ ≥ {rounded_number(needed)}{spikes}", needed, "required_friction")
     holds = needed <= run.friction
     sign = "≤" if holds else ">"
-    return Cell(f"{rounded(needed)}{spikes} {sign} {run.friction:.4g}", needed, "required_friction", not holds)
+    return Cell(f"{rounded_number(needed)}{spikes} {sign} {run.friction:.4g}", needed, "required_friction", not holds)
 
 
 def _tendons(run: Run) -> Cell:
@@ -133,10 +133,10 @@ def _tendons(run: Run) -> Cell:
         return Cell("–")
     used, force = run.response.tendon_utilisation, run.response.max_tendon_force
     if math.isnan(used):
-        return Cell(f"{rounded(force / 1e3)} kN", force, "max_tendon_force")
+        return Cell(f"{rounded_number(force / 1e3)} kN", force, "max_tendon_force")
     sign = ">" if used > 1.0 else "≤"
     words = ", yields" if run.response.tendon_yield and not run.response.tendon_overload else ""
-    return Cell(f"F/F_y = {rounded(used)} {sign} 1{words}", used, "tendon_utilisation", used > 1.0)
+    return Cell(f"F/F_y = {rounded_number(used)} {sign} 1{words}", used, "tendon_utilisation", used > 1.0)
 
 
 def _residual(report: ReportedRuns, run: Run) -> Cell:
@@ -147,11 +147,11 @@ def _residual(report: ReportedRuns, run: Run) -> Cell:
     ratios = ""
     if math.isfinite(p.recentring_ratio):
         turned = response.max_rotation
-        ratios = f"; λ = {rounded(p.recentring_ratio)}"
-        ratios += f", {rounded(p.recentring_ratio_at(turned))} at θ_max" if turned > 0.0 else ""
+        ratios = f"; λ = {rounded_number(p.recentring_ratio)}"
+        ratios += f", {rounded_number(p.recentring_ratio_at(turned))} at θ_max" if turned > 0.0 else ""
     left = _settled_rotation(run)
     if left is None:
-        now = rounded(1e3 * response.residual_rotation)
+        now = rounded_number(1e3 * response.residual_rotation)
         return Cell(f"not settled, θ = {now} mrad{ratios}", response.residual_rotation, "residual_rotation")
     if math.isnan(left):
         return Cell(f"overturns after the run{ratios}", None, "settled_rotation", True)
@@ -159,7 +159,7 @@ def _residual(report: ReportedRuns, run: Run) -> Cell:
         return Cell(f"closes{ratios}", left, "settled_rotation")
     # On springs fuses that yielded tilt a base that is closed.
     wrong = abs(left) > MAX_TILT or springs_of(run.history.model) is None
-    return Cell(f"θ = {rounded(1e3 * left)} mrad left{ratios}", left, "settled_rotation", wrong)
+    return Cell(f"θ = {rounded_number(1e3 * left)} mrad left{ratios}", left, "settled_rotation", wrong)
 
 
 def _settled_rotation(run: Run) -> float | None:

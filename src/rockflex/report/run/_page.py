@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex._files import path_of, write_whole
-from rockflex._shown import counted, shortened, shown
-from rockflex._versions import versions_of
+from rockflex._files import checked_file_path, write_file_atomically
+from rockflex._shown import number_with_noun, shortened, shown
+from rockflex._versions import package_versions
 from rockflex.motion import GroundMotion
 from rockflex.report._write import inline, templates_in
 from rockflex.report.run._checks import check_table, ground_friction, has_bearing_area, legend, long_runs
@@ -188,12 +188,12 @@ def _first_warnings(texts: Sequence[str]) -> list[str]:
     rest = len(texts) - MAX_WARNINGS
     return [
         *(shortened(text, MAX_LETTERS["warning"]) for text in texts[:MAX_WARNINGS]),
-        *([f"and {counted(rest, 'more warning')}; see the responses"] if rest > 0 else []),
+        *([f"and {number_with_noun(rest, 'more warning')}; see the responses"] if rest > 0 else []),
     ]
 
 
 def _versions() -> dict[str, str]:
-    found = versions_of(("rockflex", "numpy"))
+    found = package_versions(("rockflex", "numpy"))
     python = found.pop("python")
     return found | {"Python": python}
 
@@ -279,7 +279,7 @@ def write_report(
         responses, structure=structure, motion=motion, title=title, date=date, friction=friction, notes=notes
     )
     try:
-        return write_whole(target, text.encode())
+        return write_file_atomically(target, text.encode())
     except OSError as error:
         raise InputError(
             f"Cannot write to {target}: {error.strerror or error}. Give a path that can be written to.", field="path"
@@ -322,7 +322,7 @@ def checked_path(name: str, path: str | Path) -> Path:
     InputError
         If it is a folder, or has another suffix than .html.
     """
-    target = path_of(name, path)
+    target = checked_file_path(name, path)
     if target.is_dir():
         raise InputError(
             f"{name} {target} is a folder. Give a file in it, such as {target / 'report.html'}.", field="path"

@@ -11,7 +11,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
-from rockflex._numbers import moment_unit, rounded
+from rockflex._number_format import moment_unit, rounded_number
 from rockflex.modal import (
     BaseElement,
     FrictionDamper,
@@ -76,7 +76,7 @@ class Table:
 
 def value_cell(value: float | None, of: str, size: float = 1.0, digits: int = 3, *, wrong: bool = False) -> Cell:
     """Return the cell of a value in units of `size`."""
-    return Cell(rounded(None if value is None else value / size, digits), value, of, wrong)
+    return Cell(rounded_number(None if value is None else value / size, digits), value, of, wrong)
 
 
 def fact(name: str, value: float, unit: str, of: str, size: float = 1.0, digits: int = 3) -> Fact:
@@ -258,7 +258,7 @@ def initial_state(history: History) -> str:
         *((f"D_{k + 1}", 1e3 * layout.of(state, k)[0], "mm") for k in range(n)),
         *((f"D′_{k + 1}", layout.of(state, n + k)[0], "m/s") for k in range(n)),
     ]
-    shown = [f"{name} = {rounded(float(value))} {unit}" for name, value, unit in values if np.abs(value) > 1e-12]
+    shown = [f"{name} = {rounded_number(float(value))} {unit}" for name, value, unit in values if np.abs(value) > 1e-12]
     return ", ".join([*shown[: 2 + MAX_COORDINATES], *(["…"] if len(shown) > 2 + MAX_COORDINATES else [])])
 
 
@@ -302,16 +302,16 @@ def follows_law(model: Any) -> bool:
 
 def _law(law: Any) -> str:
     if isinstance(law, Restitution):
-        return f"Restitution, e = {rounded(law.e)}"
+        return f"Restitution, e = {rounded_number(law.e)}"
     if isinstance(law, SidedRestitution):
-        right, left = rounded(law.right.e), rounded(law.left.e)
+        right, left = rounded_number(law.right.e), rounded_number(law.left.e)
         return f"Restitution, e = {right} from the right and {left} from the left edge"
     return getattr(law, "description", type(law).__name__)
 
 
 def _hysteresis(b: Any) -> str:
     return (
-        f"Bouc–Wen, D_y = {rounded(1e3 * b.yield_displacement)} mm, post-yield ratio {b.post_yield_ratio:g}, "
+        f"Bouc–Wen, D_y = {rounded_number(1e3 * b.yield_displacement)} mm, post-yield ratio {b.post_yield_ratio:g}, "
         f"γ = {b.gamma:g}, β = {b.beta:g}, n = {b.exponent:g}"
     )
 
@@ -323,14 +323,16 @@ def _ground(model: Any) -> list[tuple[str, str]]:
     if springs is not None:
         ratio = 0.5 * springs.total_damping / math.sqrt(springs.total_stiffness * mass)
         inertia = model.inertia - model.properties.translational_inertia
-        turns = f", I_b = {rounded(inertia / 1e3)} t m²" if inertia > 1e-9 * model.inertia else ""
+        turns = f", I_b = {rounded_number(inertia / 1e3)} t m²" if inertia > 1e-9 * model.inertia else ""
         lines.append(
             (
                 "Ground",
-                f"{springs.n} springs without tension, x = {rounded(float(springs.positions[0]))} to "
-                f"{rounded(float(springs.positions[-1]))} m, Σk = {rounded(springs.total_stiffness / 1e6)} MN/m, "
-                f"Σk x² = {rounded(springs.rotational_stiffness / 1e6)} MN m/rad, Σc = "
-                f"{rounded(springs.total_damping / 1e3)} kN s/m ({rounded(100.0 * ratio)} % of critical in heave)"
+                f"{springs.n} springs without tension, x = {rounded_number(float(springs.positions[0]))} to "
+                f"{rounded_number(float(springs.positions[-1]))} m, Σk = "
+                f"{rounded_number(springs.total_stiffness / 1e6)} MN/m, "
+                f"Σk x² = {rounded_number(springs.rotational_stiffness / 1e6)} MN m/rad, Σc = "
+                f"{rounded_number(springs.total_damping / 1e3)} kN s/m ({rounded_number(100.0 * ratio)} % of critical "
+                "in heave)"
                 f"{turns}",
             )
         )
@@ -387,16 +389,20 @@ def _row(place: int, elements: Sequence[BaseElement], runs: Sequence[Response]) 
 def _describe_element(element: BaseElement) -> tuple[str, str, tuple[str, str]]:
     """Return kind, properties, and the words for an element that did not, or did, yield."""
     if isinstance(element, ViscousDamper):
-        return "viscous damper", f"c = {rounded(element.coefficient / 1e3)} kN s/m", ("", "")
+        return "viscous damper", f"c = {rounded_number(element.coefficient / 1e3)} kN s/m", ("", "")
     if isinstance(element, FrictionDamper):
-        return "friction damper", f"F_0 = {rounded(element.force / 1e3)} kN", ("did not slide", "slid")
-    stiffness = f"k = {rounded(element.stiffness / 1e6)} MN/m"
-    limit = "" if element.yield_force is None else f", F_y = {rounded(element.yield_force / 1e3)} kN"
+        return "friction damper", f"F_0 = {rounded_number(element.force / 1e3)} kN", ("did not slide", "slid")
+    stiffness = f"k = {rounded_number(element.stiffness / 1e6)} MN/m"
+    limit = "" if element.yield_force is None else f", F_y = {rounded_number(element.yield_force / 1e3)} kN"
     after = "" if element.post_yield_ratio is None else f", post-yield ratio {element.post_yield_ratio:.4g}"
-    breaks = "" if element.rupture_elongation is None else f", breaks at {rounded(1e3 * element.rupture_elongation)} mm"
+    breaks = (
+        ""
+        if element.rupture_elongation is None
+        else f", breaks at {rounded_number(1e3 * element.rupture_elongation)} mm"
+    )
     if isinstance(element, Tendon):
         state = ("elastic", "beyond F_y" if element.post_yield_ratio is None else "yielded")
-        start = f"F_0 = {rounded(element.initial_force / 1e3)} kN, "
+        start = f"F_0 = {rounded_number(element.initial_force / 1e3)} kN, "
         return "tendon", start + stiffness + limit + after + breaks, state
     only = ", tension only" if element.tension_only else ""
     return "yielding dissipator", stiffness + limit + after + breaks + only, ("elastic", "yielded")

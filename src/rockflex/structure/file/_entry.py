@@ -9,8 +9,8 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 from pydantic import Field, model_validator
 
 from rockflex._errors import InputError
-from rockflex._files import check_regular, path_of
-from rockflex._schema import PLAIN, Eccentricity, Key
+from rockflex._files import check_regular_file, checked_file_path
+from rockflex._schema import PLAIN, Eccentricity, SchemaKey
 from rockflex._shown import shortened
 from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.structure import Eccentric, Restrained
@@ -33,9 +33,9 @@ from rockflex.structure.file._tables import (
 )
 
 _POST_YIELD_RATIO = "the stiffness after yielding over the elastic one"
-_POSITION = Key("the distance to the right of the axis of the masses", "m")
-_ELEMENT_KIND = Key('"tendon", "yielding_dissipator", "viscous_damper" or "friction_damper"', form=PLAIN)
-_TABLE_KEY = Key("a table", form=PLAIN)
+_POSITION = SchemaKey("the distance to the right of the axis of the masses", "m")
+_ELEMENT_KIND = SchemaKey('"tendon", "yielding_dissipator", "viscous_damper" or "friction_damper"', form=PLAIN)
+_TABLE_KEY = SchemaKey("a table", form=PLAIN)
 _RUN_KEYS = ("impact", "restitution", "bouc_wen", "ground")  # only for `rockflex run`
 
 
@@ -67,11 +67,15 @@ class TendonTable(ElementTable):
     title = "Tendon"
 
     position: Annotated[float, _POSITION] = 0.0
-    initial_force: Annotated[float, Key("the force while the base stands on the ground", "N")]
-    stiffness: Annotated[float, Key("EA/L over the unbonded length", "N/m")]
-    yield_force: Annotated[float | None, Key("the force at which the tendon yields", "N")] = None
-    post_yield_ratio: Annotated[float | None, Key(f"{_POST_YIELD_RATIO} (default: the tendon stays elastic)")] = None
-    rupture_elongation: Annotated[float | None, Key("the elongation at which a tendon that yields breaks", "m")] = None
+    initial_force: Annotated[float, SchemaKey("the force while the base stands on the ground", "N")]
+    stiffness: Annotated[float, SchemaKey("EA/L over the unbonded length", "N/m")]
+    yield_force: Annotated[float | None, SchemaKey("the force at which the tendon yields", "N")] = None
+    post_yield_ratio: Annotated[float | None, SchemaKey(f"{_POST_YIELD_RATIO} (default: the tendon stays elastic)")] = (
+        None
+    )
+    rupture_elongation: Annotated[
+        float | None, SchemaKey("the elongation at which a tendon that yields breaks", "m")
+    ] = None
 
 
 class _TendonKind(Table):
@@ -90,11 +94,11 @@ class YieldingDissipatorTable(ElementTable):
 
     kind: Annotated[Literal["yielding_dissipator"], _ELEMENT_KIND]
     position: Annotated[float, _POSITION] = 0.0
-    stiffness: Annotated[float, Key("the elastic stiffness", "N/m")]
-    yield_force: Annotated[float, Key("the force at which the fuse yields", "N")]
-    post_yield_ratio: Annotated[float, Key(_POST_YIELD_RATIO)] = 0.0
-    tension_only: Annotated[bool, Key("whether the fuse cannot push", form="true or false: {}")] = False
-    rupture_elongation: Annotated[float | None, Key("the elongation at which the fuse breaks", "m")] = None
+    stiffness: Annotated[float, SchemaKey("the elastic stiffness", "N/m")]
+    yield_force: Annotated[float, SchemaKey("the force at which the fuse yields", "N")]
+    post_yield_ratio: Annotated[float, SchemaKey(_POST_YIELD_RATIO)] = 0.0
+    tension_only: Annotated[bool, SchemaKey("whether the fuse cannot push", form="true or false: {}")] = False
+    rupture_elongation: Annotated[float | None, SchemaKey("the elongation at which the fuse breaks", "m")] = None
 
 
 class ViscousDamperTable(ElementTable):
@@ -105,7 +109,7 @@ class ViscousDamperTable(ElementTable):
 
     kind: Annotated[Literal["viscous_damper"], _ELEMENT_KIND]
     position: Annotated[float, _POSITION] = 0.0
-    coefficient: Annotated[float, Key("the force over the velocity", "N s/m")]
+    coefficient: Annotated[float, SchemaKey("the force over the velocity", "N s/m")]
 
 
 class FrictionDamperTable(ElementTable):
@@ -116,7 +120,7 @@ class FrictionDamperTable(ElementTable):
 
     kind: Annotated[Literal["friction_damper"], _ELEMENT_KIND]
     position: Annotated[float, _POSITION] = 0.0
-    force: Annotated[float, Key("the force at which the damper slides", "N")]
+    force: Annotated[float, SchemaKey("the force at which the damper slides", "N")]
 
 
 AnyElementTable: TypeAlias = Annotated[
@@ -151,7 +155,7 @@ class StructureEntry(Table):
         None if there are none. They follow the tendons.
     """
 
-    name: Annotated[str, Key("a name, in quotes", form=PLAIN)] = ""
+    name: Annotated[str, SchemaKey("a name, in quotes", form=PLAIN)] = ""
     frame: Annotated[FrameTable | None, _TABLE_KEY] = None
     fish_bone: Annotated[FishBoneTable | None, _TABLE_KEY] = None
     wall_frame: Annotated[WallFrameTable | None, _TABLE_KEY] = None
@@ -164,11 +168,11 @@ class StructureEntry(Table):
     properties: Annotated[PropertiesTable | None, _TABLE_KEY] = None
     block: Annotated[BlockTable | None, _TABLE_KEY] = None
     eccentricity: Eccentricity = None
-    tendons: Annotated[list[TendonTable], Key("a list of tables, each under a heading [[tendons]]", form=PLAIN)] = (
-        Field(default_factory=list[TendonTable])
-    )
+    tendons: Annotated[
+        list[TendonTable], SchemaKey("a list of tables, each under a heading [[tendons]]", form=PLAIN)
+    ] = Field(default_factory=list[TendonTable])
     elements: Annotated[
-        list[AnyElementTable] | None, Key("a list of tables, each under a heading [[elements]]", form=PLAIN)
+        list[AnyElementTable] | None, SchemaKey("a list of tables, each under a heading [[elements]]", form=PLAIN)
     ] = None  # not an empty list, which would be new in the documents of stored studies
 
     @model_validator(mode="after")
@@ -313,7 +317,7 @@ def read_structure(path: str | Path) -> Built:
     >>> round(rf.read_structure("block.toml").resisting_moment)  # m g b in N m
     24362
     """
-    file = path_of("path", path)
+    file = checked_file_path("path", path)
     content = {key: value for key, value in read_toml(file, "structure").items() if key not in _RUN_KEYS}
     if "study" in content:
         raise InputError(f"{file} is the file of a study, but one of a structure is expected. Use load_study(path).")
@@ -328,7 +332,7 @@ def read_toml(file: Path, kind: str) -> dict[str, Any]:
     InputError
         If the file cannot be read, is not a regular file, or is not TOML.
     """
-    check_regular(file)
+    check_regular_file(file)
     try:
         return tomllib.loads(file.read_text("utf-8"))
     except FileNotFoundError as error:

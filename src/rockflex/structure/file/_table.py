@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
 
 from rockflex._errors import InputError
-from rockflex._schema import PLAIN, Key
+from rockflex._schema import PLAIN, SchemaKey
 
 AnyTable = TypeVar("AnyTable", bound="Table")
 
@@ -19,15 +19,17 @@ AnyTable = TypeVar("AnyTable", bound="Table")
 class Table(BaseModel):
     """A table of a file: known keys only, and no silent conversion.
 
-    Each field has a `Key` in its annotation, or a description that completes the sentence "it must be ...".
+    Each field has a `SchemaKey` in its annotation, or a description that completes the sentence "it must be ...".
     """
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=True)
 
 
-def key_of(field: FieldInfo) -> Key:
+def key_of(field: FieldInfo) -> SchemaKey:
     """Return the key of a field; one without it has its description alone."""
-    return next((part for part in field.metadata if isinstance(part, Key)), Key(field.description or "", form=PLAIN))
+    return next(
+        (part for part in field.metadata if isinstance(part, SchemaKey)), SchemaKey(field.description or "", form=PLAIN)
+    )
 
 
 def expected(field: FieldInfo) -> str:

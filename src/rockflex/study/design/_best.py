@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, SupportsIndex
 import numpy as np
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import whole_number
+from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.study.design._designs import VARIABLES
@@ -133,7 +133,7 @@ def best_design(
     """
     import pandas as pd
 
-    wanted, times = check_requirements(requirements), whole_number("n_resamples", n_resamples, MIN_RESAMPLES)
+    wanted, times = check_requirements(requirements), checked_whole_number("n_resamples", n_resamples, MIN_RESAMPLES)
     check_confidence(confidence)
     lacking = [name for name in (*FACTS, "structure", "round", "group") if name not in runs]
     if lacking or not len(runs):

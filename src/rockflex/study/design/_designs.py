@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._checks import instance, one_of, positive, real_or_nan, whole_number
+from rockflex._checks import checked_instance, checked_positive, checked_whole_number, is_one_of, real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
@@ -64,13 +64,13 @@ class TendonLevel:
     name: str = ""
 
     def __post_init__(self) -> None:
-        force = positive("prestress_ratio", self.prestress_ratio, "W", zero=True)
-        stiffness = positive("stiffness_ratio", self.stiffness_ratio, "L_0^r g/B²", zero=True)
-        instance("name", self.name, str)
+        force = checked_positive("prestress_ratio", self.prestress_ratio, "W", zero=True)
+        stiffness = checked_positive("stiffness_ratio", self.stiffness_ratio, "L_0^r g/B²", zero=True)
+        checked_instance("name", self.name, str)
         words = f"F₀ = {force:.6g} W, k = {stiffness:.6g} L₀ʳg/B²" if force or stiffness else "no tendon"
         vars(self).update(prestress_ratio=force, stiffness_ratio=stiffness, name=self.name or words)
         if self.yield_ratio is not None:
-            limit = positive("yield_ratio", self.yield_ratio, "W")
+            limit = checked_positive("yield_ratio", self.yield_ratio, "W")
             vars(self).update(yield_ratio=limit)
             if force > limit:
                 raise InputError(
@@ -112,7 +112,7 @@ def designs_of(
         tendons, a tendon would be outside a base, or a base would have no mass left.
     """
     widths = half_widths_of(half_widths)
-    per_width = positive("base_mass_per_width", base_mass_per_width, "kg/m", zero=True)
+    per_width = checked_positive("base_mass_per_width", base_mass_per_width, "kg/m", zero=True)
     for place, level in enumerate(levels):
         if not isinstance(level, TendonLevel):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise InputError(f"tendons[{place}] is {described(level)}. Expected a TendonLevel.")
@@ -239,12 +239,12 @@ class DesignSearch:
             half_widths=tuple(half_widths_of(given)),
             tendon_factors=factors_of("tendon_factors", self.tendon_factors),
             dissipator_factors=factors_of("dissipator_factors", self.dissipator_factors),
-            base_mass_per_width=positive("base_mass_per_width", self.base_mass_per_width, "kg/m", zero=True),
-            refinements=whole_number("refinements", self.refinements, 0, MAX_REFINEMENTS),
-            designs_per_refinement=whole_number("designs_per_refinement", self.designs_per_refinement, 1),
+            base_mass_per_width=checked_positive("base_mass_per_width", self.base_mass_per_width, "kg/m", zero=True),
+            refinements=checked_whole_number("refinements", self.refinements, 0, MAX_REFINEMENTS),
+            designs_per_refinement=checked_whole_number("designs_per_refinement", self.designs_per_refinement, 1),
         )
         for name in ("tendon_scaling", "dissipator_scaling"):
-            if not one_of(getattr(self, name), ("size", "force")):
+            if not is_one_of(getattr(self, name), ("size", "force")):
                 raise InputError(f'{name} must be "size" or "force", but {shown(getattr(self, name))} was given.')
         if self.n_first == 1:
             raise InputError(

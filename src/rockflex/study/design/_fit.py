@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import in_range, positive, real_or_nan
+from rockflex._checks import checked_in_range, checked_positive, real_or_nan
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex.fragility import (
@@ -115,7 +115,7 @@ def _rotation(limit: float | str, nominal: float, words: list[str]) -> float:
 
 def check_confidence(confidence: float) -> None:
     """Raise an InputError unless a confidence is in [0, 1)."""
-    in_range("confidence", confidence, 0.0, 1.0, hint="A 90 % band is 0.9.")
+    checked_in_range("confidence", confidence, 0.0, 1.0, hint="A 90 % band is 0.9.")
 
 
 def check_damping(hazard: HazardCurve | None, runs: "pd.DataFrame", measure: str) -> None:
@@ -161,7 +161,7 @@ class ShakingLevel:
         if (at is None) == (hazard is None):
             raise InputError("Give either at, a level of the measure, or hazard, a HazardCurve in it.")
         if hazard is None:
-            level = positive("at", at, "the unit of the measure")  # pyright: ignore[reportArgumentType]
+            level = checked_positive("at", at, "the unit of the measure")  # pyright: ignore[reportArgumentType]
             return cls(None, np.array([level]), np.ones(1))
         return cls(hazard, *quadrature(hazard))
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._checks import in_range, positive
+from rockflex._checks import checked_in_range, checked_positive
 from rockflex._errors import InputError, SolverError
 from rockflex.fragility import HazardCurve, limit_label
 from rockflex.study.design._fit import Runs, ShakingLevel, check_limit, check_same_for_all
@@ -52,9 +52,9 @@ class DesignCost:
 
     def __post_init__(self) -> None:
         vars(self).update(
-            half_width=positive("half_width", self.half_width, "cost/m", zero=True),
-            prestress=positive("prestress", self.prestress, "cost/N", zero=True),
-            dissipator_force=positive("dissipator_force", self.dissipator_force, "cost/N", zero=True),
+            half_width=checked_positive("half_width", self.half_width, "cost/m", zero=True),
+            prestress=checked_positive("prestress", self.prestress, "cost/N", zero=True),
+            dissipator_force=checked_positive("dissipator_force", self.dissipator_force, "cost/N", zero=True),
         )
         if not (self.half_width or self.prestress or self.dissipator_force):
             raise InputError(
@@ -113,10 +113,10 @@ class Requirement:
         check_same_for_all(self.measure)
         ShakingLevel.of(self.at, self.hazard)
         if self.hazard is None:
-            positive("target", self.target, "probability")
-            in_range("target", self.target, 0.0, 1.0, hint="With a level it is a probability.")
+            checked_positive("target", self.target, "probability")
+            checked_in_range("target", self.target, 0.0, 1.0, hint="With a level it is a probability.")
         else:
-            positive("target", self.target, "1/year")
+            checked_positive("target", self.target, "1/year")
 
     @property
     def level(self) -> ShakingLevel:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex._checks import instance
+from rockflex._checks import checked_instance
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
@@ -356,5 +356,5 @@ def search_design(
         [structure], motions, [model], free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground
     )
     wanted = check_requirements(requirements)
-    space, unit_costs = instance("search", search, DesignSearch), instance("cost", cost, DesignCost)
+    space, unit_costs = checked_instance("search", search, DesignSearch), checked_instance("cost", cost, DesignCost)
     return run_plan(SearchPlan(matrix, space, wanted, unit_costs, given, runs_per_chunk=64), workers, progress)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, SupportsIndex
 from numpy.typing import ArrayLike
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from rockflex._checks import in_range, positive
+from rockflex._checks import checked_in_range, checked_positive
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
@@ -206,10 +206,10 @@ class DesignStudy(StructuresSpec):
                 )
             for each in self._for_each(name):
                 if each is not None:
-                    positive(name, each, unit)
+                    checked_positive(name, each, unit)
         for each in self._for_each("target"):
             if each is not None and self.hazard is None:
-                in_range("target", each, 0.0, 1.0, hint="With a level it is a probability.")
+                checked_in_range("target", each, 0.0, 1.0, hint="With a level it is a probability.")
         return self
 
     @model_validator(mode="after")

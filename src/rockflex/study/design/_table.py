@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._checks import positive
+from rockflex._checks import checked_positive
 from rockflex._errors import InputError
 from rockflex.fragility import HazardCurve
 from rockflex.study.design._fit import (
@@ -158,7 +158,7 @@ def smallest_width(table: "pd.DataFrame", target: float) -> "pd.DataFrame":
     if lacking or not len(table):
         lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
         raise InputError(f"The table {lacks}. Give what design_table returned.")
-    wanted = positive("target", target, "1/year" if value == "rate" else "probability")
+    wanted = checked_positive("target", target, "1/year" if value == "rate" else "probability")
     rows: list[dict[str, Any]] = []
     for (model, tendon), group in table.groupby(["model", "tendon"], observed=True, sort=False):
         designs = group.sort_values("half_width")

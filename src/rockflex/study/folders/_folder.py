@@ -13,11 +13,11 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self, SupportsIndex, cast
 
-from rockflex._checks import whole_number
+from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError
-from rockflex._files import path_of, sweep, write_whole
+from rockflex._files import checked_file_path, remove_temporary_files, write_file_atomically
 from rockflex._html import html_table
-from rockflex._shown import counted, few, shortened, shown
+from rockflex._shown import few_texts_shown, number_with_noun, shortened, shown
 from rockflex.study.folders._lock import LOCK, Lock, holder_of
 from rockflex.study.folders._manifest import MANIFEST, SPEC, Manifest, listed
 from rockflex.study.folders._parts import PARTS, DamagedPart, Part, PartError, PartMaker, check, read, schema_at, verify
@@ -108,7 +108,7 @@ def facts(folder: Path, manifest: Manifest) -> dict[str, str]:
         found["size"] = f"{sum(size for _, size, _ in parts) / 1e6:.3g} MB in {PARTS}/*.parquet"
         found |= _counts([path for path, _, _ in parts])
     if manifest.checksums:
-        found["inputs"] = f"{len(manifest.checksums)} with checksums: {few(list(manifest.checksums))}"
+        found["inputs"] = f"{len(manifest.checksums)} with checksums: {few_texts_shown(list(manifest.checksums))}"
     if manifest.versions:
         found["versions"] = ", ".join(f"{name} {version}" for name, version in manifest.versions.items())
     return found | dict(list(_specified(manifest.spec))[:MAX_KEYS])
@@ -131,7 +131,7 @@ def _title(spec: Mapping[str, Any]) -> str:
 def _state(folder: Path, done: int, total: int) -> str:
     holder = holder_of(folder / LOCK)
     if done == total:
-        return f"complete: all {counted(total, 'part')}"
+        return f"complete: all {number_with_noun(total, 'part')}"
     if holder is not None:
         return f"running: {done} of {total} parts, by {holder}"
     return f"stopped: {done} of {total} parts" if done else f"planned: none of {total} parts"
@@ -162,7 +162,7 @@ def _counts(paths: Sequence[Path]) -> dict[str, str]:
             seen = ["failed"] * len(values) if name == "error" else map(str, values)
             statuses.setdefault(name, Counter()).update(seen)
     some = f" in the first {MAX_PARTS_READ} parts" if len(paths) > MAX_PARTS_READ else ""
-    lost = f"; {counted(unreadable, 'part')} cannot be read, see damaged()" if unreadable else ""
+    lost = f"; {number_with_noun(unreadable, 'part')} cannot be read, see damaged()" if unreadable else ""
     found = {"rows": f"{rows}{some}{lost}"}
     for name, counter in statuses.items():
         if counter:
@@ -194,7 +194,7 @@ def _text(value: Any) -> str:
 
 def _names(values: Sequence[Any]) -> str:
     """Write the first and the last few of some values, by name where they have one."""
-    return few([str(each.get("name", "a table") if isinstance(each, Mapping) else each) for each in values])
+    return few_texts_shown([str(each.get("name", "a table") if isinstance(each, Mapping) else each) for each in values])
 
 
 @dataclass(frozen=True, repr=False)
@@ -269,7 +269,7 @@ class StudyFolder:
             If the folder holds another study, other records or another program's files, was started with other
             versions, is in use by another process, or cannot be written.
         """
-        folder = path_of("path", path)
+        folder = checked_file_path("path", path)
         given = Manifest.of(spec, n_chunks, versions, checksums or {})
         with explained_errors(folder):
             if not (folder / MANIFEST).exists():
@@ -277,8 +277,8 @@ class StudyFolder:
             (folder / PARTS).mkdir(parents=True, exist_ok=True)
             lock = Lock.acquire(folder / LOCK)
             try:
-                sweep(folder, "*.json")
-                sweep(folder / PARTS, "part-*.parquet")
+                remove_temporary_files(folder, "*.json")
+                remove_temporary_files(folder / PARTS, "part-*.parquet")
                 if not (folder / MANIFEST).exists():
                     given.write(folder)
                 stored = Manifest.read(folder)
@@ -299,7 +299,7 @@ class StudyFolder:
         InputError
             If there is no study at `path`, or it is damaged.
         """
-        folder = path_of("path", path)
+        folder = checked_file_path("path", path)
         with explained_errors(folder):
             if not (folder / MANIFEST).is_file():
                 raise InputError(
@@ -359,7 +359,7 @@ class StudyFolder:
         """
         import pyarrow as pa
 
-        place = whole_number("number", number, 0, self.n_chunks - 1)
+        place = checked_whole_number("number", number, 0, self.n_chunks - 1)
         if not isinstance(table, pa.Table):
             raise InputError(f"A chunk must be a pyarrow.Table, but {type(table).__name__} was given.")
         return self.add(self.maker.make(place, table))
@@ -377,7 +377,7 @@ class StudyFolder:
         InputError
             If it is no part of this study or was damaged on its way; see also `write`.
         """
-        place = whole_number("number", part.number, 0, self.n_chunks - 1)
+        place = checked_whole_number("number", part.number, 0, self.n_chunks - 1)
         if self.lock is None:
             raise InputError(
                 f"{self.path} was opened for reading. To write, open it by StudyFolder.open with its specification."
@@ -391,7 +391,7 @@ class StudyFolder:
             ) from error
         self._refuse_other_columns(place, schema)
         with explained_errors(self.path, len(part.content)):
-            path = write_whole(self._part(place), part.content)
+            path = write_file_atomically(self._part(place), part.content)
         if not self._known:
             self._known[place] = schema
         return path

@@ -9,10 +9,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Self, SupportsIndex, cast
 
-from rockflex._checks import whole_number
+from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError
-from rockflex._files import check_regular, write_whole
-from rockflex._shown import counted, shortened, shown
+from rockflex._files import check_regular_file, write_file_atomically
+from rockflex._shown import number_with_noun, shortened, shown
 
 MAX_DIFFERENCES = 10  # differences in a message
 MAX_DEPTH = 50  # levels of a specification; those of studies have five
@@ -70,7 +70,7 @@ def differences(old: Any, new: Any, where: str = "") -> list[str]:
     if isinstance(old, list) and isinstance(new, list):
         first, second = cast("list[Any]", old), cast("list[Any]", new)
         if len(first) != len(second):
-            return [f"{where}: {counted(len(first), 'entry', 'entries')} in the folder, {len(second)} now"]
+            return [f"{where}: {number_with_noun(len(first), 'entry', 'entries')} in the folder, {len(second)} now"]
         pairs = enumerate(zip(first, second, strict=True))
         return [line for place, (one, two) in pairs for line in differences(one, two, f"{where}[{place}]")]
     return [] if _same(old, new) else [f"{where}: {_shown(old)} in the folder, {_shown(new)} now"]
@@ -147,8 +147,8 @@ class Manifest:
         """Write both files, the manifest last, because its presence marks the folder as a study."""
         origin = {"format": FORMAT, **asdict(self), "seed": self.spec.get("seed")}
         del origin["spec"]
-        write_whole(folder / SPEC, _encoded(self.spec))
-        write_whole(folder / MANIFEST, _encoded(origin))
+        write_file_atomically(folder / SPEC, _encoded(self.spec))
+        write_file_atomically(folder / MANIFEST, _encoded(origin))
 
     @classmethod
     def read(cls, folder: Path) -> Self:
@@ -161,7 +161,7 @@ class Manifest:
         """
         path = folder / MANIFEST
         for file in (path, folder / SPEC):
-            check_regular(file)
+            check_regular_file(file)
         try:
             origin = json.loads(path.read_text("utf-8"))
             spec = plain("spec", json.loads((folder / SPEC).read_text("utf-8")))
@@ -225,7 +225,7 @@ def _compared(versions: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _part_count(n_chunks: SupportsIndex) -> int:
-    count = whole_number("n_chunks", n_chunks, 1)
+    count = checked_whole_number("n_chunks", n_chunks, 1)
     if count > MAX_PARTS:
         raise InputError(
             f"n_chunks must be at most {MAX_PARTS}, because each chunk is a file, but {shown(count)} was given. "

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from zlib import crc32
 
-from rockflex._files import irregular
+from rockflex._files import irregular_file_kind
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -122,7 +122,7 @@ def read(path: Path, study: str, number: int) -> "pa.Table":
 
 
 def _content(path: Path) -> bytes:
-    kind = irregular(path)
+    kind = irregular_file_kind(path)
     if kind:
         raise PartError(f"it is {kind}")
     return path.read_bytes()

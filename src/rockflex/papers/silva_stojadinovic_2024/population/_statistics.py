@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, SupportsIndex
 import numpy as np
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import in_range, whole_number
+from rockflex._checks import checked_in_range, checked_whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._values import Value
@@ -122,9 +122,9 @@ def population_statistics(
     >>> int(found.outcomes.loc["rocking", "rocking"])
     10
     """
-    in_range("confidence", confidence, 1e-9, 1.0)
-    resamples, start = whole_number("n_resamples", n_resamples, 1), whole_number("seed", seed, 0)
-    shown = whole_number("n_outliers", n_outliers, 0)
+    checked_in_range("confidence", confidence, 1e-9, 1.0)
+    resamples, start = checked_whole_number("n_resamples", n_resamples, 1), checked_whole_number("seed", seed, 0)
+    shown = checked_whole_number("n_outliers", n_outliers, 0)
     solved = pairs[pairs["status_mdof"].notna() & pairs["status_2dof"].notna()]
     if not len(solved):
         raise InputError(

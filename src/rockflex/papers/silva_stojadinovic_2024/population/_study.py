@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 import numpy as np
 from pydantic import Field
 
-from rockflex._checks import whole_number
+from rockflex._checks import checked_whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
@@ -128,8 +128,8 @@ def draw_prototype(seed: int, number: int, n_records: int) -> Prototype:
     >>> drawn.n_stories, drawn.aspect_ratio, drawn.record
     (14, 10, 35)
     """
-    start, place = whole_number("seed", seed, 0), whole_number("number", number, 0, 2**32 - 1)
-    records = whole_number("n_records", n_records, 1, 10**9)
+    start, place = checked_whole_number("seed", seed, 0), checked_whole_number("number", number, 0, 2**32 - 1)
+    records = checked_whole_number("n_records", n_records, 1, 10**9)
     bits = np.random.Philox(np.random.SeedSequence(start, spawn_key=(place,)))
     draws = np.random.Generator(bits).random(6).tolist()
     shear = draws[3] < 0.5
@@ -361,7 +361,7 @@ def run_population(
     1     1          4   flexure     rocking     rocking
     2     2          3   flexure     rocking     rocking
     """
-    count, start = whole_number("pairs", pairs, 1, MAX_PAIRS), whole_number("seed", seed, 0)
+    count, start = checked_whole_number("pairs", pairs, 1, MAX_PAIRS), checked_whole_number("seed", seed, 0)
     suite = motions if isinstance(motions, Suite) else Suite(motions_of(motions))
     free, limit = free_vibration_time(free_vibration), work_limit_of(work_limit)
     return run_plan(PopulationPlan(suite, count, start, free, 128, limit), workers, progress)
