@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 import rockflex as rf
 from builders import make_frame
 from record_samples import SEARCH_RESULTS, cosmos, esm, knet
-from rockflex.motion._record_table import read_table
+from rockflex.motion._record_table import read_record_table
 from rockflex.study.folders import _lock
 from toy_study import ToyPlan, opened, run_study
 
@@ -93,7 +93,7 @@ READERS: dict[str, tuple[Callable[[Path], Any], bytes]] = {
     "r.asc": (without_warnings(rf.read_motion), esm().encode()),
     "r.v2c": (without_warnings(rf.read_components), (cosmos(90) + cosmos(400)).encode()),
     "r.tsv": (in_units, b"Zeit\tNS\tEW\tUD\n" + b"0,01\t0,1\t0,2\t0,3\n" * 3),
-    "_SearchResults.csv": (lambda path: read_table(path), SEARCH_RESULTS.encode()),
+    "_SearchResults.csv": (lambda path: read_record_table(path), SEARCH_RESULTS.encode()),
     "k.csv": (stiff, MATRIX.encode()),
     "k.mtx": (stiff, MTX.encode()),
 }

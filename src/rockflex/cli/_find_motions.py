@@ -15,11 +15,11 @@ from rockflex.motion import (
     GroundMotion,
     OnError,
     Vertical,
-    folder_files,
     load_suite,
     quiet_motion,
-    read_files,
+    read_components_by_file,
     read_motion,
+    record_files_in_folder,
     suite_names,
 )
 
@@ -176,14 +176,14 @@ def _files(name: str) -> list[Path]:
             f"{shown(name)} is neither a suite ({', '.join(suite_names())}), nor a record in one, such as "
             f"fema-p695-far-field/FF-12-a, nor a file or directory (working directory: {Path.cwd()}).{hint}"
         )
-    return folder_files(path) if path.is_dir() else [path]
+    return record_files_in_folder(path) if path.is_dir() else [path]
 
 
 def _read(
     files: Sequence[Path], units: str | None, dt: float | None, on_error: OnError, pair: Vertical | None
 ) -> dict[Path, list[GroundMotion]]:
     with _naming_flags():
-        return read_files(files, units, dt, on_error, pair, skip="--on-error skip")
+        return read_components_by_file(files, units, dt, on_error, pair, skip="--on-error skip")
 
 
 @contextmanager

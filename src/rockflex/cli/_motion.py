@@ -110,9 +110,9 @@ def _units() -> dict[str, str]:
 
 
 def _measures(item: "FoundMotion", periods: Sequence[float], damping: float) -> dict[str, float]:
-    from rockflex.motion import Shaking, record_measures, vertical_measures
+    from rockflex.motion import MeasureInput, record_measures, vertical_measures
 
-    motion, shaking = item.motion, Shaking(item.motion)
+    motion, shaking = item.motion, MeasureInput(item.motion)
     spectral = {"sa": motion.spectrum(periods, damping).sa}
     measures = record_measures()
     if motion.vertical is not None:

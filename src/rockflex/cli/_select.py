@@ -122,9 +122,9 @@ def _read_items(
 
 
 def _acceleration(name: str, text: str) -> float:
-    from rockflex.motion import UNITS, acceleration_in
+    from rockflex.motion import UNITS, acceleration_in_text
 
-    value = acceleration_in(text)
+    value = acceleration_in_text(text)
     if value is None:
         raise InputError(
             f"{name} must be a number with its unit, such as 0.25g or 2.45m/s2, but {shown(text)} was given. The units "

@@ -23,9 +23,9 @@ from rockflex._errors import InputError, RecordWarning
 from rockflex._html import HtmlTable, value_range_text
 from rockflex._shown import few_texts_shown, first_texts_shown, number_with_noun, shown
 from rockflex._values import Value
-from rockflex.motion._ground_motion import GroundMotion, check_horizontal
+from rockflex.motion._ground_motion import GroundMotion, check_horizontal_component
 from rockflex.motion._recordings import Combination, Recording, horizontal_pairs
-from rockflex.motion._spectra import TargetSpectrum, comparison_periods, fitting_factor
+from rockflex.motion._spectra import TargetSpectrum, comparison_periods, spectrum_fitting_factor
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -59,11 +59,13 @@ class SelectionProblem:
     @property
     def misfits(self) -> Array:
         """Root mean square of ln(spectrum/target) of each record, shape (n_records,)."""
-        return misfit(self.spectra)
+        return log_spectrum_misfit(self.spectra)
 
     def objective(self, total: Array, squares: Array, count: int) -> Array:
         """Return the objective of sets of `count` spectra with the given sums, along the first axis."""
-        return (1.0 - self.record_weight) * misfit(total / count) ** 2 + self.record_weight * squares / count
+        return (1.0 - self.record_weight) * log_spectrum_misfit(
+            total / count
+        ) ** 2 + self.record_weight * squares / count
 
     def objective_of(self, chosen: Sequence[int]) -> float:
         """Return the objective of one set."""
@@ -81,25 +83,25 @@ class SelectionProblem:
         return free
 
 
-def misfit(ratios: Array) -> Array:
+def log_spectrum_misfit(ratios: Array) -> Array:
     """Root mean square of the logarithms along the last axis."""
     return np.sqrt(np.mean(np.log(ratios) ** 2, axis=-1))
 
 
-def best_set(choice: SelectionProblem, n: int) -> list[int]:
+def best_record_set(choice: SelectionProblem, n: int) -> list[int]:
     """Return the best of some sets of `n` records, in order: each is improved by exchanges until none helps.
 
     One set starts from the records with the least misfits; the others grow, each from one of these records, by the
     record that helps the mean most. The list is shorter than `n` where the limits leave too few records.
     """
     seeds = np.argsort(choice.misfits, kind="stable")[:N_STARTS]
-    starts = [_ranked(choice, n), *(_greedy(choice, n, int(seed)) for seed in seeds)]
+    starts = [_ranked_records(choice, n), *(_greedy_record_set(choice, n, int(seed)) for seed in seeds)]
     longest = max(map(len, starts))
-    sets = [_exchanged(choice, start) for start in starts if len(start) == longest]
+    sets = [_record_set_after_exchanges(choice, start) for start in starts if len(start) == longest]
     return sorted(min(sets, key=choice.objective_of))
 
 
-def _ranked(choice: SelectionProblem, n: int) -> list[int]:
+def _ranked_records(choice: SelectionProblem, n: int) -> list[int]:
     chosen: list[int] = []
     for i in np.argsort(choice.misfits, kind="stable"):
         if len(chosen) < n and choice.allowed(chosen)[i]:
@@ -107,7 +109,7 @@ def _ranked(choice: SelectionProblem, n: int) -> list[int]:
     return chosen
 
 
-def _greedy(choice: SelectionProblem, n: int, seed: int) -> list[int]:
+def _greedy_record_set(choice: SelectionProblem, n: int, seed: int) -> list[int]:
     own = choice.misfits**2
     chosen, total, squares = [seed], choice.spectra[seed], own[seed]
     while len(chosen) < n and (free := choice.allowed(chosen)).any():
@@ -118,7 +120,7 @@ def _greedy(choice: SelectionProblem, n: int, seed: int) -> list[int]:
     return chosen
 
 
-def _exchanged(choice: SelectionProblem, chosen: list[int]) -> list[int]:
+def _record_set_after_exchanges(choice: SelectionProblem, chosen: list[int]) -> list[int]:
     """Replace one record at a time, always by the exchange that helps most."""
     own, present = choice.misfits**2, choice.objective_of(chosen)
     while True:
@@ -214,12 +216,12 @@ class Selection(HtmlTable, Value, Generic[S]):
     @property
     def misfits(self) -> Array:
         """Root mean square over the periods of ln(S_a/target) of each record, shape (n,)."""
-        return misfit(self.sa / self.target.at(self.periods))
+        return log_spectrum_misfit(self.sa / self.target.at(self.periods))
 
     @property
     def misfit(self) -> float:
         """Root mean square over the periods of ln(mean/target)."""
-        return float(misfit(self.mean / self.target.at(self.periods)))
+        return float(log_spectrum_misfit(self.mean / self.target.at(self.periods)))
 
     @property
     def least_ratio(self) -> float:
@@ -315,23 +317,25 @@ def select_records(
         words = ", ".join(map(repr, get_args(Combination)))
         raise InputError(f"measure must be one of {words}, but {shown(options.measure)} was given.", field="measure")
     low, high = _checked_scale_limits(options.scale_limits)
-    weight = _checked_weight("record_weight", options.record_weight)
+    weight = _checked_selection_weight("record_weight", options.record_weight)
     caps = [
         (name, None if most is None else checked_whole_number(name, most, 1))
         for name, most in (("per_event", options.per_event), ("per_station", options.per_station))
     ]
-    check_horizontal(*motions)
-    records = _candidates(motions, options.measure)
+    check_horizontal_component(*motions)
+    records = _candidate_recordings(motions, options.measure)
     count = checked_whole_number("n", n, 1)
     if count > len(records):
         kind = "records" if options.measure == "component" else "pairs"
         raise InputError(f"n must be at most {len(records)}, the number of {kind}, but {count} was given.", field="n")
     unscaled = np.stack([record.sa(examined, options.measure, fitted.damping_ratio) for record in records])
-    fitting = [fitting_factor(row, aim, record.names[0]) for row, record in zip(unscaled, records, strict=True)]
+    fitting = [
+        spectrum_fitting_factor(row, aim, record.names[0]) for row, record in zip(unscaled, records, strict=True)
+    ]
     factors = np.clip(fitting, low, high)
     groups = {"per_event": [each.event for each in records], "per_station": [each.station for each in records]}
     limits = tuple((groups[name], most) for name, most in caps if most is not None)
-    found = best_set(SelectionProblem(factors[:, None] * unscaled / aim, weight, limits), count)
+    found = best_record_set(SelectionProblem(factors[:, None] * unscaled / aim, weight, limits), count)
     if len(found) < count:
         given = " and ".join(f"{name}={most}" for name, most in caps if most is not None)
         raise InputError(
@@ -341,13 +345,13 @@ def select_records(
         )
     factors, unscaled = factors[found], unscaled[found]
     if options.least_ratio is not None:
-        factors = _raised_factors(
+        factors = _raised_scale_factors(
             factors, unscaled / aim, checked_positive("least_ratio", options.least_ratio, ""), high
         )
     return examined, [records[i] for i in found], factors, factors[:, None] * unscaled
 
 
-def _checked_weight(name: str, given: float) -> float:
+def _checked_selection_weight(name: str, given: float) -> float:
     share = real_or_nan(given)
     if not 0.0 <= share <= 1.0:
         raise InputError(f"{name} must lie in [0, 1], but {shown(given)} was given.", field=name)
@@ -364,7 +368,7 @@ def _checked_scale_limits(given: tuple[float, float]) -> tuple[float, float]:
     return float(limits[0]), float(limits[1])
 
 
-def _raised_factors(factors: Array, ratios: Array, least: float, high: float) -> Array:
+def _raised_scale_factors(factors: Array, ratios: Array, least: float, high: float) -> Array:
     """Return the factors, multiplied by one number of at least 1 with which the mean reaches `least` of the target."""
     more = max(1.0, least / float(np.min((factors[:, None] * ratios).mean(axis=0))))
     if factors.max() * more > high and more > 1.0:
@@ -376,7 +380,7 @@ def _raised_factors(factors: Array, ratios: Array, least: float, high: float) ->
     return factors * more
 
 
-def _candidates(motions: Sequence[GroundMotion], measure: Combination) -> list[Recording]:
+def _candidate_recordings(motions: Sequence[GroundMotion], measure: Combination) -> list[Recording]:
     if measure == "component":
         return [Recording((motion,)) for motion in motions]
     pairs, single = horizontal_pairs(motions)

@@ -23,7 +23,7 @@ MIN_PERIOD = 1e-6  # s
 N_COMPARED = 50  # periods at which a range is examined
 
 
-def checked_periods(periods: ArrayLike) -> Array:
+def checked_spectrum_periods(periods: ArrayLike) -> Array:
     """Return periods in s, each zero or at least 1e-6 s.
 
     Raises
@@ -41,7 +41,7 @@ def checked_periods(periods: ArrayLike) -> Array:
     return period
 
 
-def checked_damping(damping_ratio: float) -> float:
+def checked_spectrum_damping(damping_ratio: float) -> float:
     """Return a fraction of critical damping, 0 <= ζ < 1, or raise an InputError."""
     return checked_in_range("damping_ratio", damping_ratio, 0.0, 1.0, hint="It is a fraction: 5 % is 0.05.")
 
@@ -105,7 +105,7 @@ class ResponseSpectrum(Value):
         return np.divide(2 * np.pi * self.sd, self.period, out=np.zeros_like(self.sd), where=self.period > 0)
 
 
-def largest_displacement(acceleration: Array, dt: float, period: float, damping_ratio: float) -> float:
+def spectral_displacement(acceleration: Array, dt: float, period: float, damping_ratio: float) -> float:
     """Return the spectral displacement in m at one period; see `GroundMotion.spectrum`."""
     if type(period) is type(damping_ratio) is float and MIN_PERIOD <= period < math.inf and 0.0 <= damping_ratio < 1.0:
         # Most are asked one by one, and each takes less than the checks of a whole spectrum.
@@ -115,8 +115,8 @@ def largest_displacement(acceleration: Array, dt: float, period: float, damping_
 
 def response_spectrum(acceleration: Array, dt: float, periods: ArrayLike, damping_ratio: float) -> ResponseSpectrum:
     """Return the response spectrum of a sampled acceleration; see `GroundMotion.spectrum`."""
-    period = checked_periods(periods)
-    zeta = checked_damping(damping_ratio)
+    period = checked_spectrum_periods(periods)
+    zeta = checked_spectrum_damping(damping_ratio)
     moves, found = period > 0, np.zeros((period.size, 2))
     found[moves] = peaks(acceleration, dt, 2 * np.pi / period[moves], zeta)
     sd, sv = found.T.copy()
@@ -181,7 +181,7 @@ class TargetSpectrum(Value):
                 field="periods",
             )
         check_all_positive("sa", ordinates, "m/s²")
-        zeta = checked_damping(damping_ratio)
+        zeta = checked_spectrum_damping(damping_ratio)
         vars(self).update(periods=period, sa=ordinates, damping_ratio=zeta, name=checked_instance("name", name, str))
 
     def __repr__(self) -> str:
@@ -227,13 +227,13 @@ class TargetSpectrum(Value):
         return TargetSpectrum(self.periods, ordinates, self.damping_ratio, self.name)
 
 
-def fitting_factor(spectrum: Array, target: Array, name: str) -> float:
+def spectrum_fitting_factor(spectrum: Array, target: Array, name: str) -> float:
     """Return the factor with the least mean square of ln(factor · spectrum / target)."""
-    scalable_ordinate(float(spectrum.min()), name, None)
+    scalable_spectral_ordinate(float(spectrum.min()), name, None)
     return float(np.exp(np.mean(np.log(target / spectrum))))
 
 
-def scalable_ordinate(sa: float, name: str, period: float | None) -> float:
+def scalable_spectral_ordinate(sa: float, name: str, period: float | None) -> float:
     """Return a spectral ordinate, or raise an InputError if no factor scales it."""
     if sa <= 0.0 or not np.isfinite(sa):
         where = "" if period is None else f" at a period of {period:g} s"

@@ -309,28 +309,28 @@ def load_suite(name: str) -> Suite:
         hint = f" Did you mean {near[0]!r}?" if near else ""
         names = ", ".join(map(repr, SUITE_NAMES))
         raise InputError(f"No embedded suite is named {shown(name)}. The suites are {names}.{hint}")
-    return _load_cached(name)
+    return _load_suite_cached(name)
 
 
 @cache
-def _load_cached(name: str) -> Suite:
-    return Suite((_embedded_motion(entry, samples) for entry, samples in read_embedded(name)), name)
+def _load_suite_cached(name: str) -> Suite:
+    return Suite((_embedded_motion(entry, samples) for entry, samples in read_embedded_suite(name)), name)
 
 
-def read_embedded(name: str) -> list[tuple[dict[str, Any], Array]]:
+def read_embedded_suite(name: str) -> list[tuple[dict[str, Any], Array]]:
     """Return the metadata and the samples in g, shape (npts,), of the records of a suite, in order."""
     entries: list[dict[str, Any]] = json.loads((DATA / f"{name}.json").read_text("utf-8"))["records"]
     with np.load(DATA / f"{name}.npz") as archive:
-        return [(entry, decode(archive[entry["name"]])) for entry in entries]
+        return [(entry, unpack_decimal_samples(archive[entry["name"]])) for entry in entries]
 
 
-def decode(rows: NDArray[np.uint8]) -> Array:
+def unpack_decimal_samples(rows: NDArray[np.uint8]) -> Array:
     """Return samples from the five byte rows (four of the integers, one of the exponents)."""
     integers = np.ascontiguousarray(rows[:4].T).view("<i4")[:, 0]
     return integers / POWERS_OF_TEN[rows[4]]
 
 
-def encode(samples: Array, digits: int) -> NDArray[np.uint8]:
+def pack_decimal_samples(samples: Array, digits: int) -> NDArray[np.uint8]:
     """Return byte rows from samples that are decimals with at most `digits` (up to 9) significant digits."""
     with np.errstate(divide="ignore"):
         magnitude = np.floor(np.log10(np.abs(samples)))
@@ -338,7 +338,7 @@ def encode(samples: Array, digits: int) -> NDArray[np.uint8]:
     exponents[samples == 0] = 0
     integers = np.rint(samples * POWERS_OF_TEN[exponents]).astype("<i4")
     rows = np.concatenate((integers[:, None].view(np.uint8), exponents[:, None]), axis=1).T.copy()
-    if decode(rows).tobytes() != samples.astype(np.float64).tobytes():
+    if unpack_decimal_samples(rows).tobytes() != samples.astype(np.float64).tobytes():
         raise ValueError(f"The samples are not decimals of {digits} significant digits.")
     return rows
 

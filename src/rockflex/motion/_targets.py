@@ -10,8 +10,17 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._files import checked_file_path
 from rockflex._shown import shown
-from rockflex.motion._spectra import TargetSpectrum, checked_damping
-from rockflex.motion._text import BRACKET, SECONDS, UNITS, after_brackets, number, read_lines, table_of, unit_name
+from rockflex.motion._spectra import TargetSpectrum, checked_spectrum_damping
+from rockflex.motion._text import (
+    BRACKET,
+    SECONDS,
+    UNITS,
+    acceleration_unit_name,
+    end_of_last_bracket,
+    parse_decimal,
+    parse_numeric_table,
+    read_text_lines,
+)
 
 # EN 1998-1:2004, Tables 3.2 and 3.3 (recommended values): S, T_B, T_C, T_D by type and ground type.
 _EC8 = {
@@ -131,7 +140,7 @@ def ec8_spectrum(
             field="ground",
         )
     reference = checked_positive("ag", ag, "m/s²")
-    zeta = checked_damping(damping_ratio)
+    zeta = checked_spectrum_damping(damping_ratio)
     eta = _damping_correction(zeta)
     soil, t_b, t_c, t_d = table[ground]
     zero = checked_positive("importance", importance, "") * reference * soil
@@ -333,7 +342,7 @@ def ec8_second_spectrum(
     array([2.47, 6.17, 2.33, 0.65])
     """
     alpha, beta = checked_positive("s_alpha", s_alpha, "m/s²"), checked_positive("s_beta", s_beta, "m/s²")
-    of_alpha, of_beta = _amplification(alpha, beta, site, amplification)
+    of_alpha, of_beta = _site_amplification(alpha, beta, site, amplification)
     shape = checked_positive("topography", topography, "")
     plateau, second = shape * of_alpha * alpha, shape * of_beta * beta
     t_c = second / plateau
@@ -346,7 +355,7 @@ def ec8_second_spectrum(
             "the values and their unit, m/s².",
             field="s_beta",
         )
-    zeta = checked_damping(damping_ratio)
+    zeta = checked_spectrum_damping(damping_ratio)
     eta = _damping_correction(zeta)
     rise = np.geomspace(_T_A, t_b, _N_RISING)
     share = (rise - _T_A) / (t_b - _T_A)
@@ -358,7 +367,7 @@ def ec8_second_spectrum(
     return TargetSpectrum(periods, np.concatenate(([plateau / _F_A], rising, falling)), zeta, name)
 
 
-def _amplification(alpha: float, beta: float, site: str, given: tuple[float, float] | None) -> tuple[float, float]:
+def _site_amplification(alpha: float, beta: float, site: str, given: tuple[float, float] | None) -> tuple[float, float]:
     if given is not None:
         if site != "A":
             raise InputError(
@@ -429,15 +438,17 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
             f"units must be one of {', '.join(map(repr, UNITS))}, but {shown(units)} was given.", field="units"
         )
     file = checked_file_path("path", path)
-    table = table_of(file, read_lines(file), "a target spectrum is expected as two columns, period and S_a")
+    table = parse_numeric_table(
+        file, read_text_lines(file), "a target spectrum is expected as two columns, period and S_a"
+    )
     line, cells = table.rows[0]
     if len(cells) != 2:
         raise InputError(
             f"{file}, line {line}: a target spectrum has two columns, the period in s and the pseudo-acceleration, "
             f"but {len(cells)} were found. Keep these."
         )
-    values = np.array([[number(cell, file, line) for cell in cells] for line, cells in table.rows])
-    unit = UNITS[_unit(file, next((head for head in reversed(table.heads) if head), ""), units)]
+    values = np.array([[parse_decimal(cell, file, line) for cell in cells] for line, cells in table.rows])
+    unit = UNITS[_target_spectrum_unit(file, next((head for head in reversed(table.heads) if head), ""), units)]
     try:
         return TargetSpectrum(values[:, 0], values[:, 1] * unit, damping_ratio, file.stem)
     except InputError as error:
@@ -446,11 +457,11 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
         raise InputError(f"{file}: {error}", field=error.field) from error
 
 
-def _unit(file: Path, head: str, units: str | None) -> str:
+def _target_spectrum_unit(file: Path, head: str, units: str | None) -> str:
     """Return the unit in the last brackets of the header, or `units`; both must agree."""
-    found = BRACKET.findall(head[: after_brackets(head)])
+    found = BRACKET.findall(head[: end_of_last_bracket(head)])
     written = found[-1] if found and found[-1].strip().lower() not in SECONDS else ""  # unit of the periods
-    stated = unit_name(written)
+    stated = acceleration_unit_name(written)
     if written and stated is None:
         raise InputError(
             f"{file}: the header gives the unit {shown(written)}, which is not known. Write it as one of "

@@ -12,7 +12,7 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._number_format import short_number
 from rockflex._shown import number_with_noun
-from rockflex.motion import MEASURES, GroundMotion, Selection, Shaking
+from rockflex.motion import MEASURES, GroundMotion, MeasureInput, Selection
 from rockflex.plot._style import (
     BLACK,
     BLUE,
@@ -132,7 +132,7 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
 def _measure_text(name: str, motion: GroundMotion) -> str:
     """Symbol, value and unit of a measure."""
     measure = MEASURES[name]
-    return f"{measure.sign} = {short_number(measure.of(Shaking(motion)))} {measure.unit}"
+    return f"{measure.sign} = {short_number(measure.of(MeasureInput(motion)))} {measure.unit}"
 
 
 def plot_selection(selection: Selection[Any], *, size: Size | None = None) -> Figure:

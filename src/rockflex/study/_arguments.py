@@ -16,7 +16,7 @@ from rockflex._shown import number_with_noun, shown
 from rockflex._values import Value
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel, parse_model
-from rockflex.motion import GroundMotion, check_horizontal
+from rockflex.motion import GroundMotion, check_horizontal_component
 
 Output = Literal["history", "peaks"]
 
@@ -156,7 +156,7 @@ def check_motion(motion: GroundMotion) -> None:
     """Raise an InputError unless `motion` is a horizontal ground motion."""
     if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InputError(f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first.")
-    check_horizontal(motion)
+    check_horizontal_component(motion)
 
 
 def sequence_of(name: str, given: Any, accepts: Callable[[Any], bool], wanted: str) -> list[Any]:

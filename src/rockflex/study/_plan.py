@@ -6,7 +6,7 @@ from contextlib import closing
 from typing import TYPE_CHECKING, ClassVar, SupportsIndex, TypeVar
 
 from rockflex._checks import checked_whole_number
-from rockflex.motion import Suite, check_horizontal
+from rockflex.motion import Suite, check_horizontal_component
 from rockflex.study._run_matrix import StudyMatrix, checksums
 from rockflex.study._tables import ArrowTable, Columns, Row, tabulate, to_frame
 from rockflex.study.parallel import map_runs
@@ -32,7 +32,7 @@ class ChunkedPlan(ABC):
     """What the units are, in the plural."""
 
     def __init__(self, motions: Suite, n_units: int, per_chunk: int) -> None:
-        check_horizontal(*motions)
+        check_horizontal_component(*motions)
         self.motions = motions
         self.n_units = n_units
         self.per_chunk = checked_whole_number("the size of a chunk", per_chunk, 1)

@@ -15,7 +15,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex._shown import few_texts_shown, shown
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
-from rockflex.motion import MEASURES, GroundMotion, Shaking, Suite, intensities, recording_names
+from rockflex.motion import MEASURES, GroundMotion, MeasureInput, Suite, recording_names, scalable_measures
 from rockflex.response import Response
 from rockflex.solve import Task, WorkLimitError
 from rockflex.study._arguments import (
@@ -118,8 +118,8 @@ def intensity_measures(properties: RockingProperties, motion: GroundMotion) -> d
     if properties.n_modes:
         omega, zeta = float(properties.omega[0]), float(properties.zeta[0])
     rate = math.sqrt(properties.l0r * GRAVITY / properties.i_theta)
-    shaking = Shaking(motion, omega, zeta, properties.uplift_acceleration, rate)
-    return {measure.name: float(measure.of(shaking)) for measure in intensities()}
+    shaking = MeasureInput(motion, omega, zeta, properties.uplift_acceleration, rate)
+    return {measure.name: float(measure.of(shaking)) for measure in scalable_measures()}
 
 
 def scaled_measures(measures: dict[str, float], scale: float) -> dict[str, float]:
@@ -278,7 +278,7 @@ class StudyMatrix(RunMatrix):
         found: dict[str, type | Sequence[str]] = {"structure": self.names}
         found |= record_columns(self.motions)
         found |= {"model": self.labels, "scale": float}
-        found |= dict.fromkeys((measure.name for measure in intensities()), float)
+        found |= dict.fromkeys((measure.name for measure in scalable_measures()), float)
         found |= result_columns(self.structures, with_ground=self.options.ground is not None) | {
             "nominal_limit": float,
             "zeta_1": float,

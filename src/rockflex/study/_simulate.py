@@ -21,7 +21,7 @@ from rockflex.models import (
     VVELSimplified,
     parse_model,
 )
-from rockflex.motion import GroundMotion, check_horizontal
+from rockflex.motion import GroundMotion, check_horizontal_component
 from rockflex.response import STATUSES, Response
 from rockflex.solve import WorkLimitError
 from rockflex.study._arguments import (
@@ -275,7 +275,7 @@ def simulate_many(
     )
     everything, names = structures_of(structures)
     records = motions_of(motions)
-    check_horizontal(*records)
+    check_horizontal_component(*records)
     chosen = models_of(models)
     factors = factors_of(scales, max(records, key=lambda motion: motion.pga))
     shape = (len(everything), len(records), len(chosen), len(factors))

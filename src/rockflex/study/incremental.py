@@ -13,7 +13,7 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.fragility import LIMIT_STATES, OVERTURNING
 from rockflex.models import BoucWen, ImpactLaw
-from rockflex.motion import intensity
+from rockflex.motion import scalable_measure
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, Structures
 from rockflex.study._plan import CrossPlan, run_plan
 from rockflex.study._run_matrix import StudyMatrix, check_lifts, study_matrix
@@ -332,7 +332,7 @@ def incremental_capacities(runs: "pd.DataFrame", measure: str = "pga") -> "pd.Da
       structure   model  capacity  censored
     0         A  2DOF-S      7.69     False
     """
-    intensity(measure)
+    scalable_measure(measure)
     import pandas as pd
 
     rows = []

@@ -11,7 +11,7 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._schema import PLAIN, SchemaKey
 from rockflex.modal import Ground, RockingProperties
-from rockflex.motion import Suite, intensities
+from rockflex.motion import Suite, scalable_measures
 from rockflex.structure.file import StructureEntry, Table, checked, label_of
 from rockflex.study._arguments import factors_of, properties_of
 from rockflex.study._plan import ChunkedPlan
@@ -162,7 +162,13 @@ MAX_TRIALS = 20  # structures, at most, until one can be built
 STRUCTURES_PER_BATCH = 256  # structures that are prepared together
 OF_STRUCTURE = "resisting_moment recentring_ratio"
 _RUN = "structure number motion group magnitude distance_km model scale nominal_limit zeta_1 error"
-_COLUMNS = (*_RUN.split(), *OF_STRUCTURE.split(), *(measure.name for measure in intensities()), "status", *RESULTS)
+_COLUMNS = (
+    *_RUN.split(),
+    *OF_STRUCTURE.split(),
+    *(measure.name for measure in scalable_measures()),
+    "status",
+    *RESULTS,
+)
 
 
 class MonteCarloStudy(RunsSpec):

@@ -10,7 +10,7 @@ from rockflex._checks import checked_positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.fragility import NOMINAL, OVERTURNING, TENDON_YIELD, UPLIFT, LimitState, beyond
-from rockflex.motion import intensity
+from rockflex.motion import scalable_measure
 from rockflex.study._arguments import positive_numbers
 from rockflex.study._plan import CrossPlan
 from rockflex.study._run_matrix import StudyMatrix
@@ -65,7 +65,7 @@ class StripePlan(CrossPlan):
     """The cross product of structures, records, models and levels, divided into chunks."""
 
     def __init__(self, matrix: StudyMatrix, measure: str, levels: Sequence[float], per_chunk: int) -> None:
-        chosen = intensity(measure)
+        chosen = scalable_measure(measure)
         self.measure = measure  # the name, because a pickle cannot hold the measure
         self.levels = positive_numbers("levels", levels, "")
         for structure, name in enumerate(matrix.names):
@@ -79,7 +79,7 @@ class StripePlan(CrossPlan):
     def scale(self, structure: int, record: int, level: int) -> float:
         """Return the factor that scales a record to a level of the measure."""
         value = self.matrix.measures(structure, record)[self.measure]
-        return intensity(self.measure).factor(value, self.levels[level])
+        return scalable_measure(self.measure).factor(value, self.levels[level])
 
     @property
     def columns(self) -> Columns:

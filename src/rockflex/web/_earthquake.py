@@ -11,8 +11,8 @@ from rockflex._json import as_json_value
 from rockflex.motion import (
     MEASURES,
     GroundMotion,
-    Measure,
-    Shaking,
+    IntensityMeasure,
+    MeasureInput,
     Suite,
     half_sine_pulse,
     load_suite,
@@ -142,8 +142,8 @@ def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str
     kept = envelope([motion.acceleration, velocity, displacement, *upwards], MAX_CURVE_POINTS)
     spectrum = motion.spectrum(PERIODS)
     measures: list[dict[str, Any]] = [
-        *(_fact(measure, measure.of(Shaking(motion)), measure.words) for measure in record_measures()),
-        *(_fact(measure, measure.of(Shaking(motion)), measure.words) for measure in _vertical(motion)),
+        *(_fact(measure, measure.of(MeasureInput(motion)), measure.words) for measure in record_measures()),
+        *(_fact(measure, measure.of(MeasureInput(motion)), measure.words) for measure in _vertical(motion)),
         {"name": "Duration", "value": motion.duration, "unit": "s", "help": "length of the record"},
         {"name": "Step", "value": motion.dt, "unit": "s", "help": "sampling step"},
     ]
@@ -173,11 +173,11 @@ def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str
     )
 
 
-def _vertical(motion: GroundMotion) -> list[Measure]:
+def _vertical(motion: GroundMotion) -> list[IntensityMeasure]:
     return [] if motion.vertical is None else vertical_measures()
 
 
-def _fact(measure: Measure, value: float, words: str) -> dict[str, Any]:
+def _fact(measure: IntensityMeasure, value: float, words: str) -> dict[str, Any]:
     return {"name": measure.head, "value": value, "unit": measure.unit, "help": words}
 
 

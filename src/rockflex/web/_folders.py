@@ -14,8 +14,8 @@ from typing import Any
 
 from rockflex._errors import InputError, RecordWarning
 from rockflex._json import as_json_value
-from rockflex.motion import GroundMotion, RecordSurvey, Suite, SurveyEntry, record_csv, survey_plain
-from rockflex.motion._record_info import unique_names
+from rockflex.motion import GroundMotion, RecordSurvey, Suite, SurveyEntry, record_csv, survey_without_obspy
+from rockflex.motion._record_info import unique_record_names
 from rockflex.web._cache import Cache
 from rockflex.web._limits import (
     MAX_CACHED_SAMPLES,
@@ -312,7 +312,7 @@ def read_folder(files: Sequence[SentFile], units: str | None, dt: float | None) 
     kept = [place for place in range(len(along.motions)) if place not in refused]
     if not kept:
         raise Refusal({FIELD: _none_of([*large, *along.entries], refused)})
-    names = unique_names([motion.name for motion in along.motions])
+    names = unique_record_names([motion.name for motion in along.motions])
     suites = [Suite(replace(each.motions[place], name=names[place]) for place in kept) for each in (along, both)]
     report = _report(along, both, names, refused)
     report["entries"] = sorted([*(_entry(each) for each in large), *report["entries"]], key=lambda entry: entry["file"])
@@ -328,7 +328,7 @@ def _surveys(files: Sequence[SentFile], units: str | None, dt: float | None) -> 
                 if each.content is not None:
                     (Path(folder) / each.name).write_bytes(each.content)
             try:
-                return survey_plain(Path(folder), units, dt)
+                return survey_without_obspy(Path(folder), units, dt)
             except InputError as error:
                 raise Refusal({FIELD: str(error).replace(folder, "the folder")}) from error
     except OSError as error:

@@ -11,7 +11,7 @@ from pydantic_core import PydanticCustomError
 from rockflex._errors import InputError
 from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKED, ROCKING, LimitState, beyond
 from rockflex.modal import Ground
-from rockflex.motion import Combination, Measure, intensities
+from rockflex.motion import Combination, IntensityMeasure, scalable_measures
 from rockflex.structure.file import StructureEntry, Table, spot_of
 from rockflex.study import RunOptions, yielding
 from rockflex.study.spec import BoucWenTable, GroundTable, RunOptionKeys
@@ -86,12 +86,12 @@ def measures() -> list[dict[str, Any]]:
     ]
 
 
-def _offered_measures() -> list[Measure]:
+def _offered_measures() -> list[IntensityMeasure]:
     """The measures of the suites that the page has, which hold no vertical components."""
-    return [measure for measure in intensities() if measure.of_what != "vertical"]
+    return [measure for measure in scalable_measures() if measure.of_what != "vertical"]
 
 
-def _list_order(measure: Measure) -> int:
+def _list_order(measure: IntensityMeasure) -> int:
     return FIRST_MEASURES.index(measure.name) if measure.name in FIRST_MEASURES else len(FIRST_MEASURES)
 
 

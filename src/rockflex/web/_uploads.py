@@ -12,7 +12,13 @@ from typing import Any
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex.motion import GroundMotion, RecordInfo, direction_of, is_vertical, read_plain
+from rockflex.motion import (
+    GroundMotion,
+    RecordInfo,
+    component_direction,
+    is_vertical_component,
+    read_motion_without_obspy,
+)
 from rockflex.web._cache import Cache
 from rockflex.web._folders import Folders
 from rockflex.web._limits import MAX_FILE_BYTES, MAX_FREEDOMS, check_motion
@@ -73,7 +79,7 @@ def read_record(name: str, content: bytes, units: str | None, dt: float | None) 
         If the file is too large, cannot be read, or contains a vertical component or a record that is too long.
     """
     named = _read(name, content, units, dt, "record.upload")
-    if is_vertical(named):
+    if is_vertical_component(named):
         shown = clean_name(name)
         message = (
             f"{shown} is a vertical component by its header or its name. Choose a horizontal one here, and this one as "
@@ -107,7 +113,7 @@ def _read(name: str, content: bytes, units: str | None, dt: float | None, field:
             file = Path(folder) / ("record.at2" if shown.lower().endswith(".at2") else "record.txt")
             file.write_bytes(content)
             try:
-                motion = read_plain(file, units=units, dt=dt)
+                motion = read_motion_without_obspy(file, units=units, dt=dt)
             except InputError as error:
                 said = str(error).replace(str(file), shown)
                 if error.field == "component":
@@ -118,7 +124,7 @@ def _read(name: str, content: bytes, units: str | None, dt: float | None, field:
         raise Refusal({field: message}, 503) from error
     info = motion.metadata or RecordInfo()
     # The temporary file has another name.
-    info = replace(info, direction=direction_of(Path(shown), info.component) or info.direction)
+    info = replace(info, direction=component_direction(Path(shown), info.component) or info.direction)
     named = GroundMotion(motion.acceleration, motion.dt, Path(shown).stem or "record", info, motion.vertical)
     check_motion(named, field)
     return named

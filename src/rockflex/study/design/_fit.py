@@ -32,7 +32,7 @@ from rockflex.fragility import (
     resampled_exceedance,
 )
 from rockflex.modal import RockingProperties
-from rockflex.motion import intensity
+from rockflex.motion import scalable_measure
 from rockflex.study._tables import RESULTS
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def check_limit(limit: float | str) -> None:
 
 def check_same_for_all(measure: str) -> None:
     """Raise an InputError unless the measure exists and does not depend on the base."""
-    if intensity(measure).of_what == "base":
+    if scalable_measure(measure).of_what == "base":
         raise InputError(
             f"measure must not depend on the base, as a level of {measure} does. Give pgv, pga or sa_t1_5."
         )
