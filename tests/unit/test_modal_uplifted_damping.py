@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from rockflex.modal._uplifted import uplifted_damping
+from rockflex.modal._uplifted import uplifted_damping_ratios
 from rockflex.papers.silva_stojadinovic_2024._inputs import TOWER, frame_of
 
 
@@ -108,7 +108,7 @@ def test_overdamped_beside_modes_that_vibrate():
 def test_pairs_of_several_overdamped_modes():
     """Uncoupled oscillators: of four real roots the slowest and the fastest are one pair, the other two the other."""
     squares, zeta = np.array([-1.0, 100.0, 110.0]), np.array([0.0, 3.0, 1.5])
-    found = uplifted_damping(squares, np.diag(2.0 * zeta * np.sqrt(np.abs(squares))))
+    found = uplifted_damping_ratios(squares, np.diag(2.0 * zeta * np.sqrt(np.abs(squares))))
     np.testing.assert_allclose(found, zeta[1:], rtol=1e-12)
 
 

@@ -203,10 +203,10 @@ def modal_properties(
     omega, shapes = omega[:n], shapes[:, :n]
     moved = mass_times(m, shapes)
     total, inertia = float(mass_times(m, np.ones_like(h)).sum()), float(h @ mass_times(m, h))
-    return participating(omega, moved.sum(axis=0), h @ moved, total, inertia, h, shapes)
+    return modal_properties_of_modes(omega, moved.sum(axis=0), h @ moved, total, inertia, h, shapes)
 
 
-def participating(
+def modal_properties_of_modes(
     omega: Array, shear: Array, moment: Array, mass: float, inertia: float, heights: Array, shapes: Array
 ) -> ModalProperties:
     """Return mass-normalised modes with a top ordinate of 1; arguments as in `MassNormalisedModes`."""

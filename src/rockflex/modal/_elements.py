@@ -73,7 +73,7 @@ class Tendon:
                     field="initial_force",
                 )
         if self.post_yield_ratio is not None:
-            vars(self).update(post_yield_ratio=checked_ratio(self.post_yield_ratio))
+            vars(self).update(post_yield_ratio=checked_post_yield_ratio(self.post_yield_ratio))
             if self.yield_force is None or self.stiffness == 0.0:
                 raise InputError(
                     "post_yield_ratio needs the yield_force in N of a tendon with stiffness, but "
@@ -87,10 +87,10 @@ class Tendon:
                     field="rupture_elongation",
                 )
             yields_at = (self.yield_force - self.initial_force) / self.stiffness
-            vars(self).update(rupture_elongation=checked_rupture(self.rupture_elongation, yields_at))
+            vars(self).update(rupture_elongation=checked_rupture_elongation(self.rupture_elongation, yields_at))
 
 
-def checked_ratio(value: float) -> float:
+def checked_post_yield_ratio(value: float) -> float:
     """Return a post-yield stiffness ratio.
 
     Raises
@@ -108,7 +108,7 @@ def checked_ratio(value: float) -> float:
     return ratio
 
 
-def checked_rupture(value: float | None, yields_at: float) -> float | None:
+def checked_rupture_elongation(value: float | None, yields_at: float) -> float | None:
     """Return the elongation at rupture in m.
 
     Raises
@@ -177,10 +177,10 @@ class YieldingDissipator:
         vars(self).update(
             stiffness=checked_positive("stiffness", self.stiffness, "N/m"),
             yield_force=checked_positive("yield_force", self.yield_force, "N"),
-            post_yield_ratio=checked_ratio(self.post_yield_ratio),
+            post_yield_ratio=checked_post_yield_ratio(self.post_yield_ratio),
             position=checked_finite("position", self.position, "m"),
             tension_only=checked_instance("tension_only", self.tension_only, bool),
-            rupture_elongation=checked_rupture(self.rupture_elongation, self.yield_force / self.stiffness),
+            rupture_elongation=checked_rupture_elongation(self.rupture_elongation, self.yield_force / self.stiffness),
         )
 
 
@@ -259,7 +259,7 @@ BaseElement = Tendon | YieldingDissipator | ViscousDamper | FrictionDamper
 """Any element between a base and the ground."""
 
 
-def element_set(given: Any) -> tuple[BaseElement, ...]:
+def base_element_tuple(given: Any) -> tuple[BaseElement, ...]:
     """Return one or several elements as a tuple.
 
     Raises
@@ -278,7 +278,7 @@ def element_set(given: Any) -> tuple[BaseElement, ...]:
     return items
 
 
-def locked_force(element: BaseElement) -> float:
+def element_locking_force(element: BaseElement) -> float:
     """Return the largest force in N with which an element can keep a base from closing.
 
     A fuse that has yielded returns to δ = 0 with z = - F_y, so its force there is -(1 - α) F_y. One that cannot push, a
@@ -289,7 +289,7 @@ def locked_force(element: BaseElement) -> float:
     return element.force if isinstance(element, FrictionDamper) else 0.0
 
 
-def pushed_force(element: BaseElement, elongation: float) -> float:
+def element_pushover_force(element: BaseElement, elongation: float) -> float:
     """Return the force in N of an element as built that is stretched slowly by an elongation in m, or shortened."""
     if isinstance(element, FrictionDamper):
         return math.copysign(element.force, elongation)
@@ -303,17 +303,17 @@ def pushed_force(element: BaseElement, elongation: float) -> float:
     return pull if pushes else max(pull, 0.0)
 
 
-def mirrored(elements: Sequence[BaseElement]) -> bool:
+def are_elements_symmetric(elements: Sequence[BaseElement]) -> bool:
     """Return whether every off-centre element has a mirror image: the same at the same distance on the other side."""
-    left = sorted(_values(each, -each.position) for each in elements if each.position < 0.0)
-    right = sorted(_values(each, each.position) for each in elements if each.position > 0.0)
+    left = sorted(_element_values(each, -each.position) for each in elements if each.position < 0.0)
+    right = sorted(_element_values(each, each.position) for each in elements if each.position > 0.0)
     return len(left) == len(right) and all(
         one[0] == other[0] and all(math.isclose(a, b, rel_tol=1e-9) for a, b in zip(one[1], other[1], strict=True))
         for one, other in zip(left, right, strict=True)
     )
 
 
-def _values(element: BaseElement, distance: float) -> tuple[str, tuple[float, ...]]:
+def _element_values(element: BaseElement, distance: float) -> tuple[str, tuple[float, ...]]:
     if isinstance(element, Tendon):  # its yield force is only compared with, unless it yields
         yields = element.post_yield_ratio is not None
         beyond = (element.yield_force or 0.0, element.post_yield_ratio or 0.0) if yields else (0.0, 0.0)

@@ -12,7 +12,7 @@ from rockflex._errors import InputError
 from rockflex._matrices import checked_heights, checked_mass, mass_times
 from rockflex._overflow import explaining_overflow
 from rockflex._values import Value
-from rockflex.modal._analysis import FloorModes, ModalProperties, participating
+from rockflex.modal._analysis import FloorModes, ModalProperties, modal_properties_of_modes
 from rockflex.modal._rocking import RockingProperties
 
 
@@ -64,7 +64,7 @@ class MassNormalisedModes(Value):
         """Return the modes, normalised to a top ordinate of 1."""
         above = self.heights > 0.0
         stations, shapes = self.heights[above], self.ordinates[above]
-        return participating(self.omega, self.shear, self.moment, self.mass, self.inertia, stations, shapes)
+        return modal_properties_of_modes(self.omega, self.shear, self.moment, self.mass, self.inertia, stations, shapes)
 
     @explaining_overflow("The inertia of the structure with this base")
     def rocking(
@@ -78,7 +78,7 @@ class MassNormalisedModes(Value):
             If the structure has fewer modes than `n_modes`, or one of them contributes only to the base moment.
         """
         modal = self.modal()
-        kept = modes_that_take_part(modal, n_modes)
+        kept = excited_mode_indices(modal, n_modes)
         shear, omega = self.shear[kept], self.omega[kept]
         displacement = self.ordinates[:, kept] * shear
         floors = None
@@ -102,7 +102,7 @@ class MassNormalisedModes(Value):
         )
 
 
-def modes_that_take_part(modal: ModalProperties, n_modes: SupportsIndex | None) -> NDArray[np.intp]:
+def excited_mode_indices(modal: ModalProperties, n_modes: SupportsIndex | None) -> NDArray[np.intp]:
     """Return the indices of the first `n_modes` modes that are excited by the ground or the rotation.
 
     Raises
@@ -195,7 +195,7 @@ def rocking_properties(
     base = checked_positive("base_mass", base_mass, "kg", zero=True)
     b = checked_positive("half_width", half_width, "m")
     zeta = checked_damping_ratios("damping_ratio", damping_ratio, modal.n_modes)
-    kept = modes_that_take_part(modal, n_modes)
+    kept = excited_mode_indices(modal, n_modes)
 
     m_tot = float(mass_times(m, np.ones_like(h)).sum()) + base
     moved_by_rotation = mass_times(m, h)

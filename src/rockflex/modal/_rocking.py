@@ -26,14 +26,20 @@ from rockflex._html import HtmlTable
 from rockflex._overflow import explaining_overflow
 from rockflex._values import Value, with_changed_fields
 from rockflex.modal._analysis import FloorModes
-from rockflex.modal._elements import BaseElement, Tendon, element_set, mirrored, pushed_force
-from rockflex.modal._pivot import PIVOT_VALUES, Pivot, checked_side, pivot_inertia, pivots_of
+from rockflex.modal._elements import (
+    BaseElement,
+    Tendon,
+    are_elements_symmetric,
+    base_element_tuple,
+    element_pushover_force,
+)
+from rockflex.modal._pivot import PIVOT_VALUES, Pivot, build_both_pivots, checked_pivot_side, pivot_inertia
 
 SUM_TOLERANCE = 1e-9  # relative tolerance for rounding of sums that are equal if all modes are kept
 PRINTED_TOLERANCE = 1e-5  # of I_θ: tolerance for values printed to six digits
 
 
-def checked_modes(
+def checked_modal_values(
     omega: ArrayLike, effective_mass: ArrayLike, effective_height: ArrayLike, top_ordinate: ArrayLike
 ) -> dict[str, Array]:
     modes = {
@@ -62,7 +68,7 @@ def checked_modes(
     return modes
 
 
-def checked_scalars(i_theta: float, l0r: float, m_tot: float, half_width: float) -> dict[str, float]:
+def checked_rocking_scalars(i_theta: float, l0r: float, m_tot: float, half_width: float) -> dict[str, float]:
     return {
         "i_theta": checked_positive("i_theta", i_theta, "kg m²"),
         "l0r": checked_positive("l0r", l0r, "kg m"),
@@ -71,7 +77,7 @@ def checked_scalars(i_theta: float, l0r: float, m_tot: float, half_width: float)
     }
 
 
-def checked_floors(floors: FloorModes | None, n_modes: int) -> FloorModes | None:
+def checked_floor_modes(floors: FloorModes | None, n_modes: int) -> FloorModes | None:
     if floors is not None and checked_instance("floors", floors, FloorModes).n_modes != n_modes:
         raise InputError(
             f"floors must hold the same {n_modes} modes as omega, but it holds {floors.n_modes}.", field="floors"
@@ -100,7 +106,7 @@ def checked_eccentricity(modes: dict[str, Array], scalars: dict[str, float], ine
     return e
 
 
-def elements_within(
+def elements_within_base(
     elements: tuple[BaseElement, ...], half_width: float, eccentricity: float
 ) -> tuple[BaseElement, ...]:
     limit = half_width + abs(eccentricity)  # on an eccentric base, outriggers may reach as far on the shorter side
@@ -138,7 +144,7 @@ def checked_base_mass(modes: dict[str, Array], m_tot: float, inertia: float, giv
 
 
 @explaining_overflow("The inertia of the modes, from effective_mass and effective_height,")
-def checked_inertia(modes: dict[str, Array], scalars: dict[str, float], given: float | None) -> float:
+def checked_translational_inertia(modes: dict[str, Array], scalars: dict[str, float], given: float | None) -> float:
     mass = modes["effective_mass"]
     modal_mass = float(mass.sum())
     modal_inertia = float(mass @ modes["effective_height"] ** 2)
@@ -273,17 +279,17 @@ class RockingProperties(HtmlTable, Value):
         base_mass: float | None = None,
         eccentricity: float = 0.0,
     ) -> None:
-        modes = checked_modes(omega, effective_mass, effective_height, top_ordinate)
-        scalars = checked_scalars(i_theta, l0r, m_tot, half_width)
-        inertia = checked_inertia(modes, scalars, translational_inertia)
+        modes = checked_modal_values(omega, effective_mass, effective_height, top_ordinate)
+        scalars = checked_rocking_scalars(i_theta, l0r, m_tot, half_width)
+        inertia = checked_translational_inertia(modes, scalars, translational_inertia)
         e = checked_eccentricity(modes, scalars, inertia, eccentricity)
         vars(self).update(
             modes,
             **scalars,
             zeta=checked_damping_ratios("zeta", zeta, modes["omega"].size),
             translational_inertia=inertia,
-            floors=checked_floors(floors, modes["omega"].size),
-            elements=elements_within(element_set(elements), scalars["half_width"], e),
+            floors=checked_floor_modes(floors, modes["omega"].size),
+            elements=elements_within_base(base_element_tuple(elements), scalars["half_width"], e),
             top_height=checked_top_height(floors, top_height),
             base_mass=checked_base_mass(modes, scalars["m_tot"], inertia, base_mass),
             eccentricity=e,
@@ -317,13 +323,13 @@ class RockingProperties(HtmlTable, Value):
         InputError
             If `side` is neither.
         """
-        return self._by_side[side if type(side) is int and side in (1, -1) else checked_side(side)]
+        return self._by_side[side if type(side) is int and side in (1, -1) else checked_pivot_side(side)]
 
     @cached_property
     def _by_side(self) -> dict[int, Pivot]:
         values: dict[str, float] = {name: getattr(self, name) for name in PIVOT_VALUES}
         height = float(self.effective_height[0]) if self.n_modes else self.l0r / self.m_tot
-        return pivots_of(self.elements, alike=self.symmetric, height=height, **values)
+        return build_both_pivots(self.elements, alike=self.symmetric, height=height, **values)
 
     @property
     def pivots(self) -> tuple[Pivot, ...]:
@@ -338,7 +344,7 @@ class RockingProperties(HtmlTable, Value):
     @cached_property
     def symmetric(self) -> bool:
         """Whether both pivots are alike: no eccentricity, and every off-centre element has a mirror image."""
-        return self.eccentricity == 0.0 and (not self.elements or mirrored(self.elements))
+        return self.eccentricity == 0.0 and (not self.elements or are_elements_symmetric(self.elements))
 
     @property
     def weight_moment(self) -> float:
@@ -422,7 +428,7 @@ class RockingProperties(HtmlTable, Value):
         found: list[float] = []
         for pivot in self.pivots:
             arms = [(each, pivot.arm - pivot.side * each.position) for each in self.elements]
-            moments = [(isinstance(each, Tendon), pushed_force(each, r * turn) * r) for each, r in arms]
+            moments = [(isinstance(each, Tendon), element_pushover_force(each, r * turn) * r) for each, r in arms]
             locked = sum((abs(moment) for tendon, moment in moments if not tendon), 0.0)
             closing = pivot.weight_moment + sum((moment for tendon, moment in moments if tendon), 0.0)
             found.append(closing / locked if locked > 0.0 else math.inf)

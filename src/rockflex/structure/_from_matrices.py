@@ -23,7 +23,7 @@ from rockflex._errors import InputError
 from rockflex._files import check_regular_file, checked_file_path
 from rockflex._matrices import checked_mass, checked_stiffness
 from rockflex._overflow import explaining_overflow
-from rockflex.modal import MassNormalisedModes, modes_that_take_part
+from rockflex.modal import MassNormalisedModes, excited_mode_indices
 from rockflex.structure._structure import ModalStructure
 
 if TYPE_CHECKING:
@@ -457,7 +457,7 @@ def _modal_structure(
     damping_ratio: ArrayLike,
     n_modes: SupportsIndex | None,
 ) -> ModalStructure:
-    kept = modes_that_take_part(modes.modal(), n_modes)
+    kept = excited_mode_indices(modes.modal(), n_modes)
     taken = replace(
         modes,
         omega=modes.omega[kept],

@@ -11,7 +11,14 @@ from rockflex._checks import checked_finite
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
-from rockflex.modal import BaseElement, MassNormalisedModes, ModalProperties, RockingProperties, Tendon, element_set
+from rockflex.modal import (
+    BaseElement,
+    MassNormalisedModes,
+    ModalProperties,
+    RockingProperties,
+    Tendon,
+    base_element_tuple,
+)
 
 MAX_PERIOD = 10.0  # s
 
@@ -237,7 +244,7 @@ class Restrained(ModifiedStructure):
                 "have elements of their own: RockingProperties(..., elements=...).",
                 field="structure",
             )
-        vars(self).update(structure=structure, elements=element_set(elements))
+        vars(self).update(structure=structure, elements=base_element_tuple(elements))
         self.rocking(1)  # checks that they are within the base
 
     @property
