@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 import rockflex as rf
 from builders import PROPERTIES, frame_values
-from rockflex.structure.file import ELEMENTS, KINDS, StructureEntry, Table, checked, key_of
+from rockflex.structure.file import ELEMENTS, KINDS, StructureEntry, TomlTable, parse_toml_table, schema_key_of_field
 
 EXAMPLES = Path(rf.__file__).parents[2] / "examples"
 BASE = {"base_mass": 60e3, "half_width": 1.8, "damping_ratio": 0.02}
@@ -409,15 +409,15 @@ def test_wrong_keys_of_elements(failing):
 
 def test_an_entry_is_written_and_read_again(write):
     content = text("frame", FRAME) + TENDONS + "".join(map(element, ELEMENTS))
-    entry = checked(StructureEntry, tomllib.loads(content))
+    entry = parse_toml_table(StructureEntry, tomllib.loads(content))
     again = tomli_w.dumps(entry.model_dump(exclude_none=True))
-    assert checked(StructureEntry, tomllib.loads(again)) == entry
+    assert parse_toml_table(StructureEntry, tomllib.loads(again)) == entry
     assert rf.read_structure(write(again)) == entry.build()
     described = entry.describe()
     assert described["elements"] == [{"kind": kind, **values} for kind, values in ARGUMENTS.items()]
     assert [each["position"] for each in described["tendons"]] == [-0.5, 0.0, 0.5]
     # An entry without elements has the document, and so the folder of its study, that it always had.
-    assert "elements" not in checked(StructureEntry, {"frame": FRAME}).model_dump(exclude_none=True)
+    assert "elements" not in parse_toml_table(StructureEntry, {"frame": FRAME}).model_dump(exclude_none=True)
 
 
 def test_one_structure_a_file(failing):
@@ -470,7 +470,7 @@ def test_entry_is_frozen_named_and_says_what_it_holds():
         entry.name = "B"
 
 
-class Study(Table):
+class Study(TomlTable):
     """A file that holds several structures."""
 
     structures: list[StructureEntry]
@@ -479,9 +479,9 @@ class Study(Table):
 def test_entries_in_another_file_are_told_by_their_number():
     good = {"lumped": LUMPED}
     bad = {"frame": {**FRAME, "n_stories": 2.5}, "tendons": [TENDON, {"stiffness": 1.0}]}
-    assert len(checked(Study, {"structures": [good]}).structures) == 1
+    assert len(parse_toml_table(Study, {"structures": [good]}).structures) == 1
     with pytest.raises(rf.InputError) as caught:
-        checked(Study, {"structures": [good, bad, {}]}, "study.toml")
+        parse_toml_table(Study, {"structures": [good, bad, {}]}, "study.toml")
     first, second, third = str(caught.value).removeprefix("study.toml: ").split(". [[")
     assert first == (
         "[[structures]] no. 2, [structures.frame] n_stories must be the number of stories, a whole number, but 2.5 was "
@@ -518,7 +518,7 @@ def test_chimney_of_section_4_1_1():
 @pytest.mark.parametrize("model", [*KINDS.values(), StructureEntry])
 def test_every_key_is_described(model):
     for name, field in model.model_fields.items():
-        key = key_of(field)
+        key = schema_key_of_field(field)
         assert key.description, name
         assert not key.description.endswith(".")
         assert "{}" not in key.expected

@@ -14,7 +14,7 @@ from builders import frame_values, make_frame
 from rockflex import InputError
 from rockflex.cli import app
 from rockflex.models import parse_model
-from rockflex.structure.file import checked
+from rockflex.structure.file import parse_toml_table
 from rockflex.study._arguments import expand_scales, parse_scales
 from rockflex.study._case import RunOptions, yielding
 from rockflex.study._tables import OF_ELEMENTS, OF_GROUND
@@ -220,7 +220,7 @@ FRAME = make_frame(n_stories=2)
 
 
 def test_a_table_of_a_file_gives_the_options_of_a_call():
-    table = checked(
+    table = parse_toml_table(
         RunOptionKeys,
         {
             "impact": "restitution",

@@ -17,7 +17,7 @@ import rockflex as rf
 from rockflex._json import as_json_value
 from rockflex._schema import SchemaKey
 from rockflex.motion import MEASURES
-from rockflex.structure.file import ELEMENTS, KINDS, Table
+from rockflex.structure.file import ELEMENTS, KINDS, TomlTable
 from rockflex.web._encoding import envelope
 from rockflex.web._forms import PRESETS, _fields, forms
 from rockflex.web._refusal import Refusal
@@ -322,7 +322,7 @@ def test_what_has_no_balance_says_why() -> None:
 
 
 def test_units_and_helps_are_data_and_not_found_in_texts() -> None:
-    class Plate(Table):
+    class Plate(TomlTable):
         depth: Annotated[float, SchemaKey("how deep, in m below, it lies", "ft")]
         area: Annotated[float, SchemaKey("its area in m", form="a table of {}, a number in s")]
 

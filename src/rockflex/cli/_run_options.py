@@ -13,7 +13,7 @@ from rockflex._schema import BoucWenKeys, GroundKeys, ImpactKeys, InitialStateKe
 from rockflex.cli._options import flags_of, naming
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, Restitution, parse_model
-from rockflex.structure.file import checked
+from rockflex.structure.file import parse_toml_table
 from rockflex.study import WORK_LIMIT, InitialState, RunOptions, ground_under, work_limit_of, yielding
 from rockflex.study.spec import GroundTable, RunOptionKeys, name_of
 
@@ -49,7 +49,7 @@ def make_ground(
     """
     if not in_file and not flags:
         return None, {}
-    table = checked(GroundTable, _merged(in_file, flags))
+    table = parse_toml_table(GroundTable, _merged(in_file, flags))
     try:
         with naming({key: flag for key, (name, flag) in _FIELDS.items() if name in flags}):
             return table.under(properties), table.model_dump(exclude_none=True)
@@ -162,7 +162,7 @@ def make_run_options(
     """
     below = {} if "impact" in law else {name: in_file[name] for name in flags_of(ImpactKeys) if name in in_file}
     with naming(flags_of(ImpactKeys)):
-        chosen = checked(RunOptionKeys, {**below, **law}).law()
+        chosen = parse_toml_table(RunOptionKeys, {**below, **law}).law()
     with naming(flags_of(InitialStateKeys) | {"rotation": "--initial-rotation"}):
         start = InitialState(rotation=initial["initial_rotation"]) if initial else None
     hysteresis = _bouc_wen(file, in_file.get("bouc_wen", {}), bouc_wen)

@@ -13,7 +13,15 @@ from rockflex.cli._console import grid, number
 from rockflex.cli._options import flags_of, naming
 from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.structure import Eccentric, Frame, Restrained, structure_warnings
-from rockflex.structure.file import ELEMENTS, KINDS, Built, StructureEntry, build_in, checked, read_toml
+from rockflex.structure.file import (
+    ELEMENTS,
+    KINDS,
+    Built,
+    StructureEntry,
+    build_structure_in_file,
+    parse_toml_table,
+    read_toml_file,
+)
 from rockflex.study.spec import RunOptionKeys
 
 if TYPE_CHECKING:
@@ -163,12 +171,12 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
         return _from_flags(flags)
     if flags:
         raise InputError(f"The structure was given by {file} and by {_flag_names(flags)}. Give one or the other.")
-    content = read_toml(file, "structure")
+    content = read_toml_file(file, "structure")
     if "study" in content:
         raise _study_given(file, content["study"])
-    document = checked(StructureFile, content, str(file))
+    document = parse_toml_table(StructureFile, content, str(file))
     run_options = document.model_dump(include=set(RunOptionKeys.model_fields), exclude_unset=True)
-    built = build_in(file, document)
+    built = build_structure_in_file(file, document)
     return LoadedStructure(document.name or file.stem, document.kind, document.describe(), built, run_options)
 
 

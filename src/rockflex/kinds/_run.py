@@ -14,7 +14,7 @@ from rockflex._shown import shown
 from rockflex._versions import git_commit, package_versions
 from rockflex.engine import VECTOR_LEVEL
 from rockflex.kinds._kinds import kind_named
-from rockflex.structure.file import read_toml
+from rockflex.structure.file import read_toml_file
 from rockflex.study import ChunkedPlan, Spec, map_chunks, to_frame
 from rockflex.study.folders import LEVEL, Part, PartMaker, StudyFolder
 from rockflex.study.parallel import Chunks, core_count, map_dask
@@ -64,7 +64,7 @@ def load_study(path: str | Path) -> Spec:
     10
     """
     file = checked_file_path("path", path)
-    content = read_toml(file, "study")
+    content = read_toml_file(file, "study")
     try:
         return kind_named(content.get("study")).spec()(**content).read_from(file.parent, file)
     except InputError as error:

@@ -21,8 +21,15 @@ from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes
 from rockflex.structure._beam_modes import RitzShapes, cosine_shapes, ritz_modes
-from rockflex.structure._beam_sections import Along, LumpedMasses, Profile, Sections, on_beam, profile
-from rockflex.structure._cross_section import Section, checked_section, section_value
+from rockflex.structure._beam_sections import (
+    Along,
+    BeamProfile,
+    BeamSections,
+    LumpedMasses,
+    beam_profile,
+    lumped_masses_on_beam,
+)
+from rockflex.structure._cross_section import Section, checked_section, value_from_section
 from rockflex.structure._structure import AssembledStructure, ModalStructure
 
 _N_ELEMENTS = 1000
@@ -107,7 +114,7 @@ class Beam(AssembledStructure, Value):
     n_modes: int = 5
     n_elements: int | None = None
     shapes: RitzShapes | None = None
-    sections: Sections = field(init=False, repr=False)
+    sections: BeamSections = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         height = checked_positive("height", self.height, "m")
@@ -118,25 +125,27 @@ class Beam(AssembledStructure, Value):
             )
         n_modes = checked_whole_number("n_modes", self.n_modes, 1, MOST_MODES)
         section = checked_section(self.section)
-        mass, stiffness = (section_value(section, name, getattr(self, name)) for name in ("mass", "bending_stiffness"))
+        mass, stiffness = (
+            value_from_section(section, name, getattr(self, name)) for name in ("mass", "bending_stiffness")
+        )
         vars(self).update(
             height=height,
             half_width=checked_positive("half_width", self.half_width, "m"),
             base_mass=checked_positive("base_mass", self.base_mass, "kg", zero=True),
             n_modes=n_modes,
             damping_ratio=checked_damping_ratios("damping_ratio", self.damping_ratio, n_modes),
-            sections=Sections(
+            sections=BeamSections(
                 height,
-                profile("mass", mass, height, "kg/m"),
-                profile("bending_stiffness", stiffness, height, "N m²"),
+                beam_profile("mass", mass, height, "kg/m"),
+                beam_profile("bending_stiffness", stiffness, height, "N m²"),
                 _optional_profile("shear_stiffness", self.shear_stiffness, height, "N"),
                 _optional_profile("rotary_inertia", self.rotary_inertia, height, "kg m", zero=True),
-                on_beam(self.lumped_masses, height),
+                lumped_masses_on_beam(self.lumped_masses, height),
                 bool(self.rotary_in_modes),
             ),
         )
         for name in ("mass", "bending_stiffness", "shear_stiffness", "rotary_inertia"):
-            along: Profile | None = getattr(self.sections, name)
+            along: BeamProfile | None = getattr(self.sections, name)
             vars(self)[name] = None if along is None else along.given
         self._check_method()
 
@@ -187,5 +196,5 @@ class Beam(AssembledStructure, Value):
 
 def _optional_profile(
     name: str, given: Along | None, height: float, unit: str, *, zero: bool = False
-) -> Profile | None:
-    return None if given is None else profile(name, given, height, unit, zero=zero)
+) -> BeamProfile | None:
+    return None if given is None else beam_profile(name, given, height, unit, zero=zero)

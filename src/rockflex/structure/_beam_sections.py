@@ -21,7 +21,7 @@ _HEIGHT_TOLERANCE = 1e-9  # of the height: tolerance for printed digits in the l
 
 
 @dataclass(frozen=True)
-class Constant:
+class ConstantProfile:
     """The same value at every height."""
 
     value: float
@@ -31,7 +31,7 @@ class Constant:
 
 
 @dataclass(frozen=True, eq=False)
-class Interpolated(Value):
+class InterpolatedProfile(Value):
     """A table of values (n,) at heights (n,) in m, linear between its rows."""
 
     heights: Array
@@ -42,7 +42,7 @@ class Interpolated(Value):
 
 
 @dataclass(frozen=True, eq=False)
-class Profile(Value):
+class BeamProfile(Value):
     """Values along the height, checked whenever they are evaluated.
 
     Attributes
@@ -66,9 +66,9 @@ class Profile(Value):
     @property
     def given(self) -> Along:
         """The number, the function, or the table (as read-only arrays) that was given."""
-        if isinstance(self.function, Constant):
+        if isinstance(self.function, ConstantProfile):
             return self.function.value
-        if isinstance(self.function, Interpolated):
+        if isinstance(self.function, InterpolatedProfile):
             return self.function.heights, self.function.values
         return self.function
 
@@ -103,7 +103,7 @@ class Profile(Value):
         return values.reshape(z.shape)
 
 
-def profile(name: str, given: Along, height: float, unit: str, *, zero: bool = False) -> Profile:
+def beam_profile(name: str, given: Along, height: float, unit: str, *, zero: bool = False) -> BeamProfile:
     """Return the given property as a profile from the base to `height`.
 
     Raises
@@ -112,17 +112,19 @@ def profile(name: str, given: Along, height: float, unit: str, *, zero: bool = F
         If a table does not extend from the base to the top, its heights decrease, or a value is not positive.
     """
     if callable(given):
-        result = Profile(name, unit, given, np.zeros(0), zero)
+        result = BeamProfile(name, unit, given, np.zeros(0), zero)
     elif isinstance(given, tuple):
-        result = _table_profile(name, given, height, unit, zero)
+        result = _interpolated_profile(name, given, height, unit, zero)
     else:
         constant = checked_positive(name, given, unit, zero=zero)
-        result = Profile(name, unit, Constant(constant), np.zeros(0), zero)
+        result = BeamProfile(name, unit, ConstantProfile(constant), np.zeros(0), zero)
     result.at(np.linspace(0.0, height, _N_CHECKED))
     return result
 
 
-def _table_profile(name: str, given: tuple[ArrayLike, ArrayLike], height: float, unit: str, zero: bool) -> Profile:
+def _interpolated_profile(
+    name: str, given: tuple[ArrayLike, ArrayLike], height: float, unit: str, zero: bool
+) -> BeamProfile:
     if len(given) != 2:  # pyright: ignore[reportUnnecessaryComparison]
         raise InputError(
             f"{name} must be a table (heights, values), but "
@@ -159,7 +161,7 @@ def _table_profile(name: str, given: tuple[ArrayLike, ArrayLike], height: float,
             f"{name} must be {kind}, but its table contains {values[i]:g} {unit} at {z[i]:g} m.", field=name
         )
     inside = z[(z > 0.0) & (z < height)]
-    return Profile(name, unit, Interpolated(z, values), np.unique(inside), zero)
+    return BeamProfile(name, unit, InterpolatedProfile(z, values), np.unique(inside), zero)
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -223,7 +225,7 @@ class LumpedMasses(Value):
 
 
 @dataclass(frozen=True, eq=False)
-class Sections(Value):
+class BeamSections(Value):
     """Profiles and lumped masses of a beam.
 
     Attributes
@@ -241,10 +243,10 @@ class Sections(Value):
     """
 
     height: float
-    mass: Profile
-    bending_stiffness: Profile
-    shear_stiffness: Profile | None
-    rotary_inertia: Profile | None
+    mass: BeamProfile
+    bending_stiffness: BeamProfile
+    shear_stiffness: BeamProfile | None
+    rotary_inertia: BeamProfile | None
     lumped: LumpedMasses
     rotary_in_modes: bool
 
@@ -263,7 +265,7 @@ class Sections(Value):
         return np.zeros_like(z) if self.rotary_inertia is None else self.rotary_inertia.at(z)
 
 
-def on_beam(given: LumpedMasses | None, height: float) -> LumpedMasses:
+def lumped_masses_on_beam(given: LumpedMasses | None, height: float) -> LumpedMasses:
     """Return the lumped masses of a beam; None stands for no masses.
 
     Raises

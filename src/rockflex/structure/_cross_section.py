@@ -68,7 +68,7 @@ class Section(Value):
             "second_moment": checked_positive("second_moment", self.second_moment, "m⁴"),
             "elastic_modulus": checked_positive("elastic_modulus", self.elastic_modulus, "N/m²"),
             "density": checked_positive("density", self.density, "kg/m³"),
-            "stiffness_factor": _checked_factor(self.stiffness_factor),
+            "stiffness_factor": _checked_stiffness_factor(self.stiffness_factor),
         }
         vars(self).update(values)
         given = self.density * self.second_moment if self.rotary_inertia is None else self.rotary_inertia
@@ -135,7 +135,7 @@ class Section(Value):
             checked_positive("depth", depth, "m"),
             checked_positive("wall", wall, "m"),
         )
-        _check_hollow(t, min(b, d), "a rectangle")
+        _check_hollow_section(t, min(b, d), "a rectangle")
         inner_b, inner_d = b - 2.0 * t, d - 2.0 * t
         area = 2.0 * t * (b + inner_d)
         return cls(area, (b * d**3 - inner_b * inner_d**3) / 12.0, elastic_modulus, density, stiffness_factor)
@@ -175,7 +175,7 @@ class Section(Value):
         (0.124407, 0.060972)
         """
         d, t = checked_positive("diameter", diameter, "m"), checked_positive("wall", wall, "m")
-        _check_hollow(t, d, "a circle")
+        _check_hollow_section(t, d, "a circle")
         inner, area = d - 2.0 * t, math.pi * t * (d - t)
         return cls(area, area * (d**2 + inner**2) / 16.0, elastic_modulus, density, stiffness_factor)
 
@@ -208,7 +208,7 @@ class Section(Value):
         >>> print(f"{filled.bending_stiffness:.4g} N m², {filled.mass_per_length:.4g} kg/m")
         2.804e+09 N m², 2293 kg/m
         """
-        found = _checked_parts(parts)
+        found = _checked_composite_parts(parts)
         first = found[0][0].elastic_modulus
         ratios = [each.stiffness_factor * each.elastic_modulus / first for each, _ in found]
         areas = [ratio * each.area for ratio, (each, _) in zip(ratios, found, strict=True)]
@@ -223,7 +223,7 @@ class Section(Value):
         return cls(area, second, first, mass / area, stiffness_factor, rotary)
 
 
-def section_value(section: Section | None, name: str, given: Any, absent: float | None = None) -> Any:
+def value_from_section(section: Section | None, name: str, given: Any, absent: float | None = None) -> Any:
     """Return the `given` quantity, or the value of the section where it is None or `absent`.
 
     Raises
@@ -261,7 +261,7 @@ def checked_section(given: Any) -> Section | None:
     return given
 
 
-def _checked_factor(given: float) -> float:
+def _checked_stiffness_factor(given: float) -> float:
     factor = checked_positive("stiffness_factor", given, "fractions of the uncracked stiffness")
     if factor > 1.0:
         raise InputError(
@@ -271,7 +271,7 @@ def _checked_factor(given: float) -> float:
     return factor
 
 
-def _check_hollow(wall: float, least: float, what: str) -> None:
+def _check_hollow_section(wall: float, least: float, what: str) -> None:
     if not 2.0 * wall < least:
         raise InputError(
             f"wall must be less than half of {least:g} m, but {wall:g} m was given. Without a hollow it is {what}.",
@@ -279,7 +279,7 @@ def _check_hollow(wall: float, least: float, what: str) -> None:
         )
 
 
-def _checked_parts(given: Any) -> list[tuple[Section, float]]:
+def _checked_composite_parts(given: Any) -> list[tuple[Section, float]]:
     try:
         pairs = [(section, offset) for section, offset in given]
     except (TypeError, ValueError) as error:

@@ -226,9 +226,9 @@ class FishBone(AssembledStructure, Value):
             )
         vars(self).update(
             story_heights=lengths,
-            masses=_per_story("masses", masses, n, "kg"),
-            column_stiffness=_per_story("column_stiffness", column_stiffness, n, "N m²"),
-            beam_stiffness=_beam_stiffnesses(beam_stiffness, n),
+            masses=_one_value_per_story("masses", masses, n, "kg"),
+            column_stiffness=_one_value_per_story("column_stiffness", column_stiffness, n, "N m²"),
+            beam_stiffness=_checked_beam_stiffnesses(beam_stiffness, n),
             base_mass=checked_positive("base_mass", base_mass, "kg", zero=True),
             half_width=checked_positive("half_width", half_width, "m"),
             damping_ratio=damping_ratio,
@@ -245,7 +245,7 @@ class FishBone(AssembledStructure, Value):
         """The assembled structure: floor masses, condensed stiffness, floor heights."""
         return LumpedStructure(
             self.masses,
-            condensed_stiffness(self.story_heights, self.column_stiffness, self.beam_stiffness),
+            condensed_lateral_stiffness(self.story_heights, self.column_stiffness, self.beam_stiffness),
             np.cumsum(self.story_heights),
             base_mass=self.base_mass,
             half_width=self.half_width,
@@ -259,7 +259,7 @@ class FishBone(AssembledStructure, Value):
 
 
 @explaining_overflow("The stiffness of a frame with these story heights, column and beam stiffnesses")
-def condensed_stiffness(story_heights: Array, column_stiffness: Array, beam_stiffness: Array) -> Array:
+def condensed_lateral_stiffness(story_heights: Array, column_stiffness: Array, beam_stiffness: Array) -> Array:
     """Return the condensed lateral stiffness of the floors in N/m, shape (N, N); arguments as in `FishBone`."""
     n = story_heights.size
     sway, coupling, bending = (np.zeros((n + 1, n + 1)) for _ in range(3))
@@ -275,7 +275,7 @@ def condensed_stiffness(story_heights: Array, column_stiffness: Array, beam_stif
     return 0.5 * (stiffness + stiffness.T)
 
 
-def _per_story(name: str, values: ArrayLike, n: int, unit: str) -> Array:
+def _one_value_per_story(name: str, values: ArrayLike, n: int, unit: str) -> Array:
     if number_of_dimensions(values) == 0:
         filled = np.full(n, checked_positive(name, values, unit))  # pyright: ignore[reportArgumentType]
         filled.setflags(write=False)
@@ -289,7 +289,7 @@ def _per_story(name: str, values: ArrayLike, n: int, unit: str) -> Array:
     return array
 
 
-def _beam_stiffnesses(values: ArrayLike, n: int) -> Array:
+def _checked_beam_stiffnesses(values: ArrayLike, n: int) -> Array:
     given = float_array(values)
     array = np.full(n, np.nan) if given is None else given
     if array.ndim == 0:
@@ -440,7 +440,7 @@ class Frame(AssembledStructure):
         ):
             return self.lumped.rocking()  # raises an error about the overflow
         _, unit_modes = _unit_frame(self.n_stories, self.stiffness_ratio)
-        unit, m, length = _unit_rocking(self.n_stories, self.stiffness_ratio), self.story_mass, self.story_height
+        unit, m, length = _unit_frame_rocking(self.n_stories, self.stiffness_ratio), self.story_mass, self.story_height
         rate = 2.0 * math.pi / (self.period * float(unit_modes.omega[0]))
         mass, height = m * unit.effective_mass, length * unit.effective_height
         n, m_tot = self.n_stories, self.n_stories * m + self.base_mass
@@ -470,13 +470,13 @@ class Frame(AssembledStructure):
 def _unit_frame(n_stories: int, stiffness_ratio: float) -> tuple[Array, ModalProperties]:
     """Return the condensed stiffness in units of 2 EI_c/L_c³, and the modes for unit masses and stories."""
     one = np.ones(n_stories)
-    stiffness = condensed_stiffness(one, one, 12.0 * stiffness_ratio * one)
+    stiffness = condensed_lateral_stiffness(one, one, 12.0 * stiffness_ratio * one)
     stiffness.setflags(write=False)
     return stiffness, modal_properties(one, stiffness, np.cumsum(one))
 
 
 @lru_cache(maxsize=128)
-def _unit_rocking(n_stories: int, stiffness_ratio: float) -> RockingProperties:
+def _unit_frame_rocking(n_stories: int, stiffness_ratio: float) -> RockingProperties:
     """Return the parameters for unit masses and stories, on a base of unit half-width without mass."""
     _, modes = _unit_frame(n_stories, stiffness_ratio)
     return rocking_properties(modes, np.ones(n_stories), modes.heights, 0.0, 1.0, 0.0)

@@ -17,7 +17,7 @@ from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.structure._beam import Beam
 from rockflex.structure._beam_sections import LumpedMasses
-from rockflex.structure._cross_section import Section, checked_section, section_value
+from rockflex.structure._cross_section import Section, checked_section, value_from_section
 from rockflex.structure._from_matrices import from_matrices
 from rockflex.structure._structure import AssembledStructure, ModalStructure
 
@@ -106,11 +106,11 @@ class TaperedTower(AssembledStructure, Value):
         ring = (self.height, self.base_radius, self.top_radius, self.wall)
         return Beam(
             height=self.height,
-            mass=_Area(*ring, self.density),
-            bending_stiffness=_SecondMoment(*ring, self.elastic_modulus),
+            mass=_RingArea(*ring, self.density),
+            bending_stiffness=_RingSecondMoment(*ring, self.elastic_modulus),
             half_width=self.base_radius,
             damping_ratio=self.damping_ratio,
-            rotary_inertia=_SecondMoment(*ring, self.density),
+            rotary_inertia=_RingSecondMoment(*ring, self.density),
             rotary_in_modes=False,
             method=self.method,
             n_modes=self.n_modes,
@@ -129,7 +129,7 @@ class TaperedTower(AssembledStructure, Value):
 
 
 @dataclass(frozen=True)
-class _Ring:
+class _RingSection:
     """The annular section at any height: height, radii and wall of the tower in m, and a factor."""
 
     height: float
@@ -143,7 +143,7 @@ class _Ring:
         return outer, np.maximum(outer - self.wall, 0.0)
 
 
-class _Area(_Ring):
+class _RingArea(_RingSection):
     """The factor times the area in m²."""
 
     def __call__(self, z: Array) -> Array:
@@ -151,7 +151,7 @@ class _Area(_Ring):
         return self.factor * (math.pi * (outer**2 - inner**2))
 
 
-class _SecondMoment(_Ring):
+class _RingSecondMoment(_RingSection):
     """The factor times the second moment of the area in m⁴."""
 
     def __call__(self, z: Array) -> Array:
@@ -216,8 +216,8 @@ class CantileverWithTipMass(AssembledStructure, Value):
 
     def __post_init__(self) -> None:
         section = checked_section(self.section)
-        stiffness = section_value(section, "bending_stiffness", self.bending_stiffness)
-        mass = section_value(section, "mass_per_length", self.mass_per_length, absent=0.0)
+        stiffness = value_from_section(section, "bending_stiffness", self.bending_stiffness)
+        mass = value_from_section(section, "mass_per_length", self.mass_per_length, absent=0.0)
         vars(self).update(
             height=checked_positive("height", self.height, "m"),
             tip_mass=checked_positive("tip_mass", self.tip_mass, "kg"),

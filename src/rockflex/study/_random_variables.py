@@ -17,7 +17,7 @@ from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._schema import PLAIN, SchemaKey
 from rockflex._shown import shown
-from rockflex.structure.file import Table, checked
+from rockflex.structure.file import TomlTable, parse_toml_table
 
 FUNCTIONS: dict[str, Callable[..., float]] = {
     "min": lambda *values: min(values),
@@ -118,7 +118,7 @@ def _value(node: ast.expr, values: Mapping[str, float]) -> Any:
 _BITS = 52  # of a draw, which is the middle of one of 2**52 parts of (0, 1)
 
 
-class DistributionTable(Table):
+class DistributionTable(TomlTable):
     """The distribution of a variable: one of these keys."""
 
     uniform: Annotated[list[float] | None, SchemaKey("a list of the smallest and the largest value", form=PLAIN)] = None
@@ -255,4 +255,4 @@ def _variable(name: str, given: Any, reserved: Mapping[str, str]) -> Distributio
             f"[variables] {name} must be a distribution such as {{ uniform = [0.1, 0.5] }}, a formula such as "
             f'"= 2 * height", or a number, but {shown(given)} was given.'
         )
-    return checked(DistributionTable, {str(key): value for key, value in given.items()}, f"[variables.{name}]")  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]
+    return parse_toml_table(DistributionTable, {str(key): value for key, value in given.items()}, f"[variables.{name}]")  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]

@@ -12,7 +12,7 @@ from rockflex._errors import InputError
 from rockflex._schema import PLAIN, SchemaKey
 from rockflex.modal import Ground, RockingProperties
 from rockflex.motion import Suite, scalable_measures
-from rockflex.structure.file import StructureEntry, Table, checked, label_of
+from rockflex.structure.file import StructureEntry, TomlTable, parse_toml_table, toml_key_label
 from rockflex.study._arguments import factors_of, properties_of
 from rockflex.study._plan import ChunkedPlan
 from rockflex.study._random_variables import Variables, check_known, draws, is_formula, names_of, value_of
@@ -33,11 +33,11 @@ FACTS = {
 Place = tuple[str | int, ...]
 
 
-class _Holder(Table):
+class _Holder(TomlTable):
     structure: StructureEntry
 
 
-class _GroundHolder(Table):
+class _GroundHolder(TomlTable):
     ground: GroundTable
 
 
@@ -66,7 +66,7 @@ class Population:
     ) -> None:
         self.variables, self._structure, self._folder, self._ground = variables, structure, folder, ground
         for place, formula in (*_formulas(structure, ("structure",)), *_formulas(ground, ("ground",))):
-            label, held = label_of(place), place[0] == "ground" or place[1] in ELEMENT_KEYS
+            label, held = toml_key_label(place), place[0] == "ground" or place[1] in ELEMENT_KEYS
             try:
                 needed = names_of(formula)
             except InputError as error:
@@ -112,7 +112,7 @@ class Population:
         if self._ground is None:
             return None
         content = _evaluated(self._ground, {**values, **facts_of(properties)}, ("ground",))
-        return checked(_GroundHolder, {"ground": content}).ground.under(properties)
+        return parse_toml_table(_GroundHolder, {"ground": content}).ground.under(properties)
 
 
 def facts_of(properties: RockingProperties) -> dict[str, float]:
@@ -127,7 +127,7 @@ def facts_of(properties: RockingProperties) -> dict[str, float]:
 
 
 def _checked(content: Mapping[str, Any], values: Mapping[str, float]) -> StructureEntry:
-    return checked(_Holder, {"structure": _evaluated(content, values, ("structure",))}).structure
+    return parse_toml_table(_Holder, {"structure": _evaluated(content, values, ("structure",))}).structure
 
 
 def _formulas(content: object, place: Place) -> Iterator[tuple[Place, str]]:
@@ -143,7 +143,7 @@ def _evaluated(content: Any, values: Mapping[str, float], place: Place) -> Any:
         try:
             return value_of(content, values)
         except InputError as error:
-            raise InputError(f"{label_of(place)}: {error}") from error
+            raise InputError(f"{toml_key_label(place)}: {error}") from error
     evaluated = ((key, _evaluated(each, values, (*place, key))) for key, each in _items(content))
     if isinstance(content, Mapping):
         return dict(evaluated)

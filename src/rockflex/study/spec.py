@@ -31,13 +31,13 @@ from rockflex._shown import shown
 from rockflex.modal import Ground, RockingProperties, Springs, asce41_bed, winkler_bed
 from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, VVELSimplified, parse_model
 from rockflex.motion import OnError, Suite, Vertical, load_suite, read_suite
-from rockflex.structure.file import StructureEntry, Table, problems
+from rockflex.structure.file import StructureEntry, TomlTable, toml_problem_sentences
 from rockflex.study._arguments import WORK_LIMIT, check_options, free_vibration_time, properties_of, work_limit_of
 from rockflex.study._plan import ChunkedPlan
 from rockflex.study._run_matrix import StudyMatrix, StudyOptions, check_different
 
 
-class Records(Table):
+class Records(TomlTable):
     """Records by the names of embedded suites, from a folder, or both.
 
     Examples
@@ -97,7 +97,7 @@ _EACH = one_for_each("spring")
 _DAMPING_RATIO = SchemaKey("the damping of the heave mode over the critical damping", low=0.0, high=100.0)
 
 
-class SpringsTable(Table):
+class SpringsTable(TomlTable):
     """The arguments of `Springs`; by default two springs are at the edges of the base."""
 
     positions: Annotated[
@@ -130,7 +130,7 @@ class SpringsTable(Table):
         return _damped(springs, self, properties)
 
 
-class BedTable(SpringBedKeys, Table):
+class BedTable(SpringBedKeys, TomlTable):
     """The arguments of `winkler_bed` or, with a shear modulus, of `asce41_bed`, for the width of the structure."""
 
     damping: Annotated[
@@ -172,7 +172,7 @@ class BedTable(SpringBedKeys, Table):
         return _damped(bed, self, properties)
 
 
-class GroundTable(GroundKeys, Table):
+class GroundTable(GroundKeys, TomlTable):
     """The arguments of `Ground`, with springs or a bed as tables."""
 
     springs: Annotated[SpringsTable | None, SchemaKey("a table", form=PLAIN)] = None
@@ -236,11 +236,11 @@ _LAWS: dict[str, Callable[..., ImpactLaw]] = {
 }
 
 
-class BoucWenTable(BoucWenKeys, Table):
+class BoucWenTable(BoucWenKeys, TomlTable):
     """The arguments of `BoucWen`."""
 
 
-class RunOptionKeys(ImpactKeys, Table):
+class RunOptionKeys(ImpactKeys, TomlTable):
     """The options of a run that files, links and forms share: impact law, hysteresis and ground.
 
     By default each model has its own law, nothing yields, and the base cannot slide on rigid ground.
@@ -378,7 +378,7 @@ FreeVibration = Annotated[
 ]
 
 
-class Spec(Table):
+class Spec(TomlTable):
     """A study as a file or Python describes it; in Python, its tables are dictionaries.
 
     Raises
@@ -403,7 +403,7 @@ class Spec(Table):
         try:
             super().__init__(**content)
         except ValidationError as error:
-            raise InputError(" ".join(problems(error, content, type(self)))) from error
+            raise InputError(" ".join(toml_problem_sentences(error, content, type(self)))) from error
 
     @property
     def kind(self) -> str:

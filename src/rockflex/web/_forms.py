@@ -9,7 +9,16 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 from rockflex._json import as_json_value
-from rockflex.structure.file import ELEMENTS, KINDS, PartTable, StructureEntry, Table, inner_table, key_of, parts
+from rockflex.structure.file import (
+    ELEMENTS,
+    KINDS,
+    PartTable,
+    StructureEntry,
+    TomlTable,
+    first_table_in_annotation,
+    members_of_annotation,
+    schema_key_of_field,
+)
 from rockflex.study.spec import BoucWenTable, GroundTable
 
 
@@ -60,13 +69,13 @@ def forms() -> dict[str, Any]:
     )
 
 
-def _fields(table: type[Table]) -> list[dict[str, Any]]:
+def _fields(table: type[TomlTable]) -> list[dict[str, Any]]:
     left_out = ("kind", "parts")  # chosen in a list; of a composite section
     return [_field(name, field) for name, field in table.model_fields.items() if name not in left_out]
 
 
 def _field(name: str, field: FieldInfo) -> dict[str, Any]:
-    key, inner = key_of(field), inner_table(field.annotation)
+    key, inner = schema_key_of_field(field), first_table_in_annotation(field.annotation)
     default = None if field.is_required() else field.get_default(call_default_factory=True)
     return {
         "name": name,
@@ -91,7 +100,7 @@ def _sentence(description: str) -> str:
 
 def _type(annotation: Any) -> str:
     """The simplest form that accepts every kind of value of a field."""
-    kinds = parts(annotation)
+    kinds = members_of_annotation(annotation)
     if any(get_origin(kind) is Literal for kind in kinds):
         return "choice"
     if bool in kinds:
@@ -110,5 +119,10 @@ def _type(annotation: Any) -> str:
 
 
 def _choices(annotation: Any) -> list[str]:
-    words = [str(value) for part in parts(annotation) if get_origin(part) is Literal for value in get_args(part)]
+    words = [
+        str(value)
+        for part in members_of_annotation(annotation)
+        if get_origin(part) is Literal
+        for value in get_args(part)
+    ]
     return [word for word in words if word != "composite"]  # a section of several parts, which only files have

@@ -12,7 +12,15 @@ from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.solve import Task
-from rockflex.structure.file import ELEMENTS, ElementTable, Table, expected, inner_table, key_of, parts
+from rockflex.structure.file import (
+    ELEMENTS,
+    ElementTable,
+    TomlTable,
+    first_table_in_annotation,
+    members_of_annotation,
+    schema_key_of_field,
+    valid_value_description,
+)
 from rockflex.study import Case
 from rockflex.web._refusal import Refusal, refusing
 
@@ -39,13 +47,13 @@ MAX_STUDY_COST = 180.0  # s of estimated computing time of all runs of a study
 MAX_NUMBER = 1e15
 
 
-def check_numbers(path: str, value: Any, table: type[Table]) -> None:
+def check_numbers(path: str, value: Any, table: type[TomlTable]) -> None:
     """Raise the errors of `errors_of_numbers` as a refusal."""
     if errors := errors_of_numbers(path, value, table):
         raise Refusal(errors)
 
 
-def errors_of_numbers(path: str, value: Any, table: type[Table]) -> dict[str, str]:
+def errors_of_numbers(path: str, value: Any, table: type[TomlTable]) -> dict[str, str]:
     """Return a message for each number outside the range of its field, each list that is too long, and each text.
 
     A text in place of numbers would be the path of a file: nothing that a visitor writes reaches the file system.
@@ -59,7 +67,7 @@ def errors_of_numbers(path: str, value: Any, table: type[Table]) -> dict[str, st
         elif isinstance(each, list):
             errors[place] = f"it holds {len(each)} values, but the page takes {_most(each)} at most."
         elif isinstance(each, int | float) and not isinstance(each, bool):
-            key = SchemaKey("") if field is None else key_of(field)
+            key = SchemaKey("") if field is None else schema_key_of_field(field)
             low, high = (-MAX_NUMBER if key.low is None else key.low), (MAX_NUMBER if key.high is None else key.high)
             if not low <= each <= high:  # NaN, too
                 errors[place] = f"it must be from {low:g} to {high:g}, but {each:g} was given."
@@ -68,7 +76,7 @@ def errors_of_numbers(path: str, value: Any, table: type[Table]) -> dict[str, st
 
 def wanted(field: FieldInfo) -> str:
     """Return the condition on the value of a field, for a message."""
-    return key_of(field).page or expected(field)
+    return schema_key_of_field(field).page or valid_value_description(field)
 
 
 def unclear(value: Any) -> str:
@@ -84,13 +92,13 @@ def unclear(value: Any) -> str:
 
 def _takes_text(field: FieldInfo) -> bool:
     """Tell whether a field holds a word, a name or a table; one for numbers takes text as the path of a file."""
-    kinds = parts(field.annotation)
+    kinds = members_of_annotation(field.annotation)
     words = kinds == [str] or any(get_origin(kind) is Literal for kind in kinds)
-    return words or inner_table(field.annotation) is not None
+    return words or first_table_in_annotation(field.annotation) is not None
 
 
 def _leaves(
-    path: str, value: Any, table: type[Table] | None, field: FieldInfo | None = None
+    path: str, value: Any, table: type[TomlTable] | None, field: FieldInfo | None = None
 ) -> Iterator[tuple[str, FieldInfo | None, Any]]:
     """Yield every number and text with its field, and every list that is too long."""
     if isinstance(value, Mapping):
@@ -101,7 +109,7 @@ def _leaves(
                 yield from _leaves(path, each, None, field)
             else:
                 inner = None if table is None else table.model_fields.get(str(key))
-                below = None if inner is None else inner_table(inner.annotation)
+                below = None if inner is None else first_table_in_annotation(inner.annotation)
                 yield from _leaves(f"{path}.{key}", each, below, inner)
     elif isinstance(value, list | tuple):
         if value and len(value) > _most(value):

@@ -12,7 +12,7 @@ from rockflex._errors import InputError
 from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKED, ROCKING, LimitState, beyond
 from rockflex.modal import Ground
 from rockflex.motion import Combination, IntensityMeasure, scalable_measures
-from rockflex.structure.file import StructureEntry, Table, spot_of
+from rockflex.structure.file import StructureEntry, TomlTable, toml_problem_place
 from rockflex.study import RunOptions, yielding
 from rockflex.study.spec import BoucWenTable, GroundTable, RunOptionKeys
 from rockflex.web._limits import MAX_MODELS, RUN_WORK_LIMIT, check_numbers, errors_of_numbers, unclear, wanted
@@ -105,7 +105,7 @@ InG = Annotated[float, Field(ge=0.001, le=5.0)]
 Seconds = Annotated[float, Field(ge=0.01, le=100.0)]
 
 
-class TargetChoice(Table):
+class TargetChoice(TomlTable):
     """A target spectrum, and how records are chosen for it. Accelerations are in g, as codes and maps give them."""
 
     shown: bool = Field(False, description="true or false")
@@ -158,7 +158,7 @@ MAX_STATE_VALUES = 150_000  # values in a state: three matrices of 200 freedoms,
 MAX_MESSAGES = 50  # messages in one answer
 
 
-class PulseChoice(Table):
+class PulseChoice(TomlTable):
     """A mathematical pulse."""
 
     shape: Literal[
@@ -172,7 +172,7 @@ class PulseChoice(Table):
     nu: float = Field(0.0, ge=-math.pi, le=math.pi, description="the phase ν in rad, from -π to π")
 
 
-class RecordChoice(Table):
+class RecordChoice(TomlTable):
     """A ground motion: one of a suite, a pulse, an upload by its checksum, or one of the folder with its checksum.
 
     The folder is that of the studies too, and `vertical` says whether its vertical components are used.
@@ -190,7 +190,7 @@ class RecordChoice(Table):
     vertical: bool = Field(False, description="true or false")
 
 
-class CloudChoice(Table):
+class CloudChoice(TomlTable):
     """A cloud analysis, and its limit state."""
 
     suites: Suites = Field(["fema-p695-far-field"], description="a list of one to four suites")
@@ -210,7 +210,7 @@ class CloudChoice(Table):
     )
 
 
-class DesignChoice(Table):
+class DesignChoice(TomlTable):
     """A search for the width of the base."""
 
     suites: Suites = Field(["fema-p695-far-field"], description="a list of one to four suites")
@@ -377,7 +377,7 @@ def _messages(error: ValidationError, content: dict[str, Any]) -> dict[str, str]
     """Return a sentence for each field at fault."""
     found: dict[str, str] = {}
     for problem in error.errors(include_url=False)[:MAX_MESSAGES]:
-        spot = spot_of(problem["loc"], content, State)
+        spot = toml_problem_place(problem["loc"], content, State)
         needed = "something else" if spot.field is None else wanted(spot.field)
         if problem["type"] == "extra_forbidden":
             said = "it is not known here."

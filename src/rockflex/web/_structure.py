@@ -15,7 +15,7 @@ from rockflex._json import as_json_value
 from rockflex.modal import Ground, ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
 from rockflex.structure import structure_warnings
 from rockflex.structure._from_matrices import DegreesOfFreedom
-from rockflex.structure.file import Structure, StructureEntry, StructureTable, Table
+from rockflex.structure.file import Structure, StructureEntry, StructureTable, TomlTable
 from rockflex.structure.file._tables import MatricesTable, ModesTable
 from rockflex.study.spec import GroundTable
 from rockflex.web._refusal import Refusal, refusing
@@ -65,7 +65,7 @@ def _ground_fact(symbol: str, value: float | None, unit: str, said: str) -> dict
     return {"symbol": symbol, "value": value, "unit": unit, "help": said}
 
 
-def section_facts(table: Table) -> list[dict[str, Any]]:
+def section_facts(table: TomlTable) -> list[dict[str, Any]]:
     """Return area, second moment, stiffness and mass of the cross-section of a structure; none without one."""
     given: Any = getattr(table, "section", None)
     if given is None:

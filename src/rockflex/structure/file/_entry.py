@@ -14,19 +14,19 @@ from rockflex._schema import PLAIN, Eccentricity, SchemaKey
 from rockflex._shown import shortened
 from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.structure import Eccentric, Restrained
-from rockflex.structure._from_matrices import checksum
-from rockflex.structure.file._table import Table, checked, inner_table
+from rockflex.structure._from_matrices import matrix_file_checksum
+from rockflex.structure.file._table import TomlTable, first_table_in_annotation, parse_toml_table
 from rockflex.structure.file._tables import (
     BeamTable,
-    BlockTable,
     Built,
     CantileverTable,
     FishBoneTable,
     FrameTable,
-    LumpedTable,
+    LumpedStructureTable,
     MatricesTable,
     ModesTable,
-    PropertiesTable,
+    RigidBlockTable,
+    RockingPropertiesTable,
     StructureTable,
     TaperedTowerTable,
     WallFrameTable,
@@ -39,7 +39,7 @@ _TABLE_KEY = SchemaKey("a table", form=PLAIN)
 _RUN_KEYS = ("impact", "restitution", "bouc_wen", "ground")  # only for `rockflex run`
 
 
-class ElementTable(Table):
+class ElementTable(TomlTable):
     """A table that is an element; `title` is its name in a list, and a key `kind` is no argument."""
 
     makes: ClassVar[Callable[..., BaseElement]]
@@ -78,11 +78,11 @@ class TendonTable(ElementTable):
     ] = None
 
 
-class _TendonKind(Table):
+class _TendonKindKey(TomlTable):
     kind: Annotated[Literal["tendon"], _ELEMENT_KIND]
 
 
-class TendonElementTable(TendonTable, _TendonKind):
+class TendonElementTable(TendonTable, _TendonKindKey):
     """A tendon among the elements."""
 
 
@@ -138,7 +138,7 @@ ELEMENTS: dict[str, type[ElementTable]] = {
 """The table of each kind of element by its name in a file."""
 
 
-class StructureEntry(Table):
+class StructureEntry(TomlTable):
     """A structure, with its optional name, its place on the base, and the elements that hold the base.
 
     Attributes
@@ -162,11 +162,11 @@ class StructureEntry(Table):
     tapered_tower: Annotated[TaperedTowerTable | None, _TABLE_KEY] = None
     cantilever: Annotated[CantileverTable | None, _TABLE_KEY] = None
     beam: Annotated[BeamTable | None, _TABLE_KEY] = None
-    lumped: Annotated[LumpedTable | None, _TABLE_KEY] = None
+    lumped: Annotated[LumpedStructureTable | None, _TABLE_KEY] = None
     matrices: Annotated[MatricesTable | None, _TABLE_KEY] = None
     modes: Annotated[ModesTable | None, _TABLE_KEY] = None
-    properties: Annotated[PropertiesTable | None, _TABLE_KEY] = None
-    block: Annotated[BlockTable | None, _TABLE_KEY] = None
+    properties: Annotated[RockingPropertiesTable | None, _TABLE_KEY] = None
+    block: Annotated[RigidBlockTable | None, _TABLE_KEY] = None
     eccentricity: Eccentricity = None
     tendons: Annotated[
         list[TendonTable], SchemaKey("a list of tables, each under a heading [[tendons]]", form=PLAIN)
@@ -261,7 +261,7 @@ class StructureEntry(Table):
             If a file of numbers cannot be read.
         """
         files = self.table.files(Path(folder))
-        return {f"{self.kind}.{name}": checksum(name, path) for name, path in files.items()}
+        return {f"{self.kind}.{name}": matrix_file_checksum(name, path) for name, path in files.items()}
 
     def describe(self) -> dict[str, Any]:
         """Return the values of the structure's table, with eccentricity, tendons and elements if given."""
@@ -275,7 +275,7 @@ class StructureEntry(Table):
 KINDS: dict[str, type[StructureTable]] = {
     name: table
     for name, field in StructureEntry.model_fields.items()
-    if issubclass(table := inner_table(field.annotation) or Table, StructureTable)
+    if issubclass(table := first_table_in_annotation(field.annotation) or TomlTable, StructureTable)
 }
 """The table of each kind of structure by its name in a file."""
 
@@ -318,13 +318,13 @@ def read_structure(path: str | Path) -> Built:
     24362
     """
     file = checked_file_path("path", path)
-    content = {key: value for key, value in read_toml(file, "structure").items() if key not in _RUN_KEYS}
+    content = {key: value for key, value in read_toml_file(file, "structure").items() if key not in _RUN_KEYS}
     if "study" in content:
         raise InputError(f"{file} is the file of a study, but one of a structure is expected. Use load_study(path).")
-    return build_in(file, checked(StructureEntry, content, str(path)))
+    return build_structure_in_file(file, parse_toml_table(StructureEntry, content, str(path)))
 
 
-def read_toml(file: Path, kind: str) -> dict[str, Any]:
+def read_toml_file(file: Path, kind: str) -> dict[str, Any]:
     """Return the content of a TOML file; `kind` names its expected content in messages.
 
     Raises
@@ -347,7 +347,7 @@ def read_toml(file: Path, kind: str) -> dict[str, Any]:
         ) from error
 
 
-def build_in(file: Path, entry: StructureEntry) -> Built:
+def build_structure_in_file(file: Path, entry: StructureEntry) -> Built:
     """Build the structure of a file, which messages name.
 
     Raises

@@ -25,7 +25,7 @@ from rockflex.structure import (
     rigid_block,
 )
 from rockflex.structure._structure import Structure
-from rockflex.structure.file._table import Table
+from rockflex.structure.file._table import TomlTable
 
 Shape = Literal["rectangle", "box", "circle", "tube"]
 _SIZES: dict[str, tuple[Callable[..., Section], tuple[str, ...]]] = {
@@ -56,7 +56,7 @@ Index = Annotated[str, StringConstraints(pattern=r"^[0-9]+$")]
 _OR_FILE = "{}, or the path of a .npz, .mtx or .csv file"
 
 
-class PartTable(Table):
+class PartTable(TomlTable):
     """A part of a composite section, and the place of its centroid."""
 
     shape: Annotated[Shape, SchemaKey(f"one of {_SHAPES}", form=PLAIN)]
@@ -72,7 +72,7 @@ class PartTable(Table):
     ] = 0.0
 
 
-class SectionTable(Table):
+class SectionTable(TomlTable):
     """The arguments of one of the constructors of `Section`."""
 
     shape: Annotated[
@@ -117,7 +117,7 @@ SectionKey = Annotated[
 ]
 
 
-def section_of(table: SectionTable | None) -> dict[str, Any]:
+def section_argument(table: SectionTable | None) -> dict[str, Any]:
     """Return the argument `section` of a structure; none without a table."""
     return {} if table is None else {"section": table.build()}
 
@@ -147,7 +147,7 @@ Built: TypeAlias = Structure | RockingProperties
 """The result of building a table."""
 
 
-class StructureTable(Table):
+class StructureTable(TomlTable):
     """A table that is a structure; `title` is its name in the list of a form."""
 
     makes: ClassVar[Callable[..., Built]]
@@ -183,7 +183,7 @@ class FrameTable(FrameKeys, StructureTable):
     title = "Frame of equal stories"
 
 
-class LumpedTable(StructureTable):
+class LumpedStructureTable(StructureTable):
     """The arguments of `LumpedStructure`."""
 
     makes = LumpedStructure
@@ -202,7 +202,7 @@ class LumpedTable(StructureTable):
     damping_ratio: Damping
 
 
-class PropertiesTable(StructureTable):
+class RockingPropertiesTable(StructureTable):
     """The arguments of `RockingProperties`, without its floors."""
 
     makes = RockingProperties
@@ -283,7 +283,7 @@ class CantileverTable(StructureTable):
 
     def arguments(self, folder: Path) -> dict[str, Any]:
         """Return the arguments with the section built."""
-        return super().arguments(folder) | section_of(self.section)
+        return super().arguments(folder) | section_argument(self.section)
 
 
 class WallFrameTable(StructureTable):
@@ -338,7 +338,7 @@ class FishBoneTable(StructureTable):
     damping_ratio: Damping
 
 
-class BlockTable(StructureTable):
+class RigidBlockTable(StructureTable):
     """The arguments of `rigid_block`."""
 
     makes = rigid_block
@@ -349,7 +349,7 @@ class BlockTable(StructureTable):
     mass: Annotated[float, SchemaKey("the mass, which rotations do not depend on", "kg")] = 1.0
 
 
-class LumpedMassesTable(Table):
+class LumpedMassesTable(TomlTable):
     """The arguments of `LumpedMasses`."""
 
     heights: Annotated[Vector, SchemaKey("a list of the heights of the bodies above the base in m", "m", form=PLAIN)]
@@ -424,10 +424,10 @@ class BeamTable(StructureTable):
         given |= {name: (z, given[name]) for name in lists}
         if self.lumped_masses is not None:
             given["lumped_masses"] = LumpedMasses(**given["lumped_masses"])
-        return given | section_of(self.section)
+        return given | section_argument(self.section)
 
 
-class _FromFiles(StructureTable):
+class _MatrixFilesTable(StructureTable):
     """The keys that both kinds share: degrees of freedom above a base."""
 
     mass: Annotated[
@@ -472,7 +472,7 @@ class _FromFiles(StructureTable):
         return {name: folder / value for name, value in self.values().items() if isinstance(value, str)}
 
 
-class MatricesTable(_FromFiles):
+class MatricesTable(_MatrixFilesTable):
     """The arguments of `from_matrices`."""
 
     makes = from_matrices
@@ -489,7 +489,7 @@ class MatricesTable(_FromFiles):
     ]
 
 
-class ModesTable(_FromFiles):
+class ModesTable(_MatrixFilesTable):
     """The arguments of `from_modes`."""
 
     makes = from_modes

@@ -13,7 +13,7 @@ from rockflex._shown import shown
 from rockflex.fragility import HazardCurve
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw
-from rockflex.structure.file import StructureEntry, Table
+from rockflex.structure.file import StructureEntry, TomlTable
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, RockingStructure, described
 from rockflex.study._plan import run_plan
 from rockflex.study._run_matrix import StudyMatrix, check_lifts, study_matrix
@@ -89,7 +89,7 @@ _FACTORS = "a list of factors on the {} of the structure, or a range {{smallest 
 _SCALING = '"size" (force and stiffness) or "force"'
 
 
-class TendonLevelTable(Table):
+class TendonLevelTable(TomlTable):
     """The arguments of `TendonLevel`."""
 
     prestress_ratio: float = Field(0.0, description="the initial force over the weight m_tot g, a number")
@@ -98,7 +98,7 @@ class TendonLevelTable(Table):
     name: str = Field("", description="a name, in quotes")
 
 
-class HazardTable(Table):
+class HazardTable(TomlTable):
     """The arguments of `HazardCurve`."""
 
     im: list[float] = Field(description="a list of levels of the measure, in SI units, rising")
@@ -106,7 +106,7 @@ class HazardTable(Table):
     damping: float = Field(0.05, description="the damping ratio of a spectral measure, a number")
 
 
-class CostTable(Table):
+class CostTable(TomlTable):
     """The arguments of `DesignCost`."""
 
     half_width: float = Field(0.0, description="the cost of each metre of the half width B, a number")
@@ -116,7 +116,7 @@ class CostTable(Table):
     )
 
 
-class SearchTable(Table):
+class SearchTable(TomlTable):
     """The arguments of `DesignSearch` other than those of the study itself, and the unit costs."""
 
     cost: CostTable = Field(description="a table of half_width, prestress and dissipator_force, in cost/m and cost/N")
