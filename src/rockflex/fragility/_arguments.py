@@ -37,7 +37,7 @@ def log_measures(im: ArrayLike, name: str = "im") -> Array:
     return column
 
 
-def flags(name: str, values: ArrayLike) -> Bools:
+def boolean_column(name: str, values: ArrayLike) -> Bools:
     """Boolean array of a column of true and false, or of 1 and 0."""
     numbers = float_array(values)
     if numbers is None:
@@ -53,7 +53,7 @@ def flags(name: str, values: ArrayLike) -> Bools:
     return numbers == 1.0
 
 
-def same_length(**columns: NDArray[np.generic]) -> None:
+def check_same_column_length(**columns: NDArray[np.generic]) -> None:
     """Raise an InputError unless all columns have as many rows as the first."""
     sizes = {name: len(column) for name, column in columns.items()}
     if len(set(sizes.values())) > 1:
@@ -63,7 +63,7 @@ def same_length(**columns: NDArray[np.generic]) -> None:
         )
 
 
-def log_at(im: ArrayLike, name: str = "im") -> Array:
+def log_of_evaluation_points(im: ArrayLike, name: str = "im") -> Array:
     """Natural logarithm of the positive numbers, of any shape, at which a fit is evaluated."""
     array = float_array(im)
     if array is None:
@@ -76,7 +76,7 @@ def log_at(im: ArrayLike, name: str = "im") -> Array:
     return np.log(array)
 
 
-def fractions(name: str, values: ArrayLike) -> Array:
+def checked_probabilities(name: str, values: ArrayLike) -> Array:
     """Numbers strictly between 0 and 1, of any shape."""
     array = float_array(values)
     if array is None or not ((array > 0.0) & (array < 1.0)).all():
@@ -91,7 +91,7 @@ def checked_confidence(confidence: float) -> float:
     return checked_in_range("confidence", confidence, 0.0, 1.0, hint="A 90 % band is confidence=0.9.")
 
 
-class Fragility(Protocol):
+class FragilityCurve(Protocol):
     """Any curve that gives a probability of failure at a measure."""
 
     def probability(self, im: Array, /) -> Array:
@@ -99,7 +99,7 @@ class Fragility(Protocol):
         ...
 
 
-def checked_curve(fragility: Fragility | Curve, name: str = "fragility") -> Curve:
+def checked_fragility_curve(fragility: FragilityCurve | Curve, name: str = "fragility") -> Curve:
     """Return the probability as a function of an array of measures; `name` is for messages.
 
     Raises

@@ -311,7 +311,7 @@ MONTE_CARLO = StudyKind(
 
 
 def _report_design(study: Any, runs: Runs, found: Findings) -> None:
-    from rockflex.fragility import limit_label
+    from rockflex.fragility import limit_state_label
     from rockflex.study.design import design_tables, smallest_width, stored_limits
 
     if study.search is not None:
@@ -325,7 +325,7 @@ def _report_design(study: Any, runs: Runs, found: Findings) -> None:
     designs: dict[tuple[str, str, float], dict[str, Any]] = {}
     widths: list[dict[str, Any]] = []
     for target, (limit, table) in zip(targets, design_tables(runs, study.document()), strict=True):
-        word = limit_label(limit)
+        word = limit_state_label(limit)
         for reason, lost in table[table[value].isna()].groupby("note"):
             found.unfitted.append(f"{word}: no {value} of {len(lost)} of {len(table)} designs. {reason}")
         for each in table.to_dict("records"):
@@ -411,7 +411,7 @@ def _row(row: Mapping[Any, Any], labels: list[str]) -> dict[str, Any]:
 
 def _figures_design(spec: Document, runs: Runs, _: str, __: Remark) -> Figures:
     from rockflex import plot
-    from rockflex.fragility import limit_label
+    from rockflex.fragility import limit_state_label
     from rockflex.study.design import best_design, design_tables, stored_limits, stored_search
 
     if "search" in spec:
@@ -422,7 +422,7 @@ def _figures_design(spec: Document, runs: Runs, _: str, __: Remark) -> Figures:
         return
     targets = [target for _, _, target, _ in stored_limits(spec)]
     for target, (limit, table) in zip(targets, design_tables(runs, spec), strict=True):
-        stem = f"design_{'_'.join(limit_label(limit).split())}"
+        stem = f"design_{'_'.join(limit_state_label(limit).split())}"
         yield stem, lambda table=table, target=target: plot.plot_design(table, target)
 
 

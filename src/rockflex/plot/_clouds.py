@@ -11,7 +11,7 @@ from rockflex._arrays import Array
 from rockflex._cases import runs_by_case
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.fragility import NOMINAL, OVERTURNING, ROCKED, CloudFit, fit_each_cloud, rocked
+from rockflex.fragility import NOMINAL, OVERTURNING, ROCKED, CloudFit, fit_each_cloud, rocked_runs
 from rockflex.plot._study_tables import (
     check_columns,
     label_plainly,
@@ -142,7 +142,7 @@ def _clouds(runs: "pd.DataFrame", quantity: str, measure: str, threshold: float,
     for structure, model, group in runs_by_case(runs):
         solved = group[group["status"].notna()]
         fell = (NOMINAL if nominal else OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
-        rocks = ~fell & rocked(solved, threshold).to_numpy(dtype=bool)
+        rocks = ~fell & rocked_runs(solved, threshold).to_numpy(dtype=bool)
         fit = fit_of.get((structure, model))
         line = fit and (fit.outcomes.rotation if quantity == "max_rotation" else getattr(fit, quantity[4:]))
         failed = len(group) - len(solved)

@@ -13,7 +13,7 @@ from rockflex._checks import checked_instance, is_one_of
 from rockflex._errors import InputError
 from rockflex._number_format import short_number, unit_with_prefix
 from rockflex._shown import shown
-from rockflex.fragility import OVERTURNED, OVERTURNING, beyond, symbol_of_nominal
+from rockflex.fragility import OVERTURNED, OVERTURNING, nominal_rotation_symbol, rotation_limit_state
 from rockflex.plot._study_tables import MARKERS, check_columns, legend_handles, names_in, structure_panels
 from rockflex.plot._style import (
     BLACK,
@@ -162,9 +162,9 @@ def _value_name(table: "pd.DataFrame", value: str) -> str:
     if known.any():
         first, multiple = limits[known][0], (limits / nominal)[known]
         if np.allclose(limits[known], first, rtol=1e-9):
-            event = (OVERTURNING if first == OVERTURNED else beyond(first)).symbol
+            event = (OVERTURNING if first == OVERTURNED else rotation_limit_state(first)).symbol
         elif np.allclose(multiple, multiple[0], rtol=1e-9):
-            event = symbol_of_nominal(multiple[0])
+            event = nominal_rotation_symbol(multiple[0])
         else:
             raise InputError("The designs have limits of several kinds. Plot the table of one limit.")
     event = f"${event}$" if ">" in event else event

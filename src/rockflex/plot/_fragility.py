@@ -22,9 +22,9 @@ from rockflex.fragility import (
     fit_capacities,
     fit_clouds,
     fit_stripes,
-    observed_fractions,
-    recordings_of,
-    rocked,
+    observed_exceedance_fractions,
+    recordings_of_runs,
+    rocked_runs,
 )
 from rockflex.plot._study_tables import (
     check_columns,
@@ -211,8 +211,8 @@ def _draw_outcomes(
 
 def _mark_observed(axes: Axes, runs: "pd.DataFrame", fit: CloudFits, marker: str, color: str, groups: int) -> None:
     """Fraction of rocking runs in groups of neighbouring intensities, at their geometric mean."""
-    rocks = rocked(runs, fit.outcomes.threshold).to_numpy(dtype=bool)
-    font_size = observed_fractions(runs[fit.measure].to_numpy(dtype=float), rocks, groups)
+    rocks = rocked_runs(runs, fit.outcomes.threshold).to_numpy(dtype=bool)
+    font_size = observed_exceedance_fractions(runs[fit.measure].to_numpy(dtype=float), rocks, groups)
     axes.plot(
         [at for at, _ in font_size], [fraction for _, fraction in font_size],
         marker, color=color, markersize=3.0, markerfacecolor="none", markeredgewidth=0.7, label="_observed",
@@ -247,7 +247,7 @@ def plot_stripes(
         The table of a stripe study.
     limit
         ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"tendon_yield"``, ``"uplift"``, a
-        rotation in rad, or a limit state such as ``rockflex.fragility.residual_beyond(0.005)``.
+        rotation in rad, or a limit state such as ``rockflex.fragility.residual_rotation_limit_state(0.005)``.
     measure
         Name of the measure of the levels, such as ``"pgv"``, for the axis; it is not in the table.
     confidence
@@ -352,7 +352,7 @@ def _fit_of_stripes(runs: "pd.DataFrame", limit: "StripeLimit") -> LognormalFrag
     solved = runs[runs["status"].notna()]
     exceeded = stripe_limit(limit).exceeded(solved).astype(bool)
     try:
-        return fit_stripes(solved["level"], exceeded, np.ones(len(solved)), recordings_of(solved))
+        return fit_stripes(solved["level"], exceeded, np.ones(len(solved)), recordings_of_runs(solved))
     except (InputError, SolverError):
         return None
 

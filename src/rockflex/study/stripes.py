@@ -9,7 +9,7 @@ from pydantic import Field
 from rockflex._checks import checked_positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.fragility import NOMINAL, OVERTURNING, TENDON_YIELD, UPLIFT, LimitState, beyond
+from rockflex.fragility import NOMINAL, OVERTURNING, TENDON_YIELD, UPLIFT, LimitState, rotation_limit_state
 from rockflex.motion import scalable_measure
 from rockflex.study._arguments import positive_numbers
 from rockflex.study._plan import CrossPlan
@@ -101,7 +101,7 @@ def stripe_counts(runs: "pd.DataFrame", limit: StripeLimit = "overturning") -> "
         The table of a `StripeStudy`.
     limit
         ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"tendon_yield"``, ``"uplift"``, a
-        rotation in rad, or a limit state such as ``rockflex.fragility.residual_beyond(0.005)``.
+        rotation in rad, or a limit state such as ``rockflex.fragility.residual_rotation_limit_state(0.005)``.
 
     Returns
     -------
@@ -145,7 +145,7 @@ def stripe_limit(limit: StripeLimit) -> LimitState:
     if isinstance(limit, LimitState):
         return limit
     if not isinstance(limit, str):
-        return beyond(checked_positive("limit", limit, "rad"))
+        return rotation_limit_state(checked_positive("limit", limit, "rad"))
     state = next((each for each in COUNTED if each.name == limit), None)
     if state is None:
         words = ", ".join(f'"{each.name}"' for each in COUNTED)

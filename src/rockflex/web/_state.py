@@ -9,7 +9,7 @@ from pydantic import AfterValidator, AliasChoices, Field, StringConstraints, Val
 from pydantic_core import PydanticCustomError
 
 from rockflex._errors import InputError
-from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKED, ROCKING, LimitState, beyond
+from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKED, ROCKING, LimitState, rotation_limit_state
 from rockflex.modal import Ground
 from rockflex.motion import Combination, IntensityMeasure, scalable_measures
 from rockflex.structure.file import StructureEntry, TomlTable, toml_problem_place
@@ -54,7 +54,7 @@ DesignLimit = Annotated[str, among(lambda: [each.name for each in LIMIT_STATE_CH
 
 def limit_state(name: str, rotation: float) -> LimitState:
     """Return a limit by its name on the page; `rotation` in rad belongs to the limit "rotation"."""
-    return beyond(rotation) if name == ROTATION else LIMIT_STATES[name]
+    return rotation_limit_state(rotation) if name == ROTATION else LIMIT_STATES[name]
 
 
 def limit_states() -> list[dict[str, Any]]:

@@ -18,8 +18,8 @@ from rockflex.fragility import (
     CloudFits,
     fit_each_cloud,
     fit_outcomes,
-    observed_fractions,
-    recordings_of,
+    observed_exceedance_fractions,
+    recordings_of_runs,
 )
 from rockflex.kinds import KINDS
 from rockflex.motion import MEASURES
@@ -209,7 +209,7 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
         "point_im": im,
         "point_rotation": np.minimum(rotation, 0.5 * math.pi),
         "point_over": over.astype(int),
-        "observed": observed_fractions(im, over, OBSERVED_BINS),
+        "observed": observed_exceedance_fractions(im, over, OBSERVED_BINS),
         "median": None,
         "p": None,
         "low": None,
@@ -220,7 +220,7 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
         try:
             # On springs bases turn without uplift too, so a rotation is not one of rocking runs only.
             fallen = OVERTURNING.exceeded(part).to_numpy(dtype=bool)
-            turned = fit_outcomes(im, rotation, fallen, recordings_of(part)).curve(choice.rotation)
+            turned = fit_outcomes(im, rotation, fallen, recordings_of_runs(part)).curve(choice.rotation)
             found["p"] = turned.probability(grid)
             found["median"] = _median(grid, found["p"])
             found["low"], found["high"] = turned.band(grid, choice.confidence)

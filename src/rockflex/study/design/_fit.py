@@ -23,13 +23,13 @@ from rockflex.fragility import (
     RotationFragility,
     UnanimousOutcome,
     annual_rate,
-    beyond,
-    damping_of,
+    bootstrap_weights,
     fit_logistic,
     fit_outcomes,
-    quadrature,
-    resample_weights,
+    hazard_quadrature,
+    measure_damping_of_runs,
     resampled_exceedance,
+    rotation_limit_state,
 )
 from rockflex.modal import RockingProperties
 from rockflex.motion import scalable_measure
@@ -70,7 +70,7 @@ def state_of(limit: float | str, nominal: float) -> LimitState:
         return LIMIT_STATES[words[0]]
     if len(words) == 3 and words[1] == ">" and RESULTS.get(words[0]) in (float, int):
         return _above(words[0], words[2], limit)
-    return beyond(_rotation(limit, nominal, words))
+    return rotation_limit_state(_rotation(limit, nominal, words))
 
 
 def is_rotation(state: LimitState) -> bool:
@@ -88,7 +88,7 @@ def _above(column: str, given: str, limit: Any) -> LimitState:
             f"limit: the bound of {column} must be zero or a positive number, but {shown(limit)} was given."
         )
     if column == "max_rotation":
-        return beyond(_rotation(bound, math.nan, []))
+        return rotation_limit_state(_rotation(bound, math.nan, []))
 
     def exceeded(runs: Any) -> Any:
         return (runs[column] > bound) | OVERTURNING.exceeded(runs)
@@ -121,7 +121,7 @@ def check_confidence(confidence: float) -> None:
 def check_damping(hazard: HazardCurve | None, runs: "pd.DataFrame", measure: str) -> None:
     """Raise an InputError if a spectral measure of runs, with the column `zeta_1`, is not at the damping of a curve."""
     if hazard is not None:
-        hazard.check_damping(damping_of(runs, measure))
+        hazard.check_damping(measure_damping_of_runs(runs, measure))
 
 
 def first_damping(structure: RockingProperties) -> "pd.DataFrame":
@@ -163,7 +163,7 @@ class ShakingLevel:
         if hazard is None:
             level = checked_positive("at", at, "the unit of the measure")  # pyright: ignore[reportArgumentType]
             return cls(None, np.array([level]), np.ones(1))
-        return cls(hazard, *quadrature(hazard))
+        return cls(hazard, *hazard_quadrature(hazard))
 
 
 class Runs(NamedTuple):
@@ -185,7 +185,7 @@ class Runs(NamedTuple):
         exceeded, fallen = (
             np.asarray(each.exceeded(solved).fillna(False), dtype=bool) for each in (state, OVERTURNING)
         )
-        damping, groups = damping_of(solved, measure), solved["group"].to_numpy()
+        damping, groups = measure_damping_of_runs(solved, measure), solved["group"].to_numpy()
         return cls(solved[measure].to_numpy(float), rotation, fallen, exceeded, groups, state, damping)
 
     def fitted(self, *, banded: bool = False) -> "Fitted":
@@ -217,7 +217,7 @@ class Runs(NamedTuple):
         """The result for each of `n` resamples of the recordings, NaN where there is no fit."""
         import pandas as pd
 
-        weights = resample_weights(pd.factorize(self.groups)[0], n, seed)
+        weights = bootstrap_weights(pd.factorize(self.groups)[0], n, seed)
         outcome, limit = (self.fallen, self.state.threshold) if is_rotation(self.state) else (self.exceeded, OVERTURNED)
         return resampled_exceedance(self.im, self.rotation, outcome, weights, level.nodes, limit) @ level.weights
 

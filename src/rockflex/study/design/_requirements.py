@@ -9,7 +9,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._checks import checked_in_range, checked_positive
 from rockflex._errors import InputError, SolverError
-from rockflex.fragility import HazardCurve, limit_label
+from rockflex.fragility import HazardCurve, limit_state_label
 from rockflex.study.design._fit import Runs, ShakingLevel, check_limit, check_same_for_all
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ class Requirement:
     @property
     def label(self) -> str:
         """The limit in words, with the level."""
-        return limit_label(self.limit) + ("" if self.at is None else f" at {self.measure} = {self.at:g}")
+        return limit_state_label(self.limit) + ("" if self.at is None else f" at {self.measure} = {self.at:g}")
 
     @property
     def asked(self) -> str:
