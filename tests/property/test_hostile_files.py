@@ -217,7 +217,7 @@ def test_locks_of_anything(tmp_path: Path, content: bytes, age: float) -> None:
     begin, patience = time.monotonic(), _lock.MIN_STALE_AGE
     try:
         _lock.MIN_STALE_AGE = 0.05
-        message = refusal(lambda: _lock.Lock.acquire(path).release())
+        message = refusal(lambda: _lock.FolderLock.acquire(path).release())
     finally:
         _lock.MIN_STALE_AGE = patience
     assert time.monotonic() - begin < 2.0

@@ -17,7 +17,7 @@ from builders import make_frame
 from rockflex.cli import _batch, _run_results, app
 from rockflex.cli._console import Styled, grid, number
 from rockflex.response import PEAKS
-from rockflex.study import Case
+from rockflex.study import PreparedCase
 
 EXAMPLES = Path(rf.__file__).parents[2] / "examples"
 STRUCTURE = str(EXAMPLES / "structure_1.toml")
@@ -298,7 +298,7 @@ def test_full_folder_is_refused_before_anything_runs(tmp_path, monkeypatch):
 
 def break_down(monkeypatch, broken):
     """Let no run with these models be solved."""
-    solved = Case.run
+    solved = PreparedCase.run
 
     def run(case, motion, scale=1.0):
         if case.model.label in broken:
@@ -306,7 +306,7 @@ def break_down(monkeypatch, broken):
             raise rf.SolverError(message)
         return solved(case, motion, scale)
 
-    monkeypatch.setattr(Case, "run", run)
+    monkeypatch.setattr(PreparedCase, "run", run)
 
 
 @pytest.mark.parametrize(("more", "code"), [([], 0), (["--strict"], 1)])
@@ -414,7 +414,7 @@ def test_ctrl_c_ends_without_a_trace(tmp_path, monkeypatch):
     def interrupted(*_arguments, **_options):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Case, "run", interrupted)
+    monkeypatch.setattr(PreparedCase, "run", interrupted)
     done = invoke(STRUCTURE, "el-centro-1940", "--out", tmp_path / "out")
     assert done.exit_code == 130
     assert done.stderr == "Stopped; nothing was written.\n"
@@ -494,8 +494,8 @@ def test_a_run_that_fails_has_no_forces(fused, monkeypatch):
             raise rf.SolverError("no way")
         return KEPT(case, motion, scale)
 
-    KEPT = Case.run
-    monkeypatch.setattr(Case, "run", fail)
+    KEPT = PreparedCase.run
+    monkeypatch.setattr(PreparedCase, "run", fail)
     result = invoke(fused, "el-centro-1940", "--model", "2DOF-S,MDOF-S", "--scale", 2)
     rows = [line.split() for line in result.stdout.splitlines()]
     assert ["EL-CENTRO-1940-NS", "2", "2DOF-S", "-", "-"] in rows

@@ -280,7 +280,7 @@ def test_a_lost_cluster_exits_with_one(study, monkeypatch):
         message = "The Dask scheduler at tcp://x was lost"
         raise rf.ClusterError(message)
 
-    monkeypatch.setattr(rockflex.kinds._run, "map_dask", lost)
+    monkeypatch.setattr(rockflex.kinds._run, "map_chunks_on_dask", lost)
     done = invoke("cloud", study("cloud"), "--dask", "tcp://x")
     assert done.exit_code == 1
     assert "Error: The Dask scheduler at tcp://x was lost" in done.stderr

@@ -16,14 +16,14 @@ from rockflex import InputError
 from rockflex.engine import VECTOR_LEVEL
 from rockflex.kinds import KINDS, Findings, _run, kind_named
 from rockflex.structure.file import StructureEntry
-from rockflex.study import ChunkedPlan, Spec
+from rockflex.study import ChunkedPlan, StudySpec
 
 
 @pytest.mark.parametrize("name", KINDS)
 def test_a_record_describes_its_kind(name):
     kind = KINDS[name]
     spec = kind.spec()
-    assert issubclass(spec, Spec)
+    assert issubclass(spec, StudySpec)
     assert (kind.name, spec.model_fields["study"].default) == (name, name)
     assert kind.summary.endswith(".")
 

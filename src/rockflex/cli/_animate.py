@@ -8,7 +8,7 @@ import typer
 from rockflex._errors import InputError
 from rockflex.cli import _options as options
 from rockflex.cli._console import note, warn
-from rockflex.study.progress import bar
+from rockflex.study.progress import progress_bar
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -132,7 +132,7 @@ def animate(
     runs = run_batch(batch)
     responses = [run.response for run in runs if run.response is not None]
     title = None if scale == 1.0 else f"{literal(batch.motions[0].name)} × {scale:g}"
-    with naming(FLAGS), bar("Frames", transient=True) as show:
+    with naming(FLAGS), progress_bar("Frames", transient=True) as show:
         draw(
             responses, target, [response.model for response in responses], structure=loaded.built, speed=speed,
             frames_per_second=frames_per_second, amplification=amplification, start=start, stop=stop,

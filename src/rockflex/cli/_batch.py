@@ -28,7 +28,14 @@ from rockflex.models import parse_model
 from rockflex.motion import GroundMotion, OnError
 from rockflex.response import PEAKS, Response, friction_coefficient, warnings_of
 from rockflex.solve import WorkLimitError
-from rockflex.study import Case, RunOptions, factors_of, free_vibration_time, parse_scales, yielding
+from rockflex.study import (
+    PreparedCase,
+    RunOptions,
+    checked_scale_factors,
+    free_vibration_time,
+    parse_scale_range,
+    yielding_model_labels,
+)
 from rockflex.study.parallel import map_runs
 
 MAX_TIMED_RUNS = 64  # runs; more are not timed one by one
@@ -50,7 +57,7 @@ class Batch:
     friction: float | None = None
     """Coefficient of friction at which sliding is reported, or None."""
 
-    def case(self, model: str) -> Case:
+    def case(self, model: str) -> PreparedCase:
         """Return the case of one model, with its history where that is written or the friction is needed."""
         whole = self.history or self.friction is not None
         return self.options.case(parse_model(model), self.properties, history=whole, floors=whole)
@@ -146,7 +153,7 @@ def run_batch(batch: Batch) -> list[Run]:
     return runs
 
 
-def _run_one(batch: Batch, case: Case, motion: GroundMotion, scale: float, *, timed: bool) -> Run:
+def _run_one(batch: Batch, case: PreparedCase, motion: GroundMotion, scale: float, *, timed: bool) -> Run:
     model = case.model.label
     start = perf_counter()
     try:
@@ -231,7 +238,7 @@ def prepare(context: typer.Context, arguments: RunArguments, *, histories: int) 
         file, loaded.run_options, law, bouc_wen, initial, ground, loaded.properties
     )
     models = choose_models(arguments.model, loaded.properties, options, by_flag=bool(bouc_wen))
-    if options.bouc_wen is not None and not yielding(models):
+    if options.bouc_wen is not None and not yielding_model_labels(models):
         note(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was given")
     names += arguments.motion or []
     with naming(FLAGS):
@@ -242,9 +249,9 @@ def prepare(context: typer.Context, arguments: RunArguments, *, histories: int) 
             found = find_motions(names, arguments.units, arguments.dt, arguments.on_error, arguments.vertical)
         else:
             found, free = quiet_ground(free)
-        given_scales = [factor for text in arguments.scale for factor in parse_scales(text)]
+        given_scales = [factor for text in arguments.scale for factor in parse_scale_range(text)]
         strongest = max((each.motion for each in found), key=lambda it: it.pga)
-        scales = list(dict.fromkeys(factors_of(given_scales, strongest)))
+        scales = list(dict.fromkeys(checked_scale_factors(given_scales, strongest)))
         limit = parse_work_limit(arguments.work_limit)
         batch = Batch(
             properties=loaded.properties,

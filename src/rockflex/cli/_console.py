@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Self
 
 from rockflex._errors import RecordWarning
-from rockflex.study.progress import bar, counter
+from rockflex.study.progress import progress_bar, progress_counter
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -96,8 +96,8 @@ def grid(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1
 @contextmanager
 def progress(title: str, total: int) -> Generator[Callable[[int], None]]:
     """Show a bar on stderr, or lines if it is no terminal; the yielded function advances it by a number of steps."""
-    with bar(title, transient=True) as show:
-        yield counter(lambda done, total: show(done, total, ""), total)
+    with progress_bar(title, transient=True) as show:
+        yield progress_counter(lambda done, total: show(done, total, ""), total)
 
 
 @contextmanager

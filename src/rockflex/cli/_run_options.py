@@ -14,8 +14,15 @@ from rockflex.cli._options import flags_of, naming
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, Restitution, parse_model
 from rockflex.structure.file import parse_toml_table
-from rockflex.study import WORK_LIMIT, InitialState, RunOptions, ground_under, work_limit_of, yielding
-from rockflex.study.spec import GroundTable, RunOptionKeys, name_of
+from rockflex.study import (
+    WORK_LIMIT,
+    InitialState,
+    RunOptions,
+    checked_work_limit,
+    ground_under_structure,
+    yielding_model_labels,
+)
+from rockflex.study.spec import GroundTable, RunOptionKeys, impact_law_name
 
 _INERTIA = {"base_inertia", "mat_mass"}
 _FIELDS = {f"ground.{name}": (name, flag) for name, flag in flags_of(GroundKeys).items()} | {
@@ -104,7 +111,7 @@ def describe_options(options: RunOptions, ground: dict[str, Any]) -> dict[str, A
     described: dict[str, Any] = {}
     if options.impact is not None:
         values = asdict(options.impact) if isinstance(options.impact, Restitution) else {}
-        described["impact"] = {"law": name_of(options.impact), **values}
+        described["impact"] = {"law": impact_law_name(options.impact), **values}
     if options.bouc_wen is not None:
         described["bouc_wen"] = asdict(options.bouc_wen)
     if options.initial is not None:
@@ -117,7 +124,7 @@ def option_lines(options: RunOptions, properties: RockingProperties) -> list[str
     lines: list[str] = []
     if options.impact is not None:
         e = f", e = {options.impact.e:g}" if isinstance(options.impact, Restitution) else ""
-        lines.append(f"Impact: {name_of(options.impact)}{e}")
+        lines.append(f"Impact: {impact_law_name(options.impact)}{e}")
     if options.bouc_wen is not None:
         b = options.bouc_wen
         lines.append(
@@ -126,7 +133,7 @@ def option_lines(options: RunOptions, properties: RockingProperties) -> list[str
         )
     if options.initial is not None:
         lines.append(f"At rest at θ = {options.initial.rotation:g} rad at t = 0")
-    ground = ground_under(properties, options.ground)
+    ground = ground_under_structure(properties, options.ground)
     return lines if ground is None else [*lines, *ground_lines(ground, properties)]
 
 
@@ -185,7 +192,7 @@ def choose_models(
     if given is None:
         usual = USUAL if properties.n_modes else RIGID
         labels: list[str] = [*(usual if options.bouc_wen is None else YIELDING)]
-        ground = ground_under(properties, options.ground)
+        ground = ground_under_structure(properties, options.ground)
         if ground is not None and not ground.rigid:
             labels = [label for label in labels if (each := parse_model(label)).lifts and not each.complete]
             labels = [label for label in labels if not parse_model(label).yields]
@@ -195,7 +202,7 @@ def choose_models(
         labels = list(dict.fromkeys(label.strip() for item in given for label in item.split(",") if label.strip()))
     if not labels:
         raise InputError("No model was given. Expected labels such as 2DOF-S,MDOF-S,fixed.")
-    models, yields = list(map(parse_model, labels)), yielding(labels)
+    models, yields = list(map(parse_model, labels)), yielding_model_labels(labels)
     if yields and options.bouc_wen is None:
         raise InputError(
             f"{yields[0]} needs its hysteresis. Give --yield-displacement, or [bouc_wen] in the structure file."
@@ -229,7 +236,7 @@ def parse_work_limit(given: str | None) -> float | None:
         If the text is neither a positive number nor "none".
     """
     with naming({"work_limit": "--work-limit"}):
-        return WORK_LIMIT if given is None else work_limit_of(number_or_word(given))
+        return WORK_LIMIT if given is None else checked_work_limit(number_or_word(given))
 
 
 def _bouc_wen(file: Path | None, in_file: dict[str, float], flags: dict[str, float]) -> BoucWen | None:

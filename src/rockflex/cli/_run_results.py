@@ -20,7 +20,7 @@ from rockflex.modal import Ground
 from rockflex.motion import MEASURES, GroundMotion
 from rockflex.report.run import MAX_RUNS, checked_path, write_report
 from rockflex.response import IMPACT_WINDOW, Response, history_columns
-from rockflex.study import ground_under
+from rockflex.study import ground_under_structure
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -58,7 +58,7 @@ def print_runs(title: str, batch: Batch, runs: Sequence[Run], elapsed: float, *,
     peaks, ground, base = (
         _peaks(runs),
         _reactions(runs),
-        _base_motion(ground_under(batch.properties, batch.options.ground), runs),
+        _base_motion(ground_under_structure(batch.properties, batch.options.ground), runs),
     )
     tables, elements = [(peaks + ground + base, 1)], batch.properties.elements
     if not fits(console, _flat(batch, runs, *tables[0])):

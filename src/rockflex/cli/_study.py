@@ -14,12 +14,12 @@ from rockflex.cli import _options as options
 from rockflex.cli._console import complain, grid, note, number, output, show
 from rockflex.cli._output import check_folder, staged, to_json, versions
 from rockflex.kinds import KINDS, Findings, StudyKind, kind_named
-from rockflex.study.progress import bar, duration, row_rate
+from rockflex.study.progress import duration_text, progress_bar, row_rate_text
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rockflex.study import Spec
+    from rockflex.study import StudySpec
     from rockflex.study.progress import Progress
 
 
@@ -110,7 +110,7 @@ def command_of(kind: StudyKind) -> Callable[..., None]:
     return command
 
 
-def _load(kind: StudyKind, file: Path, work_limit: str | None) -> "Spec":
+def _load(kind: StudyKind, file: Path, work_limit: str | None) -> "StudySpec":
     from rockflex.kinds import KINDS, load_study
 
     study = load_study(file)
@@ -124,7 +124,7 @@ def _load(kind: StudyKind, file: Path, work_limit: str | None) -> "Spec":
     return study.model_copy(update={"work_limit": parse_work_limit(work_limit) or "none"})
 
 
-def _announce(study: "Spec", file: Path, workers: int | None, *, json: bool) -> None:
+def _announce(study: "StudySpec", file: Path, workers: int | None, *, json: bool) -> None:
     """Print how many runs a study has and about how long it takes."""
     from rockflex.kinds import estimate_time
 
@@ -145,12 +145,12 @@ def _announce(study: "Spec", file: Path, workers: int | None, *, json: bool) -> 
     typer.echo(
         f"{file}: {at_most}{number_with_noun(plan.n_runs, 'run')} in {number_with_noun(plan.n_chunks, 'part')}, "
         f"{number_with_noun(len(plan.motions), 'record')}; "
-        f"about {at_most}{duration(seconds)} here"
+        f"about {at_most}{duration_text(seconds)} here"
     )
 
 
 def _store_share(
-    study: "Spec", file: Path, out: Path, share: str, dask: str | None, workers: int | None, *, any_version: bool
+    study: "StudySpec", file: Path, out: Path, share: str, dask: str | None, workers: int | None, *, any_version: bool
 ) -> None:
     """Store one share of a study."""
     from rockflex.kinds import fill_study
@@ -176,7 +176,7 @@ def _store_share(
 
 
 def _watched(
-    study: "Spec", file: Path, out: Path | None, work: "Callable[[Callable[[Progress], None]], Result]"
+    study: "StudySpec", file: Path, out: Path | None, work: "Callable[[Callable[[Progress], None]], Result]"
 ) -> tuple[Result, float]:
     """Return the result of `work` and the time that it took in s; a terminal shows a progress bar."""
     from time import perf_counter
@@ -186,13 +186,13 @@ def _watched(
     last: list[Progress] = []
     start = perf_counter()
     try:
-        with bar(study.name or file.stem, transient=True) as show:
+        with progress_bar(study.name or file.stem, transient=True) as show:
 
             def progress(now: "Progress") -> None:
                 if not last and now.kept:
                     note(f"{now.kept} of {now.parts} parts are already in {out}")
                 last[:] = [now]
-                show(now.done, now.parts, row_rate(now, perf_counter() - start))
+                show(now.done, now.parts, row_rate_text(now, perf_counter() - start))
 
             result = work(progress)
     except KeyboardInterrupt as stop:
@@ -208,9 +208,11 @@ def _watched(
 Tables = dict[str, list[dict[str, Any]]]
 
 
-def summarise(kind: StudyKind, study: "Spec", table: "pd.DataFrame", seconds: float, *, json: bool) -> tuple[int, int]:
+def summarise(
+    kind: StudyKind, study: "StudySpec", table: "pd.DataFrame", seconds: float, *, json: bool
+) -> tuple[int, int]:
     """Print the summary of a study; return the number of failed runs and of failed fits."""
-    from rockflex.study import pivot_lifts
+    from rockflex.study import count_pivot_lifts
 
     found = Findings()
     try:
@@ -221,7 +223,7 @@ def summarise(kind: StudyKind, study: "Spec", table: "pd.DataFrame", seconds: fl
         title: [{str(key): _plain_value(value) for key, value in row.items()} for row in rows]
         for title, rows in found.tables.items()
     }
-    lifts = pivot_lifts(kind.runs(table))
+    lifts = count_pivot_lifts(kind.runs(table))
     failed = int(table["error"].notna().sum())
     if json:
         document = {"versions": versions(), "study": study.document(), "rows": len(table), "failed": failed}
@@ -231,7 +233,7 @@ def summarise(kind: StudyKind, study: "Spec", table: "pd.DataFrame", seconds: fl
         _print_tables(tables)
         for text in (text for each in lifts for text in each.warnings):
             typer.echo(f"\n{text}")
-        typer.echo(f"\n{number_with_noun(len(table), 'row')} in {duration(seconds)}")
+        typer.echo(f"\n{number_with_noun(len(table), 'row')} in {duration_text(seconds)}")
     for remark in found.remarks:
         note(remark)
     for reason in dict.fromkeys(found.unfitted):

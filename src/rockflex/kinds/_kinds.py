@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from rockflex.fragility import CloudFit
-    from rockflex.study import Spec
+    from rockflex.study import StudySpec
 
 
 Row: TypeAlias = dict[str, Any]
@@ -78,7 +78,7 @@ class StudyKind:
     measured: bool = False
     runs: Callable[[Runs], Runs] = _as_they_are
 
-    def spec(self) -> "type[Spec]":
+    def spec(self) -> "type[StudySpec]":
         """Return the class of such a study."""
         package, _, name = self.described_by.rpartition(".")
         return getattr(import_module(package), name)
@@ -312,7 +312,7 @@ MONTE_CARLO = StudyKind(
 
 def _report_design(study: Any, runs: Runs, found: Findings) -> None:
     from rockflex.fragility import limit_state_label
-    from rockflex.study.design import design_tables, smallest_width, stored_limits
+    from rockflex.study.design import design_tables_by_limit, smallest_width, stored_design_limits
 
     if study.search is not None:
         _report_search(study, runs, found)
@@ -321,10 +321,10 @@ def _report_design(study: Any, runs: Runs, found: Findings) -> None:
     at = ", ".join(f"{level:g}" for level in dict.fromkeys(levels) if level is not None)
     asked = "annual rate" if study.hazard else f"P at {study.measure} = {at}"
     value = "rate" if study.hazard else "probability"
-    targets = [target for _, _, target, _ in stored_limits(study.document())]
+    targets = [target for _, _, target, _ in stored_design_limits(study.document())]
     designs: dict[tuple[str, str, float], dict[str, Any]] = {}
     widths: list[dict[str, Any]] = []
-    for target, (limit, table) in zip(targets, design_tables(runs, study.document()), strict=True):
+    for target, (limit, table) in zip(targets, design_tables_by_limit(runs, study.document()), strict=True):
         word = limit_state_label(limit)
         for reason, lost in table[table[value].isna()].groupby("note"):
             found.unfitted.append(f"{word}: no {value} of {len(lost)} of {len(table)} designs. {reason}")
@@ -357,9 +357,9 @@ def _report_design(study: Any, runs: Runs, found: Findings) -> None:
 
 
 def _report_search(study: Any, runs: Runs, found: Findings) -> None:
-    from rockflex.study.design import best_design, stored_search
+    from rockflex.study.design import best_design, stored_design_search
 
-    requirements, cost = stored_search(study.document())
+    requirements, cost = stored_design_search(study.document())
     best = best_design(runs, requirements, cost)
     found.remarks += best.notes
     found.tables["Designs of the search, in the order in which they were run"] = [
@@ -412,16 +412,16 @@ def _row(row: Mapping[Any, Any], labels: list[str]) -> dict[str, Any]:
 def _figures_design(spec: Document, runs: Runs, _: str, __: Remark) -> Figures:
     from rockflex import plot
     from rockflex.fragility import limit_state_label
-    from rockflex.study.design import best_design, design_tables, stored_limits, stored_search
+    from rockflex.study.design import best_design, design_tables_by_limit, stored_design_limits, stored_design_search
 
     if "search" in spec:
-        best = best_design(runs, *stored_search(spec))
+        best = best_design(runs, *stored_design_search(spec))
         themes: dict[str, Literal["light", "dark"]] = {"design_search": "light", "design_search_dark": "dark"}
         for name, theme in themes.items():
             yield name, lambda theme=theme: plot.plot_design_search(best, theme=theme)
         return
-    targets = [target for _, _, target, _ in stored_limits(spec)]
-    for target, (limit, table) in zip(targets, design_tables(runs, spec), strict=True):
+    targets = [target for _, _, target, _ in stored_design_limits(spec)]
+    for target, (limit, table) in zip(targets, design_tables_by_limit(runs, spec), strict=True):
         stem = f"design_{'_'.join(limit_state_label(limit).split())}"
         yield stem, lambda table=table, target=target: plot.plot_design(table, target)
 

@@ -15,16 +15,16 @@ from rockflex._versions import git_commit, package_versions
 from rockflex.engine import VECTOR_LEVEL
 from rockflex.kinds._kinds import kind_named
 from rockflex.structure.file import read_toml_file
-from rockflex.study import ChunkedPlan, Spec, map_chunks, to_frame
-from rockflex.study.folders import LEVEL, Part, PartMaker, StudyFolder
-from rockflex.study.parallel import Chunks, core_count, map_dask
-from rockflex.study.progress import PartProgress, Progress, check_part_progress, reporting_parts
+from rockflex.study import ChunkedPlan, StudySpec, map_chunks, tables_to_dataframe
+from rockflex.study.folders import LEVEL, PartMaker, StudyFolder, StudyPart
+from rockflex.study.parallel import NumberedChunks, core_count, map_chunks_on_dask
+from rockflex.study.progress import PartProgress, Progress, check_part_progress, reporting_part_progress
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-def load_study(path: str | Path) -> Spec:
+def load_study(path: str | Path) -> StudySpec:
     """Read a study from a TOML file.
 
     Its key `study` is "cloud", "incremental", "stripes", "population", "monte_carlo" or "design"; the other keys are
@@ -79,7 +79,7 @@ MAX_SAMPLE_TIME = 2.0  # s after which an estimate stops
 
 
 def run_study(
-    study: "Spec | str | Path",
+    study: "StudySpec | str | Path",
     folder: str | Path | None = None,
     *,
     workers: SupportsIndex | None = None,
@@ -130,7 +130,7 @@ def run_study(
     """
     if folder is not None:
         filled = fill_study(study, folder, workers=workers, dask=dask, any_version=any_version, progress=progress)
-        return to_frame(filled.table())
+        return tables_to_dataframe(filled.table())
     plan, tables = _plan_of(_loaded(study), workers, dask, progress), dict[int, Any]()
 
     def keep(number: int, table: Any) -> int:
@@ -138,14 +138,14 @@ def run_study(
         return table.num_rows
 
     def so_far() -> "pd.DataFrame":
-        return to_frame(*(tables[number] for number in sorted(tables)))
+        return tables_to_dataframe(*(tables[number] for number in sorted(tables)))
 
     _compute(plan, range(plan.n_chunks), lambda each: each, keep, so_far, workers, dask, progress)
     return so_far()
 
 
 def fill_study(
-    study: "Spec | str | Path",
+    study: "StudySpec | str | Path",
     folder: str | Path,
     *,
     share: tuple[SupportsIndex, SupportsIndex] = (1, 1),
@@ -194,12 +194,12 @@ def fill_study(
         folder, spec.document(), plan.n_chunks, _versions(spec), checksums, any_version=any_version
     ) as target:
 
-        def keep(_: int, part: Part) -> int:
+        def keep(_: int, part: StudyPart) -> int:
             target.add(part)
             return part.rows
 
         def so_far() -> "pd.DataFrame":
-            return to_frame(target.table(partial=True))
+            return tables_to_dataframe(target.table(partial=True))
 
         def stored(plan: "ChunkedPlan") -> _PartPlan:
             return _PartPlan(plan, target.maker)
@@ -216,11 +216,11 @@ class _PartPlan:
     plan: "ChunkedPlan"
     maker: PartMaker
 
-    def chunk(self, number: int) -> Part:
+    def chunk(self, number: int) -> StudyPart:
         return self.maker.make(number, self.plan.chunk(number))
 
 
-def _versions(spec: "Spec") -> dict[str, str]:
+def _versions(spec: "StudySpec") -> dict[str, str]:
     """Return versions of libraries, the level of vector instructions, and commits of rockflex and the study's file."""
     commits = {
         "rockflex commit": git_commit(Path(__file__), known=True),
@@ -230,11 +230,13 @@ def _versions(spec: "Spec") -> dict[str, str]:
     return found | {name: commit for name, commit in commits.items() if commit is not None}
 
 
-def _loaded(study: "Spec | str | Path") -> "Spec":
+def _loaded(study: "StudySpec | str | Path") -> "StudySpec":
     return load_study(study) if isinstance(study, str | Path) else study
 
 
-def _plan_of(spec: "Spec", workers: SupportsIndex | None, dask: str | None, progress: PartProgress) -> "ChunkedPlan":
+def _plan_of(
+    spec: "StudySpec", workers: SupportsIndex | None, dask: str | None, progress: PartProgress
+) -> "ChunkedPlan":
     check_part_progress(progress)
     if workers is not None and dask is not None:
         raise InputError(
@@ -261,7 +263,7 @@ def _share_of(plan: "ChunkedPlan", share: tuple[SupportsIndex, SupportsIndex]) -
 def _compute(
     plan: "ChunkedPlan",
     numbers: Sequence[int],
-    sent: "Callable[[ChunkedPlan], Chunks[Result]]",
+    sent: "Callable[[ChunkedPlan], NumberedChunks[Result]]",
     keep: Callable[[int, Result], int],
     so_far: "Callable[[], pd.DataFrame]",
     workers: SupportsIndex | None,
@@ -273,7 +275,7 @@ def _compute(
     total = plan.n_chunks if parts is None else parts
     done = kept = total - len(numbers)
     runs = 0
-    with reporting_parts(progress) as tell:
+    with reporting_part_progress(progress) as tell:
         tell(Progress(total, done, kept, runs))
         for place, each in enumerate(plan.rounds):
             missing = [number for number in numbers if number in each]
@@ -283,7 +285,9 @@ def _compute(
                 plan = plan.next_round(so_far())
             work = sent(plan)
             # Closed at once if a part cannot be stored, or a cluster would hold the plan until this process ends.
-            coming = map_chunks(work.chunk, missing, workers) if dask is None else map_dask(work, missing, dask)
+            coming = (
+                map_chunks(work.chunk, missing, workers) if dask is None else map_chunks_on_dask(work, missing, dask)
+            )
             with closing(coming):
                 for number, result in coming:
                     runs += keep(number, result)
@@ -291,7 +295,7 @@ def _compute(
                     tell(Progress(total, done, kept, runs))
 
 
-def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:
+def estimate_time(study: "StudySpec", workers: SupportsIndex | None = None) -> float:
     """Estimate from a sample of its runs how long a study takes on this machine.
 
     Parameters

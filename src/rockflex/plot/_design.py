@@ -33,7 +33,7 @@ from rockflex.plot._style import (
     recoloured,
     styled,
 )
-from rockflex.study.design import BestDesign, Interpolated, margins_of, trade_off
+from rockflex.study.design import BestDesign, InterpolatedMargins, requirement_margins, trade_off
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -311,7 +311,7 @@ def plot_design_search(
     checked_instance("found", found, BestDesign)
     if not is_one_of(theme, THEMES):
         raise InputError(f'theme must be "light" or "dark", but {shown(theme)} was given.')
-    between = Interpolated.of(found)
+    between = InterpolatedMargins.of(found)
     varied = [*between.given]
     labels = [each.label for each in found.requirements]
     if len(labels) > len(_SEARCH_STYLES):
@@ -377,7 +377,7 @@ def _draw_costs(axes: Axes, found: BestDesign, variable: str, styles: dict[str, 
 
 
 def _draw_plane(
-    axes: Axes, found: BestDesign, between: Interpolated, names: tuple[str, str], styles: dict[str, LineStyle]
+    axes: Axes, found: BestDesign, between: InterpolatedMargins, names: tuple[str, str], styles: dict[str, LineStyle]
 ) -> None:
     """Draw the limits over two variables; the others have their values in the best design, or in the nearest to it."""
     designs = found.designs
@@ -417,7 +417,7 @@ def _draw_plane(
 
 def _nearest(found: BestDesign) -> int:
     labels = [each.label for each in found.requirements]
-    margins = margins_of(found.designs[labels].to_numpy(float), found.requirements)
+    margins = requirement_margins(found.designs[labels].to_numpy(float), found.requirements)
     return int(np.nan_to_num(margins, nan=np.inf).max(axis=1).argmin())
 
 

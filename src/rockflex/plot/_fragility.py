@@ -282,7 +282,7 @@ def plot_stripes(
     """
     needed = ("structure", "model", "level", "status", "max_rotation", "nominal_overturning")
     check_columns(runs, needed, "the table of a stripe study")
-    from rockflex.study.stripes import stripe_counts, stripe_limit
+    from rockflex.study.stripes import stripe_counts, stripe_limit_state
 
     counts = stripe_counts(runs, limit)
     if not len(counts):
@@ -291,7 +291,7 @@ def plot_stripes(
     names = names_in(runs["structure"])
     end = 1.1 * float(counts["level"].max())
     with styled(size=size):
-        event = stripe_limit(limit).symbol
+        event = stripe_limit_state(limit).symbol
         y = f"$P({event})$" if ">" in event else f"P({event})"
         figure, panels = structure_panels(names, 3, 2.1, measure_name(measure), y)
         for axes, name in zip(panels, names, strict=True):
@@ -347,10 +347,10 @@ def _draw_stripes(
 
 
 def _fit_of_stripes(runs: "pd.DataFrame", limit: "StripeLimit") -> LognormalFragility | None:
-    from rockflex.study.stripes import stripe_limit
+    from rockflex.study.stripes import stripe_limit_state
 
     solved = runs[runs["status"].notna()]
-    exceeded = stripe_limit(limit).exceeded(solved).astype(bool)
+    exceeded = stripe_limit_state(limit).exceeded(solved).astype(bool)
     try:
         return fit_stripes(solved["level"], exceeded, np.ones(len(solved)), recordings_of_runs(solved))
     except (InputError, SolverError):

@@ -40,7 +40,7 @@ from rockflex.plot._style import (
     notes_beside,
     styled,
 )
-from rockflex.study import RockingStructure, properties_of
+from rockflex.study import RockingStructure, rocking_properties_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -239,7 +239,7 @@ def _models_of(
     structure: "RockingStructure | RockingProperties", n_modes: Sequence[SupportsIndex | None], side: int | None
 ) -> dict[str, tuple[RockingProperties, UpliftedModes]]:
     """Truncated properties and uplifted modes by the models' labels."""
-    full = properties_of(structure)
+    full = rocking_properties_of(structure)
     if full.n_modes == 0:
         raise InputError("A structure without modes has no frequency equation to plot. Give one with modes.")
     found: dict[str, tuple[RockingProperties, UpliftedModes]] = {}

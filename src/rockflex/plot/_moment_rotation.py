@@ -29,7 +29,7 @@ from rockflex.plot._style import (
     styled,
 )
 from rockflex.response import Response, base_path, push_on_springs, resistance_on_springs
-from rockflex.study import RockingStructure, properties_of
+from rockflex.study import RockingStructure, rocking_properties_of
 
 _LIMIT = 1.1
 _PER_ROW = 3
@@ -212,7 +212,7 @@ def plot_moment_rotation_laws(
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('θ [rad]', 'M [MN m]')
     """
-    p = properties_of(structure)
+    p = rocking_properties_of(structure)
     sides = (p.pivot(1), p.pivot(-1))
     zeros = [side.balance_rotation for side in sides]
     vanishing = [zero for zero in zeros if math.isfinite(zero)]

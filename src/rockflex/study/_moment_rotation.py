@@ -12,7 +12,13 @@ from rockflex._errors import InputError
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import Model, SpringModel
 from rockflex.response import MomentRotation, MomentRotationOnSprings, base_path, springs_path
-from rockflex.study._arguments import GroundChoice, RockingStructure, check_options, ground_under, properties_of
+from rockflex.study._arguments import (
+    GroundChoice,
+    RockingStructure,
+    check_run_options,
+    ground_under_structure,
+    rocking_properties_of,
+)
 
 QUARTER_TURN = 0.5 * math.pi
 
@@ -112,13 +118,17 @@ def moment_rotation(
             f"rotations[{beyond[0]}] = {path[beyond[0]]:g} rad was given. Check the units: one degree is 0.01745 rad.",
             field="rotations",
         )
-    properties = properties_of(structure)
-    check_options(None, None, ground)
-    under = ground_under(properties, ground)
-    return base_path(properties, path) if under is None else springs_path(_on_springs(properties, under), path)
+    properties = rocking_properties_of(structure)
+    check_run_options(None, None, ground)
+    under = ground_under_structure(properties, ground)
+    return (
+        base_path(properties, path)
+        if under is None
+        else springs_path(_pushover_model_on_springs(properties, under), path)
+    )
 
 
-def _on_springs(properties: RockingProperties, ground: Ground) -> SpringModel:
+def _pushover_model_on_springs(properties: RockingProperties, ground: Ground) -> SpringModel:
     """Return the model of the base on the springs of the ground; nothing slides without a horizontal force."""
     if ground.springs is None:
         raise InputError(

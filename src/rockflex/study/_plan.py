@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, ClassVar, SupportsIndex, TypeVar
 
 from rockflex._checks import checked_whole_number
 from rockflex.motion import Suite, check_horizontal_component
-from rockflex.study._run_matrix import StudyMatrix, checksums
-from rockflex.study._tables import ArrowTable, Columns, Row, tabulate, to_frame
+from rockflex.study._run_matrix import StudyMatrix, record_checksums
+from rockflex.study._tables import ArrowTable, Columns, Row, table_of_rows, tables_to_dataframe
 from rockflex.study.parallel import map_runs
-from rockflex.study.progress import ProgressChoice, reporting
+from rockflex.study.progress import ProgressChoice, reporting_progress
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -88,7 +88,7 @@ class ChunkedPlan(ABC):
     @property
     def checksums(self) -> dict[str, str]:
         """SHA-256 of each record's step and samples, by its name."""
-        return checksums(self.motions)
+        return record_checksums(self.motions)
 
     def chunk(self, number: SupportsIndex) -> ArrowTable:
         """Compute a chunk. The table is the same to the last bit, whenever and wherever it is computed.
@@ -99,7 +99,7 @@ class ChunkedPlan(ABC):
             If there is no such chunk. A run that cannot be solved is a row with a message in `error`.
         """
         units = self.units_of(checked_whole_number("number", number, 0, self.n_chunks - 1))
-        return tabulate(self.rows(units), self.columns)
+        return table_of_rows(self.rows(units), self.columns)
 
 
 def run_plan(
@@ -122,18 +122,18 @@ def run_plan(
         The rows of all chunks; see the study for its columns.
     """
     tables: list[ArrowTable] = []
-    with reporting(progress, plan.n_units, plan.units) as advance:
+    with reporting_progress(progress, plan.n_units, plan.units) as advance:
         plan.check_work()
         for numbers in plan.rounds:
             if tables:
-                plan = plan.next_round(to_frame(*tables))
+                plan = plan.next_round(tables_to_dataframe(*tables))
             found = dict[int, ArrowTable]()
             with closing(map_chunks(plan.chunk, numbers, workers)) as coming:
                 for number, table in coming:
                     found[number] = table
                     advance(len(plan.units_of(number)))
             tables += [found[number] for number in numbers]
-    return to_frame(*tables)
+    return tables_to_dataframe(*tables)
 
 
 def map_chunks(

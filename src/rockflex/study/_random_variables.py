@@ -42,7 +42,7 @@ def is_formula(given: object) -> bool:
     return isinstance(given, str) and given.startswith("=")
 
 
-def names_of(formula: str) -> set[str]:
+def names_in_formula(formula: str) -> set[str]:
     """Return the names that a formula needs.
 
     Raises
@@ -50,12 +50,14 @@ def names_of(formula: str) -> set[str]:
     InputError
         If it is not a formula.
     """
-    called = {id(node.func) for node in ast.walk(_parsed(formula)) if isinstance(node, ast.Call)}
-    found = (node for node in ast.walk(_parsed(formula)) if isinstance(node, ast.Name) and id(node) not in called)
+    called = {id(node.func) for node in ast.walk(_parsed_formula(formula)) if isinstance(node, ast.Call)}
+    found = (
+        node for node in ast.walk(_parsed_formula(formula)) if isinstance(node, ast.Name) and id(node) not in called
+    )
     return {node.id for node in found}
 
 
-def value_of(formula: str, values: Mapping[str, float]) -> float:
+def formula_value(formula: str, values: Mapping[str, float]) -> float:
     """Return the value of a formula, whose names are all in `values`; whole numbers stay whole.
 
     Raises
@@ -64,23 +66,23 @@ def value_of(formula: str, values: Mapping[str, float]) -> float:
         If it is not a formula, or has no value: a division by zero, for instance.
     """
     try:
-        value = _value(_parsed(formula), values)
+        value = _formula_node_value(_parsed_formula(formula), values)
         if isinstance(value, complex):
             raise ValueError("a power of a negative number")
     except (ArithmeticError, ValueError, TypeError) as error:
-        used = ", ".join(f"{name} = {values[name]:g}" for name in sorted(names_of(formula)))
+        used = ", ".join(f"{name} = {values[name]:g}" for name in sorted(names_in_formula(formula)))
         raise InputError(f"The formula {shown(formula)} has no value{used and f' for {used}'}: {error}.") from error
     return value
 
 
 @lru_cache(maxsize=1024)
-def _parsed(formula: str) -> ast.expr:
+def _parsed_formula(formula: str) -> ast.expr:
     text = formula.removeprefix("=").strip()
     try:
         if len(text) > MAX_CHARACTERS:
             raise SyntaxError
         found = ast.parse(text, mode="eval").body
-        if not _is_sound(found):
+        if not _is_allowed_formula_node(found):
             raise SyntaxError
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise InputError(
@@ -90,28 +92,32 @@ def _parsed(formula: str) -> ast.expr:
     return found
 
 
-def _is_sound(node: ast.expr) -> bool:
+def _is_allowed_formula_node(node: ast.expr) -> bool:
     if isinstance(node, ast.Constant):
         return isinstance(node.value, int | float) and not isinstance(node.value, bool)
     if isinstance(node, ast.UnaryOp):
-        return type(node.op) in _SIGNS and _is_sound(node.operand)
+        return type(node.op) in _SIGNS and _is_allowed_formula_node(node.operand)
     if isinstance(node, ast.BinOp):
-        return type(node.op) in _OPERATORS and _is_sound(node.left) and _is_sound(node.right)
+        return (
+            type(node.op) in _OPERATORS and _is_allowed_formula_node(node.left) and _is_allowed_formula_node(node.right)
+        )
     if isinstance(node, ast.Call):
         known = isinstance(node.func, ast.Name) and node.func.id in FUNCTIONS
-        return known and not node.keywords and bool(node.args) and all(map(_is_sound, node.args))
+        return known and not node.keywords and bool(node.args) and all(map(_is_allowed_formula_node, node.args))
     return isinstance(node, ast.Name)
 
 
-def _value(node: ast.expr, values: Mapping[str, float]) -> Any:
+def _formula_node_value(node: ast.expr, values: Mapping[str, float]) -> Any:
     if isinstance(node, ast.Constant):
         return node.value
     if isinstance(node, ast.UnaryOp):
-        return _SIGNS[type(node.op)](_value(node.operand, values))
+        return _SIGNS[type(node.op)](_formula_node_value(node.operand, values))
     if isinstance(node, ast.BinOp):
-        return _OPERATORS[type(node.op)](_value(node.left, values), _value(node.right, values))
+        return _OPERATORS[type(node.op)](
+            _formula_node_value(node.left, values), _formula_node_value(node.right, values)
+        )
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
-        return FUNCTIONS[node.func.id](*(_value(each, values) for each in node.args))
+        return FUNCTIONS[node.func.id](*(_formula_node_value(each, values) for each in node.args))
     return values[node.id if isinstance(node, ast.Name) else ""]
 
 
@@ -181,7 +187,7 @@ class DistributionTable(TomlTable):
         return median * math.exp(spread * normal)
 
 
-class Variables:
+class RandomVariables:
     """Random variables by name: distributions, formulas of other variables, and numbers.
 
     The draw of a variable depends only on the seed, the number of the structure, and its own name. So another variable,
@@ -194,10 +200,10 @@ class Variables:
     """
 
     def __init__(self, given: Mapping[str, Any], reserved: Mapping[str, str]) -> None:
-        self.kinds = {name: _variable(name, value, reserved) for name, value in given.items()}
-        graph = {name: names_of(kind) for name, kind in self.kinds.items() if isinstance(kind, str)}
+        self.kinds = {name: _checked_random_variable(name, value, reserved) for name, value in given.items()}
+        graph = {name: names_in_formula(kind) for name, kind in self.kinds.items() if isinstance(kind, str)}
         for name, needed in graph.items():
-            check_known(f"[variables] {name}", needed, self.kinds)
+            check_formula_names_known(f"[variables] {name}", needed, self.kinds)
         try:
             order = [*TopologicalSorter(graph).static_order()]
         except CycleError as error:
@@ -216,28 +222,28 @@ class Variables:
         found: dict[str, float] = {}
         for name, kind in self.kinds.items():
             if isinstance(kind, DistributionTable):
-                found[name] = kind.value(float(draws(seed, number, name)[0]))
+                found[name] = kind.value(float(uniform_draws(seed, number, name)[0]))
             elif not isinstance(kind, str):
                 found[name] = kind
         for name in self._formulas:
-            found[name] = value_of(str(self.kinds[name]), found)
+            found[name] = formula_value(str(self.kinds[name]), found)
         return {name: found[name] for name in self.kinds}
 
 
-def draws(seed: int, number: int, name: str, size: int = 1) -> Array:
+def uniform_draws(seed: int, number: int, name: str, size: int = 1) -> Array:
     """Return uniform draws between 0 and 1 that belong to a seed, a number and a name, shape (size,)."""
     words = np.frombuffer(hashlib.sha256(name.encode()).digest()[:16], "<u4").tolist()
     bits = np.random.Philox(np.random.SeedSequence(seed, spawn_key=(number, *words)))
     return (np.random.Generator(bits).integers(2**_BITS, size=size) + 0.5) / 2**_BITS
 
 
-def check_known(place: str, needed: set[str], known: Mapping[str, object]) -> None:
+def check_formula_names_known(place: str, needed: set[str], known: Mapping[str, object]) -> None:
     """Raise an InputError if a formula needs a name that is not known."""
     for name in sorted(needed - known.keys()):
         raise InputError(f"{place}: {name} is not known; there are {', '.join(known) or 'no variables'}.")
 
 
-def _variable(name: str, given: Any, reserved: Mapping[str, str]) -> DistributionTable | str | float:
+def _checked_random_variable(name: str, given: Any, reserved: Mapping[str, str]) -> DistributionTable | str | float:
     if not name.isidentifier():
         raise InputError(
             f"[variables] {shown(name)} is not a name. Expected letters, digits and _, such as fuse_ratio."
@@ -246,7 +252,7 @@ def _variable(name: str, given: Any, reserved: Mapping[str, str]) -> Distributio
         what = reserved.get(name, "a function")
         raise InputError(f"[variables] {name} is already {what}. Give the variable another name.")
     if is_formula(given):
-        names_of(given)
+        names_in_formula(given)
         return given
     if isinstance(given, int | float) and not isinstance(given, bool):
         return given

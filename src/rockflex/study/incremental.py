@@ -16,16 +16,16 @@ from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import scalable_measure
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, Structures
 from rockflex.study._plan import CrossPlan, run_plan
-from rockflex.study._run_matrix import StudyMatrix, check_lifts, study_matrix
+from rockflex.study._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
 from rockflex.study._tables import Columns, Row
 from rockflex.study.progress import ProgressChoice
-from rockflex.study.spec import FreeVibration, StructuresSpec
+from rockflex.study.spec import FreeVibration, StructuresStudySpec
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-class Steps(NamedTuple):
+class ScaleSteps(NamedTuple):
     """The first and the last scale, each over the one before, and the width to which bisection narrows a boundary."""
 
     smallest: float
@@ -34,24 +34,24 @@ class Steps(NamedTuple):
     tolerance: float
 
 
-def grid_scales(smallest: float, largest: float, growth: float) -> list[float]:
+def rising_scales(smallest: float, largest: float, growth: float) -> list[float]:
     """Return scales from `smallest` to `largest`, each `growth` times the one before; the last step may be smaller."""
     count = math.ceil(math.log(largest / smallest) / math.log(growth) - 1e-9)
     return [*(smallest * growth**step for step in range(count)), largest]
 
 
-def steps_between(growth: float, tolerance: float) -> int:
+def max_bisections_between_scales(growth: float, tolerance: float) -> int:
     """Return the largest number of bisections between two neighbouring grid_scales."""
     return max(0, math.ceil(math.log2((growth - 1.0) / tolerance)))
 
 
-def steps_from_rest(tolerance: float) -> int:
+def max_bisections_below_scales(tolerance: float) -> int:
     """Return the largest number of bisections below the lowest scale, down to a thousandth of it."""
     return math.ceil(math.log2(1.0 / tolerance)) + 10
 
 
 @dataclass
-class Ladder:
+class ScaleLadder:
     """Runs of one structure under one record at rising scales.
 
     Overturning is not monotone: a structure may overturn at a scale and survive a larger one. Therefore all scales
@@ -95,7 +95,11 @@ class Ladder:
         return [(lower, upper) for (lower, fell), (upper, falls) in pairwise(known) if falls and not fell]
 
     def _bisect(self, stands: float, falls: float) -> None:
-        steps = steps_between(self.growth, self.tolerance) if stands > 0.0 else steps_from_rest(self.tolerance)
+        steps = (
+            max_bisections_between_scales(self.growth, self.tolerance)
+            if stands > 0.0
+            else max_bisections_below_scales(self.tolerance)
+        )
         for _ in range(steps):
             if falls - stands <= self.tolerance * falls:
                 break
@@ -125,7 +129,7 @@ Limit = Literal["overturning", "nominal"]
 MAX_SCALE_RATIO = 1e12  # the last scale over the first
 
 
-class IncrementalStudy(StructuresSpec):
+class IncrementalStudy(StructuresStudySpec):
     """Incremental dynamic analysis (Vamvatsikos & Cornell 2002) of structures that overturn.
 
     The table has one row per run; its columns are those of `run_incremental`.
@@ -152,7 +156,7 @@ class IncrementalStudy(StructuresSpec):
 
     @model_validator(mode="after")
     def _ladder(self) -> "IncrementalStudy":
-        check_ladder(self.smallest_scale, self.largest_scale, self.growth, self.tolerance)
+        check_scale_ladder(self.smallest_scale, self.largest_scale, self.growth, self.tolerance)
         return self
 
     def plan(self) -> "IncrementalPlan":
@@ -163,7 +167,7 @@ class IncrementalStudy(StructuresSpec):
         InputError
             If a structure cannot be built, a record cannot be read, or a model's base cannot lift.
         """
-        steps = Steps(self.smallest_scale, self.largest_scale, self.growth, self.tolerance)
+        steps = ScaleSteps(self.smallest_scale, self.largest_scale, self.growth, self.tolerance)
         return IncrementalPlan(self.matrix(), steps, self.limit, self.runs_per_chunk)
 
 
@@ -173,12 +177,16 @@ class IncrementalPlan(CrossPlan):
     exact_count = False
     units = "ladders"
 
-    def __init__(self, matrix: StudyMatrix, steps: Steps, limit: Limit, runs_per_chunk: int) -> None:
-        check_ladder(*steps)
-        check_lifts(matrix, "a base that cannot lift, so nothing overturns it")
+    def __init__(self, matrix: StudyMatrix, steps: ScaleSteps, limit: Limit, runs_per_chunk: int) -> None:
+        check_scale_ladder(*steps)
+        check_base_can_lift(matrix, "a base that cannot lift, so nothing overturns it")
         self.steps, self.limit = steps, limit
-        self.scales = grid_scales(steps.smallest, steps.largest, steps.growth)
-        most = len(self.scales) + steps_between(steps.growth, steps.tolerance) + steps_from_rest(steps.tolerance)
+        self.scales = rising_scales(steps.smallest, steps.largest, steps.growth)
+        most = (
+            len(self.scales)
+            + max_bisections_between_scales(steps.growth, steps.tolerance)
+            + max_bisections_below_scales(steps.tolerance)
+        )
         self._most = most
         super().__init__(matrix, 1, max(1, runs_per_chunk // most))
 
@@ -213,10 +221,10 @@ class IncrementalPlan(CrossPlan):
                 return row | {"overturned": None}
             return row | {"overturned": OVERTURNING.exceeded(row) or state.exceeded(row)}
 
-        return Ladder(run, self.scales, self.steps.growth, self.steps.tolerance).run_all()
+        return ScaleLadder(run, self.scales, self.steps.growth, self.steps.tolerance).run_all()
 
 
-def check_ladder(smallest: float, largest: float, growth: float, tolerance: float) -> None:
+def check_scale_ladder(smallest: float, largest: float, growth: float, tolerance: float) -> None:
     """Raise an InputError unless the scales form a ladder."""
     checked_positive("smallest_scale", smallest, "times the record")
     checked_positive("largest_scale", largest, "times the record")
@@ -296,7 +304,7 @@ def run_incremental(
     )
     if not is_one_of(limit, ("overturning", "nominal")):
         raise InputError(f'limit must be "overturning" or "nominal", but {shown(limit)} was given.')
-    steps = Steps(smallest_scale, largest_scale, growth, tolerance)
+    steps = ScaleSteps(smallest_scale, largest_scale, growth, tolerance)
     return run_plan(IncrementalPlan(matrix, steps, limit, 64), workers, progress)
 
 

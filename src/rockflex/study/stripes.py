@@ -11,11 +11,11 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.fragility import NOMINAL, OVERTURNING, TENDON_YIELD, UPLIFT, LimitState, rotation_limit_state
 from rockflex.motion import scalable_measure
-from rockflex.study._arguments import positive_numbers
+from rockflex.study._arguments import checked_positive_numbers
 from rockflex.study._plan import CrossPlan
 from rockflex.study._run_matrix import StudyMatrix
 from rockflex.study._tables import Columns, Row
-from rockflex.study.spec import StructuresSpec
+from rockflex.study.spec import StructuresStudySpec
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,7 +26,7 @@ COUNTED = (OVERTURNING, NOMINAL, TENDON_YIELD, UPLIFT)
 StripeLimit: TypeAlias = Literal["overturning", "nominal", "tendon_yield", "uplift"] | float | LimitState
 
 
-class StripeStudy(StructuresSpec):
+class StripeStudy(StructuresStudySpec):
     """Multiple-stripe analysis: every record is scaled to each level of an intensity measure.
 
     The table has the columns of `run_cloud` and the `level` of the stripe; `stripe_counts` counts its runs.
@@ -67,7 +67,7 @@ class StripePlan(CrossPlan):
     def __init__(self, matrix: StudyMatrix, measure: str, levels: Sequence[float], per_chunk: int) -> None:
         chosen = scalable_measure(measure)
         self.measure = measure  # the name, because a pickle cannot hold the measure
-        self.levels = positive_numbers("levels", levels, "")
+        self.levels = checked_positive_numbers("levels", levels, "")
         for structure, name in enumerate(matrix.names):
             for record, motion in enumerate(matrix.motions):
                 if not math.isfinite(chosen.factor(matrix.measures(structure, record)[measure], 1.0)):
@@ -127,14 +127,14 @@ def stripe_counts(runs: "pd.DataFrame", limit: StripeLimit = "overturning") -> "
     0    0.2            1        1
     1    0.4            1        1
     """
-    solved, state = runs[runs["status"].notna()], stripe_limit(limit)
+    solved, state = runs[runs["status"].notna()], stripe_limit_state(limit)
     counted = solved.assign(exceeds=state.exceeded(solved).astype(bool)).groupby(
         ["structure", "model", "level"], observed=True
     )
     return counted["exceeds"].agg(n_exceeding="sum", n_total="size").reset_index()
 
 
-def stripe_limit(limit: StripeLimit) -> LimitState:
+def stripe_limit_state(limit: StripeLimit) -> LimitState:
     """Return the limit state that `stripe_counts` counts.
 
     Raises

@@ -21,7 +21,7 @@ from rockflex.structure.file import (
     schema_key_of_field,
     valid_value_description,
 )
-from rockflex.study import Case
+from rockflex.study import PreparedCase
 from rockflex.web._refusal import Refusal, refusing
 
 if TYPE_CHECKING:
@@ -136,7 +136,7 @@ def check_motion(motion: GroundMotion, path: str) -> None:
         raise Refusal({path: message})
 
 
-def check_together(cases: Sequence[Case], motion: GroundMotion) -> None:
+def check_together(cases: Sequence[PreparedCase], motion: GroundMotion) -> None:
     """Refuse runs that take too long, individually or together."""
     together = sum(_checked_work(case.task(motion), "models") for case in cases)
     if together > MAX_ANSWER_COST:

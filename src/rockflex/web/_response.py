@@ -13,7 +13,7 @@ from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.response import History, Response, warnings_of, warnings_of_energy
 from rockflex.solve import pace_of
-from rockflex.study import Case
+from rockflex.study import PreparedCase
 from rockflex.web._earthquake import motion_of
 from rockflex.web._encoding import envelope, pack
 from rockflex.web._limits import check_together
@@ -86,7 +86,7 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
     """
     built = build(state.structure)
     motion = motion_of(state.record, uploads).scaled(state.scale)
-    options, cases = state.run_options(ground_of(state.ground, built.properties)), dict[str, Case]()
+    options, cases = state.run_options(ground_of(state.ground, built.properties)), dict[str, PreparedCase]()
     for label in state.models:
         with refusing("models", f"{label}: "):
             cases[label] = options.case(parse_model(label), built.properties, history=True, floors=True)

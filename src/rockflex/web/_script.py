@@ -11,10 +11,10 @@ from rockflex.fragility import NOMINAL, ROCKING
 from rockflex.modal import BaseElement
 from rockflex.structure import LumpedMasses, Section
 from rockflex.structure.file import StructureEntry
-from rockflex.study import yielding
+from rockflex.study import yielding_model_labels
 from rockflex.study.cloud import CloudStudy
 from rockflex.study.design import DesignStudy
-from rockflex.study.spec import BedTable, GroundTable, SpringsTable
+from rockflex.study.spec import GroundTable, SpringBedTable, SpringsTable
 from rockflex.web._earthquake import PULSES
 from rockflex.web._selection import RECORDS_FOLDER, VISITOR_SUITES
 from rockflex.web._state import ROTATION, PulseChoice, State
@@ -23,7 +23,7 @@ from rockflex.web._state import ROTATION, PulseChoice, State
 def response_script(state: State, upload_name: str = "record") -> str:
     """Return a program that repeats the simulations of the Response tab, in `responses` by model."""
     extra = f", free_vibration={state.free_vibration!r}{_law(state)}{_on_ground(state)}"
-    yields = bool(yielding(state.models))
+    yields = bool(yielding_model_labels(state.models))
     if yields:
         extra += ', bouc_wen=yielding if "-BW" in model else None'
     return _program(
@@ -133,7 +133,7 @@ def _ground(given: GroundTable | None) -> list[str]:
     return ["", "", *lines, f"    return rf.Ground({', '.join(filter(None, parts))})", "", ""]
 
 
-def _springs(table: SpringsTable | BedTable) -> str:
+def _springs(table: SpringsTable | SpringBedTable) -> str:
     """The call that makes the springs of a file under the base of `properties`."""
     if isinstance(table, SpringsTable):
         edges = "[side * properties.half_width - properties.eccentricity for side in (-1, 1)]"

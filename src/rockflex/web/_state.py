@@ -13,7 +13,7 @@ from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKED, ROCKI
 from rockflex.modal import Ground
 from rockflex.motion import Combination, IntensityMeasure, scalable_measures
 from rockflex.structure.file import StructureEntry, TomlTable, toml_problem_place
-from rockflex.study import RunOptions, yielding
+from rockflex.study import RunOptions, yielding_model_labels
 from rockflex.study.spec import BoucWenTable, GroundTable, RunOptionKeys
 from rockflex.web._limits import MAX_MODELS, RUN_WORK_LIMIT, check_numbers, errors_of_numbers, unclear, wanted
 from rockflex.web._refusal import Refusal, refusing
@@ -263,7 +263,7 @@ class State(RunOptionKeys):
 
     def option_keys(self, labels: Sequence[str]) -> dict[str, Any]:
         """Return the impact law, the ground, and the hysteresis if one of the models yields, as keys of a study."""
-        names = {"impact", "restitution", "ground", *(["bouc_wen"] if yielding(labels) else [])}
+        names = {"impact", "restitution", "ground", *(["bouc_wen"] if yielding_model_labels(labels) else [])}
         return self.model_dump(include=names, exclude_none=True)
 
 
@@ -321,7 +321,7 @@ def _check_models(state: State) -> None:
         ("design.model", [state.design.model]),
     ):
         with refusing(path):
-            yields = yielding(labels)
+            yields = yielding_model_labels(labels)
         if len(set(labels)) < len(labels):
             raise Refusal({path: "the same model is chosen twice."})
         if yields and state.bouc_wen is None:

@@ -23,7 +23,7 @@ from rockflex.fragility import (
 )
 from rockflex.kinds import KINDS
 from rockflex.motion import MEASURES
-from rockflex.study import pivot_lifts, to_frame, yielding
+from rockflex.study import count_pivot_lifts, tables_to_dataframe, yielding_model_labels
 from rockflex.study.cloud import CloudPlan, CloudStudy
 from rockflex.study.design import DesignStudy, design_table, smallest_width
 from rockflex.web._jobs import Job
@@ -87,7 +87,7 @@ def common_content(
         "records": records_of(state, choice.suites, uploads, f"{kind}.suites"),
         "models": list(labels),
         "scales": list(choice.scales),
-        "free_vibration": YIELDING_FREE_VIBRATION if yielding(labels) else "settle",
+        "free_vibration": YIELDING_FREE_VIBRATION if yielding_model_labels(labels) else "settle",
         "runs_per_chunk": RUNS_PER_CHUNK,
         **state.option_keys(labels),
     }
@@ -111,7 +111,7 @@ def study_plan(study: CloudStudy | DesignStudy, path: str) -> CloudPlan:
 def runs_of(job: Job) -> "pd.DataFrame | None":
     """Return the table of the runs so far; None if there are none."""
     tables = list(job.tables)
-    return to_frame(*tables) if tables else None
+    return tables_to_dataframe(*tables) if tables else None
 
 
 def some_runs_of(job: Job) -> "pd.DataFrame":
@@ -182,7 +182,7 @@ def cloud_view(job: Job, state: State) -> dict[str, Any]:
         view["notes"].append(
             f"{number_with_noun(failed, 'run')} could not be solved. {first.iloc[0] if len(first) else ''}"
         )
-    view["notes"] += [text for each in pivot_lifts(solved) for text in each.warnings]
+    view["notes"] += [text for each in count_pivot_lifts(solved) for text in each.warnings]
     if len(solved) < MIN_RUNS_FITTED:
         return as_json_value(view)
     im = solved[choice.measure].to_numpy(dtype=float)
@@ -330,7 +330,7 @@ def design_view(job: Job, state: State) -> dict[str, Any]:
         names = ("half_width", "aspect_ratio", "probability", "low", "high", "median_base_moment", "n_runs")
         view["curves"].append({"tendon": str(tendon), **{name: part[name].to_numpy(dtype=float) for name in names}})
         view["notes"] += [f"{tendon}: {note}" for note in dict.fromkeys(part["note"]) if note]
-    view["notes"] += [text for each in pivot_lifts(KINDS["design"].runs(runs)) for text in each.warnings]
+    view["notes"] += [text for each in count_pivot_lifts(KINDS["design"].runs(runs)) for text in each.warnings]
     answers = smallest_width(table, choice.target)
     view["answers"] = answers[["tendon", "half_width", "half_width_upper", "outcome", "monotone", "note"]].to_dict(
         "records"

@@ -13,7 +13,7 @@ from rockflex.plot.animation._files import GIF, MP4, file_of, write_gif, write_v
 from rockflex.plot.animation._poses import default_amplification, outline_of, poses_of, timing_of
 from rockflex.plot.animation._scene import AnimatedFigure
 from rockflex.response import Response
-from rockflex.study.progress import ProgressChoice, reporting
+from rockflex.study.progress import ProgressChoice, reporting_progress
 
 MIN_WIDTH, MAX_WIDTH = 320, 3840  # pixels
 MAX_RESPONSES = 6
@@ -119,7 +119,7 @@ def animate(
     ]
     poses = [poses_of(curve, o, timing.times, timing.speed) for curve, o in zip(curves, outlines, strict=True)]
     factor = default_amplification(curves, poses) if amplification is None else _factor(amplification)
-    with reporting(progress, timing.times.size, "frames") as advance:
+    with reporting_progress(progress, timing.times.size, "frames") as advance:
         picture = AnimatedFigure(curves, poses, quantities, timing, factor, title, pixels)
         try:
             return _WRITERS[suffix](target, picture, timing, advance)

@@ -10,7 +10,7 @@ from rockflex._arrays import Array
 from rockflex._checks import checked_in_range, checked_positive
 from rockflex._errors import InputError, SolverError
 from rockflex.fragility import HazardCurve, limit_state_label
-from rockflex.study.design._fit import Runs, ShakingLevel, check_limit, check_same_for_all
+from rockflex.study.design._fit import DesignRuns, ShakingLevel, check_design_limit, check_measure_of_record_alone
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -109,8 +109,8 @@ class Requirement:
     measure: str = "pgv"
 
     def __post_init__(self) -> None:
-        check_limit(self.limit)
-        check_same_for_all(self.measure)
+        check_design_limit(self.limit)
+        check_measure_of_record_alone(self.measure)
         ShakingLevel.of(self.at, self.hazard)
         if self.hazard is None:
             checked_positive("target", self.target, "probability")
@@ -139,7 +139,7 @@ class Requirement:
         if not len(solved):
             return np.nan
         try:
-            return self.level.exceedance(Runs.of(solved, self.limit, self.measure).fitted().curve)[0]
+            return self.level.exceedance(DesignRuns.of(solved, self.limit, self.measure).fitted().curve)[0]
         except (InputError, SolverError):
             return np.nan
 
@@ -148,7 +148,7 @@ class Requirement:
         solved = runs[runs["status"].notna()]
         if not len(solved):
             return np.nan, np.nan
-        some = Runs.of(solved, self.limit, self.measure)
+        some = DesignRuns.of(solved, self.limit, self.measure)
         try:
             return some.fitted(banded=True).band(self.level, confidence, len(set(some.groups)))[:2]
         except (InputError, SolverError):
@@ -159,7 +159,7 @@ class Requirement:
         solved = runs[runs["status"].notna()]
         if not len(solved):
             return np.full(n, np.nan)
-        return Runs.of(solved, self.limit, self.measure).resampled(self.level, n, seed)
+        return DesignRuns.of(solved, self.limit, self.measure).resampled(self.level, n, seed)
 
     def margin(self, values: Any) -> Array:
         """How far values are above the target, within ±5: probits of probabilities, logarithms of rates.
@@ -176,7 +176,7 @@ class Requirement:
         )
 
 
-def check_requirements(given: Sequence[Requirement]) -> list[Requirement]:
+def checked_requirements(given: Sequence[Requirement]) -> list[Requirement]:
     """Return requirements as a list.
 
     Raises
@@ -197,12 +197,12 @@ def check_requirements(given: Sequence[Requirement]) -> list[Requirement]:
     return listed
 
 
-def values_of(designs: "Sequence[pd.DataFrame]", requirements: Sequence[Requirement]) -> Array:
+def requirement_values(designs: "Sequence[pd.DataFrame]", requirements: Sequence[Requirement]) -> Array:
     """Value of each requirement for the runs of each design, shape (n_designs, n_requirements)."""
     found = [[each.value(runs) for each in requirements] for runs in designs]
     return np.reshape(np.array(found, dtype=float), (len(designs), len(requirements)))
 
 
-def margins_of(values: Array, requirements: Sequence[Requirement]) -> Array:
+def requirement_margins(values: Array, requirements: Sequence[Requirement]) -> Array:
     """Margins of values whose last axis is that of the requirements; NaN where there is no value."""
     return np.stack([each.margin(values[..., place]) for place, each in enumerate(requirements)], axis=-1)
