@@ -13,29 +13,39 @@ from matplotlib.figure import Figure
 import rockflex
 from page import Page, check_page
 from rockflex.papers import silva_stojadinovic_2024 as paper
-from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
-from rockflex.papers.silva_stojadinovic_2024._comparison import Interval, check, compared, count_of, stated, statistic
+from rockflex.papers.silva_stojadinovic_2024 import RemarkKind, Verdict
+from rockflex.papers.silva_stojadinovic_2024._comparison import (
+    ResampledInterval,
+    compared_count,
+    compared_number,
+    compared_statement,
+    compared_statistic,
+    construction_check,
+)
 from rockflex.report import Document, Remark, Result, to_csv, to_html, to_markdown, write_document
 from rockflex.report._write import inline
 
 MEANINGS = {str(verdict): verdict.meaning for verdict in Verdict}
-KINDS = {str(kind): kind.meaning for kind in Kind}
+KINDS = {str(kind): kind.meaning for kind in RemarkKind}
 NUMBERS = (
-    compared("ω_1 <b>", "Table 3", "1.66", 1.6557, "rad/s"),
-    compared("a|b & c_*", "Section 1", "0.27", 0.16, note='says "so" & <more>'),
-    statistic("R²", "Section 3.3", "0.99", Interval(0.983, 0.978, 0.988)),
-    stated("friction", "Section 3.1", "higher than 2", float("inf"), "> 2", agreed=Verdict.EQUIVALENT),
-    statistic("difference", "Section 3.2", "0.002", Interval(0.00093, 0.00064, 0.00329), "rad"),
-    count_of("pairs that rock", "Section 3.3", "693", Interval(882.0, 867.0, 900.0)),
+    compared_number("ω_1 <b>", "Table 3", "1.66", 1.6557, "rad/s"),
+    compared_number("a|b & c_*", "Section 1", "0.27", 0.16, note='says "so" & <more>'),
+    compared_statistic("R²", "Section 3.3", "0.99", ResampledInterval(0.983, 0.978, 0.988)),
+    compared_statement("friction", "Section 3.1", "higher than 2", float("inf"), "> 2", agreed=Verdict.EQUIVALENT),
+    compared_statistic("difference", "Section 3.2", "0.002", ResampledInterval(0.00093, 0.00064, 0.00329), "rad"),
+    compared_count("pairs that rock", "Section 3.3", "693", ResampledInterval(882.0, 867.0, 900.0)),
 )
-CHECKS = (check("T_1 & <x>", "Section 3.1", "0.5", 0.5, unit="s"), check("M_r", "Table 2", "m_tot g B", 1.1, "< 1"))
+CHECKS = (
+    construction_check("T_1 & <x>", "Section 3.1", "0.5", 0.5, unit="s"),
+    construction_check("M_r", "Table 2", "m_tot g B", 1.1, "< 1"),
+)
 computed = []
 ROOT = Path(rockflex.__file__).parent
 
 
 def remark():
     computed.append(1)
-    return Remark(Kind.AFTERWARDS, "Slices <b>", "20 of 20 & more.", ("h*_2 | m", "met"), [("51.33", "yes")])
+    return Remark(RemarkKind.AFTERWARDS, "Slices <b>", "20 of 20 & more.", ("h*_2 | m", "met"), [("51.33", "yes")])
 
 
 def drawing():
@@ -56,7 +66,7 @@ def document():
             {"figure-3": drawing, "figure-3-spread": drawing},
             "A note_1.",
             CHECKS,
-            (remark, lambda: Remark(Kind.BESIDE, "Short", "No table.")),
+            (remark, lambda: Remark(RemarkKind.BESIDE, "Short", "No table.")),
         ),
         Result("table-1", "Second"),
     ]
@@ -210,5 +220,5 @@ def test_the_walk_sees_what_is_forbidden():
 
 
 def test_every_target_has_a_title_of_its_own():
-    titles = [paper.title_of(target) for target in paper.TARGETS]
+    titles = [paper.target_title(target) for target in paper.TARGETS]
     assert len(set(titles)) == len(titles)

@@ -11,7 +11,7 @@ import pytest
 from scipy import stats
 
 import rockflex as rf
-from rockflex.kinds import KINDS, Findings
+from rockflex.kinds import KINDS, StudyFindings
 from rockflex.study import run_plan
 from rockflex.study._random_variables import RandomVariables, formula_value, is_formula, names_in_formula, uniform_draws
 
@@ -232,14 +232,14 @@ def test_structures_that_cannot_be_built_are_rows_with_an_error():
     assert table.loc[~lost, "status"].notna().all()
     said = table.loc[lost, "error"].iloc[0]
     assert said.startswith("[[elements]] no. 2: yield_force must be a positive, finite number in N, but -")
-    found = Findings()
+    found = StudyFindings()
     KINDS["monte_carlo"].report(study(), table, found)
     n = int(lost.sum()) // 5
     assert found.remarks == [f"{n} of 12 structures cannot be built; their runs have an error"]
 
 
 def test_the_report_counts_all_structures_together(runs):
-    found = Findings()
+    found = StudyFindings()
     KINDS["monte_carlo"].report(study(), runs, found)
     values, outcomes, lines = found.tables.values()
     assert [row["variable"] for row in values] == [*VARIABLES, "recentring_ratio"]

@@ -14,7 +14,7 @@ import rockflex as rf
 from builders import frame_values
 from rockflex import InputError
 from rockflex.engine import VECTOR_LEVEL
-from rockflex.kinds import KINDS, Findings, _run, kind_named
+from rockflex.kinds import KINDS, StudyFindings, _run, study_kind_named
 from rockflex.structure.file import StructureEntry
 from rockflex.study import ChunkedPlan, StudySpec
 
@@ -40,7 +40,7 @@ def test_the_page_shows_kinds_of_the_registry():
 
 def test_an_unknown_kind():
     with pytest.raises(rf.InputError) as caught:
-        kind_named("clod")
+        study_kind_named("clod")
     assert str(caught.value) == (
         'study must be one of "cloud", "incremental", "stripes", "population", "monte_carlo", "design", but '
         "'clod' was given. Did you mean \"cloud\"?"
@@ -48,7 +48,7 @@ def test_an_unknown_kind():
 
 
 def test_a_fit_that_fails_is_named():
-    found = Findings()
+    found = StudyFindings()
 
     def fit():
         raise rf.InputError("No run rocks.")

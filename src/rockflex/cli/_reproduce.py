@@ -12,7 +12,7 @@ from rockflex.cli._output import check_folder, staged, versions
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rockflex.papers.silva_stojadinovic_2024 import Records
+    from rockflex.papers.silva_stojadinovic_2024 import PaperRecords
     from rockflex.report import Result
 
 EPILOG = """[bold]Examples[/bold]
@@ -79,18 +79,18 @@ def reproduce(
 
     if names:
         for target in paper.TARGETS:
-            typer.echo(f"{target:10}  {paper.title_of(target)}")
+            typer.echo(f"{target:10}  {paper.target_title(target)}")
         return
 
     check_folder(out, force=force)
     wanted = targets or list(paper.TARGETS)
     for target in wanted:
-        paper.title_of(target)
+        paper.target_title(target)
     chosen = {name: value for name, value in (("seeds", seeds), ("seed", seed)) if value is not None}
-    given = paper.Records(records, **chosen)
+    given = paper.PaperRecords(records, **chosen)
     note(given.description)
     with progress("Computing", len(set(wanted))) as advance:
-        results = paper.reproduce(wanted, given, lambda _: advance(1))
+        results = paper.reproduce_targets(wanted, given, lambda _: advance(1))
     if out is None:
         _print_numbers(results)
     else:
@@ -100,12 +100,12 @@ def reproduce(
         note(f"Written to {out}: open {out / 'report.html'}")
 
 
-def _write(results: "list[Result]", records: "Records", out: Path, *, force: bool) -> None:
-    from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
+def _write(results: "list[Result]", records: "PaperRecords", out: Path, *, force: bool) -> None:
+    from rockflex.papers.silva_stojadinovic_2024 import RemarkKind, Verdict
     from rockflex.report import Document, write_document
 
     verdicts = {str(verdict): verdict.meaning for verdict in Verdict}
-    kinds = {str(kind): kind.meaning for kind in Kind}
+    kinds = {str(kind): kind.meaning for kind in RemarkKind}
     document = Document(TITLE, SOURCE, records.description, versions(), verdicts, kinds, results)
     summary = {
         "versions": versions(),

@@ -13,7 +13,7 @@ from rockflex._shown import number_with_noun, shown
 from rockflex.cli import _options as options
 from rockflex.cli._console import complain, grid, note, number, output, show
 from rockflex.cli._output import check_folder, staged, to_json, versions
-from rockflex.kinds import KINDS, Findings, StudyKind, kind_named
+from rockflex.kinds import KINDS, StudyFindings, StudyKind, study_kind_named
 from rockflex.study.progress import duration_text, progress_bar, row_rate_text
 
 if TYPE_CHECKING:
@@ -214,7 +214,7 @@ def summarise(
     """Print the summary of a study; return the number of failed runs and of failed fits."""
     from rockflex.study import count_pivot_lifts
 
-    found = Findings()
+    found = StudyFindings()
     try:
         kind.report(study, table, found)
     except (InputError, SolverError) as error:  # the runs are stored, whatever can be derived from them
@@ -306,7 +306,7 @@ def figures(
     target = folder / "figures" if out is None else out
     check_folder(target, force=force)
     study = StudyFolder.load(folder)
-    kind = kind_named(study.spec.get("study"))
+    kind = study_kind_named(study.spec.get("study"))
     if measure is not None and not kind.measured:
         raise InputError(
             f"--measure is for {', '.join(OTHERS)} and {LAST} studies, but the study in {folder} is of kind "

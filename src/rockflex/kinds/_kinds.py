@@ -24,7 +24,7 @@ Figures: TypeAlias = Iterator[tuple[str, Callable[[], Any]]]  # name of the file
 
 
 @dataclass
-class Findings:
+class StudyFindings:
     """What is reported of a study: titled tables, fits that could not be made, and remarks."""
 
     tables: dict[str, list[Row]] = field(default_factory=dict[str, list[Row]])
@@ -40,7 +40,7 @@ class Findings:
             return None
 
 
-def _as_they_are(table: Runs) -> Runs:
+def _unchanged_runs(table: Runs) -> Runs:
     return table
 
 
@@ -59,7 +59,7 @@ class StudyKind:
     described_by : str
         The class of such a study, with its package.
     report : callable
-        Takes a study, its table and the `Findings` to fill.
+        Takes a study, its table and the `StudyFindings` to fill.
     figures : callable
         Takes the study's document, its table, an intensity measure and a function for remarks. Yields the name of each
         file and a function that draws it.
@@ -73,10 +73,10 @@ class StudyKind:
     command: str
     summary: str
     described_by: str
-    report: Callable[[Any, Runs, Findings], None]
+    report: Callable[[Any, Runs, StudyFindings], None]
     figures: Callable[[Document, Runs, str, Remark], Figures]
     measured: bool = False
-    runs: Callable[[Runs], Runs] = _as_they_are
+    runs: Callable[[Runs], Runs] = _unchanged_runs
 
     def spec(self) -> "type[StudySpec]":
         """Return the class of such a study."""
@@ -84,7 +84,7 @@ class StudyKind:
         return getattr(import_module(package), name)
 
 
-def _report_cloud(_: Any, runs: Runs, found: Findings) -> None:
+def _report_cloud(_: Any, runs: Runs, found: StudyFindings) -> None:
     """Count the outcomes, and fit the regressions."""
     from rockflex._cases import runs_by_case
     from rockflex.fragility import OVERTURNING, ROCKING, LogisticFit, fit_each_cloud
@@ -116,13 +116,13 @@ def _report_cloud(_: Any, runs: Runs, found: Findings) -> None:
             }
         )
         lines += [
-            {**name, "y": "θ_max", **_line(fit and fit.outcomes.rotation)},
-            {**name, "y": "u_top relative to the base", **_line(fit and fit.top_displacement)},
-            {**name, "y": "u_top in total", **_line(fit and fit.total_top_displacement)},
+            {**name, "y": "θ_max", **_cloud_line_row(fit and fit.outcomes.rotation)},
+            {**name, "y": "u_top relative to the base", **_cloud_line_row(fit and fit.top_displacement)},
+            {**name, "y": "u_top in total", **_cloud_line_row(fit and fit.total_top_displacement)},
         ]
 
 
-def _line(fit: "CloudFit | None") -> dict[str, Any]:
+def _cloud_line_row(fit: "CloudFit | None") -> dict[str, Any]:
     return {"c1": fit and fit.c1, "c2": fit and fit.c2, "spread": fit and fit.dispersion, "R²": fit and fit.r2}
 
 
@@ -157,7 +157,7 @@ CLOUD = StudyKind(
 )
 
 
-def _report_incremental(study: Any, runs: Runs, found: Findings) -> None:
+def _report_incremental(study: Any, runs: Runs, found: StudyFindings) -> None:
     from rockflex._cases import runs_by_case
     from rockflex.fragility import LIMIT_STATES, fit_capacities
     from rockflex.motion import MEASURES
@@ -201,7 +201,7 @@ INCREMENTAL = StudyKind(
 )
 
 
-def _report_stripes(study: Any, runs: Runs, found: Findings) -> None:
+def _report_stripes(study: Any, runs: Runs, found: StudyFindings) -> None:
     from rockflex._cases import runs_by_case
     from rockflex.fragility import NOMINAL, OVERTURNING, UPLIFT, fit_stripes
     from rockflex.study.stripes import stripe_counts
@@ -241,7 +241,7 @@ OUTLIER = [
 ]
 
 
-def _report_population(_: Any, pairs: Runs, found: Findings) -> None:
+def _report_population(_: Any, pairs: Runs, found: StudyFindings) -> None:
     from rockflex.papers.silva_stojadinovic_2024.population import population_statistics
 
     said = population_statistics(pairs)
@@ -286,7 +286,7 @@ POPULATION = StudyKind(
 )
 
 
-def _report_monte_carlo(study: Any, runs: Runs, found: Findings) -> None:
+def _report_monte_carlo(study: Any, runs: Runs, found: StudyFindings) -> None:
     structures = runs.drop_duplicates("number")
     lost = int(structures["weight"].isna().sum())
     if lost:
@@ -310,7 +310,7 @@ MONTE_CARLO = StudyKind(
 )
 
 
-def _report_design(study: Any, runs: Runs, found: Findings) -> None:
+def _report_design(study: Any, runs: Runs, found: StudyFindings) -> None:
     from rockflex.fragility import limit_state_label
     from rockflex.study.design import design_tables_by_limit, smallest_width, stored_design_limits
 
@@ -356,21 +356,22 @@ def _report_design(study: Any, runs: Runs, found: Findings) -> None:
         found.tables[f"Least half width from which on the {asked} is at most {most}"] = widths
 
 
-def _report_search(study: Any, runs: Runs, found: Findings) -> None:
+def _report_search(study: Any, runs: Runs, found: StudyFindings) -> None:
     from rockflex.study.design import best_design, stored_design_search
 
     requirements, cost = stored_design_search(study.document())
     best = best_design(runs, requirements, cost)
     found.remarks += best.notes
     found.tables["Designs of the search, in the order in which they were run"] = [
-        _row(row, [each.label for each in requirements]) for row in best.designs.to_dict("records")
+        _searched_design_row(row, [each.label for each in requirements]) for row in best.designs.to_dict("records")
     ]
     if best.best is None:
         return
     chosen = {"best": best.best} | ({} if best.cautious is None else {"cautious": best.cautious})
     names = {"best": "the cheapest that meets all targets", "cautious": "the cheapest whose bands meet them too"}
     found.tables["Cheapest designs"] = [
-        {"which": names[word], **_row(best.designs.iloc[place].to_dict(), [])} for word, place in chosen.items()
+        {"which": names[word], **_searched_design_row(best.designs.iloc[place].to_dict(), [])}
+        for word, place in chosen.items()
     ]
     found.tables[f"Limits of the cheapest design, governed by {best.governs}"] = [
         {
@@ -390,7 +391,7 @@ def _report_search(study: Any, runs: Runs, found: Findings) -> None:
     ]
 
 
-def _row(row: Mapping[Any, Any], labels: list[str]) -> dict[str, Any]:
+def _searched_design_row(row: Mapping[Any, Any], labels: list[str]) -> dict[str, Any]:
     """What is told of a design, with the values of some requirements."""
     return {
         "design": row["structure"],
@@ -457,7 +458,7 @@ KINDS: dict[str, StudyKind] = {
 }
 
 
-def kind_named(name: object) -> StudyKind:
+def study_kind_named(name: object) -> StudyKind:
     """Return the kind of a name.
 
     Raises

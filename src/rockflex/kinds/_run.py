@@ -13,7 +13,7 @@ from rockflex._files import checked_file_path
 from rockflex._shown import shown
 from rockflex._versions import git_commit, package_versions
 from rockflex.engine import VECTOR_LEVEL
-from rockflex.kinds._kinds import kind_named
+from rockflex.kinds._kinds import study_kind_named
 from rockflex.structure.file import read_toml_file
 from rockflex.study import ChunkedPlan, StudySpec, map_chunks, tables_to_dataframe
 from rockflex.study.folders import LEVEL, PartMaker, StudyFolder, StudyPart
@@ -66,7 +66,7 @@ def load_study(path: str | Path) -> StudySpec:
     file = checked_file_path("path", path)
     content = read_toml_file(file, "study")
     try:
-        return kind_named(content.get("study")).spec()(**content).read_from(file.parent, file)
+        return study_kind_named(content.get("study")).spec()(**content).read_from(file.parent, file)
     except InputError as error:
         raise InputError(f"{file}: {error}") from error
 
@@ -131,7 +131,7 @@ def run_study(
     if folder is not None:
         filled = fill_study(study, folder, workers=workers, dask=dask, any_version=any_version, progress=progress)
         return tables_to_dataframe(filled.table())
-    plan, tables = _plan_of(_loaded(study), workers, dask, progress), dict[int, Any]()
+    plan, tables = _plan_of_study(_loaded_study(study), workers, dask, progress), dict[int, Any]()
 
     def keep(number: int, table: Any) -> int:
         tables[number] = table
@@ -140,7 +140,7 @@ def run_study(
     def so_far() -> "pd.DataFrame":
         return tables_to_dataframe(*(tables[number] for number in sorted(tables)))
 
-    _compute(plan, range(plan.n_chunks), lambda each: each, keep, so_far, workers, dask, progress)
+    _compute_chunks(plan, range(plan.n_chunks), lambda each: each, keep, so_far, workers, dask, progress)
     return so_far()
 
 
@@ -186,12 +186,12 @@ def fill_study(
     [1]
     True
     """
-    spec = _loaded(study)
-    plan = _plan_of(spec, workers, dask, progress)
-    mine = _share_of(plan, share)
+    spec = _loaded_study(study)
+    plan = _plan_of_study(spec, workers, dask, progress)
+    mine = _share_of_chunks(plan, share)
     checksums = plan.checksums | spec.checksums()
     with StudyFolder.open(
-        folder, spec.document(), plan.n_chunks, _versions(spec), checksums, any_version=any_version
+        folder, spec.document(), plan.n_chunks, _versions_of_study(spec), checksums, any_version=any_version
     ) as target:
 
         def keep(_: int, part: StudyPart) -> int:
@@ -201,16 +201,16 @@ def fill_study(
         def so_far() -> "pd.DataFrame":
             return tables_to_dataframe(target.table(partial=True))
 
-        def stored(plan: "ChunkedPlan") -> _PartPlan:
-            return _PartPlan(plan, target.maker)
+        def stored(plan: "ChunkedPlan") -> _StudyPartPlan:
+            return _StudyPartPlan(plan, target.maker)
 
         numbers = [number for number in target.missing() if number in mine]
-        _compute(plan, numbers, stored, keep, so_far, workers, dask, progress, len(mine))
+        _compute_chunks(plan, numbers, stored, keep, so_far, workers, dask, progress, len(mine))
     return StudyFolder.load(folder)
 
 
 @dataclass(frozen=True)
-class _PartPlan:
+class _StudyPartPlan:
     """A plan whose chunks are the content of files, so that they are made where they are computed."""
 
     plan: "ChunkedPlan"
@@ -220,7 +220,7 @@ class _PartPlan:
         return self.maker.make(number, self.plan.chunk(number))
 
 
-def _versions(spec: "StudySpec") -> dict[str, str]:
+def _versions_of_study(spec: "StudySpec") -> dict[str, str]:
     """Return versions of libraries, the level of vector instructions, and commits of rockflex and the study's file."""
     commits = {
         "rockflex commit": git_commit(Path(__file__), known=True),
@@ -230,11 +230,11 @@ def _versions(spec: "StudySpec") -> dict[str, str]:
     return found | {name: commit for name, commit in commits.items() if commit is not None}
 
 
-def _loaded(study: "StudySpec | str | Path") -> "StudySpec":
+def _loaded_study(study: "StudySpec | str | Path") -> "StudySpec":
     return load_study(study) if isinstance(study, str | Path) else study
 
 
-def _plan_of(
+def _plan_of_study(
     spec: "StudySpec", workers: SupportsIndex | None, dask: str | None, progress: PartProgress
 ) -> "ChunkedPlan":
     check_part_progress(progress)
@@ -247,7 +247,7 @@ def _plan_of(
     return plan
 
 
-def _share_of(plan: "ChunkedPlan", share: tuple[SupportsIndex, SupportsIndex]) -> range:
+def _share_of_chunks(plan: "ChunkedPlan", share: tuple[SupportsIndex, SupportsIndex]) -> range:
     if not isinstance(share, tuple) or len(share) != 2:  # pyright: ignore[reportUnnecessaryComparison, reportUnnecessaryIsInstance]
         raise InputError(f"share must be two whole numbers, such as (3, 10), but {shown(share)} was given.")
     count = checked_whole_number("the number of shares", share[1], 1)
@@ -260,7 +260,7 @@ def _share_of(plan: "ChunkedPlan", share: tuple[SupportsIndex, SupportsIndex]) -
     return range(place - 1, plan.n_chunks, count)
 
 
-def _compute(
+def _compute_chunks(
     plan: "ChunkedPlan",
     numbers: Sequence[int],
     sent: "Callable[[ChunkedPlan], NumberedChunks[Result]]",

@@ -9,18 +9,18 @@ The package also holds what the library has only for this paper: the random `pop
 tested specimens.
 """
 
-from rockflex.papers.silva_stojadinovic_2024._comparison import Kind, Verdict
+from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, Verdict
 from rockflex.papers.silva_stojadinovic_2024._equivalents import equivalent_2hz_long_base, equivalent_s1
-from rockflex.papers.silva_stojadinovic_2024._inputs import Records
-from rockflex.papers.silva_stojadinovic_2024._targets import TARGETS, reproduce, title_of
+from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
+from rockflex.papers.silva_stojadinovic_2024._targets import TARGETS, reproduce_targets, target_title
 
 __all__ = [
     "TARGETS",
-    "Kind",
-    "Records",
+    "PaperRecords",
+    "RemarkKind",
     "Verdict",
     "equivalent_2hz_long_base",
     "equivalent_s1",
-    "reproduce",
-    "title_of",
+    "reproduce_targets",
+    "target_title",
 ]

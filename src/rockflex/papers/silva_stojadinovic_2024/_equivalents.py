@@ -56,7 +56,7 @@ def equivalent_2hz_long_base(base_mass_ratio: float, damping_ratio: float, n_mod
     zeta = checked_damping_ratios("damping_ratio", damping_ratio, 1)[0]
     n = checked_whole_number("n_modes", n_modes, 1, 5)
     tip = _tip_mass_ratio(0.92)
-    roots, mass, height, top = tipped_cantilever(tip, n)
+    roots, mass, height, top = modes_of_tipped_cantilever(tip, n)
     omega_1 = 2.0 * math.pi / 0.5
     length = GRAVITY / (omega_1**2 * 0.07) / height[0]
     half_width = 0.16 * length * height[0]
@@ -122,7 +122,7 @@ def equivalent_s1(
     """
     height = checked_positive("effective_height", effective_height, "m")
     exponent = checked_in_range("spacing", spacing, *_SPACING, hint="Elsewhere no masses meet both ratios well.")
-    ordinates, masses = _five_masses(exponent)
+    ordinates, masses = _five_masses_of_s1(exponent)
     stiffness = _cantilever_stiffness(ordinates)
     unit = modal_properties(masses, stiffness, ordinates)
     length = height / float(unit.effective_height[0])
@@ -137,7 +137,7 @@ def equivalent_s1(
     ).rocking()
 
 
-def tipped_cantilever(tip: float, n_modes: int) -> tuple[Array, Array, Array, Array]:
+def modes_of_tipped_cantilever(tip: float, n_modes: int) -> tuple[Array, Array, Array, Array]:
     """Return the modes of a uniform Euler-Bernoulli cantilever of unit length with `tip` times its mass at the tip.
 
     Returns
@@ -169,11 +169,11 @@ def tipped_cantilever(tip: float, n_modes: int) -> tuple[Array, Array, Array, Ar
 @lru_cache(maxsize=4)
 def _tip_mass_ratio(share: float) -> float:
     """Return the tip mass, over that of the column, for which m*_1 is `share` of their sum."""
-    return float(brentq(lambda tip: float(tipped_cantilever(tip, 1)[1][0]) - share, 0.0, 100.0, xtol=1e-12))
+    return float(brentq(lambda tip: float(modes_of_tipped_cantilever(tip, 1)[1][0]) - share, 0.0, 100.0, xtol=1e-12))
 
 
 @lru_cache(maxsize=32)
-def _five_masses(spacing: float) -> tuple[Array, Array]:
+def _five_masses_of_s1(spacing: float) -> tuple[Array, Array]:
     """Return heights (largest 1) and masses (sum 1) that meet the two ratios of S1."""
     x = (np.arange(1, 6) / 5.0) ** spacing
 

@@ -135,16 +135,16 @@ def draw_prototype(seed: int, number: int, n_records: int) -> Prototype:
     shear = draws[3] < 0.5
     low, high = SHEAR_COEFFICIENTS if shear else FLEXURE_COEFFICIENTS
     return Prototype(
-        n_stories=_whole(draws[0], *STORIES),
-        aspect_ratio=_whole(draws[1], *ASPECT_RATIOS),
-        base_mass_ratio=BASE_MASSES[_whole(draws[2], 0, len(BASE_MASSES) - 1)],
+        n_stories=_whole_number_of_draw(draws[0], *STORIES),
+        aspect_ratio=_whole_number_of_draw(draws[1], *ASPECT_RATIOS),
+        base_mass_ratio=BASE_MASSES[_whole_number_of_draw(draws[2], 0, len(BASE_MASSES) - 1)],
         stiffness_ratio=math.inf if shear else 0.0,
         coefficient=low + (high - low) * draws[4],
-        record=_whole(draws[5], 0, records - 1),
+        record=_whole_number_of_draw(draws[5], 0, records - 1),
     )
 
 
-def _whole(draw: float, low: int, high: int) -> int:
+def _whole_number_of_draw(draw: float, low: int, high: int) -> int:
     """The whole number from `low` to `high` for a draw from [0, 1)."""
     return low + int(draw * (high - low + 1))
 
@@ -247,7 +247,11 @@ class PopulationPlan(ChunkedPlan):
         given = zip(units, drawn, motions, structures, seconds, cases, pairs, strict=True)
         for unit, prototype, motion, properties, second, both, solutions in given:
             row: Row = {"pair": unit, "pga": motion.pga, "pgv": motion.pgv}
-            row |= _facts_of(prototype, properties) | self._facts[prototype.record] | _second_mode(properties, second)
+            row |= (
+                _prototype_facts(prototype, properties)
+                | self._facts[prototype.record]
+                | _second_mode_columns(properties, second)
+            )
             errors = [each for each in (*both, *solutions) if isinstance(each, Exception)]
             if errors:
                 rows.append(row | {"error": str(errors[0])})
@@ -258,7 +262,7 @@ class PopulationPlan(ChunkedPlan):
             row |= result_row(all_modes, "_mdof")
             row["max_second_displacement_mdof"] = float(solutions[0].peaks[-1])
             row |= result_row(one_mode, "_2dof")
-            rows.append(row | _combined(one_mode, second))
+            rows.append(row | _combined_peak_columns(one_mode, second))
         return rows
 
     def _cases(self, properties: RockingProperties) -> Sequence[PreparedCase | InputError]:
@@ -274,7 +278,7 @@ class PopulationPlan(ChunkedPlan):
             return error, error
 
 
-def _facts_of(drawn: Prototype, properties: RockingProperties) -> Row:
+def _prototype_facts(drawn: Prototype, properties: RockingProperties) -> Row:
     return {
         "n_stories": drawn.n_stories,
         "behaviour": BEHAVIOURS.index("shear" if math.isinf(drawn.stiffness_ratio) else "flexure"),
@@ -293,7 +297,7 @@ def _facts_of(drawn: Prototype, properties: RockingProperties) -> Row:
     }
 
 
-def _second_mode(properties: RockingProperties, second: SecondMode) -> Row:
+def _second_mode_columns(properties: RockingProperties, second: SecondMode) -> Row:
     omega = float(properties.omega[1])
     return {
         "period_2": 2.0 * math.pi / omega,
@@ -305,7 +309,7 @@ def _second_mode(properties: RockingProperties, second: SecondMode) -> Row:
     }
 
 
-def _combined(rocking: Response, second: SecondMode) -> Row:
+def _combined_peak_columns(rocking: Response, second: SecondMode) -> Row:
     """Return the combined peaks of 2DOF-S and the second mode on a fixed base (Section 3.4)."""
     peaks = combine_modal_peaks(rocking, second)
     return {f"srss_{name}": getattr(peaks, f"max_{name}") for name in ("top_displacement", "base_shear", "base_moment")}
