@@ -109,12 +109,12 @@ def animate(
     from rockflex.cli._batch import RunArguments, prepare, run_batch
     from rockflex.cli._options import naming
     from rockflex.cli._run_results import print_failures, print_warnings
-    from rockflex.plot._style import literal
+    from rockflex.plot._style import literal_text
     from rockflex.plot.animation import animate as draw
-    from rockflex.plot.animation import file_of
+    from rockflex.plot.animation import animation_path_and_suffix
 
     with naming(FLAGS):
-        target, _ = file_of(out)
+        target, _ = animation_path_and_suffix(out)
     if target.exists() and not force:
         raise InputError(f"The file {target} exists. Give another one by --out, or --force to replace it.")
     asked = RunArguments(
@@ -131,7 +131,7 @@ def animate(
         )
     runs = run_batch(batch)
     responses = [run.response for run in runs if run.response is not None]
-    title = None if scale == 1.0 else f"{literal(batch.motions[0].name)} × {scale:g}"
+    title = None if scale == 1.0 else f"{literal_text(batch.motions[0].name)} × {scale:g}"
     with naming(FLAGS), progress_bar("Frames", transient=True) as show:
         draw(
             responses, target, [response.model for response in responses], structure=loaded.built, speed=speed,

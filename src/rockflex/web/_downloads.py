@@ -147,7 +147,7 @@ def animation(state: State, uploads: Uploads, progress: Callable[[int, int], Non
         If a run cannot be made, or the animation would be too long.
     """
     from rockflex.plot import animate
-    from rockflex.plot._style import literal
+    from rockflex.plot._style import literal_text
 
     built, motion, found = responses(state, uploads)
     seconds = max(response.end_time for response in found)
@@ -158,7 +158,7 @@ def animation(state: State, uploads: Uploads, progress: Callable[[int, int], Non
             "shorter record or less free vibration, or take Python lines and add rf.animate(..., start=, stop=)."
         )
         raise Refusal({"free_vibration": message})
-    title = None if state.scale == 1.0 else f"{literal(motion.name)} × {state.scale:g}"
+    title = None if state.scale == 1.0 else f"{literal_text(motion.name)} × {state.scale:g}"
     with TemporaryDirectory() as folder, refusing("models"):
         file = animate(
             found, Path(folder) / "animation.gif", structure=built.structure, frames_per_second=rate, title=title,

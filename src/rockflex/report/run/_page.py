@@ -155,13 +155,13 @@ def html_of(page: Page, report: ReportedRuns) -> str:
     """Return a page as HTML with its figures."""
     from markupsafe import Markup
 
-    from rockflex.plot import record_strip, run_sheet, svg_of
+    from rockflex.plot import draw_record_strip, draw_run_sheet, figure_as_svg
 
-    sheet = run_sheet(report.responses, report.labels, width=WIDTH / page.scale, height=page.figure_height)
-    strip = record_strip(page.record.time, page.record.acceleration, width=_STRIP[0], height=_STRIP[1])
+    sheet = draw_run_sheet(report.responses, report.labels, width=WIDTH / page.scale, height=page.figure_height)
+    strip = draw_record_strip(page.record.time, page.record.acceleration, width=_STRIP[0], height=_STRIP[1])
     drawings = {
-        "sheet": Markup(inline(svg_of(sheet), "sheet", "Histories and loops of all models")),
-        "strip": Markup(inline(svg_of(strip), "strip", "Ground acceleration")),
+        "sheet": Markup(inline(figure_as_svg(sheet), "sheet", "Histories and loops of all models")),
+        "strip": Markup(inline(figure_as_svg(strip), "strip", "Ground acceleration")),
     }
     templates = templates_in(TEMPLATES)
     templates.filters |= {"symbols": _symbols, "shortened": shortened}

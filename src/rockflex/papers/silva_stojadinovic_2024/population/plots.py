@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex.plot._study_tables import MARKERS, check_columns, measure_name
+from rockflex.plot._study_tables import MARKERS, check_table_columns, measure_axis_name
 from rockflex.plot._style import (
     BLUE,
     GRAY,
@@ -25,12 +25,12 @@ from rockflex.plot._style import (
     RED,
     SMALL,
     Size,
-    font_size,
-    is_narrow,
+    add_legend_above,
+    is_narrow_figure,
     label_panel,
-    legend_above,
     new_figure,
-    styled,
+    scaled_font_size,
+    with_figure_style,
 )
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ _CHARACTERISTICS = {
     "base_mass_ratio": r"$m_0/m_i$",
     "period": r"$T_1$ [s]",
     "height": r"$H$ [m]",
-    "pgv": measure_name("pgv"),
+    "pgv": measure_axis_name("pgv"),
 }
 _COLORS = {"shear": RED, "flexure": BLUE}
 _MAX_BARS = 20  # largest number of values for which each has a bar
@@ -85,7 +85,7 @@ def outcome_groups(pairs: "pd.DataFrame", columns: tuple[str, ...]) -> OutcomeGr
     InputError
         If the table lacks a column, or no pair was solved.
     """
-    check_columns(pairs, (*_STATUSES, *columns), "what run_population returned")
+    check_table_columns(pairs, (*_STATUSES, *columns), "what run_population returned")
     solved = pairs[pairs["status_mdof"].notna() & pairs["status_2dof"].notna()]
     if not len(solved):
         raise InputError("No pair was solved. See the column error of the table.")
@@ -156,22 +156,22 @@ def plot_population(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figur
     >>> len(rf.plot_population(pairs).axes)
     6
     """
-    check_columns(pairs, ("behaviour", *_CHARACTERISTICS), "what run_population returned")
-    with styled(size=size):
-        figure = new_figure(6.3, 5.6 if is_narrow() else 4.3)
-        panels: list[Axes] = list(figure.subplots(*((3, 2) if is_narrow() else (2, 3))).flat)
+    check_table_columns(pairs, ("behaviour", *_CHARACTERISTICS), "what run_population returned")
+    with with_figure_style(size=size):
+        figure = new_figure(6.3, 5.6 if is_narrow_figure() else 4.3)
+        panels: list[Axes] = list(figure.subplots(*((3, 2) if is_narrow_figure() else (2, 3))).flat)
         for axes, (name, label), mark in zip(panels, _CHARACTERISTICS.items(), "ABCDEF", strict=True):
             _draw_population_bars(axes, name, pairs)
             axes.set_xlabel(label)
             axes.grid(visible=False, axis="x")
             axes.locator_params(axis="y", integer=True, nbins=6)
             label_panel(axes, mark)
-        for axes in panels[:: 2 if is_narrow() else 3]:
+        for axes in panels[:: 2 if is_narrow_figure() else 3]:
             axes.set_ylabel("pairs")
         counts = {name: int((pairs["behaviour"] == name).sum()) for name in BEHAVIOURS}
         handles, _ = panels[0].get_legend_handles_labels()
         names = [f"{BEHAVIOURS[name]} ({count})" for name, count in counts.items()]
-        legend_above(figure, handles, names)
+        add_legend_above(figure, handles, names)
     return figure
 
 
@@ -189,7 +189,7 @@ def _draw_population_bars(axes: Axes, name: str, pairs: "pd.DataFrame") -> None:
         )  # fmt: skip
         below += counts
     if _has_few_values(values) and name != "height":
-        most = _MAX_TICKS // 2 if is_narrow() else _MAX_TICKS
+        most = _MAX_TICKS // 2 if is_narrow_figure() else _MAX_TICKS
         axes.set_xticks(centres[:: -(-centres.size // most)])
 
 
@@ -249,9 +249,9 @@ def plot_agreement(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figure
     markers = _markers_by_aspect_ratio(pairs)
     periods = pairs["period"].to_numpy(dtype=float)
     scale = Normalize(float(periods.min()), float(periods.max()))
-    with styled(size=size):
-        figure = new_figure(6.3, 9.8 if is_narrow() else 6.0)
-        if is_narrow():
+    with with_figure_style(size=size):
+        figure = new_figure(6.3, 9.8 if is_narrow_figure() else 6.0)
+        if is_narrow_figure():
             panels: list[Axes] = list(figure.subplots(4, 1, height_ratios=(1.0, 1.0, 1.0, 0.75)))
         else:
             panels = list(figure.subplots(2, 2).flat)
@@ -394,9 +394,9 @@ def plot_modal_combination(pairs: "pd.DataFrame", *, size: Size | None = None) -
     groups = outcome_groups(pairs, tuple(sorted(needed)))
     rows = groups.rocking
     behaviours = rows["behaviour"].astype(str).to_numpy()
-    with styled(size=size):
-        figure = new_figure(6.3, 9.8 if is_narrow() else 6.4)
-        axes_of: list[Axes] = list(figure.subplots(*((4, 1) if is_narrow() else (2, 2))).flat)
+    with with_figure_style(size=size):
+        figure = new_figure(6.3, 9.8 if is_narrow_figure() else 6.4)
+        axes_of: list[Axes] = list(figure.subplots(*((4, 1) if is_narrow_figure() else (2, 2))).flat)
         for axes, panel, mark in zip(axes_of, _COMBINATION_PANELS, "ABCD", strict=True):
             _draw_combination(axes, panel, rows, behaviours)
             label_panel(axes, mark)
@@ -409,7 +409,7 @@ def plot_modal_combination(pairs: "pd.DataFrame", *, size: Size | None = None) -
             Line2D([], [], color=BLUE, label="$y = c_1 x$"),
         ]
         title = f"{len(rows)} rocking pairs" + (f"; left out: {groups.left_out}" if groups.left_out else "")
-        legend_above(figure, handles, title=title, title_size=font_size(8.0))
+        add_legend_above(figure, handles, title=title, title_size=scaled_font_size(8.0))
     return figure
 
 
