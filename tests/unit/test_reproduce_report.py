@@ -22,8 +22,16 @@ from rockflex.papers.silva_stojadinovic_2024._comparison import (
     compared_statistic,
     construction_check,
 )
-from rockflex.report import Document, Remark, Result, to_csv, to_html, to_markdown, write_document
-from rockflex.report._write import inline
+from rockflex.report import (
+    PublicationReport,
+    Remark,
+    ReproducedResult,
+    report_numbers_to_csv,
+    report_to_html,
+    report_to_markdown,
+    write_publication_report,
+)
+from rockflex.report._write import inline_svg
 
 MEANINGS = {str(verdict): verdict.meaning for verdict in Verdict}
 KINDS = {str(kind): kind.meaning for kind in RemarkKind}
@@ -59,7 +67,7 @@ def drawing():
 @pytest.fixture(scope="module")
 def document():
     sections = [
-        Result(
+        ReproducedResult(
             "figure-3",
             "First & <only>",
             NUMBERS,
@@ -68,16 +76,16 @@ def document():
             CHECKS,
             (remark, lambda: Remark(RemarkKind.BESIDE, "Short", "No table.")),
         ),
-        Result("table-1", "Second"),
+        ReproducedResult("table-1", "Second"),
     ]
-    return Document("A title", "A source", "72 records", {"rockflex": "1.2"}, MEANINGS, KINDS, sections)
+    return PublicationReport("A title", "A source", "72 records", {"rockflex": "1.2"}, MEANINGS, KINDS, sections)
 
 
 @pytest.fixture(scope="module")
 def folder(document, tmp_path_factory):
     out = tmp_path_factory.mktemp("report")
     drawn = []
-    files = write_document(document, out, drawn.append)
+    files = write_publication_report(document, out, drawn.append)
     assert drawn == ["figure-3", "figure-3-spread"]
     assert [file.name for file in files] == [
         "figure-3.svg", "figure-3-spread.svg", "report.html", "report.md", "numbers.csv",
@@ -128,15 +136,15 @@ def test_checks_and_remarks_are_shown_and_not_counted(folder, document):
 
 def test_remarks_are_computed_once_and_when_they_are_asked_for(document):
     assert computed == [1]  # for the page and the Markdown together
-    before = Result("figure-3", "First", remarking=(remark,))
+    before = ReproducedResult("figure-3", "First", remarking=(remark,))
     assert computed == [1]
     assert before.remarks is before.remarks
     assert computed == [1, 1]
 
 
 def test_a_page_without_failures_has_no_list_of_them(document):
-    fine = replace(document, sections=[Result("table-1", "Second", NUMBERS[:1])])
-    text = to_html(fine, {})
+    fine = replace(document, sections=[ReproducedResult("table-1", "Second", NUMBERS[:1])])
+    text = report_to_html(fine, {})
     check_page(text, 0)
     assert 'id="failing"' not in text
     assert "Checks of ourselves, not counted" not in text
@@ -144,7 +152,7 @@ def test_a_page_without_failures_has_no_list_of_them(document):
 
 def test_markdown_holds_the_same(folder, document):
     text = (folder / "report.md").read_text("utf-8")
-    assert text == to_markdown(document)
+    assert text == report_to_markdown(document)
     rows = [line for line in text.splitlines() if line.startswith("|")]
     assert len({len(re.findall(r"(?<!\\)\|", row)) for row in rows}) == 4  # of the four kinds of table
     assert r"a\|b & c\_\*" in text
@@ -155,7 +163,7 @@ def test_markdown_holds_the_same(folder, document):
 
 def test_the_table_has_all_digits(folder, document):
     text = (folder / "numbers.csv").read_text("utf-8")
-    assert text == to_csv(document)
+    assert text == report_numbers_to_csv(document)
     rows = list(csv.DictReader(io.StringIO(text)))
     assert [row["verdict"] for row in rows] == [str(line.verdict) for line in NUMBERS]
     assert [float(row["rockflex"]) for row in rows] == [line.ours for line in NUMBERS]
@@ -170,7 +178,7 @@ def test_inline_figures_do_not_share_names():
         '<g id="g" clip-path="url(#p)"><use xlink:href="#m1"/>'
         '<image xlink:href="data:image/png;base64,AA=="/></g></svg>'
     )
-    assert inline(text, "f", "label") == (
+    assert inline_svg(text, "f", "label") == (
         '<svg viewBox="0 0 3 2" role="img" aria-label="label" class="drawing"><defs><path id="f-m1"/></defs>'
         '<g id="f-g" clip-path="url(#f-p)"><use href="#f-m1"/><image href="data:image/png;base64,AA=="/></g></svg>'
     )

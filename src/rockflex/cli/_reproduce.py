@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rockflex.papers.silva_stojadinovic_2024 import PaperRecords
-    from rockflex.report import Result
+    from rockflex.report import ReproducedResult
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -100,13 +100,13 @@ def reproduce(
         note(f"Written to {out}: open {out / 'report.html'}")
 
 
-def _write(results: "list[Result]", records: "PaperRecords", out: Path, *, force: bool) -> None:
+def _write(results: "list[ReproducedResult]", records: "PaperRecords", out: Path, *, force: bool) -> None:
     from rockflex.papers.silva_stojadinovic_2024 import RemarkKind, Verdict
-    from rockflex.report import Document, write_document
+    from rockflex.report import PublicationReport, write_publication_report
 
     verdicts = {str(verdict): verdict.meaning for verdict in Verdict}
     kinds = {str(kind): kind.meaning for kind in RemarkKind}
-    document = Document(TITLE, SOURCE, records.description, versions(), verdicts, kinds, results)
+    document = PublicationReport(TITLE, SOURCE, records.description, versions(), verdicts, kinds, results)
     summary = {
         "versions": versions(),
         "records": records.description,
@@ -116,10 +116,10 @@ def _write(results: "list[Result]", records: "PaperRecords", out: Path, *, force
     }
     figures = sum(len(result.figures) for result in results)
     with staged(out, summary, force=force) as stage, progress("Drawing", figures) as advance:
-        write_document(document, stage, lambda _: advance(1))
+        write_publication_report(document, stage, lambda _: advance(1))
 
 
-def _print_numbers(results: "Sequence[Result]") -> None:
+def _print_numbers(results: "Sequence[ReproducedResult]") -> None:
 
     console = output()
     for result in results:
@@ -135,7 +135,7 @@ def _print_numbers(results: "Sequence[Result]") -> None:
         typer.echo()
 
 
-def _print_counts(results: "Sequence[Result]") -> None:
+def _print_counts(results: "Sequence[ReproducedResult]") -> None:
     from rockflex.papers.silva_stojadinovic_2024 import Verdict
 
     rows = [(r.name, *(str(r.count(verdict)) for verdict in Verdict)) for r in results]

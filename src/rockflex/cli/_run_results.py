@@ -18,7 +18,7 @@ from rockflex.cli._structures import LoadedStructure, elements_table
 from rockflex.fragility import NOMINAL
 from rockflex.modal import Ground
 from rockflex.motion import MEASURES, GroundMotion
-from rockflex.report.run import MAX_RUNS, checked_path, write_report
+from rockflex.report.run import MAX_RUNS, checked_report_path, write_report
 from rockflex.response import IMPACT_WINDOW, Response, history_columns
 from rockflex.study import ground_under_structure
 
@@ -344,7 +344,7 @@ def check_page(path: Path, *, force: bool) -> Path:
     InputError
         If it is no path of a page, or exists and `force` is not set.
     """
-    page = checked_path("--report", path)
+    page = checked_report_path("--report", path)
     if page.exists() and not force:
         raise InputError(f"--report {page} exists. Give another name, or --force to replace it.")
     return page

@@ -13,7 +13,7 @@ import tomli_w
 from rockflex.kinds import KINDS
 from rockflex.models import SpringModel
 from rockflex.motion import GroundMotion, record_csv
-from rockflex.report.run import report_html
+from rockflex.report.run import run_report_as_html
 from rockflex.response import UNITS_OF_GROUND, UNITS_OF_HISTORY, Response, ground_columns
 from rockflex.web._earthquake import motion_of
 from rockflex.web._encoding import svg
@@ -109,7 +109,7 @@ def run_report(state: State, uploads: Uploads) -> tuple[str, str]:
     times = "" if state.scale == 1.0 else f" × {state.scale:g}"
     name = state.structure.name or "Structure"
     with refusing("models"):
-        text = report_html(
+        text = run_report_as_html(
             found,
             structure=built.structure,
             motion=motion,

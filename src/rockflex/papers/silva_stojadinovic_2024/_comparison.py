@@ -14,7 +14,7 @@
 5. *Does not reproduce.* Everything else. Nothing is adjusted to pass.
 
 A printed value counts once, even if it is repeated. Anything that follows from the way the library or an equivalent
-specimen is built is a `Check`, not a number; additional computations are `Remark`s.
+specimen is built is a `ConstructionCheck`, not a number; additional computations are `Remark`s.
 """
 
 import math
@@ -24,8 +24,8 @@ from enum import StrEnum
 from typing import NamedTuple
 
 import rockflex as rf
-from rockflex.report import Check, Number
-from rockflex.report._document import as_text
+from rockflex.report import ConstructionCheck, PublishedNumber
+from rockflex.report._document import decimal_text
 
 MAX_INTERVAL_WIDTH = 0.5  # over the printed value, above which the interval decides nothing
 APPROXIMATE = 0.2  # largest relative difference from a value that is printed as "about" so much
@@ -214,13 +214,13 @@ def compared_number(
     agreed: Verdict = Verdict.REPRODUCED,
     truncated: bool = False,
     note: str = "",
-) -> Number:
+) -> PublishedNumber:
     """Compare a printed value or bound with ours (rules 1 and 3).
 
     Parameters
     ----------
     name, place, printed, ours, unit, note
-        As in `Number`; `ours` in the unit in print.
+        As in `PublishedNumber`; `ours` in the unit in print.
     ground
         Verdict if the value agrees.
     truncated
@@ -246,24 +246,24 @@ def compared_statement(
     *,
     agreed: Verdict = Verdict.REPRODUCED,
     note: str = "",
-) -> Number:
+) -> PublishedNumber:
     """Check a statement in words by a bound, such as ``"> 1"``, on a number (rules 1 and 3)."""
     wanted, value = printed_range(criterion), float(ours)
     verdict = agreed if value in wanted else Verdict.NOT
-    return Number(
+    return PublishedNumber(
         name, place, printed, value, unit, criterion, _digits_beside_bound(wanted, value), note, verdict, None, None
     )
 
 
 def compared_statistic(
     name: str, place: str, printed: str, ours: ResampledInterval, unit: str = "", *, note: str = ""
-) -> Number:
+) -> PublishedNumber:
     """Compare a printed value with the interval of ours, from other records or draws (rule 2)."""
     wanted = printed_range(printed)
     digits = _digits_beyond_print(wanted, ours.estimate)
     known = math.isfinite(ours.low) and math.isfinite(ours.high)
     wide = ours.high - ours.low > MAX_INTERVAL_WIDTH * abs(wanted.value)
-    interval = f"90 % interval {as_text(ours.low, digits)} to {as_text(ours.high, digits)}"
+    interval = f"90 % interval {decimal_text(ours.low, digits)} to {decimal_text(ours.high, digits)}"
     if not known:
         verdict, criterion = Verdict.UNDECIDED, "too few runs for an interval"
     elif not wanted.meets(ours.low, ours.high):
@@ -277,9 +277,9 @@ def compared_statistic(
     )
 
 
-def compared_count(name: str, place: str, printed: str, ours: ResampledInterval) -> Number:
+def compared_count(name: str, place: str, printed: str, ours: ResampledInterval) -> PublishedNumber:
     """Show a count of outcomes, which depends on how strong the records are, next to the printed one (rule 4)."""
-    criterion = f"none; 90 % interval {as_text(ours.low, 0)} to {as_text(ours.high, 0)}"
+    criterion = f"none; 90 % interval {decimal_text(ours.low, 0)} to {decimal_text(ours.high, 0)}"
     wanted, note = printed_range(printed), "depends on how strong the records are"
     return _compared_number_of_verdict(
         name, place, printed, float(ours.estimate), "", criterion, Verdict.INCOMPARABLE, wanted, note
@@ -288,7 +288,7 @@ def compared_count(name: str, place: str, printed: str, ours: ResampledInterval)
 
 def compared_tendency(
     name: str, place: str, printed: str, ours: ResampledInterval, criterion: str, unit: str = "", *, note: str = ""
-) -> Number:
+) -> PublishedNumber:
     """Check a bound or a statement in words on the interval of a number from other records or draws (rule 2)."""
     wanted, value = printed_range(criterion), float(ours.estimate)
     digits = _digits_beside_bound(wanted, value)
@@ -296,28 +296,28 @@ def compared_tendency(
     verdict = Verdict.COMPATIBLE if all(holds) else Verdict.UNDECIDED if any(holds) else Verdict.NOT
     if math.isnan(ours.low) or math.isnan(ours.high):
         verdict = Verdict.UNDECIDED
-    text = f"{criterion} over the 90 % interval {as_text(ours.low, digits)} to {as_text(ours.high, digits)}"
-    return Number(name, place, printed, value, unit, text, digits, note, verdict, None, None)
+    text = f"{criterion} over the 90 % interval {decimal_text(ours.low, digits)} to {decimal_text(ours.high, digits)}"
+    return PublishedNumber(name, place, printed, value, unit, text, digits, note, verdict, None, None)
 
 
 def construction_check(
     name: str, place: str, printed: str, ours: float, criterion: str = "", unit: str = "", *, note: str = ""
-) -> Check:
+) -> ConstructionCheck:
     """Check a value against a bound, such as ``"< 1"``, or by default against the printed number."""
     wanted, value = printed_range(criterion or printed), float(ours)
     digits, words = _digits_beyond_print(wanted, value), criterion or MUST_ROUND
-    return Check(name, place, printed, value, unit, words, digits, note, value in wanted)
+    return ConstructionCheck(name, place, printed, value, unit, words, digits, note, value in wanted)
 
 
 def _compared_number_of_verdict(
     name: str, place: str, printed: str, ours: float, unit: str, criterion: str, verdict: Verdict, wanted: PrintedRange,
     note: str,
-) -> Number:  # fmt: skip
+) -> PublishedNumber:  # fmt: skip
     away = ours - wanted.value
     silent = not math.isfinite(away) or (wanted.is_bound and verdict is not Verdict.NOT)
     relative = None if silent or wanted.value == 0.0 else away / abs(wanted.value)
     digits, difference = _digits_beyond_print(wanted, ours), None if silent else away
-    return Number(name, place, printed, ours, unit, criterion, digits, note, verdict, difference, relative)
+    return PublishedNumber(name, place, printed, ours, unit, criterion, digits, note, verdict, difference, relative)
 
 
 def _digits_beyond_print(wanted: PrintedRange, ours: float) -> int:

@@ -17,8 +17,8 @@ from rockflex.papers.silva_stojadinovic_2024._comparison import (
     construction_check,
 )
 from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
-from rockflex.report import Check, Number, Remark, Result
-from rockflex.report._document import as_text
+from rockflex.report import ConstructionCheck, PublishedNumber, Remark, ReproducedResult
+from rockflex.report._document import decimal_text
 
 SPECIMEN_MODELS = ("2DOF-C", "2DOF-C-SI", "2DOF-S", "MDOF-S")
 
@@ -97,19 +97,19 @@ def run_figure_3(properties: rf.RockingProperties, model: str) -> rf.Response:
     return rf.simulate(properties, rf.ricker_pulse(0.1 * 9.81, 0.5), model, free_vibration=4.0)
 
 
-def figure_3(_: PaperRecords) -> Result:
+def figure_3(_: PaperRecords) -> ReproducedResult:
     """Run the four models."""
     make: Make = rf.equivalent_2hz_long_base
     properties = make(**nominal_parameters(TWO_HZ))
     runs = responses_of_four_models(properties, run_figure_3)
     figures = drawings_of_responses("figure-3", LABEL_3, runs, TWO_HZ, make, run_figure_3)
-    return Result(
+    return ReproducedResult(
         "figure-3", FIGURE_3, _numbers_of_figure_3(properties, runs), figures, NOTE_3,
         _checks_of_figure_3(properties, runs["2DOF-C"]), (partial(_friction_with_both_signs, properties, runs),),
     )  # fmt: skip
 
 
-def _numbers_of_figure_3(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> list[Number]:
+def _numbers_of_figure_3(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> list[PublishedNumber]:
     lever = p.effective_mass[0] * p.effective_height[0]
     complete, simple = runs["2DOF-C"], runs["2DOF-S"]
     longest = [float(np.max(r.impact_times - r.uplift_times[: r.impact_times.size])) for r in (simple, complete)]
@@ -148,7 +148,7 @@ def _numbers_of_figure_3(p: rf.RockingProperties, runs: dict[str, rf.Response]) 
     ]  # fmt: skip
 
 
-def _checks_of_figure_3(p: rf.RockingProperties, complete: rf.Response) -> tuple[Check, ...]:
+def _checks_of_figure_3(p: rf.RockingProperties, complete: rf.Response) -> tuple[ConstructionCheck, ...]:
     return (
         construction_check("T_1", PLACE, "0.5", 2.0 * np.pi / p.omega[0], unit="s", note=BY_CONSTRUCTION),
         construction_check("m*_1/m_s,tot", PLACE, "0.92", p.effective_mass[0] / 1.0, note=BY_CONSTRUCTION),
@@ -203,15 +203,17 @@ def run_figure_4(
     return rf.simulate(properties, rf.quiet_motion(3.0, 0.001), model, output, initial=start)
 
 
-def figure_4(_: PaperRecords) -> Result:
+def figure_4(_: PaperRecords) -> ReproducedResult:
     """Run the four models, and the top displacement of two of them over all combinations."""
     properties = rf.equivalent_s1(**nominal_parameters(S1))
     runs = responses_of_four_models(properties, run_figure_4)
     figures = drawings_of_responses("figure-4", LABEL_4, runs, S1, rf.equivalent_s1, run_figure_4)
-    return Result("figure-4", FIGURE_4, _numbers_of_figure_4(runs), figures, NOTE_4, _checks_of_figure_4(properties))
+    return ReproducedResult(
+        "figure-4", FIGURE_4, _numbers_of_figure_4(runs), figures, NOTE_4, _checks_of_figure_4(properties)
+    )
 
 
-def _numbers_of_figure_4(runs: dict[str, rf.Response]) -> list[Number]:
+def _numbers_of_figure_4(runs: dict[str, rf.Response]) -> list[PublishedNumber]:
     every = runs["MDOF-S"]
     printed = every.required_friction_excluding_impacts(0.0, printed=True)
     friction = float("inf") if printed > BOUNDLESS else printed
@@ -236,12 +238,12 @@ def _numbers_of_figure_4(runs: dict[str, rf.Response]) -> list[Number]:
         holds(
             "friction that MDOF-S needs, Eq. 22 as printed", PLACE, "force ratios higher than 2", friction, "> 2",
             note="∞: the vertical sum passes through zero; with the corrected sign of the weight "
-            f"{as_text(every.required_friction, 1)}",
+            f"{decimal_text(every.required_friction, 1)}",
         ),
     ]  # fmt: skip
 
 
-def _checks_of_figure_4(p: rf.RockingProperties) -> tuple[Check, ...]:
+def _checks_of_figure_4(p: rf.RockingProperties) -> tuple[ConstructionCheck, ...]:
     lever = p.effective_mass[0] * p.effective_height[0]
     return (
         construction_check("T_1", PLACE, "0.11", 2.0 * np.pi / p.omega[0], unit="s", note=BY_CONSTRUCTION),

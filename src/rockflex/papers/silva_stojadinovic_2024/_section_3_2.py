@@ -19,7 +19,7 @@ from rockflex.papers.silva_stojadinovic_2024._comparison import (
     compared_tendency,
 )
 from rockflex.papers.silva_stojadinovic_2024._inputs import MODELS, STRUCTURES, PaperRecords, table_1_frame
-from rockflex.report import Number, Remark, Result
+from rockflex.report import PublishedNumber, Remark, ReproducedResult
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -110,7 +110,7 @@ WORDS = {
 ABOVE = "runs that need more than 1.0"
 
 
-def table_1(_: PaperRecords) -> Result:
+def table_1(_: PaperRecords) -> ReproducedResult:
     """Compute the modal properties of every structure."""
     ours = {name: _table_1_modal_values(name) for name in STRUCTURES}
     numbers = [
@@ -122,7 +122,7 @@ def table_1(_: PaperRecords) -> Result:
         "T_1 and h*_1/B are input, so they are not among the numbers. A value that the table repeats, because it does "
         "not depend on them, is one number; ours is the value of the structure that differs most from it."
     )
-    return Result("table-1", TABLE_1, numbers, note=note)
+    return ReproducedResult("table-1", TABLE_1, numbers, note=note)
 
 
 def _table_1_modal_values(name: str) -> dict[str, float]:
@@ -138,7 +138,7 @@ def _table_1_modal_values(name: str) -> dict[str, float]:
     return found
 
 
-def _farthest_from_print(quantity: str, printed: str, values: Mapping[str, float]) -> Number:
+def _farthest_from_print(quantity: str, printed: str, values: Mapping[str, float]) -> PublishedNumber:
     """Compare the value that differs most from the printed one."""
     place = f"Table 1, {', '.join(values)}"
     lines = [compared_number(quantity, place, printed, value) for value in values.values()]
@@ -199,7 +199,7 @@ def cases_of_differences(records: PaperRecords, quantity: str) -> "pd.DataFrame"
 
 def largest_model_differences(
     records: PaperRecords, quantity: str, rows: Iterable[tuple[str, str, str, str, str]]
-) -> list[Number]:
+) -> list[PublishedNumber]:
     """Compare some `differences_between_models`, and note where they are largest.
 
     Each row has the name, the printed value and its unit, the name of the difference, and the column of
@@ -259,7 +259,7 @@ def _compared_cloud_fits(fits: Array) -> Mapping[str, float]:
     }
 
 
-def figure_5(records: PaperRecords) -> Result:
+def figure_5(records: PaperRecords) -> ReproducedResult:
     """Fit the curves, and find the largest differences between the models."""
     runs = run_cloud_of_paper(records)
     shear, flexure, more = _largest_probability_gaps(runs)
@@ -283,7 +283,7 @@ def figure_5(records: PaperRecords) -> Result:
         "stronger than those of the paper: if (almost) all runs rock, a curve is flat or depends on a few runs. "
         "Intervals are over resampled records."
     )
-    return Result("figure-5", FIGURE_5, numbers, {"figure-5": lambda: rf.plot_fragility(runs)}, note)
+    return ReproducedResult("figure-5", FIGURE_5, numbers, {"figure-5": lambda: rf.plot_fragility(runs)}, note)
 
 
 def _largest_probability_gaps(runs: "pd.DataFrame") -> list[ResampledInterval]:
@@ -328,7 +328,7 @@ def _runs_without_rocking(runs: "pd.DataFrame") -> str:
     return f"the curves of #2 depend on the runs that do not rock: {each}, of {of}"
 
 
-def figure_6(records: PaperRecords) -> Result:
+def figure_6(records: PaperRecords) -> ReproducedResult:
     """Run the cloud, and compare the models' regressions."""
     runs = run_cloud_of_paper(records)
     note = (
@@ -337,7 +337,7 @@ def figure_6(records: PaperRecords) -> Result:
         "relatively largest. Intervals are over resampled recordings, with all of their runs."
     )
     figures = {"figure-6": lambda: rf.plot_clouds(runs, ROTATION)}
-    return Result(
+    return ReproducedResult(
         "figure-6",
         FIGURE_6,
         largest_model_differences(records, ROTATION, ROTATION_ROWS),
@@ -372,7 +372,7 @@ def _readings_of_differences(records: PaperRecords) -> Remark:
     )
 
 
-def figure_7(records: PaperRecords) -> Result:
+def figure_7(records: PaperRecords) -> ReproducedResult:
     """Run the cloud, and compare the models' regressions."""
     runs, found = run_cloud_of_paper(records), differences_between_models(records, DISPLACEMENT)
     numbers = largest_model_differences(records, DISPLACEMENT, DISPLACEMENT_ROWS)
@@ -384,10 +384,12 @@ def figure_7(records: PaperRecords) -> Result:
         "Differences of 2DOF-C or 2DOF-S from MDOF-S, for the structure and model where they are relatively largest: "
         "the text gives per cent first, and names #3. Intervals are over resampled recordings with all of their runs."
     )
-    return Result("figure-7", FIGURE_7, numbers, {"figure-7": lambda: rf.plot_clouds(runs, DISPLACEMENT)}, note)
+    return ReproducedResult(
+        "figure-7", FIGURE_7, numbers, {"figure-7": lambda: rf.plot_clouds(runs, DISPLACEMENT)}, note
+    )
 
 
-def sliding(records: PaperRecords) -> Result:
+def sliding(records: PaperRecords) -> ReproducedResult:
     """Run the structures under every third record, and compare medians of the required friction."""
     found = friction_intervals(_friction_runs(records), MODEL, "printed")
     numbers = [
@@ -399,7 +401,7 @@ def sliding(records: PaperRecords) -> Result:
         f"{MODEL}, every third record unscaled ({len(records.suite[::EVERY])} records), runs that rock and stand; "
         "Eqs. 20-22, with Eq. 22 as it is printed. Intervals are over resampled records."
     )
-    return Result(
+    return ReproducedResult(
         "sliding",
         SLIDING,
         numbers,

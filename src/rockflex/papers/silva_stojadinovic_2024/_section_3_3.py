@@ -17,7 +17,7 @@ from rockflex.papers.silva_stojadinovic_2024._comparison import (
     construction_check,
 )
 from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
-from rockflex.report import Remark, Result
+from rockflex.report import Remark, ReproducedResult
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -231,7 +231,7 @@ def _pairs_under_weaker_records(records: PaperRecords) -> "pd.DataFrame":
     return rf.run_population(suite, PAIRS, records.seed)
 
 
-def figure_8(records: PaperRecords) -> Result:
+def figure_8(records: PaperRecords) -> ReproducedResult:
     """Draw the prototypes, and check that they are within the ranges of the text."""
     pairs = first_thousand_pairs(records)
     place = "Section 3.3"
@@ -245,10 +245,10 @@ def figure_8(records: PaperRecords) -> Result:
     ]
     note = "The prototypes are drawn from these ranges, so this only checks the library."
     figures = {"figure-8": lambda: rf.plot_population(pairs)}
-    return Result("figure-8", FIGURE_8, figures=figures, note=note, checks=checks)
+    return ReproducedResult("figure-8", FIGURE_8, figures=figures, note=note, checks=checks)
 
 
-def figure_9(records: PaperRecords) -> Result:
+def figure_9(records: PaperRecords) -> ReproducedResult:
     """Compare the models pair by pair."""
     found = population_intervals(records)
     numbers = [compared_count(name, PLACE, n, found[key]) for key, (name, n) in COUNTS.items()]
@@ -270,7 +270,7 @@ def figure_9(records: PaperRecords) -> Result:
         "effect of other records. The figure shows the first thousand."
     )
     pairs = first_thousand_pairs(records)
-    return Result(
+    return ReproducedResult(
         "figure-9", FIGURE_9, numbers, {"figure-9": lambda: rf.plot_agreement(pairs)}, note,
         remarking=(partial(_measures_by_seed, records), partial(measures_under_weaker_records, records, WEAKER_ROWS)),
     )  # fmt: skip
@@ -296,7 +296,7 @@ def _measures_by_seed(records: PaperRecords) -> Remark:
     )
 
 
-def figure_13(records: PaperRecords) -> Result:
+def figure_13(records: PaperRecords) -> ReproducedResult:
     """Compare the estimates with the peaks of MDOF-S."""
     found, pairs = population_intervals(records), first_thousand_pairs(records)
     slope = found["slope, top_displacement, SRSS"]
@@ -315,7 +315,7 @@ def figure_13(records: PaperRecords) -> Result:
         "R² refers to the line of equality, as in the paper; the blue line is y = c_1 x. Our value is the median, with "
         f"the 90 % interval, of {DRAWS} draws of a thousand from {records.seeds * PAIRS} pairs, as for Figure 9."
     )
-    return Result(
+    return ReproducedResult(
         "figure-13", FIGURE_13, numbers, {"figure-13": lambda: rf.plot_modal_combination(pairs)}, note,
         remarking=(partial(measures_under_weaker_records, records, COMBINATION),),
     )  # fmt: skip

@@ -9,7 +9,7 @@ import rockflex as rf
 from rockflex._arrays import Array
 from rockflex.papers.silva_stojadinovic_2024._comparison import compared_statement, construction_check
 from rockflex.papers.silva_stojadinovic_2024._inputs import BEHAVIOURS, MARK, PaperRecords, table_1_frame, tall_frame
-from rockflex.report import Number, Result
+from rockflex.report import PublishedNumber, ReproducedResult
 
 TABLE_2 = "Formulas of the eight parameters of 2DOF-S"
 GRAVITY = 9.81
@@ -36,7 +36,7 @@ STATEMENTS = (
 )
 
 
-def table_2(_: PaperRecords) -> Result:
+def table_2(_: PaperRecords) -> ReproducedResult:
     """Compare the sums of the table with the parameters of structure #1, and some with those of the chimney."""
     frame = table_1_frame("#1")
     p, damping = frame.rocking(), 0.02
@@ -66,7 +66,7 @@ def table_2(_: PaperRecords) -> Result:
         "The table has formulas and no numbers: that our parameters follow them is a check of the library, and nothing "
         "of the paper's is reproduced by it."
     )
-    return Result("table-2", TABLE_2, note=note, checks=checks)
+    return ReproducedResult("table-2", TABLE_2, note=note, checks=checks)
 
 
 def _shear_building_first_mode(frame: rf.Frame) -> tuple[float, Array]:
@@ -92,7 +92,7 @@ def frequency_ratio_error(behaviour: str, model: str, mode: int, aspect_ratio: f
     return 100.0 * (mine / every - 1.0)
 
 
-def figure_10(_: PaperRecords) -> Result:
+def figure_10(_: PaperRecords) -> ReproducedResult:
     """Compare the models at low aspect ratios, at the gray line of the figure and at its right end."""
 
     def figure() -> object:
@@ -108,10 +108,10 @@ def figure_10(_: PaperRecords) -> Result:
             note="20 % is our reading; for flexure see Figure 12",
         )
     )  # fmt: skip
-    return Result("figure-10", FIGURE_10, numbers, {"figure-10": figure}, NOTE)
+    return ReproducedResult("figure-10", FIGURE_10, numbers, {"figure-10": figure}, NOTE)
 
 
-def _numbers_of_behaviour(behaviour: str) -> list[Number]:
+def _numbers_of_behaviour(behaviour: str) -> list[PublishedNumber]:
     beam = rf.pinned_beam("shear" if behaviour == "shear" else "flexure").ratio
     growth = min(
         frequency_ratio_error(behaviour, *few, MARK) - frequency_ratio_error(behaviour, *few, 1.0) for few in FEW
@@ -140,7 +140,7 @@ def _numbers_of_behaviour(behaviour: str) -> list[Number]:
     ]  # fmt: skip
 
 
-def _numbers_at_low_aspect_ratios(behaviour: str) -> list[Number]:
+def _numbers_at_low_aspect_ratios(behaviour: str) -> list[PublishedNumber]:
     """Check the text on lower aspect ratios at 1 and 2, since buildings do not have lower ones."""
     rise = {
         n: [
@@ -175,7 +175,7 @@ def _reason_for_excess(behaviour: str, model: str) -> str:
     )
 
 
-def figure_11(_: PaperRecords) -> Result:
+def figure_11(_: PaperRecords) -> ReproducedResult:
     """Measure the stiffness of the rocking base in a static equilibrium of the shear building."""
     frame = tall_frame("shear")
     p = frame.rocking()
@@ -194,10 +194,10 @@ def figure_11(_: PaperRecords) -> Result:
         ),
     )  # fmt: skip
     figures = {"figure-11": lambda: rf.plot_moment_rotation_laws(frame)}
-    return Result("figure-11", FIGURE_11, figures=figures, checks=checks)
+    return ReproducedResult("figure-11", FIGURE_11, figures=figures, checks=checks)
 
 
-def figure_12(_: PaperRecords) -> Result:
+def figure_12(_: PaperRecords) -> ReproducedResult:
     """Compare the zeros with those of MDOF-S."""
     numbers = tuple(
         compared_statement(
@@ -208,4 +208,6 @@ def figure_12(_: PaperRecords) -> Result:
     )  # fmt: skip
     frames = {behaviour: tall_frame(behaviour) for behaviour in BEHAVIOURS}
     note = "Errors relative to MDOF-S. The text uses words; the limits in per cent are our interpretation."
-    return Result("figure-12", FIGURE_12, numbers, {"figure-12": lambda: rf.plot_frequency_equation(frames)}, note)
+    return ReproducedResult(
+        "figure-12", FIGURE_12, numbers, {"figure-12": lambda: rf.plot_frequency_equation(frames)}, note
+    )

@@ -15,7 +15,7 @@ from rockflex.papers.silva_stojadinovic_2024._comparison import (
     printed_range,
 )
 from rockflex.papers.silva_stojadinovic_2024._inputs import TOWER, PaperRecords, table_1_frame
-from rockflex.report import Number, Remark, Result
+from rockflex.report import PublishedNumber, Remark, ReproducedResult
 
 FIGURE_14 = "Geometry of the chimney, I_θ, L_0^r and M_r"
 FUNCTIONS = 5  # of Eq. 36
@@ -51,7 +51,7 @@ TRIED: list[float] = np.linspace(0.02, STRONG, 23).tolist()  # m
 FIGURE_17 = "Structure #1 with a yield displacement of 0.075 m, rocking and fixed, El Centro"
 
 
-def figure_14(_: PaperRecords) -> Result:
+def figure_14(_: PaperRecords) -> ReproducedResult:
     """Compare the three integrals."""
     p, unit = TOWER.rocking(), math.pi * TOWER.density
     numbers = (
@@ -59,7 +59,7 @@ def figure_14(_: PaperRecords) -> Result:
         compared_number("L_0^r", "Eq. 34", "580000/3", p.l0r / unit, "π ρ_c m⁴"),
         compared_number("M_r", "Eq. 35", "17'600", p.resisting_moment / (9.81 * unit), "π ρ_c g m⁴"),
     )
-    return Result("figure-14", FIGURE_14, numbers, {"figure-14": lambda: rf.plot_tower(TOWER)})
+    return ReproducedResult("figure-14", FIGURE_14, numbers, {"figure-14": lambda: rf.plot_tower(TOWER)})
 
 
 def ritz_modes_with_slices(slices: int) -> dict[str, Array]:
@@ -132,17 +132,19 @@ def _chimney_mass(z: Array) -> Array:
     return TOWER.density * math.pi * (outer**2 - inner**2)
 
 
-def table_3(_: PaperRecords) -> Result:
+def table_3(_: PaperRecords) -> ReproducedResult:
     """Compute both sets of modes."""
     note = (
         "The table rounds some values and cuts others off, as noted in each line. The Ritz values are from one "
         "solution with the five functions of Eq. 36; iterations would approach the finite element values."
     )
     numbers = (*_numbers_of_ritz_modes(), *_numbers_of_finite_elements())
-    return Result("table-3", TABLE_3, numbers, note=note, remarking=(_remark_on_thin_slices, _remark_on_rounding))
+    return ReproducedResult(
+        "table-3", TABLE_3, numbers, note=note, remarking=(_remark_on_thin_slices, _remark_on_rounding)
+    )
 
 
-def _numbers_of_ritz_modes() -> list[Number]:
+def _numbers_of_ritz_modes() -> list[PublishedNumber]:
     p = TOWER.rocking()
     ours = {"ω": p.omega, "m*": p.effective_mass / 1e6, "h*": p.effective_height, "Γ": p.top_ordinate}
     return [
@@ -155,7 +157,7 @@ def _numbers_of_ritz_modes() -> list[Number]:
     ]  # fmt: skip
 
 
-def _numbers_of_finite_elements() -> list[Number]:
+def _numbers_of_finite_elements() -> list[PublishedNumber]:
     p = replace(TOWER, method="fe").rocking()
     mass, height, lever = p.effective_mass, p.effective_height, p.effective_mass * p.effective_height
     own = "Table 3 has 1.66 by Ritz, from above: so many finite elements cannot give more"
@@ -220,7 +222,7 @@ def _remark_on_rounding() -> Remark:
     )
 
 
-def figure_15(records: PaperRecords) -> Result:
+def figure_15(records: PaperRecords) -> ReproducedResult:
     """Run the models with the Ritz modes of Table 3."""
     motion = records.el_centro.scaled(2.0)
     runs = {model: rf.simulate(TOWER, motion, model) for model in CHIMNEY_MODELS}
@@ -232,10 +234,10 @@ def figure_15(records: PaperRecords) -> Result:
         f"the number of uplift events small without giving it; here 6DOF-S lifts {runs['6DOF-S'].n_uplifts} times."
     )
     remarking = (partial(_remark_on_sampled_peaks, runs, motion.dt), partial(_remark_on_missing_mass, motion))
-    return Result("figure-15", FIGURE_15, _numbers_of_figure_15(runs), figures, note, remarking=remarking)
+    return ReproducedResult("figure-15", FIGURE_15, _numbers_of_figure_15(runs), figures, note, remarking=remarking)
 
 
-def _numbers_of_figure_15(runs: dict[str, rf.Response]) -> list[Number]:
+def _numbers_of_figure_15(runs: dict[str, rf.Response]) -> list[PublishedNumber]:
     def error(model: str, quantity: str, against: str = "6DOF-S") -> float:
         return _peak_error(runs[model], runs[against], quantity)
 
@@ -332,7 +334,7 @@ def largest_yielding(response: rf.Response) -> float:
     return float(np.abs(response.yielding).max())
 
 
-def figure_16(records: PaperRecords) -> Result:
+def figure_16(records: PaperRecords) -> ReproducedResult:
     """Run the elastic structure, and the weak one with two yield displacements."""
     elastic = run_yielding_structure(records, "2DOF-S")
     weak, stronger = (run_yielding_structure(records, "2DOF-S-BW", value) for value in (WEAK, STRONGER))
@@ -353,7 +355,7 @@ def figure_16(records: PaperRecords) -> Result:
         f"{STRONGER} m, also shown, it has the printed top displacement, and rocks."
     )
     figures = {"figure-16": lambda: rf.plot_yielding([elastic, weak, stronger], names)}
-    return Result(
+    return ReproducedResult(
         "figure-16", FIGURE_16, numbers, figures, text, remarking=(partial(_remark_on_yield_displacements, records),)
     )
 
@@ -390,7 +392,7 @@ def _remark_on_yield_displacements(records: PaperRecords) -> Remark:
     )
 
 
-def figure_17(records: PaperRecords) -> Result:
+def figure_17(records: PaperRecords) -> ReproducedResult:
     """Run both structures."""
     fixed, rocking = (
         run_yielding_structure(records, "1DOF-fixed-BW", STRONG),
@@ -411,4 +413,6 @@ def figure_17(records: PaperRecords) -> Result:
         ),
     )  # fmt: skip
     names = [f"fixed base, $D_y$ = {STRONG} m", f"2DOF-S-BW, $D_y$ = {STRONG} m"]
-    return Result("figure-17", FIGURE_17, numbers, {"figure-17": lambda: rf.plot_yielding([fixed, rocking], names)})
+    return ReproducedResult(
+        "figure-17", FIGURE_17, numbers, {"figure-17": lambda: rf.plot_yielding([fixed, rocking], names)}
+    )

@@ -6,9 +6,9 @@ from difflib import get_close_matches
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024 import _section_3_1, _section_3_2, _section_3_3, _section_3_4, _section_4
 from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
-from rockflex.report import Result
+from rockflex.report import ReproducedResult
 
-_TARGETS: dict[str, tuple[str, Callable[[PaperRecords], Result]]] = {
+_TARGETS: dict[str, tuple[str, Callable[[PaperRecords], ReproducedResult]]] = {
     "figure-3": (_section_3_1.FIGURE_3, _section_3_1.figure_3),
     "figure-4": (_section_3_1.FIGURE_4, _section_3_1.figure_4),
     "table-1": (_section_3_2.TABLE_1, _section_3_2.table_1),
@@ -47,7 +47,7 @@ def reproduce_targets(
     targets: Sequence[str] = TARGETS,
     records: PaperRecords | None = None,
     progress: Callable[[str], None] | None = None,
-) -> list[Result]:
+) -> list[ReproducedResult]:
     """Reproduce targets, in the order of the paper.
 
     Parameters
@@ -74,7 +74,9 @@ def reproduce_targets(
     return list(_results_of_targets(wanted, given, progress or (lambda _: None)))
 
 
-def _results_of_targets(wanted: Sequence[str], records: PaperRecords, tell: Callable[[str], None]) -> Iterator[Result]:
+def _results_of_targets(
+    wanted: Sequence[str], records: PaperRecords, tell: Callable[[str], None]
+) -> Iterator[ReproducedResult]:
     for name in (target for target in TARGETS if target in wanted):
         try:
             yield _TARGETS[name][1](records)
