@@ -291,7 +291,7 @@ def test_help_has_examples():
         text = invoke(command, "--help").stdout
         assert f"rockflex {command} study.toml --dry-run" in text
         assert "--dask" in text
-    assert _study.epilog("ida").count("rockflex ida") == 3
+    assert _study.study_command_epilog("ida").count("rockflex ida") == 3
 
 
 def test_a_share_is_stored_and_nothing_reported(study, tmp_path):

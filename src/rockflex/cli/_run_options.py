@@ -10,7 +10,7 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex._schema import BoucWenKeys, GroundKeys, ImpactKeys, InitialStateKeys, SpringBedKeys
-from rockflex.cli._options import flags_of, naming
+from rockflex.cli._options import flags_of_tables, naming_flags_in_errors
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, Restitution, parse_model
 from rockflex.structure.file import parse_toml_table
@@ -25,12 +25,12 @@ from rockflex.study import (
 from rockflex.study.spec import GroundTable, RunOptionKeys, impact_law_name
 
 _INERTIA = {"base_inertia", "mat_mass"}
-_FIELDS = {f"ground.{name}": (name, flag) for name, flag in flags_of(GroundKeys).items()} | {
-    f"ground.bed.{name}": (name, flag) for name, flag in flags_of(SpringBedKeys).items()
+_FIELDS = {f"ground.{name}": (name, flag) for name, flag in flags_of_tables(GroundKeys).items()} | {
+    f"ground.bed.{name}": (name, flag) for name, flag in flags_of_tables(SpringBedKeys).items()
 }
 
 
-def make_ground(
+def make_run_ground(
     file: Path | None, in_file: dict[str, Any], flags: dict[str, Any], properties: RockingProperties
 ) -> tuple[Ground | None, dict[str, Any]]:
     """Combine the ground in a structure file with the ground given by flags, which take precedence.
@@ -56,9 +56,9 @@ def make_ground(
     """
     if not in_file and not flags:
         return None, {}
-    table = parse_toml_table(GroundTable, _merged(in_file, flags))
+    table = parse_toml_table(GroundTable, _merged_ground_options(in_file, flags))
     try:
-        with naming({key: flag for key, (name, flag) in _FIELDS.items() if name in flags}):
+        with naming_flags_in_errors({key: flag for key, (name, flag) in _FIELDS.items() if name in flags}):
             return table.under(properties), table.model_dump(exclude_none=True)
     except InputError as error:
         if flags:
@@ -66,7 +66,7 @@ def make_ground(
         raise InputError(f"{file}, {error}") from error
 
 
-def ground_lines(ground: Ground, properties: RockingProperties) -> list[str]:
+def lines_about_ground(ground: Ground, properties: RockingProperties) -> list[str]:
     """Return the ground under a structure in lines, for the head of a table."""
     lines: list[str] = []
     if ground.springs is not None:
@@ -83,9 +83,9 @@ def ground_lines(ground: Ground, properties: RockingProperties) -> list[str]:
     return lines
 
 
-def _merged(in_file: dict[str, Any], flags: dict[str, Any]) -> dict[str, Any]:
-    own = {name: flags[name] for name in flags_of(GroundKeys) if name in flags}
-    bed = {name: flags[name] for name in flags_of(SpringBedKeys) if name in flags}
+def _merged_ground_options(in_file: dict[str, Any], flags: dict[str, Any]) -> dict[str, Any]:
+    own = {name: flags[name] for name in flags_of_tables(GroundKeys) if name in flags}
+    bed = {name: flags[name] for name in flags_of_tables(SpringBedKeys) if name in flags}
     replaced = _INERTIA if own.keys() & _INERTIA else set[str]()
     merged = {name: value for name, value in in_file.items() if name not in replaced} | own
     if not bed:
@@ -93,7 +93,7 @@ def _merged(in_file: dict[str, Any], flags: dict[str, Any]) -> dict[str, Any]:
     if "springs" in merged:
         raise InputError(
             "The ground of the structure file has springs, and the command line gives a bed "
-            f"({', '.join(flags_of(SpringBedKeys)[name] for name in bed)}). Leave one of them out."
+            f"({', '.join(flags_of_tables(SpringBedKeys)[name] for name in bed)}). Leave one of them out."
         )
     merged["bed"] = merged.get("bed", {}) | bed
     if "breadth" not in merged["bed"]:
@@ -106,7 +106,7 @@ RIGID = ("rigid", "rigid-C")
 YIELDING = ("2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW")
 
 
-def describe_options(options: RunOptions, ground: dict[str, Any]) -> dict[str, Any]:
+def describe_run_options(options: RunOptions, ground: dict[str, Any]) -> dict[str, Any]:
     """Return the options that were given, for a document; `ground` has the values of the ground as they were given."""
     described: dict[str, Any] = {}
     if options.impact is not None:
@@ -119,7 +119,7 @@ def describe_options(options: RunOptions, ground: dict[str, Any]) -> dict[str, A
     return described | ({"ground": ground} if ground else {})
 
 
-def option_lines(options: RunOptions, properties: RockingProperties) -> list[str]:
+def lines_about_run_options(options: RunOptions, properties: RockingProperties) -> list[str]:
     """Return the options that were given in lines, for the head of a table of runs of a structure."""
     lines: list[str] = []
     if options.impact is not None:
@@ -134,7 +134,7 @@ def option_lines(options: RunOptions, properties: RockingProperties) -> list[str
     if options.initial is not None:
         lines.append(f"At rest at θ = {options.initial.rotation:g} rad at t = 0")
     ground = ground_under_structure(properties, options.ground)
-    return lines if ground is None else [*lines, *ground_lines(ground, properties)]
+    return lines if ground is None else [*lines, *lines_about_ground(ground, properties)]
 
 
 def make_run_options(
@@ -167,17 +167,17 @@ def make_run_options(
     InputError
         If they contradict each other, or a value is out of range.
     """
-    below = {} if "impact" in law else {name: in_file[name] for name in flags_of(ImpactKeys) if name in in_file}
-    with naming(flags_of(ImpactKeys)):
+    below = {} if "impact" in law else {name: in_file[name] for name in flags_of_tables(ImpactKeys) if name in in_file}
+    with naming_flags_in_errors(flags_of_tables(ImpactKeys)):
         chosen = parse_toml_table(RunOptionKeys, {**below, **law}).law()
-    with naming(flags_of(InitialStateKeys) | {"rotation": "--initial-rotation"}):
+    with naming_flags_in_errors(flags_of_tables(InitialStateKeys) | {"rotation": "--initial-rotation"}):
         start = InitialState(rotation=initial["initial_rotation"]) if initial else None
-    hysteresis = _bouc_wen(file, in_file.get("bouc_wen", {}), bouc_wen)
-    base, values = make_ground(file, in_file.get("ground", {}), ground, properties)
+    hysteresis = _bouc_wen_of_options(file, in_file.get("bouc_wen", {}), bouc_wen)
+    base, values = make_run_ground(file, in_file.get("ground", {}), ground, properties)
     return RunOptions(impact=chosen, bouc_wen=hysteresis, initial=start, ground=base), values
 
 
-def choose_models(
+def choose_run_models(
     given: Sequence[str] | None, properties: RockingProperties, options: RunOptions, *, by_flag: bool
 ) -> list[str]:
     """Return the given labels, split at commas, or the usual ones, after checking that they suit the rest.
@@ -235,18 +235,20 @@ def parse_work_limit(given: str | None) -> float | None:
     InputError
         If the text is neither a positive number nor "none".
     """
-    with naming({"work_limit": "--work-limit"}):
+    with naming_flags_in_errors({"work_limit": "--work-limit"}):
         return WORK_LIMIT if given is None else checked_work_limit(number_or_word(given))
 
 
-def _bouc_wen(file: Path | None, in_file: dict[str, float], flags: dict[str, float]) -> BoucWen | None:
+def _bouc_wen_of_options(file: Path | None, in_file: dict[str, float], flags: dict[str, float]) -> BoucWen | None:
     values = {**in_file, **flags}
     if not values:
         return None
     if "yield_displacement" not in values:
         raise InputError("The hysteresis needs its yield displacement. Give --yield-displacement DY in m.")
     try:
-        with naming({name: flag for name, flag in flags_of(BoucWenKeys).items() if name in flags}):
+        with naming_flags_in_errors(
+            {name: flag for name, flag in flags_of_tables(BoucWenKeys).items() if name in flags}
+        ):
             return BoucWen(**values)
     except InputError as error:
         if flags:
