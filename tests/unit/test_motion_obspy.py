@@ -110,11 +110,11 @@ def test_without_obspy(tmp_path, monkeypatch):
 def test_the_page_reads_no_foreign_formats(obspy, tmp_path):
     pytest.importorskip("starlette")
     from rockflex.web._refusal import Refusal
-    from rockflex.web._uploads import read_record
+    from rockflex.web._uploads import read_uploaded_record
 
     content = write(obspy, tmp_path / "a.mseed", "HNE").read_bytes()
     with pytest.raises(Refusal) as caught:
-        read_record("a.mseed", content, "g", None)
+        read_uploaded_record("a.mseed", content, "g", None)
     assert "a.mseed is a binary file" in caught.value.errors["record.upload"]
 
 

@@ -35,11 +35,11 @@ def serve(
 ) -> None:
     """Serve the web page: structure, earthquake, response, fragility and design."""
     from rockflex.web import serve as start
-    from rockflex.web._hosts import address_of, is_loopback
+    from rockflex.web._hosts import is_loopback_host, page_address
 
-    if not is_loopback(host):
+    if not is_loopback_host(host):
         print_remark(f"Everyone who can reach {host} can use the page: it has no passwords.")
-    print_remark(f"{address_of(host, port)} (stop with Ctrl-C)")
+    print_remark(f"{page_address(host, port)} (stop with Ctrl-C)")
     with suppress(KeyboardInterrupt):  # the usual way to stop it
         start(port, host, names=name or (), open_browser=open_browser)
 

@@ -66,8 +66,8 @@ def parse_target_spectrum(text: str, damping: float | None) -> "TargetSpectrum":
         return ec8_spectrum(**_renamed_target_arguments(given))
     if code == "ec8-2024":
         given = _read_target_items(code, items, {"s_alpha": _target_acceleration, "s_beta": _target_acceleration}, {
-            "site": _target_text, "f_alpha": _target_number, "f_beta": _target_number, "topography": _target_number,
-        "damping": _target_number,
+            "site": _target_text, "f_alpha": _target_number, "f_beta": _target_number,
+            "topography": _target_number, "damping": _target_number,
         })  # fmt: skip
         factors = [given.pop(key, None) for key in ("f_alpha", "f_beta")]
         if (factors[0] is None) != (factors[1] is None):
