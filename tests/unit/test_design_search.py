@@ -32,7 +32,7 @@ from drawing import drawn
 from rockflex.cli import app
 from rockflex.study import ChunkedPlan
 from rockflex.study.design import DesignStudy, stored_design_search
-from rockflex.study.design._search import MarginSurface
+from rockflex.study.design._design_search import MarginSurface
 
 
 @pytest.fixture(scope="module")

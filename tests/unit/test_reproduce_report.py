@@ -31,7 +31,7 @@ from rockflex.report import (
     report_to_markdown,
     write_publication_report,
 )
-from rockflex.report._write import inline_svg
+from rockflex.report._publication_files import inline_svg
 
 MEANINGS = {str(verdict): verdict.meaning for verdict in Verdict}
 KINDS = {str(kind): kind.meaning for kind in RemarkKind}

@@ -12,7 +12,6 @@ import rockflex as rf
 from report_case import FRAME, HELD, PIER, PULSE, SPRINGS, runs
 from report_page import number, read
 from rockflex._number_format import rounded_number
-from rockflex.report.run import _checks, _page
 
 MODELS = ("2DOF-S", "MDOF-S", "fixed")
 SIZES = {
@@ -145,7 +144,7 @@ def test_what_would_take_minutes_is_left_out(tmp_path, monkeypatch):
     found = runs(HELD, PULSE, ["2DOF-S"], ground=rf.Ground(springs=SPRINGS.springs, base_inertia=5e5))
     text = read(rf.write_report(found, tmp_path / "r.html")).text
     assert "not computed" not in text
-    monkeypatch.setattr(_checks, "MAX_WORK", found[0].time.size * SPRINGS.springs.n - 1)
+    monkeypatch.setattr(_run_checks, "MAX_WORK", found[0].time.size * SPRINGS.springs.n - 1)
     monkeypatch.setattr(rf.History, "required_friction", property(lambda _: pytest.fail("computed")))
     reader = read(rf.write_report(found, tmp_path / "r.html"))
     assert [cell[0] for cell in reader.tables["checks"][1]].count("not computed") == 2
@@ -332,7 +331,7 @@ def test_an_earlier_page_survives_an_error(one, tmp_path, monkeypatch):
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(_page, "write_file_atomically", full)
+    monkeypatch.setattr(_report_page, "write_file_atomically", full)
     with pytest.raises(rf.InputError, match=r"Cannot write to .*: No space left on device"):
         rf.write_report(one, path)
     assert path.read_bytes() == before

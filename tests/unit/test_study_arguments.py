@@ -16,8 +16,8 @@ from rockflex.cli import app
 from rockflex.models import parse_model
 from rockflex.structure.file import parse_toml_table
 from rockflex.study._arguments import expand_scale_range, parse_scale_range
-from rockflex.study._case import RunOptions, yielding_model_labels
-from rockflex.study._tables import OF_ELEMENTS, OF_GROUND
+from rockflex.study._prepared_case import RunOptions, yielding_model_labels
+from rockflex.study._result_tables import OF_ELEMENTS, OF_GROUND
 from rockflex.study.spec import RunOptionKeys
 
 STRUCTURE = str(Path(rf.__file__).parents[2] / "examples" / "structure_1.toml")

@@ -12,7 +12,7 @@ from design_case import CONTENT, FRAME, HEIGHT, LEVELS, PROPERTIES, STRUCTURE, S
 from rockflex.study import ChunkedPlan
 from rockflex.study.design import DesignStudy
 from rockflex.study.design._designs import checked_half_widths, designs_of_structure
-from rockflex.study.design._fit import design_limit_state
+from rockflex.study.design._exceedance_fit import design_limit_state
 
 CURVE = {"im": [0.5, 30.0], "rate": [0.1, 2e-5]}
 SPECTRAL = {"level": None, "measure": "sa_t1", "hazard": CURVE}

@@ -5,7 +5,12 @@ numbers.
 """
 
 from rockflex.report._document import ConstructionCheck, PublicationReport, PublishedNumber, Remark, ReproducedResult
-from rockflex.report._write import report_numbers_to_csv, report_to_html, report_to_markdown, write_publication_report
+from rockflex.report._publication_files import (
+    report_numbers_to_csv,
+    report_to_html,
+    report_to_markdown,
+    write_publication_report,
+)
 from rockflex.report.run import write_report
 
 __all__ = [

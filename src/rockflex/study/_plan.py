@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, ClassVar, SupportsIndex, TypeVar
 
 from rockflex._checks import checked_whole_number
 from rockflex.motion import Suite, check_horizontal_component
+from rockflex.study._result_tables import ArrowTable, Columns, Row, table_of_rows, tables_to_dataframe
 from rockflex.study._run_matrix import StudyMatrix, record_checksums
-from rockflex.study._tables import ArrowTable, Columns, Row, table_of_rows, tables_to_dataframe
 from rockflex.study.parallel import map_runs
 from rockflex.study.progress import ProgressChoice, reporting_progress
 

@@ -30,8 +30,8 @@ from rockflex.study._arguments import (
     checked_structures,
     rocking_properties_of,
 )
-from rockflex.study._case import PreparedCase, RunOptions, Scaled, peaks_of_runs
-from rockflex.study._tables import Columns, Row, columns_of_kind, result_columns
+from rockflex.study._prepared_case import PreparedCase, RunOptions, Scaled, peaks_of_runs
+from rockflex.study._result_tables import Columns, Row, columns_of_kind, result_columns
 
 Demands = Mapping[str, Callable[[Response], float]]
 

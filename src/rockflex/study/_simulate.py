@@ -42,9 +42,9 @@ from rockflex.study._arguments import (
     rocking_properties_of,
     wants_history,
 )
-from rockflex.study._case import PreparedCase, RunOptions, peaks_of_runs
+from rockflex.study._prepared_case import PreparedCase, RunOptions, peaks_of_runs
+from rockflex.study._result_tables import RESULTS, ResultColumns
 from rockflex.study._run_matrix import RunMatrix
-from rockflex.study._tables import RESULTS, ResultColumns
 from rockflex.study.parallel import map_runs_in_order, worker_count
 from rockflex.study.progress import ProgressChoice, reporting_progress
 

@@ -29,7 +29,7 @@ from rockflex.study._arguments import (
     rocking_properties_of,
     type_description,
 )
-from rockflex.study._case import RunOptions
+from rockflex.study._prepared_case import RunOptions
 from rockflex.study._simulate import simulate_many
 from rockflex.study.parallel import map_runs_in_order
 from rockflex.study.progress import ProgressChoice, reporting_progress

@@ -16,8 +16,8 @@ from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import scalable_measure
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, Structures
 from rockflex.study._plan import CrossPlan, run_plan
+from rockflex.study._result_tables import Columns, Row
 from rockflex.study._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
-from rockflex.study._tables import Columns, Row
 from rockflex.study.progress import ProgressChoice
 from rockflex.study.spec import FreeVibration, StructuresStudySpec
 

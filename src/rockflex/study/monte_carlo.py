@@ -23,8 +23,8 @@ from rockflex.study._random_variables import (
     names_in_formula,
     uniform_draws,
 )
+from rockflex.study._result_tables import RESULTS, Columns, Row, columns_of_kind
 from rockflex.study._run_matrix import StudyMatrix, rows_of_matrix_runs
-from rockflex.study._tables import RESULTS, Columns, Row, columns_of_kind
 from rockflex.study.cloud import Factors
 from rockflex.study.spec import GroundTable, RunsStudySpec
 

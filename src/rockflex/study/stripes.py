@@ -13,8 +13,8 @@ from rockflex.fragility import NOMINAL, OVERTURNING, TENDON_YIELD, UPLIFT, Limit
 from rockflex.motion import scalable_measure
 from rockflex.study._arguments import checked_positive_numbers
 from rockflex.study._plan import CrossPlan
+from rockflex.study._result_tables import Columns, Row
 from rockflex.study._run_matrix import StudyMatrix
-from rockflex.study._tables import Columns, Row
 from rockflex.study.spec import StructuresStudySpec
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from rockflex.modal import Ground, ModalProperties, Pivot, RockingProperties, ad
 from rockflex.structure import structure_warnings
 from rockflex.structure._from_matrices import DegreesOfFreedom
 from rockflex.structure.file import Structure, StructureEntry, StructureTable, TomlTable
-from rockflex.structure.file._tables import MatricesTable, ModesTable
+from rockflex.structure.file._structure_tables import MatricesTable, ModesTable
 from rockflex.study.spec import GroundTable
 from rockflex.web._refusal import Refusal, errors_as_refusals
 

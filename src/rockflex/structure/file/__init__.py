@@ -1,6 +1,6 @@
 """Structures in TOML files."""
 
-from rockflex.structure.file._entry import (
+from rockflex.structure.file._structure_entry import (
     ELEMENTS,
     KINDS,
     ElementTable,
@@ -10,7 +10,8 @@ from rockflex.structure.file._entry import (
     read_structure,
     read_toml_file,
 )
-from rockflex.structure.file._table import (
+from rockflex.structure.file._structure_tables import Built, PartTable, Structure, StructureTable
+from rockflex.structure.file._toml_table import (
     TomlTable,
     first_table_in_annotation,
     members_of_annotation,
@@ -21,7 +22,6 @@ from rockflex.structure.file._table import (
     toml_problem_sentences,
     valid_value_description,
 )
-from rockflex.structure.file._tables import Built, PartTable, Structure, StructureTable
 
 __all__ = [
     "ELEMENTS",

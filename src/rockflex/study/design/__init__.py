@@ -1,10 +1,8 @@
 """Design of a base: its width, its tendons and its dissipators (Section 4.1)."""
 
-from rockflex.study.design._best import BestDesign, InterpolatedMargins, best_design, trade_off
-from rockflex.study.design._designs import DesignSearch, Scaling, TendonLevel, checked_design_factors
-from rockflex.study.design._requirements import DesignCost, Requirement, checked_requirements, requirement_margins
-from rockflex.study.design._search import DesignSearchPlan, search_design
-from rockflex.study.design._study import (
+from rockflex.study.design._best_design import BestDesign, InterpolatedMargins, best_design, trade_off
+from rockflex.study.design._design_search import DesignSearchPlan, search_design
+from rockflex.study.design._design_study import (
     DesignPlan,
     DesignStudy,
     design_tables_by_limit,
@@ -12,7 +10,9 @@ from rockflex.study.design._study import (
     stored_design_limits,
     stored_design_search,
 )
-from rockflex.study.design._table import design_table, smallest_width
+from rockflex.study.design._design_table import design_table, smallest_width
+from rockflex.study.design._designs import DesignSearch, Scaling, TendonLevel, checked_design_factors
+from rockflex.study.design._requirements import DesignCost, Requirement, checked_requirements, requirement_margins
 
 __all__ = [
     "BestDesign",

@@ -10,7 +10,12 @@ from rockflex._arrays import Array
 from rockflex._checks import checked_in_range, checked_positive
 from rockflex._errors import InputError, SolverError
 from rockflex.fragility import HazardCurve, limit_state_label
-from rockflex.study.design._fit import DesignRuns, ShakingLevel, check_design_limit, check_measure_of_record_alone
+from rockflex.study.design._exceedance_fit import (
+    DesignRuns,
+    ShakingLevel,
+    check_design_limit,
+    check_measure_of_record_alone,
+)
 
 if TYPE_CHECKING:
     import pandas as pd

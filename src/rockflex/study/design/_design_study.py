@@ -16,9 +16,11 @@ from rockflex.models import BoucWen, ImpactLaw
 from rockflex.structure.file import StructureEntry, TomlTable
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, RockingStructure, type_description
 from rockflex.study._plan import run_plan
+from rockflex.study._result_tables import Columns, Row
 from rockflex.study._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
-from rockflex.study._tables import Columns, Row
 from rockflex.study.cloud import CloudPlan, Factors
+from rockflex.study.design._design_search import DesignSearchPlan
+from rockflex.study.design._design_table import design_table
 from rockflex.study.design._designs import (
     BaseDesign,
     DesignSearch,
@@ -28,7 +30,7 @@ from rockflex.study.design._designs import (
     checked_half_widths,
     designs_of_structure,
 )
-from rockflex.study.design._fit import (
+from rockflex.study.design._exceedance_fit import (
     check_design_limit,
     check_hazard_damping,
     check_measure_of_record_alone,
@@ -36,8 +38,6 @@ from rockflex.study.design._fit import (
     first_damping_column,
 )
 from rockflex.study.design._requirements import DesignCost, Requirement, checked_requirements
-from rockflex.study.design._search import DesignSearchPlan
-from rockflex.study.design._table import design_table
 from rockflex.study.progress import ProgressChoice
 from rockflex.study.spec import FreeVibration, StructuresStudySpec, validator_of_check
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rockflex._cases import runs_by_case
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.response import NAMES, Response, complete_of, leaves_range
-from rockflex.study._case import RunPeaks
+from rockflex.study._prepared_case import RunPeaks
 
 if TYPE_CHECKING:
     import pandas as pd

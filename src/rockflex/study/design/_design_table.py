@@ -10,7 +10,7 @@ from rockflex._arrays import Array
 from rockflex._checks import checked_positive
 from rockflex._errors import InputError
 from rockflex.fragility import HazardCurve
-from rockflex.study.design._fit import (
+from rockflex.study.design._exceedance_fit import (
     ShakingLevel,
     check_confidence,
     check_design_limit,

@@ -11,8 +11,9 @@ from rockflex._arrays import Array, Bools
 from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError
 from rockflex._values import Value
+from rockflex.study.design._design_search import MarginSurface
 from rockflex.study.design._designs import VARIABLES
-from rockflex.study.design._fit import check_confidence, check_hazard_damping
+from rockflex.study.design._exceedance_fit import check_confidence, check_hazard_damping
 from rockflex.study.design._requirements import (
     DesignCost,
     Requirement,
@@ -20,7 +21,6 @@ from rockflex.study.design._requirements import (
     requirement_margins,
     requirement_values,
 )
-from rockflex.study.design._search import MarginSurface
 
 if TYPE_CHECKING:
     import pandas as pd

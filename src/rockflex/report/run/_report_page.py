@@ -17,16 +17,8 @@ from rockflex._files import checked_file_path, write_file_atomically
 from rockflex._shown import number_with_noun, shortened, shown
 from rockflex._versions import package_versions
 from rockflex.motion import GroundMotion
-from rockflex.report._write import inline_svg, jinja_templates_in
-from rockflex.report.run._checks import (
-    ground_friction_range,
-    has_bearing_area,
-    labels_of_long_runs,
-    run_check_legend,
-    run_check_table,
-)
-from rockflex.report.run._runs import ReportedRuns, checked_reported_runs
-from rockflex.report.run._tables import (
+from rockflex.report._publication_files import inline_svg, jinja_templates_in
+from rockflex.report.run._report_tables import (
     DAGGER,
     ReportedRecord,
     ReportFact,
@@ -39,6 +31,14 @@ from rockflex.report.run._tables import (
     reported_record,
     structure_facts,
     structure_kind_text,
+)
+from rockflex.report.run._reported_runs import ReportedRuns, checked_reported_runs
+from rockflex.report.run._run_checks import (
+    ground_friction_range,
+    has_bearing_area,
+    labels_of_long_runs,
+    run_check_legend,
+    run_check_table,
 )
 from rockflex.response import Response, friction_coefficient, springs_of, warnings_of
 

@@ -25,7 +25,7 @@ from rockflex.structure import (
     rigid_block,
 )
 from rockflex.structure._structure import Structure
-from rockflex.structure.file._table import TomlTable
+from rockflex.structure.file._toml_table import TomlTable
 
 Shape = Literal["rectangle", "box", "circle", "tube"]
 _SIZES: dict[str, tuple[Callable[..., Section], tuple[str, ...]]] = {

@@ -13,7 +13,7 @@ from rockflex._files import checked_file_path
 from rockflex._shown import shown
 from rockflex._versions import git_commit, package_versions
 from rockflex.engine import VECTOR_LEVEL
-from rockflex.kinds._kinds import study_kind_named
+from rockflex.kinds._study_kinds import study_kind_named
 from rockflex.structure.file import read_toml_file
 from rockflex.study import ChunkedPlan, StudySpec, map_chunks, tables_to_dataframe
 from rockflex.study.folders import LEVEL, PartMaker, StudyFolder, StudyPart

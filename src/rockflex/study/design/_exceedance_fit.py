@@ -33,7 +33,7 @@ from rockflex.fragility import (
 )
 from rockflex.modal import RockingProperties
 from rockflex.motion import scalable_measure
-from rockflex.study._tables import RESULTS
+from rockflex.study._result_tables import RESULTS
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -16,10 +16,10 @@ from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Motions, RockingStructure, checked_scale_factors
 from rockflex.study._plan import ChunkedPlan, run_plan
+from rockflex.study._result_tables import Columns, Row
 from rockflex.study._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
-from rockflex.study._tables import Columns, Row
 from rockflex.study.design._designs import VARIABLES, DesignSearch, Point, total_dissipator_force
-from rockflex.study.design._fit import check_hazard_damping, design_limit_state, first_damping_column
+from rockflex.study.design._exceedance_fit import check_hazard_damping, design_limit_state, first_damping_column
 from rockflex.study.design._requirements import (
     DesignCost,
     Requirement,

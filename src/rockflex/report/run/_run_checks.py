@@ -7,8 +7,7 @@ from functools import partial
 
 from rockflex._errors import InputError, SolverError
 from rockflex._number_format import rounded_number
-from rockflex.report.run._runs import ReportedRuns
-from rockflex.report.run._tables import (
+from rockflex.report.run._report_tables import (
     ReportCell,
     ReportTable,
     ground_friction_range,
@@ -16,6 +15,7 @@ from rockflex.report.run._tables import (
     starts_uplifted,
     value_cell,
 )
+from rockflex.report.run._reported_runs import ReportedRuns
 from rockflex.response import BALANCED, IMPACT_WINDOW, History, Response, springs_of
 
 NOT_COMPUTED = "not computed"

@@ -23,7 +23,7 @@ from rockflex.modal import (
 )
 from rockflex.models import Restitution, RockingModel, SidedRestitution
 from rockflex.motion import GroundMotion
-from rockflex.report.run._runs import ReportedRuns
+from rockflex.report.run._reported_runs import ReportedRuns
 from rockflex.response import History, Response, rotation_at_rest, springs_of
 
 MAX_MODES = 4  # modes

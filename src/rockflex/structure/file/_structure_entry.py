@@ -15,8 +15,7 @@ from rockflex._shown import shortened
 from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.structure import Eccentric, Restrained
 from rockflex.structure._from_matrices import matrix_file_checksum
-from rockflex.structure.file._table import TomlTable, first_table_in_annotation, parse_toml_table
-from rockflex.structure.file._tables import (
+from rockflex.structure.file._structure_tables import (
     BeamTable,
     Built,
     CantileverTable,
@@ -31,6 +30,7 @@ from rockflex.structure.file._tables import (
     TaperedTowerTable,
     WallFrameTable,
 )
+from rockflex.structure.file._toml_table import TomlTable, first_table_in_annotation, parse_toml_table
 
 _POST_YIELD_RATIO = "the stiffness after yielding over the elastic one"
 _POSITION = SchemaKey("the distance to the right of the axis of the masses", "m")
