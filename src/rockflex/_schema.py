@@ -45,7 +45,7 @@ class SchemaKey:
 
     @property
     def expected(self) -> str:
-        """What the value must be, and how it is written."""
+        """Return the description of a valid value, and its form in a file."""
         return self.form.format(self.description, unit=self.unit and f" in {self.unit}")
 
 

@@ -12,6 +12,7 @@ import rockflex as rf
 from report_case import FRAME, HELD, PIER, PULSE, SPRINGS, runs
 from report_page import number, read
 from rockflex._number_format import rounded_number
+from rockflex.report.run import _report_page, _run_checks
 
 MODELS = ("2DOF-S", "MDOF-S", "fixed")
 SIZES = {

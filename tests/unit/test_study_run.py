@@ -14,7 +14,7 @@ import rockflex as rf
 from builders import frame_values
 from rockflex import InputError
 from rockflex.engine import VECTOR_LEVEL
-from rockflex.kinds import KINDS, StudyFindings, study_kind_named
+from rockflex.kinds import KINDS, StudyFindings, _run_study, study_kind_named
 from rockflex.structure.file import StructureEntry
 from rockflex.study import ChunkedPlan, StudySpec
 

@@ -25,7 +25,7 @@ Figures: TypeAlias = Iterator[tuple[str, Callable[[], Any]]]  # name of the file
 
 @dataclass
 class StudyFindings:
-    """What is reported of a study: titled tables, fits that could not be made, and remarks."""
+    """The report of a study: titled tables, fits that could not be made, and remarks."""
 
     tables: dict[str, list[Row]] = field(default_factory=dict[str, list[Row]])
     unfitted: list[str] = field(default_factory=list[str])
@@ -392,7 +392,7 @@ def _report_search(study: Any, runs: Runs, found: StudyFindings) -> None:
 
 
 def _searched_design_row(row: Mapping[Any, Any], labels: list[str]) -> dict[str, Any]:
-    """What is told of a design, with the values of some requirements."""
+    """Return the row of a design in the report, with the values of some requirements."""
     return {
         "design": row["structure"],
         "governs": row["governs"],

@@ -29,7 +29,7 @@ class ChunkedPlan(ABC):
     """Whether `n_runs` is the number of runs, and not only an upper bound."""
 
     units: ClassVar[str] = "runs"
-    """What the units are, in the plural."""
+    """The name of the units, in the plural."""
 
     def __init__(self, motions: Suite, n_units: int, per_chunk: int) -> None:
         check_horizontal_component(*motions)

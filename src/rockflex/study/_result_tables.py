@@ -160,7 +160,7 @@ class PivotLifts(NamedTuple):
 
     @property
     def warnings(self) -> list[str]:
-        """What to tell of these runs, a text each."""
+        """Warnings about these runs, one text each."""
         found: list[str] = []
         if self.lifting:
             found.append(

@@ -35,7 +35,7 @@ FACTS = {
     "half_width": "the half width B of the base in m",
     "l0r_g": "the moment L_0^r g of the weight, a radian, in N m",
 }
-"""What formulas of tendons, elements and the ground may use besides the variables."""
+"""Properties that formulas of tendons, elements and the ground may use besides the variables."""
 
 Place = tuple[str | int, ...]
 

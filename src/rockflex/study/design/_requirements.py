@@ -135,7 +135,7 @@ class Requirement:
 
     @property
     def asked(self) -> str:
-        """What `target` is."""
+        """The quantity of `target`."""
         return "P" if self.hazard is None else "annual rate"
 
     def value(self, runs: "pd.DataFrame") -> float:

@@ -377,7 +377,7 @@ class StudyFolder:
 
     @property
     def maker(self) -> PartMaker:
-        """What makes this study's parts from tables, in any process, for `add`."""
+        """The maker of the parts of this study from tables, in any process, for `add`."""
         return PartMaker(self.manifest.study, self.manifest.versions)
 
     def add(self, part: StudyPart) -> Path:

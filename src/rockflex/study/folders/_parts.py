@@ -48,7 +48,7 @@ class DamagedPart:
 
 @dataclass(frozen=True)
 class PartMaker:
-    """What makes the parts of a study; small and picklable, so that any process can make them, without the folder.
+    """The maker of the parts of a study: small and picklable, so that any process can make them without the folder.
 
     `study` is the digest of the study, `versions` are those that every part records.
     """
