@@ -60,8 +60,8 @@ def test_the_lock_goes_with_its_object(tmp_path: Path) -> None:
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
 def test_a_forked_child_does_not_take_the_lock_along(tmp_path: Path) -> None:
     program = (
-        "import os, sys\nfrom pathlib import Path\nfrom rockflex.study.folders._lock import Lock\n"
-        "lock = Lock.acquire(Path(sys.argv[1]))\npid = os.fork()\n"
+        "import os, sys\nfrom pathlib import Path\nfrom rockflex.study.folders._lock import FolderLock\n"
+        "lock = FolderLock.acquire(Path(sys.argv[1]))\npid = os.fork()\n"
         "if not pid:\n    lock.release(); os._exit(0)\n"
         "os.waitpid(pid, 0); lock.check(); print('held')"
     )
@@ -154,9 +154,9 @@ def test_of_many_that_find_a_dead_lock_one_gets_it(tmp_path: Path) -> None:
     path = tmp_path / "lock"
     path.write_text(holder(pid=dead_pid()))
     program = (
-        "import sys, time\nfrom pathlib import Path\nfrom rockflex.study.folders._lock import Lock\n"
+        "import sys, time\nfrom pathlib import Path\nfrom rockflex.study.folders._lock import FolderLock\n"
         "from rockflex import InputError\nsys.stdin.readline()\n"
-        "try:\n    lock = Lock.acquire(Path(sys.argv[1]))\n    print('mine', flush=True)\n"
+        "try:\n    lock = FolderLock.acquire(Path(sys.argv[1]))\n    print('mine', flush=True)\n"
         "    sys.stdin.readline(); lock.check()\n"
         "except InputError:\n    print('refused', flush=True)"
     )

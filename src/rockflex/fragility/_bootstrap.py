@@ -235,8 +235,8 @@ def bootstrap_weights(groups: Integers, n: int, seed: int) -> Array:
     Examples
     --------
     >>> import numpy as np
-    >>> from rockflex.fragility import resample_weights
-    >>> weights = resample_weights(np.array([0, 0, 1]), n=20, seed=0)
+    >>> from rockflex.fragility import bootstrap_weights
+    >>> weights = bootstrap_weights(np.array([0, 0, 1]), n=20, seed=0)
     >>> weights.shape
     (20, 3)
     >>> bool((weights[:, 0] + weights[:, 2] == 2.0).all())

@@ -370,10 +370,10 @@ def measure_damping_of_runs(runs: "pd.DataFrame", measure: str) -> float | None:
     Examples
     --------
     >>> import pandas as pd
-    >>> from rockflex.fragility import damping_of
+    >>> from rockflex.fragility import measure_damping_of_runs
     >>> runs = pd.DataFrame({"zeta_1": [0.02, 0.02]})
-    >>> damping_of(runs, "pgv"), damping_of(runs, "sa_t1"), damping_of(runs, "sa_t1_5")
-    (None, 0.02, 0.05)
+    >>> [measure_damping_of_runs(runs, measure) for measure in ("pgv", "sa_t1", "sa_t1_5")]
+    [None, 0.02, 0.05]
     """
     if measure == "sa_t1_5":
         return HAZARD_DAMPING

@@ -73,10 +73,10 @@ def rotation_limit_state(rotation: float, name: str = "rotation", label: str = "
 
     Examples
     --------
-    >>> from rockflex.fragility import beyond
-    >>> beyond(0.02).label
+    >>> from rockflex.fragility import rotation_limit_state
+    >>> rotation_limit_state(0.02).label
     '0.02 rad'
-    >>> bool(beyond(0.02).exceeded({"max_rotation": 0.03, "status": "rocking"}))
+    >>> bool(rotation_limit_state(0.02).exceeded({"max_rotation": 0.03, "status": "rocking"}))
     True
     """
 
@@ -94,10 +94,10 @@ def residual_rotation_limit_state(rotation: float) -> LimitState:
 
     Examples
     --------
-    >>> from rockflex.fragility import residual_beyond
-    >>> residual_beyond(0.005).label
+    >>> from rockflex.fragility import residual_rotation_limit_state
+    >>> residual_rotation_limit_state(0.005).label
     'residual 0.005 rad'
-    >>> bool(residual_beyond(0.005).exceeded({"residual_rotation": -0.007, "status": "rocking"}))
+    >>> bool(residual_rotation_limit_state(0.005).exceeded({"residual_rotation": -0.007, "status": "rocking"}))
     True
     """
 
@@ -126,8 +126,8 @@ def rocked_runs(runs: Any, threshold: float = ROCKED) -> Any:
 
     Examples
     --------
-    >>> from rockflex.fragility import rocked
-    >>> [bool(rocked({"max_rotation": 0.003, "status": status})) for status in ("no_uplift", "rocking")]
+    >>> from rockflex.fragility import rocked_runs
+    >>> [bool(rocked_runs({"max_rotation": 0.003, "status": status})) for status in ("no_uplift", "rocking")]
     [False, True]
     """
     return UPLIFT.exceeded(runs) & (runs["max_rotation"] > threshold)
@@ -162,8 +162,8 @@ def limit_state_label(limit: float | str) -> str:
 
     Examples
     --------
-    >>> from rockflex.fragility import limit_label
-    >>> limit_label(0.02), limit_label("overturning")
+    >>> from rockflex.fragility import limit_state_label
+    >>> limit_state_label(0.02), limit_state_label("overturning")
     ('0.02 rad', 'overturning')
     """
     return limit if isinstance(limit, str) else rotation_limit_state(limit).label
@@ -184,8 +184,8 @@ def observed_exceedance_fractions(im: Array, exceeded: Bools, groups: int) -> li
     Examples
     --------
     >>> import numpy as np
-    >>> from rockflex.fragility import observed_fractions
-    >>> found = observed_fractions(np.array([0.4, 0.1, 0.1, 0.4]), np.array([True, False, False, False]), 2)
+    >>> from rockflex.fragility import observed_exceedance_fractions
+    >>> found = observed_exceedance_fractions(np.array([0.4, 0.1, 0.1, 0.4]), np.array([True, False, False, False]), 2)
     >>> [(round(at, 3), share) for at, share in found]
     [(0.1, 0.0), (0.4, 0.5)]
     """

@@ -190,8 +190,8 @@ class PublicationReport:
 
     Examples
     --------
-    >>> from rockflex.report import Document
-    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> from rockflex.report import PublicationReport
+    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
     >>> document.counts
     {'met': 0}
     """

@@ -60,9 +60,9 @@ def report_to_html(document: PublicationReport, drawings: Mapping[str, str]) -> 
 
     Examples
     --------
-    >>> from rockflex.report import Document, to_html
-    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> "<h1>A title</h1>" in to_html(document, drawings={})
+    >>> from rockflex.report import PublicationReport, report_to_html
+    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> "<h1>A title</h1>" in report_to_html(document, drawings={})
     True
     """
     from markupsafe import Markup, escape
@@ -98,9 +98,9 @@ def report_to_markdown(document: PublicationReport) -> str:
 
     Examples
     --------
-    >>> from rockflex.report import Document, to_markdown
-    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> to_markdown(document).splitlines()[0]
+    >>> from rockflex.report import PublicationReport, report_to_markdown
+    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> report_to_markdown(document).splitlines()[0]
     '# A title'
     """
     counts = document.counts
@@ -171,9 +171,9 @@ def report_numbers_to_csv(document: PublicationReport) -> str:
 
     Examples
     --------
-    >>> from rockflex.report import Document, to_csv
-    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> to_csv(document).split(",")[:3]
+    >>> from rockflex.report import PublicationReport, report_numbers_to_csv
+    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> report_numbers_to_csv(document).split(",")[:3]
     ['target', 'place', 'name']
     """
     out = io.StringIO()
@@ -214,9 +214,9 @@ def write_publication_report(
     --------
     >>> import tempfile
     >>> from pathlib import Path
-    >>> from rockflex.report import Document, write_document
-    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> [path.name for path in write_document(document, Path(tempfile.mkdtemp()))]
+    >>> from rockflex.report import PublicationReport, write_publication_report
+    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> [path.name for path in write_publication_report(document, Path(tempfile.mkdtemp()))]
     ['report.html', 'report.md', 'numbers.csv']
     """
     from rockflex.plot import save_figure
