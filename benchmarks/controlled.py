@@ -8,7 +8,7 @@ from timing import frame, least, milliseconds
 
 import rockflex as rf
 from rockflex.models import parse_model
-from rockflex.study import Case
+from rockflex.study import PreparedCase
 from twins.controlled import Bar, ControlledTwin
 
 SCALES = (1.0, 1.25, 1.5, 1.75, 2.0)
@@ -21,7 +21,7 @@ def table(suite: rf.Suite) -> Table:
     motions = [suite[k].scaled(scale) for k in range(0, len(suite), 11) for scale in SCALES]
     one, other = (nanoseconds_a_sample(structure, motions) for structure in (free, held))
     motion = suite["FF-1-a"].scaled(1.5)
-    engine = Case(parse_model("MDOF-S").of(held.rocking()), 0.0).engine
+    engine = PreparedCase(parse_model("MDOF-S").of(held.rocking()), 0.0).engine
     kernel = least(lambda: engine.run(motion.acceleration, motion.dt), 50)
     twin = twin_of(held)
     started = time.perf_counter()
@@ -49,7 +49,7 @@ def elements(structure: rf.Frame) -> list[rf.Tendon | rf.YieldingDissipator]:
 
 def nanoseconds_a_sample(structure: rf.Frame | rf.Restrained, motions: list[rf.GroundMotion]) -> float:
     """Time of the engine over all motions, divided by the samples run, with the least time of each."""
-    engine = Case(parse_model("MDOF-S").of(structure.rocking()), 0.0).engine
+    engine = PreparedCase(parse_model("MDOF-S").of(structure.rocking()), 0.0).engine
     total, samples = 0.0, 0.0
     for motion in motions:
         total += least(lambda m=motion: engine.run(m.acceleration, m.dt), 10)

@@ -11,7 +11,7 @@ import rockflex as rf
 from rockflex._constants import GRAVITY
 from rockflex.models import parse_model
 from rockflex.solve import Engine
-from rockflex.study import Case
+from rockflex.study import PreparedCase
 
 SCALES = (1.0, 1.5, 2.0)
 ROUNDS = 11
@@ -65,7 +65,7 @@ def grounds(p: rf.RockingProperties) -> dict[str, rf.Ground]:
 
 
 def engine_on(p: rf.RockingProperties, ground: rf.Ground | None) -> Engine:
-    return Case(parse_model("MDOF-S").of(p, ground=ground), 0.0).engine
+    return PreparedCase(parse_model("MDOF-S").of(p, ground=ground), 0.0).engine
 
 
 def nanoseconds_a_sample(

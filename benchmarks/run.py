@@ -22,7 +22,7 @@ from timing import frame, least, milliseconds
 
 import rockflex as rf
 from rockflex.models import parse_model
-from rockflex.study import Case
+from rockflex.study import PreparedCase
 from twins.ode import simulate_ode
 
 MODES = (1, 5, 15)
@@ -57,7 +57,7 @@ def main() -> None:
 def measure(n: int, motion: rf.GroundMotion) -> dict[str, str]:
     structure = frame(n)
     steps = motion.acceleration.size - 1
-    engine = Case(parse_model("MDOF-S").of(structure.rocking()), 0.0).engine
+    engine = PreparedCase(parse_model("MDOF-S").of(structure.rocking()), 0.0).engine
     kernel = least(lambda: engine.run(motion.acceleration, motion.dt), 100)
     call = least(lambda: rf.simulate(structure, motion, "MDOF-S", output="peaks"), 50)
     fresh = least(lambda: rf.simulate(frame(n), motion, "MDOF-S", output="peaks"), 50)

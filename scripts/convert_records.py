@@ -17,7 +17,7 @@ import h5py
 import hdf5plugin  # noqa: F401  (registers the compression of the files)
 import numpy as np
 
-from rockflex.motion._suite import DATA, encode
+from rockflex.motion._suite import DATA, pack_decimal_samples
 
 FEMA = {
     "fema-p695-far-field": ("farfield", "FF", 6),
@@ -130,7 +130,7 @@ def write(folder: Path, suite: str, digits: int, source: str, records: list[tupl
             member = zipfile.ZipInfo(f"{entry['name']}.npy")
             member.compress_type = zipfile.ZIP_DEFLATED
             with archive.open(member, "w") as file:
-                np.lib.format.write_array(file, encode(samples, digits), allow_pickle=False)
+                np.lib.format.write_array(file, pack_decimal_samples(samples, digits), allow_pickle=False)
     content = {"source": source, "units": "g", "records": [entry for entry, _ in records]}
     document = json.dumps(content, indent=1, ensure_ascii=False) + "\n"
     (folder / f"{suite}.json").write_text(document, "utf-8", newline="\n")

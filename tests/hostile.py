@@ -147,6 +147,12 @@ def structures() -> Calls:
         ),
         "ViscousDamper": (rf.ViscousDamper, {"coefficient": 1e5, "position": 0.2}),
         "FrictionDamper": (rf.FrictionDamper, {"force": 1e5, "position": 0.2}),
+        "FlagShapedBar": (
+            rf.FlagShapedBar,
+            {"stiffness": 1e8, "yield_force": 2e5, "post_yield_ratio": 0.05, "flag_depth": 0.8, "position": 0.2},
+        ),
+        "GapBar": (rf.GapBar, {"stiffness": 1e8, "gap": 0.01, "position": 0.2}),
+        "MultilinearBar": (rf.MultilinearBar, {"elongations": [0.01], "forces": [1e5], "position": 0.2}),
         "Restrained": (rf.Restrained, {"structure": rf.Frame(**FRAME), "elements": rf.Tendon(1e5, 1e6)}),
         "Eccentric": (rf.Eccentric, {"structure": rf.Frame(**FRAME), "eccentricity": 0.1}),
         "RockingProperties": (rf.RockingProperties, PROPERTIES),

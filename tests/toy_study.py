@@ -13,7 +13,7 @@ import pandas as pd
 import pyarrow as pa
 
 from rockflex.study.folders import StudyFolder
-from rockflex.study.parallel import map_dask, map_threads
+from rockflex.study.parallel import map_chunks_on_dask, map_threads
 
 VERSIONS = {"rockflex": "0.1.0", "numpy": "2.0"}
 SPEC = {"seed": 7, "structure": {"period": 1.0, "stiffness_ratio": float("inf")}, "scales": [0.5, 1.0]}
@@ -105,7 +105,7 @@ def run_study(path: str, plan: ToyPlan, address: str | None = None) -> list[int]
 
 def _mapped(plan: ToyPlan, numbers: Iterable[int], address: str | None):
     if address is not None:
-        return map_dask(plan, numbers, address)
+        return map_chunks_on_dask(plan, numbers, address)
     return map_threads(lambda number: (number, plan.chunk(number)), numbers, 2)
 
 

@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from sphinx.application import Sphinx
 from sphinx.util.nodes import make_refnode
 
-from rockflex.structure.file import expected
+from rockflex.structure.file import valid_value_description
 
 PLACES = (
     "rockflex",
@@ -38,7 +38,7 @@ def escape(app: Sphinx, what: str, name: str, obj: object, options: object, line
             default = (
                 "" if field.is_required() else f"; ``{field.get_default(call_default_factory=True)!r}`` by default"
             )
-            lines += [key, f"    {expected(field)}{default}"]
+            lines += [key, f"    {valid_value_description(field)}{default}"]
     pieces = EXAMPLE.split("\n".join(lines))
     pieces[::2] = [_escaped(piece) for piece in pieces[::2]]
     lines[:] = "".join(pieces).split("\n")

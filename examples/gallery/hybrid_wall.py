@@ -9,7 +9,7 @@ nearly the same strength are compared: one closes by itself, and in the other th
 """
 
 import rockflex as rf
-from rockflex.fragility import residual_beyond
+from rockflex.fragility import residual_rotation_limit_state
 
 HEIGHT, LENGTH = 18.0, 5.0  # m; 0.25 m thick, of concrete with half of its stiffness of 30 GPa
 WALL = {
@@ -108,7 +108,7 @@ study = rf.StripeStudy(
     free_vibration="settle",
 )
 runs = rf.run_study(study)
-gap = rf.plot_stripes(runs, residual_beyond(0.001 / LENGTH), "pgv")
+gap = rf.plot_stripes(runs, residual_rotation_limit_state(0.001 / LENGTH), "pgv")
 
 # %%
 # A residual drift of 0.002, the first damage state of FEMA P-58, is far away for both. The wall that closes by itself

@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import rockflex as rf
-from rockflex.fragility import residual_beyond
+from rockflex.fragility import residual_rotation_limit_state
 
 STORIES, STORY_HEIGHT, BAY = 9, 4.0, 6.0  # m
 STEEL = 200e9  # Pa
@@ -132,7 +132,7 @@ yielding = rf.plot_stripes(runs, "tendon_yield", "pgv")
 
 # %%
 # A residual rotation of 0.0001 rad is a gap of 0.6 mm under the far column.
-opened = rf.plot_stripes(runs, residual_beyond(1e-4), "pgv")
+opened = rf.plot_stripes(runs, residual_rotation_limit_state(1e-4), "pgv")
 left_open = runs[runs["residual_rotation"] != 0.0]
 print(
     f"{len(left_open)} of {len(runs)} runs leave the base open; a tendon yielded in {left_open['tendon_yield'].sum()}."

@@ -9,12 +9,12 @@ if TYPE_CHECKING:
 CASE = ["structure", "model"]
 
 
-def cases(runs: "pd.DataFrame") -> "Iterator[tuple[str, str, pd.DataFrame]]":
+def runs_by_case(runs: "pd.DataFrame") -> "Iterator[tuple[str, str, pd.DataFrame]]":
     """Yield structure, model and rows of each case, in the order of the table."""
     for (structure, model), rows in runs.groupby(CASE, observed=True, sort=False):
         yield str(structure), str(model), rows
 
 
-def rows_of(runs: "pd.DataFrame", structure: str, model: str) -> "pd.DataFrame":
+def runs_of_case(runs: "pd.DataFrame", structure: str, model: str) -> "pd.DataFrame":
     """Return the rows of one case."""
     return runs[(runs["structure"].astype(str) == structure) & (runs["model"].astype(str) == model)]

@@ -22,9 +22,9 @@ MOST_STORIES, MOST_MODES = 1000, 200
 _DAMPING_HINT = "Give the fraction of critical damping: 2 % is 0.02."
 
 
-def positive(name: str, value: float, unit: str, *, zero: bool = False, infinite: bool = False) -> float:
+def checked_positive(name: str, value: float, unit: str, *, zero: bool = False, infinite: bool = False) -> float:
     """Return `value` as a positive float (or zero, or infinity, if allowed)."""
-    number = _number(name, value, unit)
+    number = _checked_number(name, value, unit)
     low_enough = number > 0 or (zero and number == 0)
     if not low_enough or math.isnan(number) or (math.isinf(number) and not infinite):
         kind = "zero or positive" if zero else "positive"
@@ -34,22 +34,26 @@ def positive(name: str, value: float, unit: str, *, zero: bool = False, infinite
     return number
 
 
-def in_range(name: str, value: float, low: float, high: float, *, hint: str = "", field: str | None = None) -> float:
+def checked_in_range(
+    name: str, value: float, low: float, high: float, *, hint: str = "", field: str | None = None
+) -> float:
     """Return `value` as a float in [low, high); `field` is the argument to which a `name` such as zeta[1] belongs."""
-    number = _number(name, value, "")
+    number = _checked_number(name, value, "")
     if not low <= number < high:
         message = f"{name} must lie in [{low:g}, {high:g}), but {shown(value)} was given."
         raise InputError(f"{message} {hint}".rstrip(), field=field or name)
     return number
 
 
-def finite_vector(name: str, values: ArrayLike, unit: str, *, field: str | None = None) -> Array:
-    """Return `values` as a read-only one-dimensional float64 array of finite numbers; `field` as in `in_range`."""
+def checked_finite_vector(name: str, values: ArrayLike, unit: str, *, field: str | None = None) -> Array:
+    """Return `values` as a read-only float64 array (n,) of finite numbers; `field` as in `checked_in_range`."""
     field = field or name
     array = float_array(values)
     if array is None:
         measured = f" in {unit}" if unit else ""
-        raise InputError(f"{name} must be a sequence of numbers{measured}, but {_kind(values)} was given.", field=field)
+        raise InputError(
+            f"{name} must be a sequence of numbers{measured}, but {_type_in_words(values)} was given.", field=field
+        )
     if array.ndim != 1:
         raise InputError(f"{name} must be one-dimensional, but an array of shape {array.shape} was given.", field=field)
     if not np.isfinite(array).all():
@@ -63,15 +67,15 @@ def finite_vector(name: str, values: ArrayLike, unit: str, *, field: str | None 
     return array
 
 
-def all_positive(name: str, values: Array, unit: str, hint: str = "", *, field: str | None = None) -> None:
-    """Raise an InputError unless all `values` are positive; `field` as in `in_range`."""
+def check_all_positive(name: str, values: Array, unit: str, hint: str = "", *, field: str | None = None) -> None:
+    """Raise an InputError unless all `values` are positive; `field` as in `checked_in_range`."""
     if values.min(initial=math.inf) <= 0.0:
         i = int(np.argmin(values))
         message = f"{name} must be positive, but {name}[{i}] = {values[i]:g} {unit} was given. {hint}"
         raise InputError(message.rstrip(), field=field or name)
 
 
-def finite(name: str, value: float, unit: str) -> float:
+def checked_finite(name: str, value: float, unit: str) -> float:
     """Return `value` as a finite float."""
     number = _float_or_none(value)
     if number is None or not math.isfinite(number):
@@ -93,7 +97,7 @@ def real_or_nan(value: object) -> float:
         return math.nan
 
 
-def within(name: str, value: float, limit: float, unit: str) -> float:
+def checked_magnitude(name: str, value: float, limit: float, unit: str) -> float:
     """Return `value` as a float of magnitude below `limit`; booleans, strings and arrays are rejected."""
     number = real_or_nan(value)
     if not abs(number) < limit:
@@ -104,12 +108,12 @@ def within(name: str, value: float, limit: float, unit: str) -> float:
     return number
 
 
-def whole_number(
+def checked_whole_number(
     name: str, value: SupportsIndex, low: int, high: int | None = None, *, field: str | None = None
 ) -> int:
     """Return `value` as an int from `low` to `high`; booleans and floats are rejected.
 
-    `field` as in `in_range`.
+    `field` as in `checked_in_range`.
     """
     number = None
     if not isinstance(value, bool | np.bool_):
@@ -121,19 +125,19 @@ def whole_number(
     return number
 
 
-def mode_count(n_modes: SupportsIndex | None, available: int) -> int:
+def checked_mode_count(n_modes: SupportsIndex | None, available: int) -> int:
     """Return the requested number of modes; None means all that are available."""
-    return available if n_modes is None else whole_number("n_modes", n_modes, 1, available)
+    return available if n_modes is None else checked_whole_number("n_modes", n_modes, 1, available)
 
 
-def damping_ratios(name: str, values: ArrayLike, n_modes: int) -> Array:
+def checked_damping_ratios(name: str, values: ArrayLike, n_modes: int) -> Array:
     """Return a read-only array of one damping ratio in [0, 1) per mode, from one or from `n_modes` numbers."""
-    if dimensions(values) == 0:
-        ratio = in_range(name, values, 0.0, 1.0, hint=_DAMPING_HINT)  # pyright: ignore[reportArgumentType]
+    if number_of_dimensions(values) == 0:
+        ratio = checked_in_range(name, values, 0.0, 1.0, hint=_DAMPING_HINT)  # pyright: ignore[reportArgumentType]
         ratios = np.full(n_modes, ratio)
         ratios.setflags(write=False)
         return ratios
-    ratios = finite_vector(name, values, "fractions of critical damping")
+    ratios = checked_finite_vector(name, values, "fractions of critical damping")
     if ratios.size != n_modes:
         raise InputError(
             f"{name} must be one number, or one for each of the {n_modes} modes, but {ratios.size} were given.",
@@ -142,11 +146,11 @@ def damping_ratios(name: str, values: ArrayLike, n_modes: int) -> Array:
     outside = np.flatnonzero((ratios < 0.0) | (ratios >= 1.0))
     if outside.size:
         first = int(outside[0])
-        in_range(f"{name}[{first}]", float(ratios[first]), 0.0, 1.0, hint=_DAMPING_HINT, field=name)
+        checked_in_range(f"{name}[{first}]", float(ratios[first]), 0.0, 1.0, hint=_DAMPING_HINT, field=name)
     return ratios
 
 
-def dimensions(values: ArrayLike) -> int:
+def number_of_dimensions(values: ArrayLike) -> int:
     """Return the number of dimensions of `values`; 1 for ragged rows, which a later check rejects."""
     try:
         return np.ndim(values)
@@ -154,14 +158,16 @@ def dimensions(values: ArrayLike) -> int:
         return 1
 
 
-def finite_matrix(
+def checked_finite_matrix(
     name: str, values: ArrayLike, unit: str, shape: tuple[int, int], *, field: str | None = None
 ) -> Array:
-    """Return a float64 copy of `values` with the given shape and only finite entries; `field` as in `in_range`."""
+    """Return a float64 copy of finite `values` with the given shape; `field` as in `checked_in_range`."""
     field = field or name
     array = float_array(values)
     if array is None:
-        raise InputError(f"{name} must be a matrix of numbers in {unit}, but {_kind(values)} was given.", field=field)
+        raise InputError(
+            f"{name} must be a matrix of numbers in {unit}, but {_type_in_words(values)} was given.", field=field
+        )
     if array.shape != shape:
         raise InputError(
             f"{name} must have the shape {shape}, but an array of shape {array.shape} was given.", field=field
@@ -174,10 +180,10 @@ def finite_matrix(
     return array
 
 
-def finite_rows(name: str, values: ArrayLike, unit: str, columns: int) -> Array:
+def checked_finite_rows(name: str, values: ArrayLike, unit: str, columns: int) -> Array:
     """Return a read-only float64 copy of `values`: at least one row of `columns` finite numbers each."""
-    rows = np.shape(values)[0] if dimensions(values) == 2 else 1
-    array = finite_matrix(name, values, unit, (max(rows, 1), columns))
+    rows = np.shape(values)[0] if number_of_dimensions(values) == 2 else 1
+    array = checked_finite_matrix(name, values, unit, (max(rows, 1), columns))
     array.setflags(write=False)
     return array
 
@@ -191,7 +197,7 @@ def float_array(values: ArrayLike) -> Array | None:
         return None
 
 
-def instance(name: str, value: Any, kind: type[T]) -> T:
+def checked_instance(name: str, value: Any, kind: type[T]) -> T:
     """Return `value` if it is a `kind`."""
     if not isinstance(value, kind):
         given = f"the class {value.__name__}" if isinstance(value, type) else type(value).__name__
@@ -199,12 +205,12 @@ def instance(name: str, value: Any, kind: type[T]) -> T:
     return value
 
 
-def one_of(value: object, words: Collection[str]) -> bool:
+def is_one_of(value: object, words: Collection[str]) -> bool:
     """Return whether `value` is a string among `words`; False for an array of strings."""
     return isinstance(value, str) and value in words
 
 
-def _kind(values: object) -> str:
+def _type_in_words(values: object) -> str:
     name = type(values).__name__
     try:
         given = np.asarray(values)
@@ -214,11 +220,11 @@ def _kind(values: object) -> str:
     except OverflowError:
         return f"{name} with a number too large for double precision"
     except (TypeError, ValueError):
-        return f"{name} whose rows differ in length" if _ragged(values) else name
+        return f"{name} whose rows differ in length" if _has_ragged_rows(values) else name
     return name
 
 
-def _ragged(values: object) -> bool:
+def _has_ragged_rows(values: object) -> bool:
     try:
         np.asarray(values)
     except ValueError:
@@ -226,7 +232,7 @@ def _ragged(values: object) -> bool:
     return False
 
 
-def _number(name: str, value: float, unit: str) -> float:
+def _checked_number(name: str, value: float, unit: str) -> float:
     number = _float_or_none(value)
     if number is None:
         of_unit = f" in {unit}" if unit else ""

@@ -19,7 +19,7 @@ _KINDS = (
 )
 
 
-def path_of(name: str, given: object) -> Path:
+def checked_file_path(name: str, given: object) -> Path:
     """Return a given path for which the system can check whether a file exists.
 
     Raises
@@ -43,7 +43,7 @@ def path_of(name: str, given: object) -> Path:
     return path
 
 
-def irregular(path: Path) -> str:
+def irregular_file_kind(path: Path) -> str:
     """Return what `path` is if not a regular file, such as "a pipe"; empty for a regular or a missing file."""
     try:
         mode = path.stat().st_mode
@@ -52,7 +52,7 @@ def irregular(path: Path) -> str:
     return next((kind for is_kind, kind in _KINDS if is_kind(mode)), "")
 
 
-def check_regular(path: Path, name: str = "") -> None:
+def check_regular_file(path: Path, name: str = "") -> None:
     """Reject anything but regular files, such as pipes, which may never end; every reader calls this first.
 
     Raises
@@ -60,7 +60,7 @@ def check_regular(path: Path, name: str = "") -> None:
     InputError
         If there is something other than a regular file at `path`; `name` is the argument, for the message.
     """
-    kind = irregular(path)
+    kind = irregular_file_kind(path)
     if kind:
         remedy = "Give a file in it." if kind == "a folder" else "Write its content to a file, and give that."
         raise InputError(
@@ -69,15 +69,15 @@ def check_regular(path: Path, name: str = "") -> None:
         )
 
 
-def write_whole(path: Path, content: bytes) -> Path:
+def write_file_atomically(path: Path, content: bytes) -> Path:
     """Write `content` to a temporary file, flush it to disk and move it to `path`; on failure `path` is unchanged."""
-    with writing(path) as temporary, temporary.open("xb") as file:
+    with writing_atomically(path) as temporary, temporary.open("xb") as file:
         file.write(content)
     return path
 
 
 @contextmanager
-def writing(path: Path, suffix: str = "") -> Generator[Path]:
+def writing_atomically(path: Path, suffix: str = "") -> Generator[Path]:
     """Yield the path of a temporary file; what was written to it is flushed to disk and moved to `path` at the end.
 
     The name of the temporary file ends in `suffix`. On failure it is removed, and `path` is unchanged.
@@ -92,16 +92,16 @@ def writing(path: Path, suffix: str = "") -> Generator[Path]:
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
-    _sync_names(path.parent)
+    _sync_folder_to_disk(path.parent)
 
 
-def sweep(folder: Path, pattern: str) -> None:
+def remove_temporary_files(folder: Path, pattern: str) -> None:
     """Remove temporary files of killed processes for names that match `pattern`."""
     for left in folder.glob(f".{pattern}.*"):
         left.unlink(missing_ok=True)
 
 
-def _sync_names(folder: Path) -> None:
+def _sync_folder_to_disk(folder: Path) -> None:
     if os.name == "nt":  # Windows cannot open a folder
         return
     descriptor = os.open(folder, os.O_RDONLY)

@@ -26,18 +26,20 @@ def html_table(title: str, rows: Mapping[str, Any]) -> str:
     from markupsafe import Markup
 
     row = Markup('<tr><th style="text-align: left">{}</th><td style="text-align: left">{}</td></tr>')
-    body = Markup("").join(row.format(name, _text(value)) for name, value in rows.items() if value is not None)
+    body = Markup("").join(
+        row.format(name, _html_cell_text(value)) for name, value in rows.items() if value is not None
+    )
     return str(Markup("<table><caption>{}</caption><tbody>{}</tbody></table>").format(title, body))
 
 
-def span(values: Iterable[float]) -> str:
+def value_range_text(values: Iterable[float]) -> str:
     """Write the smallest and the largest of some values; once if they are the same."""
     known = list(values)
     ends = dict.fromkeys(f"{end:.4g}" for end in (min(known), max(known)))
     return " to ".join(ends)
 
 
-def _text(value: Any) -> str:
+def _html_cell_text(value: Any) -> str:
     if isinstance(value, str):
         return shortened(value)
     if isinstance(value, float):

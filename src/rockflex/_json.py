@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 
 
-def plain(value: Any) -> Any:
+def as_json_value(value: Any) -> Any:
     """Return dicts, lists, strings and numbers: NaN becomes None, an infinity "inf" or "-inf", a path its text."""
     if is_dataclass(value) and not isinstance(value, type):
-        return plain(asdict(value))
+        return as_json_value(asdict(value))
     if isinstance(value, Mapping):
-        return {str(key): plain(item) for key, item in value.items()}
+        return {str(key): as_json_value(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [plain(item) for item in value]
+        return [as_json_value(item) for item in value]
     if isinstance(value, np.ndarray | np.generic):
-        return plain(value.tolist())
+        return as_json_value(value.tolist())
     if isinstance(value, float) and not math.isfinite(value):
         return None if math.isnan(value) else f"{value:g}"
     return str(value) if isinstance(value, Path) else value

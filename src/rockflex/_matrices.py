@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import all_positive, dimensions, finite_matrix, finite_vector
-from rockflex._computable import computable
+from rockflex._checks import check_all_positive, checked_finite_matrix, checked_finite_vector, number_of_dimensions
 from rockflex._errors import InputError
+from rockflex._overflow import explaining_overflow
 
 # Asymmetry due to condensation or printed digits, relative to the largest entry.
 _SYMMETRY_TOLERANCE = 1e-9
@@ -14,7 +14,7 @@ _SYMMETRY_TOLERANCE = 1e-9
 
 def checked_heights(heights: ArrayLike) -> Array:
     """Return the heights of the masses above the base (N,) in m, read-only: positive, strictly increasing."""
-    h = finite_vector("heights", heights, "m")
+    h = checked_finite_vector("heights", heights, "m")
     if h.size == 0:
         raise InputError("heights must contain at least one height in m, but none was given.", field="heights")
     if h[0] <= 0.0:
@@ -40,16 +40,16 @@ def checked_mass(mass: ArrayLike, size: int, *, field: str = "mass") -> Array:
 
     `field` is the name of the argument.
     """
-    if dimensions(mass) == 2:
+    if number_of_dimensions(mass) == 2:
         return _symmetric_positive_definite("mass", mass, "kg", size, field)
-    m = finite_vector("mass", mass, "kg", field=field)
+    m = checked_finite_vector("mass", mass, "kg", field=field)
     if m.size != size:
         raise InputError(
             f"mass must contain one mass for each of the {size} heights, but {m.size} were given. "
             "Give the mass of the base as base_mass.",
             field=field,
         )
-    all_positive("mass", m, "kg", "Condense massless floors out of the stiffness matrix first.", field=field)
+    check_all_positive("mass", m, "kg", "Condense massless floors out of the stiffness matrix first.", field=field)
     return m
 
 
@@ -65,9 +65,9 @@ def mass_times(mass: Array, vectors: Array) -> Array:
     return (mass * vectors.T).T
 
 
-@computable("Whether a matrix is positive definite")
+@explaining_overflow("Whether a matrix is positive definite")
 def _symmetric_positive_definite(name: str, values: ArrayLike, unit: str, size: int, field: str) -> Array:
-    matrix = finite_matrix(name, values, unit, (size, size), field=field)
+    matrix = checked_finite_matrix(name, values, unit, (size, size), field=field)
     asymmetry = np.abs(matrix - matrix.T)
     if asymmetry.max() > _SYMMETRY_TOLERANCE * np.abs(matrix).max():
         i, j = sorted(int(k) for k in np.unravel_index(np.argmax(asymmetry), asymmetry.shape))

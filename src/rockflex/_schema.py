@@ -9,7 +9,7 @@ NUMBER, WHOLE, PLAIN = "{}, a number{unit}", "{}, a whole number", "{}"
 
 
 @dataclass(frozen=True)
-class Key:
+class SchemaKey:
     """The metadata of a field, inside ``Annotated``; its name, type and default are those of the field.
 
     Attributes
@@ -45,23 +45,23 @@ class Key:
 
     @property
     def expected(self) -> str:
-        """What the value must be, and how it is written."""
+        """Return the description of a valid value, and its form in a file."""
         return self.form.format(self.description, unit=self.unit and f" in {self.unit}")
 
 
-def each(what: str) -> str:
+def one_for_each(what: str) -> str:
     """Return the form of a number, or of one for each of many."""
     return f"{{}}, a number or one for each {what}"
 
 
-def keys_of(table: type) -> Iterator[tuple[str, Any, Key]]:
+def schema_keys(table: type) -> Iterator[tuple[str, Any, SchemaKey]]:
     """Yield the name, the type and the key of each field of a class whose annotations hold keys."""
     for name, annotation in get_type_hints(table, include_extras=True).items():
         kind, key = get_args(annotation)
         yield name, kind, key
 
 
-def flag_of(name: str, key: Key) -> str:
+def command_line_flag(name: str, key: SchemaKey) -> str:
     """Return the option that gives a key on the command line, such as ``--story-height``."""
     return "--" + (key.flag or name).replace("_", "-")
 
@@ -69,7 +69,7 @@ def flag_of(name: str, key: Key) -> str:
 LawName = Literal["simplified", "complete", "restitution"]
 LAWS: tuple[str, ...] = get_args(LawName)
 _QUOTED = [f'"{law}"' for law in LAWS]
-IMPACT = Key(
+IMPACT = SchemaKey(
     "the impact law",
     form=f"{', '.join(_QUOTED[:-1])} or {_QUOTED[-1]}",
     metavar="LAW",
@@ -83,7 +83,7 @@ class ImpactKeys:
     impact: Annotated[LawName | None, IMPACT]
     restitution: Annotated[
         float | None,
-        Key(
+        SchemaKey(
             "the rotation velocity after an impact over that before",
             form="a number from 0 to 1",
             metavar="E",
@@ -97,7 +97,7 @@ class BoucWenKeys:
 
     yield_displacement: Annotated[
         float,
-        Key(
+        SchemaKey(
             "D_y of the first mode",
             "m",
             low=1e-6,
@@ -108,7 +108,7 @@ class BoucWenKeys:
     ]
     post_yield_ratio: Annotated[
         float,
-        Key(
+        SchemaKey(
             "stiffness after yielding over that before",
             low=0.0,
             high=0.99,
@@ -118,15 +118,15 @@ class BoucWenKeys:
     ] = 0.01
     gamma: Annotated[
         float,
-        Key("γ of the hysteresis (Eq. 38)", low=1e-3, high=10.0, label="γ", flag="bw_gamma", metavar="GAMMA"),
+        SchemaKey("γ of the hysteresis (Eq. 38)", low=1e-3, high=10.0, label="γ", flag="bw_gamma", metavar="GAMMA"),
     ] = 0.5
     beta: Annotated[
         float,
-        Key("β of the hysteresis (Eq. 38)", low=-10.0, high=10.0, label="β", flag="bw_beta", metavar="BETA"),
+        SchemaKey("β of the hysteresis (Eq. 38)", low=-10.0, high=10.0, label="β", flag="bw_beta", metavar="BETA"),
     ] = 0.5
     exponent: Annotated[
         float,
-        Key(
+        SchemaKey(
             "n of the hysteresis (Eq. 38)",
             form="{}, a number of at least 1",
             low=1.0,
@@ -139,12 +139,12 @@ class BoucWenKeys:
     ] = 8.0
 
 
-class InitialKeys:
+class InitialStateKeys:
     """The state at t = 0."""
 
     initial_rotation: Annotated[
         float | None,
-        Key(
+        SchemaKey(
             "the rotation at t = 0",
             "rad",
             hint="The structure starts at rest there; without a motion it vibrates freely for --free-vibration.",
@@ -152,11 +152,11 @@ class InitialKeys:
     ] = None
 
 
-BaseMass = Annotated[float, Key("the mass of the base", "kg", low=0.0, high=1e12)]
-Period = Annotated[float, Key("the first period on a fixed base", "s", low=0.01, high=60.0)]
+BaseMass = Annotated[float, SchemaKey("the mass of the base", "kg", low=0.0, high=1e12)]
+Period = Annotated[float, SchemaKey("the first period on a fixed base", "s", low=0.01, high=60.0)]
 AspectRatio = Annotated[
     float,
-    Key(
+    SchemaKey(
         "the effective height over the half width, h*_1/B",
         low=0.1,
         high=100.0,
@@ -166,7 +166,7 @@ AspectRatio = Annotated[
 ]
 Eccentricity = Annotated[
     float | None,
-    Key(
+    SchemaKey(
         "the distance of the masses to the right of the middle of the base",
         "m",
         low=-1000.0,
@@ -181,14 +181,15 @@ class FrameKeys:
     """The arguments of `Frame`."""
 
     n_stories: Annotated[
-        int, Key("the number of stories", form=WHOLE, low=1, high=200, label="Stories", flag="stories", metavar="N")
+        int,
+        SchemaKey("the number of stories", form=WHOLE, low=1, high=200, label="Stories", flag="stories", metavar="N"),
     ]
-    story_height: Annotated[float, Key("the height of a story", "m", low=0.1, high=100.0)]
-    story_mass: Annotated[float, Key("the mass of each floor", "kg", low=1e-3, high=1e12)]
+    story_height: Annotated[float, SchemaKey("the height of a story", "m", low=0.1, high=100.0)]
+    story_mass: Annotated[float, SchemaKey("the mass of each floor", "kg", low=1e-3, high=1e12)]
     base_mass: BaseMass
     stiffness_ratio: Annotated[
         float,
-        Key(
+        SchemaKey(
             "the ratio of beam to column stiffness",
             form="{}, a number from 0 to inf",
             low=0.0,
@@ -201,7 +202,7 @@ class FrameKeys:
     aspect_ratio: AspectRatio
     damping_ratio: Annotated[
         float,
-        Key(
+        SchemaKey(
             "the fraction of critical damping",
             form="{}, a number such as 0.02",
             low=0.0,
@@ -226,7 +227,7 @@ class GroundKeys:
 
     friction: Annotated[
         float | list[float] | None,
-        Key(
+        SchemaKey(
             "the Coulomb coefficient between base and ground",
             form=_PER_SPRING,
             low=1e-3,
@@ -238,7 +239,7 @@ class GroundKeys:
     ] = None
     base_inertia: Annotated[
         float | None,
-        Key(
+        SchemaKey(
             "the rotary inertia of base and floors about the axis of the masses",
             "kg m²",
             low=1e-6,
@@ -249,7 +250,7 @@ class GroundKeys:
     ] = None
     mat_mass: Annotated[
         float | None,
-        Key(
+        SchemaKey(
             "the mass m of a rigid mat as wide as the base",
             "kg",
             low=1e-3,
@@ -259,12 +260,12 @@ class GroundKeys:
     ] = None
 
 
-class BedKeys:
+class SpringBedKeys:
     """A bed of springs under the whole base."""
 
     breadth: Annotated[
         float,
-        Key(
+        SchemaKey(
             "the dimension of the base perpendicular to the plane of rocking",
             "m",
             low=1e-3,
@@ -274,11 +275,11 @@ class BedKeys:
     ]
     subgrade_modulus: Annotated[
         float | None,
-        Key("the modulus of subgrade reaction, pressure over settlement", "N/m³", low=1.0, high=1e14),
+        SchemaKey("the modulus of subgrade reaction, pressure over settlement", "N/m³", low=1.0, high=1e14),
     ] = None
     shear_modulus: Annotated[
         float | None,
-        Key(
+        SchemaKey(
             "the effective shear modulus of the soil",
             "N/m²",
             low=1.0,
@@ -288,11 +289,11 @@ class BedKeys:
     ] = None
     poisson_ratio: Annotated[
         float | None,
-        Key("the Poisson ratio of the soil", low=0.0, high=0.5, metavar="NU", hint="With --shear-modulus."),
+        SchemaKey("the Poisson ratio of the soil", low=0.0, high=0.5, metavar="NU", hint="With --shear-modulus."),
     ] = None
     heave_damping_ratio: Annotated[
         float | None,
-        Key(
+        SchemaKey(
             "the damping of the heave mode over the critical damping",
             low=0.0,
             high=100.0,

@@ -20,23 +20,23 @@ def shortened(text: str, most: int = WIDTH) -> str:
     return text if len(text) <= most else f"{text[:half]} ... {text[-half:]}"
 
 
-def few(texts: Sequence[str]) -> str:
+def few_texts_shown(texts: Sequence[str]) -> str:
     """Return some texts separated by commas; of many the first four and the last two."""
     return ", ".join(texts if len(texts) <= FEW else [*texts[:4], "...", *texts[-2:]])
 
 
-def listed(texts: Sequence[str], most: int = 10) -> str:
+def first_texts_shown(texts: Sequence[str], most: int = 10) -> str:
     """Return some texts separated by commas; of many the first ones, and how many more there are."""
     more = f" and {len(texts) - most} more" if len(texts) > most else ""
     return ", ".join(texts[:most]) + more
 
 
-def counted(n: int, one: str, several: str = "") -> str:
+def number_with_noun(n: int, one: str, several: str = "") -> str:
     """Return a number with its noun: 1 record, 2 records; `several` is the plural if it is not `one` with an s."""
     return f"{n} {one if n == 1 else several or f'{one}s'}"
 
 
-class _Short(reprlib.Repr):
+class _ShortRepr(reprlib.Repr):
     def __init__(self) -> None:
         super().__init__()
         self.maxlevel, self.maxlist, self.maxtuple, self.maxdict, self.maxset = 3, 12, 12, 12, 12
@@ -53,4 +53,4 @@ class _Short(reprlib.Repr):
         return f"an integer of about {digits} digits" if digits > self.maxlong else super().repr_int(x, level)
 
 
-_SHORT = _Short()
+_SHORT = _ShortRepr()

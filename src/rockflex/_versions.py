@@ -14,7 +14,7 @@ PATIENCE = 5.0  # s that Git may take
 CHANGES = "+changes"
 
 
-def versions_of(packages: Iterable[str]) -> dict[str, str]:
+def package_versions(packages: Iterable[str]) -> dict[str, str]:
     """Return the version of Python and of each package; "none" for a package that is not installed."""
     found = {"python": platform.python_version()}
     for name in packages:
@@ -25,7 +25,7 @@ def versions_of(packages: Iterable[str]) -> dict[str, str]:
     return found
 
 
-def commit_of(file: Path, *, known: bool) -> str | None:
+def git_commit(file: Path, *, known: bool) -> str | None:
     """Return the commit of the Git repository that a file is in, with "+changes" if files differ from it.
 
     Parameters
@@ -42,17 +42,17 @@ def commit_of(file: Path, *, known: bool) -> str | None:
         Twelve digits, perhaps with "+changes"; None without Git, a repository or a commit.
     """
     folder = file.resolve().parent
-    tracked = _git(folder, "--literal-pathspecs", "ls-files", "--error-unmatch", "--", file.name) is not None
-    commit = _git(folder, "rev-parse", "--short=12", "HEAD") if tracked or not known else None
+    tracked = _git_output(folder, "--literal-pathspecs", "ls-files", "--error-unmatch", "--", file.name) is not None
+    commit = _git_output(folder, "rev-parse", "--short=12", "HEAD") if tracked or not known else None
     if not commit:
         return None
-    names = _git(folder, "config", "--name-only", "--get-regexp", FILTERS) or ""
+    names = _git_output(folder, "config", "--name-only", "--get-regexp", FILTERS) or ""
     off = [part for name in names.split() for part in ("-c", f"{name}=")]
-    changed = _git(folder, *off, "status", "--porcelain", "--untracked-files=no")
+    changed = _git_output(folder, *off, "status", "--porcelain", "--untracked-files=no")
     return f"{commit}{CHANGES}" if changed or not tracked else commit
 
 
-def _git(folder: Path, *arguments: str) -> str | None:
+def _git_output(folder: Path, *arguments: str) -> str | None:
     """Return what Git answers; None if it cannot. It locks nothing, and starts no program of the repository."""
     settings = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
     how: dict[str, Any] = {"cwd": folder, "env": settings | {"GIT_OPTIONAL_LOCKS": "0"}, "timeout": PATIENCE}

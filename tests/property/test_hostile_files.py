@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 import rockflex as rf
 from builders import make_frame
 from record_samples import SEARCH_RESULTS, cosmos, esm, geonet, knet
-from rockflex.motion._record_table import read_table
+from rockflex.motion._record_table import read_record_table
 from rockflex.study.folders import _lock
 from toy_study import ToyPlan, opened, run_study
 
@@ -94,7 +94,7 @@ READERS: dict[str, tuple[Callable[[Path], Any], bytes]] = {
     "r.v2c": (without_warnings(rf.read_components), (cosmos(90) + cosmos(400)).encode()),
     "r.v2a": (without_warnings(rf.read_components), (geonet() + geonet("Up")).encode()),
     "r.tsv": (in_units, b"Zeit\tNS\tEW\tUD\n" + b"0,01\t0,1\t0,2\t0,3\n" * 3),
-    "_SearchResults.csv": (lambda path: read_table(path), SEARCH_RESULTS.encode()),
+    "_SearchResults.csv": (lambda path: read_record_table(path), SEARCH_RESULTS.encode()),
     "k.csv": (stiff, MATRIX.encode()),
     "k.mtx": (stiff, MTX.encode()),
 }
@@ -218,7 +218,7 @@ def test_locks_of_anything(tmp_path: Path, content: bytes, age: float) -> None:
     begin, patience = time.monotonic(), _lock.MIN_STALE_AGE
     try:
         _lock.MIN_STALE_AGE = 0.05
-        message = refusal(lambda: _lock.Lock.acquire(path).release())
+        message = refusal(lambda: _lock.FolderLock.acquire(path).release())
     finally:
         _lock.MIN_STALE_AGE = patience
     assert time.monotonic() - begin < 2.0

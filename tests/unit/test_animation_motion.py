@@ -6,16 +6,16 @@ from PIL import Image
 
 import rockflex as rf
 from builders import PROPERTIES, make_frame
-from rockflex.plot._curves import curves_of
+from rockflex.plot._response_curves import response_curves
 from rockflex.plot.animation._poses import (
     MAX_DRAWN_MOTION,
     ROUND_FACTORS,
     default_amplification,
-    outline_of,
-    poses_of,
-    timing_of,
+    frame_timing,
+    structure_outline,
+    structure_poses,
 )
-from rockflex.plot.animation._scene import state_text
+from rockflex.plot.animation._scene import structure_state_text
 
 FRAME = make_frame()
 RECORD = rf.load_suite("el-centro-1940")[0]
@@ -31,8 +31,8 @@ TIMES = np.linspace(0.0, 12.0, 161)
 
 def posed(response, structure=None, times=TIMES):
     """The curve of a response, and its poses at some times."""
-    (curve,) = curves_of(response)
-    return curve, poses_of(curve, outline_of(curve.history, structure, 0), times, 1.0)
+    (curve,) = response_curves(response)
+    return curve, structure_poses(curve, structure_outline(curve.history, structure, 0), times, 1.0)
 
 
 @pytest.fixture(scope="module")
@@ -119,7 +119,7 @@ def test_a_base_on_springs_moves_as_the_response_says(runs):
 def test_words_are_those_of_the_response(runs, name):
     curve, poses = posed(runs[name])
     end = curve.history.time[-1]
-    words = [state_text(curve, poses, k, t)[0] for k, t in enumerate(TIMES)]
+    words = [structure_state_text(curve, poses, k, t)[0] for k, t in enumerate(TIMES)]
     at = curve.history.at(np.minimum(TIMES, end))
     for time, word, lifted in zip(TIMES, words, at.uplifted, strict=True):
         if word.startswith("uplifted"):
@@ -137,11 +137,11 @@ def test_words_are_those_of_the_response(runs, name):
 
 def test_impacts_are_marked_for_a_moment_of_the_animation(runs):
     curve, _ = posed(runs["simplified"])
-    outline = outline_of(curve.history, None, 0)
+    outline = structure_outline(curve.history, None, 0)
     blow = float(curve.history.impact_times[0])
     for speed in (1.0, 0.1):
         times = blow + speed * np.array([-0.01, 0.001, 0.11, 0.13])
-        poses = poses_of(curve, outline, times[times < curve.history.impact_times[1]], speed)
+        poses = structure_poses(curve, outline, times[times < curve.history.impact_times[1]], speed)
         assert [bool(each) for each in poses.impact] == [False, True, True, False][: poses.impact.size]
         assert poses.impact.size >= 2
 
@@ -150,8 +150,8 @@ def test_outlines_follow_what_is_known():
     tower = rf.TaperedTower(height=100, base_radius=4, top_radius=3, wall=0.4, density=2400, elastic_modulus=30e9,
                             damping_ratio=0.02)  # fmt: skip
     run = rf.simulate(tower, rf.ricker_pulse(4.0, 1.0), "3DOF-S")
-    (curve,) = curves_of(run)
-    straight, bent = (outline_of(curve.history, each, 0) for each in (None, tower))
+    (curve,) = response_curves(run)
+    straight, bent = (structure_outline(curve.history, each, 0) for each in (None, tower))
     assert (straight.kind, straight.top) == ("frame", pytest.approx(100.0))  # its floors are all that is known
     assert bent.kind == "column"
     assert bent.heights.size > 10
@@ -165,12 +165,12 @@ def test_outlines_follow_what_is_known():
         "block": (BLOCK, "rigid", None),
     }
     for kind, (structure, model, given) in kinds.items():
-        (curve,) = curves_of(rf.simulate(structure, rf.ricker_pulse(4.0, 1.0), model))
-        assert outline_of(curve.history, given, 0).kind == kind
+        (curve,) = response_curves(rf.simulate(structure, rf.ricker_pulse(4.0, 1.0), model))
+        assert structure_outline(curve.history, given, 0).kind == kind
     held = rf.Restrained(PIER, rf.Tendon(initial_force=2.0e6, stiffness=25e6))
-    (curve,) = curves_of(rf.simulate(held, rf.ricker_pulse(4.0, 1.0), "2DOF-S"))
-    assert outline_of(curve.history, held, 0).kind == "mast"
-    assert outline_of(curve.history, held, 0).shapes.shape[1] == 1
+    (curve,) = response_curves(rf.simulate(held, rf.ricker_pulse(4.0, 1.0), "2DOF-S"))
+    assert structure_outline(curve.history, held, 0).kind == "mast"
+    assert structure_outline(curve.history, held, 0).shapes.shape[1] == 1
 
 
 @pytest.mark.parametrize("name", ["simplified", "springs", "fixed", "block"])
@@ -194,8 +194,8 @@ def test_what_falls_is_not_enlarged(runs):
 
 
 def test_frames_are_at_equal_steps_to_the_end():
-    curves = curves_of(rf.simulate(FRAME, rf.ricker_pulse(4.0, 0.6), "2DOF-S"))
-    timing = timing_of(curves, ".gif", 2.0, 25, 0.5, 2.0)
+    curves = response_curves(rf.simulate(FRAME, rf.ricker_pulse(4.0, 0.6), "2DOF-S"))
+    timing = frame_timing(curves, ".gif", 2.0, 25, 0.5, 2.0)
     np.testing.assert_allclose(timing.times[:-1], 0.5 + 0.08 * np.arange(timing.times.size - 1))
     assert timing.times[-1] == 2.0
     assert timing.hundredths.tolist() == [4] * timing.times.size
@@ -204,12 +204,14 @@ def test_frames_are_at_equal_steps_to_the_end():
 def test_the_last_frame_of_a_fall_says_when_it_overturned(runs):
     curve, _ = posed(runs["fallen"])
     for rate in (7, 10, 25, 30):
-        timing = timing_of([curve], ".gif", 1.0, rate, None, None)
+        timing = frame_timing([curve], ".gif", 1.0, rate, None, None)
         assert timing.times[-1] == runs["fallen"].end_time
         assert (np.diff(timing.times) > 0.0).all()
         assert np.diff(timing.times).max() <= 1.25 / rate + 1e-12
         _, poses = posed(runs["fallen"], times=timing.times)
-        assert state_text(curve, poses, timing.times.size - 1, timing.times[-1])[0].startswith("overturned at")
+        assert structure_state_text(curve, poses, timing.times.size - 1, timing.times[-1])[0].startswith(
+            "overturned at"
+        )
 
 
 def test_the_picture_moves_as_the_response(tmp_path):

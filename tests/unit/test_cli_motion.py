@@ -12,7 +12,7 @@ import rockflex as rf
 from record_samples import at2, cosmos, knet
 from rockflex import InputError, RecordWarning, load_suite, read_motion
 from rockflex.cli import app
-from rockflex.cli._find_motions import embedded_suites, find_motions
+from rockflex.cli._find_motions import embedded_suite_facts, find_motions
 
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]
 
@@ -184,7 +184,7 @@ def test_checksum_is_of_the_samples():
 
 
 def test_embedded_suites():
-    rows = embedded_suites()
+    rows = embedded_suite_facts()
     assert rows[0] == {"suite": "fema-p695-far-field", "motions": 44, "first": "FF-1-a", "last": "FF-22-b"}
     assert [row["motions"] for row in rows] == [44, 28, 28, 1]
 

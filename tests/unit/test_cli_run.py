@@ -15,9 +15,9 @@ from typer.testing import CliRunner
 import rockflex as rf
 from builders import make_frame
 from rockflex.cli import _batch, _run_results, app
-from rockflex.cli._console import Styled, grid, number
+from rockflex.cli._console import StyledCell, console_table, number_for_console
 from rockflex.response import PEAKS
-from rockflex.study import Case
+from rockflex.study import PreparedCase
 
 EXAMPLES = Path(rf.__file__).parents[2] / "examples"
 STRUCTURE = str(EXAMPLES / "structure_1.toml")
@@ -167,7 +167,7 @@ def test_narrow_terminal_gets_a_table_a_motion_and_nothing_is_cut():
 
 def test_colours_are_of_statuses_and_not_of_whatever_reads_like_one():
     written = io.StringIO()
-    table = grid(["motion", "status"], [["overturned", Styled("rocking †", "yellow")]], 2)
+    table = console_table(["motion", "status"], [["overturned", StyledCell("rocking †", "yellow")]], 2)
     Console(file=written, force_terminal=True, color_system="standard", width=60).print(table)
     assert "\noverturned  \x1b[33mrocking †\x1b[0m" in written.getvalue()
 
@@ -298,7 +298,7 @@ def test_full_folder_is_refused_before_anything_runs(tmp_path, monkeypatch):
 
 def break_down(monkeypatch, broken):
     """Let no run with these models be solved."""
-    solved = Case.run
+    solved = PreparedCase.run
 
     def run(case, motion, scale=1.0):
         if case.model.label in broken:
@@ -306,7 +306,7 @@ def break_down(monkeypatch, broken):
             raise rf.SolverError(message)
         return solved(case, motion, scale)
 
-    monkeypatch.setattr(Case, "run", run)
+    monkeypatch.setattr(PreparedCase, "run", run)
 
 
 @pytest.mark.parametrize(("more", "code"), [([], 0), (["--strict"], 1)])
@@ -414,7 +414,7 @@ def test_ctrl_c_ends_without_a_trace(tmp_path, monkeypatch):
     def interrupted(*_arguments, **_options):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Case, "run", interrupted)
+    monkeypatch.setattr(PreparedCase, "run", interrupted)
     done = invoke(STRUCTURE, "el-centro-1940", "--out", tmp_path / "out")
     assert done.exit_code == 130
     assert done.stderr == "Stopped; nothing was written.\n"
@@ -464,8 +464,8 @@ def test_elements_are_told_with_their_forces_and_energies(fused, tmp_path):
     printed = invoke(*arguments, "--out", tmp_path / "out").stdout
     rows = [line.split() for line in printed.splitlines()]
     assert ["2", "yielding", "dissipator", "0.5000", "200000", "-", "400.0", "0"] in rows
-    assert ["FF-2-a", "2", "MDOF-S", *(number(each / 1e3) for each in forces)] in rows
-    assert ["FF-2-a", "2", "MDOF-S", *(number(each / 1e3) for each in energies)] in rows
+    assert ["FF-2-a", "2", "MDOF-S", *(number_for_console(each / 1e3) for each in forces)] in rows
+    assert ["FF-2-a", "2", "MDOF-S", *(number_for_console(each / 1e3) for each in energies)] in rows
     assert "F, E: largest force of each element, and the energy that it takes (with --out);" in printed
     with (tmp_path / "out" / "results.csv").open(newline="") as table:
         (kept,) = csv.DictReader(table)
@@ -494,8 +494,8 @@ def test_a_run_that_fails_has_no_forces(fused, monkeypatch):
             raise rf.SolverError("no way")
         return KEPT(case, motion, scale)
 
-    KEPT = Case.run
-    monkeypatch.setattr(Case, "run", fail)
+    KEPT = PreparedCase.run
+    monkeypatch.setattr(PreparedCase, "run", fail)
     result = invoke(fused, "el-centro-1940", "--model", "2DOF-S,MDOF-S", "--scale", 2)
     rows = [line.split() for line in result.stdout.splitlines()]
     assert ["EL-CENTRO-1940-NS", "2", "2DOF-S", "-", "-"] in rows

@@ -13,7 +13,7 @@ import rockflex as rf
 from builders import make_frame
 from rockflex.cli import _batch, app
 from rockflex.models import LinearModel, _label
-from rockflex.study import Case
+from rockflex.study import PreparedCase
 
 STRUCTURE = str(Path(rf.__file__).parents[2] / "examples" / "structure_1.toml")
 FRAME = make_frame()
@@ -572,7 +572,7 @@ def test_many_runs(monkeypatch):
 
 
 def test_a_run_that_cannot_be_solved(monkeypatch):
-    solved = Case.run
+    solved = PreparedCase.run
 
     def flaky(case, motion, scale=1.0):
         if case.model.label == "MDOF-S":
@@ -580,7 +580,7 @@ def test_a_run_that_cannot_be_solved(monkeypatch):
             raise rf.SolverError(message)
         return solved(case, motion, scale)
 
-    monkeypatch.setattr(Case, "run", flaky)
+    monkeypatch.setattr(PreparedCase, "run", flaky)
     arguments = (STRUCTURE, "el-centro-1940", "--friction", 0.4)
     assert [rows_of(*arguments)[1][name] for name in NAMES] == [None, None, None]
     last = [line.split() for line in invoke(*arguments).stdout.splitlines() if "MDOF-S" in line][-1]

@@ -5,7 +5,7 @@ import pytest
 
 from builders import PROPERTIES, frame_values
 from rockflex import Eccentric, Frame, InputError, LumpedStructure, RockingProperties, read_structure
-from rockflex.cli._structures import describe_properties, load_structure, split_arguments
+from rockflex.cli._structures import describe_rocking_properties, load_structure, split_structure_file_argument
 
 FRAME = frame_values()
 NO_FLAGS = {}
@@ -109,11 +109,11 @@ def test_tendons_are_described(write):
     held = load_structure(write(toml(PIER, "cantilever") + TENDON), NO_FLAGS)
     assert held.kind == "cantilever"
     assert held.describe()["tendons"] == [{"position": 0.0, "initial_force": 2e6, "stiffness": 25e6}]
-    described = describe_properties(held.properties)
+    described = describe_rocking_properties(held.properties)
     assert described["tendons"] == held.properties.tendons
     assert described["prestress"] == 2e6
     assert described["tendon_stiffness"] == pytest.approx(25e6 * 1.5**2)
-    assert "tendons" not in describe_properties(load_structure(None, FRAME).properties)
+    assert "tendons" not in describe_rocking_properties(load_structure(None, FRAME).properties)
 
 
 def test_an_eccentric_base_is_described(write):
@@ -126,12 +126,12 @@ def test_an_eccentric_base_is_described(write):
     assert moved.title == "structure: 5 modes, T_1 = 1 s, h*_1/B = 10, ζ_1 = 0.02, e = -0.2 m"
     held = load_structure(write(text + TENDON), NO_FLAGS)
     assert held.base_mass == moved.base_mass == 40e3
-    described = describe_properties(moved.properties)
+    described = describe_rocking_properties(moved.properties)
     assert described["eccentricity"] == -0.2
     right, left = described["pivots"]
     assert (right["side"], left["side"]) == (1, -1)
     assert left["resisting_moment"] == moved.properties.resisting_moment < right["resisting_moment"]
-    assert "pivots" not in describe_properties(load_structure(None, FRAME).properties)
+    assert "pivots" not in describe_rocking_properties(load_structure(None, FRAME).properties)
 
 
 def test_title_of_an_eccentric_rigid_block(write):
@@ -293,8 +293,8 @@ def test_missing_flags_are_named():
 
 def test_structure_is_the_first_argument_or_an_option(tmp_path):
     path = tmp_path / "a.toml"
-    assert split_arguments(None, [str(path), "m"]) == (path, ["m"])
-    assert split_arguments(path, ["m", "n"]) == (path, ["m", "n"])
-    assert split_arguments(None, []) == (None, [])
+    assert split_structure_file_argument(None, [str(path), "m"]) == (path, ["m"])
+    assert split_structure_file_argument(path, ["m", "n"]) == (path, ["m", "n"])
+    assert split_structure_file_argument(None, []) == (None, [])
     with pytest.raises(InputError, match=r"Two structures were given, .*a\.toml and b\.toml\. Give one at a time\."):
-        split_arguments(path, ["b.toml"])
+        split_structure_file_argument(path, ["b.toml"])

@@ -7,7 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 import rockflex as rf
-import rockflex.kinds._run
+import rockflex.kinds._run_study
 from rockflex.cli import _study, app
 from rockflex.kinds import load_study
 from rockflex.study import map_chunks, parallel
@@ -263,7 +263,7 @@ def test_ctrl_c_says_what_is_kept(study, tmp_path, monkeypatch):
         yield next(map_chunks(chunk, numbers, 1))
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(rockflex.kinds._run, "map_chunks", interrupted)
+    monkeypatch.setattr(rockflex.kinds._run_study, "map_chunks", interrupted)
     file = study("cloud", HEADS["cloud"] + "runs_per_chunk = 8\n")
     done = invoke("cloud", file, "--out", tmp_path / "kept")
     assert done.exit_code == 130
@@ -280,7 +280,7 @@ def test_a_lost_cluster_exits_with_one(study, monkeypatch):
         message = "The Dask scheduler at tcp://x was lost"
         raise rf.ClusterError(message)
 
-    monkeypatch.setattr(rockflex.kinds._run, "map_dask", lost)
+    monkeypatch.setattr(rockflex.kinds._run_study, "map_chunks_on_dask", lost)
     done = invoke("cloud", study("cloud"), "--dask", "tcp://x")
     assert done.exit_code == 1
     assert "Error: The Dask scheduler at tcp://x was lost" in done.stderr
@@ -291,7 +291,7 @@ def test_help_has_examples():
         text = invoke(command, "--help").stdout
         assert f"rockflex {command} study.toml --dry-run" in text
         assert "--dask" in text
-    assert _study.epilog("ida").count("rockflex ida") == 3
+    assert _study.study_command_epilog("ida").count("rockflex ida") == 3
 
 
 def test_a_share_is_stored_and_nothing_reported(study, tmp_path):

@@ -7,7 +7,7 @@ import pytest
 
 import rockflex as rf
 from rockflex import InputError
-from rockflex._computable import computable
+from rockflex._overflow import explaining_overflow
 from rockflex.structure import _finite_elements
 
 CANTILEVER = {
@@ -177,7 +177,7 @@ def _rest(method):
 
 
 def test_other_errors_pass():
-    with pytest.raises(KeyError), computable("Nothing"):
+    with pytest.raises(KeyError), explaining_overflow("Nothing"):
         raise KeyError
-    with pytest.raises(InputError, match=r"^One cannot be computed: .* \(OverflowError\)"), computable("One"):
+    with pytest.raises(InputError, match=r"^One cannot be computed: .* \(OverflowError\)"), explaining_overflow("One"):
         raise OverflowError

@@ -31,8 +31,8 @@ from design_search_case import (
 from drawing import drawn
 from rockflex.cli import app
 from rockflex.study import ChunkedPlan
-from rockflex.study.design import DesignStudy, stored_search
-from rockflex.study.design._search import Surface
+from rockflex.study.design import DesignStudy, stored_design_search
+from rockflex.study.design._design_search import MarginSurface
 
 
 @pytest.fixture(scope="module")
@@ -265,12 +265,12 @@ def test_a_surface_passes_through_linear_margins_and_smooths_noise():
     plane = steps @ [[1.0, 0.2], [-2.0, 0.0], [0.5, 0.3]] + [0.1, -0.4]
     new = random.uniform(0.0, 3.0, (50, 3))
     expected = new @ [[1.0, 0.2], [-2.0, 0.0], [0.5, 0.3]] + [0.1, -0.4]
-    np.testing.assert_allclose(Surface(steps, plane).margins(new), expected, atol=1e-6)
-    noisy = Surface(steps, plane + 0.2 * random.standard_normal(plane.shape)).margins(new)
+    np.testing.assert_allclose(MarginSurface(steps, plane).margins(new), expected, atol=1e-6)
+    noisy = MarginSurface(steps, plane + 0.2 * random.standard_normal(plane.shape)).margins(new)
     assert np.sqrt(np.mean((noisy - expected) ** 2)) < 0.12
     missing = plane.copy()
     missing[5, 1] = np.nan
-    np.testing.assert_allclose(Surface(steps, missing).margins(new), expected, atol=1e-6)
+    np.testing.assert_allclose(MarginSurface(steps, missing).margins(new), expected, atol=1e-6)
 
 
 # Wrong arguments
@@ -344,12 +344,12 @@ def test_damaged_arguments_of_a_search(call, message):
 
 
 def test_the_plan_tells_its_runs_before(law):
-    from rockflex.study._arguments import properties_of
+    from rockflex.study._arguments import rocking_properties_of
     from rockflex.study._run_matrix import study_matrix
-    from rockflex.study.design import SearchPlan
+    from rockflex.study.design import DesignSearchPlan
 
-    matrix = study_matrix([properties_of(STRUCTURE)], SUITE, "2DOF-S", "settle", None, None)
-    plan = SearchPlan(matrix, SEARCH, [SLOW], COST, SCALES, 200)
+    matrix = study_matrix([rocking_properties_of(STRUCTURE)], SUITE, "2DOF-S", "settle", None, None)
+    plan = DesignSearchPlan(matrix, SEARCH, [SLOW], COST, SCALES, 200)
     assert plan.n_runs == (36 + 4 * 8) * 90
     assert not plan.exact_count
     assert [len(numbers) for numbers in plan.rounds] == [18, 4, 4, 4, 4]
@@ -392,7 +392,7 @@ def folder(study, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def found(study, folder):
-    return rf.best_design(folder[1], *stored_search(study.document()), n_resamples=40)
+    return rf.best_design(folder[1], *stored_design_search(study.document()), n_resamples=40)
 
 
 def parts(path):
@@ -409,7 +409,7 @@ def test_the_study_is_the_call_in_python(study, folder):
     pd.testing.assert_frame_equal(
         table, rf.search_design(held, motions, space, wanted, cost, "2DOF-S", [0.7, 1.4, 2.8])
     )
-    assert stored_search(study.document()) == (wanted, cost)
+    assert stored_design_search(study.document()) == (wanted, cost)
     assert table["error"].isna().all()
     assert set(table["round"]) == {0, 1, 2}
 
@@ -555,7 +555,7 @@ def test_a_search_is_run_kept_told_and_drawn(tmp_path, level, hazard):
     assert done.exit_code == 0, done.stderr
     document = json.loads(invoke("design", file, "--out", kept, "--json").stdout)
     study = rf.load_study(file)
-    found = rf.best_design(rf.StudyFolder.load(kept).frame(), *stored_search(study.document()))
+    found = rf.best_design(rf.StudyFolder.load(kept).frame(), *stored_design_search(study.document()))
     (designs,) = (rows for title, rows in document.items() if title.startswith("Designs of the search"))
     assert [row["cost"] for row in designs] == found.designs["cost"].tolist()
     (limits,) = (rows for title, rows in document.items() if title.startswith("Limits of the cheapest design"))

@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._equivalents import _five_masses, tipped_cantilever
+from rockflex.papers.silva_stojadinovic_2024._equivalents import _five_masses_of_s1, modes_of_tipped_cantilever
 
 G = 9.81
 RATIO = "base_mass_ratio must be a zero or positive, finite number in kg of base a kg above it"
@@ -30,7 +30,7 @@ def lumped_column(tip, parts=400):
 
 @pytest.mark.parametrize("tip", [0.5, 5.0])
 def test_the_cantilever_with_a_tip_mass_is_the_limit_of_many_masses(tip):
-    roots, mass, height, top = tipped_cantilever(tip, 3)
+    roots, mass, height, top = modes_of_tipped_cantilever(tip, 3)
     omega, *others = lumped_column(tip)
     np.testing.assert_allclose(roots**2, omega, rtol=2e-4)
     for found, expected in zip((mass, height, top), others, strict=True):
@@ -38,11 +38,11 @@ def test_the_cantilever_with_a_tip_mass_is_the_limit_of_many_masses(tip):
 
 
 def test_the_cantilever_without_a_tip_mass_is_the_textbook_s():
-    roots, mass, height, _ = tipped_cantilever(0.0, 5)
+    roots, mass, height, _ = modes_of_tipped_cantilever(0.0, 5)
     np.testing.assert_allclose(roots[:3], [1.875104, 4.694091, 7.854757], rtol=1e-6)
     np.testing.assert_allclose(mass[:2], [0.6131, 0.1883], atol=1e-4)
     assert height[0] == pytest.approx(0.7265, abs=1e-4)
-    assert np.sum(tipped_cantilever(3.0, 5)[1]) < 1.0
+    assert np.sum(modes_of_tipped_cantilever(3.0, 5)[1]) < 1.0
 
 
 def test_two_hz_meets_its_ratios():
@@ -94,7 +94,7 @@ def test_s1_meets_its_ratios(spacing):
     assert p.effective_height[0] == pytest.approx(0.7, rel=1e-12)
     assert p.half_width == pytest.approx(0.14, rel=1e-12)
     assert p.effective_mass.sum() == pytest.approx(1.0, rel=1e-9)
-    heights, masses = _five_masses(spacing)
+    heights, masses = _five_masses_of_s1(spacing)
     assert masses.min() > 0.0
     assert np.ptp(masses[1:4]) == 0.0
     assert np.all(np.diff(heights) > 0.0)

@@ -7,18 +7,24 @@ import pytest
 
 import rockflex as rf
 from rockflex import InputError
-from rockflex._checks import damping_ratios, finite, finite_vector, positive, whole_number
+from rockflex._checks import (
+    checked_damping_ratios,
+    checked_finite,
+    checked_finite_vector,
+    checked_positive,
+    checked_whole_number,
+)
 from rockflex.structure.file import StructureEntry
 
 
 @pytest.mark.parametrize(
     ("call", "field"),
     [
-        (lambda: positive("period", -1.0, "s"), "period"),
-        (lambda: finite("eccentricity", float("nan"), "m"), "eccentricity"),
-        (lambda: finite_vector("mass, heights", ["a"], "m", field="mass"), "mass"),
-        (lambda: whole_number("rotations, index", 2.5, 0, field="rotations"), "rotations"),
-        (lambda: damping_ratios("zeta", [0.02, 2.0], 2), "zeta"),
+        (lambda: checked_positive("period", -1.0, "s"), "period"),
+        (lambda: checked_finite("eccentricity", float("nan"), "m"), "eccentricity"),
+        (lambda: checked_finite_vector("mass, heights", ["a"], "m", field="mass"), "mass"),
+        (lambda: checked_whole_number("rotations, index", 2.5, 0, field="rotations"), "rotations"),
+        (lambda: checked_damping_ratios("zeta", [0.02, 2.0], 2), "zeta"),
         (lambda: rf.LumpedStructure([0.0], [[1.0]], [3.0], base_mass=1.0, half_width=1.0, damping_ratio=0.0), "masses"),
         (lambda: rf.BoucWen(0.05, gamma=-1.0), "gamma"),
     ],

@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 import rockflex as rf
-from rockflex._files import check_regular, irregular
+from rockflex._files import check_regular_file, irregular_file_kind
 from rockflex.cli import app
 from toy_study import ToyPlan, opened, run_study
 
@@ -127,8 +127,8 @@ def test_a_socket_and_what_is_not_there(tmp_path, monkeypatch):
     with socket.socket(socket.AF_UNIX) as end:
         end.bind("s")  # a long path is none for a socket
         with pytest.raises(rf.InputError, match=r"^s is a socket, but a regular file is expected\. Write its content"):
-            check_regular(Path("s"))
-    assert irregular(tmp_path / "none") == ""
+            check_regular_file(Path("s"))
+    assert irregular_file_kind(tmp_path / "none") == ""
     (tmp_path / "file").touch()
     (tmp_path / "link").symlink_to("file")
-    assert irregular(tmp_path / "link") == ""
+    assert irregular_file_kind(tmp_path / "link") == ""

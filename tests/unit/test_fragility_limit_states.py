@@ -15,11 +15,11 @@ from rockflex.fragility import (
     ROCKING,
     TENDON_YIELD,
     UPLIFT,
-    beyond,
-    limit_label,
-    observed_fractions,
-    residual_beyond,
-    symbol_of_nominal,
+    limit_state_label,
+    nominal_rotation_symbol,
+    observed_exceedance_fractions,
+    residual_rotation_limit_state,
+    rotation_limit_state,
 )
 
 # At rest, lifted by less than counts, rocking, beyond 0.7 atan(B/h*_1), and over.
@@ -40,8 +40,13 @@ RUNS = pd.DataFrame(
 @pytest.mark.parametrize(
     ("state", "first"),
     [
-        *[(UPLIFT, 1), (ROCKING, 2), (beyond(0.1), 3), (NOMINAL, 3), (OVERTURNING, 4)],
-        *[(TENDON_YIELD, 2), (residual_beyond(0.003), 2), (residual_beyond(0.005), 3), (residual_beyond(1.0), 4)],
+        *[(UPLIFT, 1), (ROCKING, 2), (rotation_limit_state(0.1), 3), (NOMINAL, 3), (OVERTURNING, 4)],
+        *[
+            (TENDON_YIELD, 2),
+            (residual_rotation_limit_state(0.003), 2),
+            (residual_rotation_limit_state(0.005), 3),
+            (residual_rotation_limit_state(1.0), 4),
+        ],
     ],
     ids=lambda each: getattr(each, "label", each),
 )
@@ -58,7 +63,7 @@ def test_counts_of_stripes_are_of_it(state):
 
 
 def test_residual_rotations_have_stripes_and_a_figure():
-    limit = residual_beyond(0.005)
+    limit = residual_rotation_limit_state(0.005)
     assert rf.stripe_counts(RUNS, limit)["n_exceeding"].tolist() == [2]
     figure = rf.plot_stripes(RUNS, limit)
     assert figure.axes[0].get_ylabel() == r"$P(|θ_{\mathrm{res}}|>0.005\ \mathrm{rad})$"
@@ -67,14 +72,14 @@ def test_residual_rotations_have_stripes_and_a_figure():
 
 def test_tables_without_residual_rotations():
     with pytest.raises(rf.InputError, match=r"^The runs have no column residual_rotation\. Tables of studies"):
-        residual_beyond(0.005).exceeded(RUNS.drop(columns="residual_rotation"))
+        residual_rotation_limit_state(0.005).exceeded(RUNS.drop(columns="residual_rotation"))
 
 
 def test_what_overturned_passed_every_rotation_below_a_right_angle():
     fallen = {"status": "overturned", "max_rotation": 1.5}  # the last sample that is known
-    assert beyond(1.55).exceeded(fallen)
-    assert not beyond(OVERTURNED).exceeded(fallen)
-    assert not beyond(1.55).exceeded(fallen | {"status": "rocking"})
+    assert rotation_limit_state(1.55).exceeded(fallen)
+    assert not rotation_limit_state(OVERTURNED).exceeded(fallen)
+    assert not rotation_limit_state(1.55).exceeded(fallen | {"status": "rocking"})
 
 
 def test_names():
@@ -82,26 +87,32 @@ def test_names():
     assert (OVERTURNING.label, OVERTURNING.rotation) == ("overturning", "|θ| = π/2")
     assert NOMINAL.label == NOMINAL.rotation == "0.7 atan(B/h*_1)"
     assert NOMINAL.symbol == r"θ_{\mathrm{max}}>0.7\,\mathrm{atan}(B/h^*_1)"
-    assert symbol_of_nominal(0.5) == r"θ_{\mathrm{max}}>0.5\cdot0.7\,\mathrm{atan}(B/h^*_1)"
-    assert beyond(0.02).symbol == r"θ_{\mathrm{max}}>0.02\ \mathrm{rad}"
-    assert [limit_label(limit) for limit in ("0.5 nominal", 0.02)] == ["0.5 nominal", "0.02 rad"]
+    assert nominal_rotation_symbol(0.5) == r"θ_{\mathrm{max}}>0.5\cdot0.7\,\mathrm{atan}(B/h^*_1)"
+    assert rotation_limit_state(0.02).symbol == r"θ_{\mathrm{max}}>0.02\ \mathrm{rad}"
+    assert [limit_state_label(limit) for limit in ("0.5 nominal", 0.02)] == ["0.5 nominal", "0.02 rad"]
     assert ROCKING.label == "uplift with θ_max > 1e-4 rad"
     assert math.isnan(ROCKING.threshold)  # it is not on the rotation alone
     assert math.isnan(NOMINAL.threshold)
-    assert (TENDON_YIELD.label, residual_beyond(0.005).label) == ("tendon yield", "residual 0.005 rad")
+    assert (TENDON_YIELD.label, residual_rotation_limit_state(0.005).label) == ("tendon yield", "residual 0.005 rad")
 
 
 def test_a_base_on_springs_that_turns_without_uplift_does_not_rock():
     tilted = RUNS.assign(status=["no_uplift", "no_uplift", "no_uplift", "rocking", "overturned"])
     assert ROCKING.exceeded(tilted).tolist() == [False, False, False, True, True]
-    assert beyond(0.01).exceeded(tilted).tolist() == [False, False, True, True, True]  # it turned all the same
+    assert rotation_limit_state(0.01).exceeded(tilted).tolist() == [
+        False,
+        False,
+        True,
+        True,
+        True,
+    ]  # it turned all the same
 
 
 @pytest.mark.parametrize("groups", [1, 3, 7, 40])
 def test_against_a_loop(groups):
     rng = np.random.default_rng(3)
     im, exceeded = rng.lognormal(size=23), rng.random(23) < 0.4
-    found = observed_fractions(im, exceeded, groups)
+    found = observed_exceedance_fractions(im, exceeded, groups)
     runs = sorted(zip(im, exceeded, strict=True))
     sizes = [23 // groups + (place < 23 % groups) for place in range(groups)]
     ends = np.cumsum(sizes)

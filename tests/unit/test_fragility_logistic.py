@@ -15,7 +15,7 @@ from scipy.special import expit
 
 from rockflex import InputError
 from rockflex.fragility import fit_logistic
-from rockflex.fragility._regression import are_separated
+from rockflex.fragility._regression import are_outcomes_separated
 
 RNG = np.random.default_rng(11)
 IM = np.exp(RNG.normal(-1.0, 0.8, 120))
@@ -110,7 +110,7 @@ def test_all_but_separated_outcomes_never_get_a_runaway_slope():
 )
 def test_separation_is_what_the_linear_program_finds(runs):
     x, y = np.array([float(x) for x, _ in runs]), np.array([y for _, y in runs])
-    assert are_separated(x, y, np.ones((1, x.size))) == detect_separation(x[:, None], y).separation
+    assert are_outcomes_separated(x, y, np.ones((1, x.size))) == detect_separation(x[:, None], y).separation
 
 
 @given(

@@ -10,7 +10,7 @@ import pytest
 import rockflex as rf
 from builders import make_frame
 from rockflex.models import LinearModel, _label
-from rockflex.structure.file import Table, checked
+from rockflex.structure.file import TomlTable, parse_toml_table
 from rockflex.study.spec import GroundTable
 
 FRAME = make_frame(n_stories=2, period=0.5, aspect_ratio=8.0)
@@ -18,12 +18,12 @@ PROPERTIES = FRAME.rocking()
 B, MASS = PROPERTIES.half_width, PROPERTIES.m_tot
 
 
-class Holder(Table):
+class Holder(TomlTable):
     ground: GroundTable
 
 
 def under(text, properties=PROPERTIES):
-    return checked(Holder, tomllib.loads(text)).ground.under(properties)
+    return parse_toml_table(Holder, tomllib.loads(text)).ground.under(properties)
 
 
 def test_friction_alone():

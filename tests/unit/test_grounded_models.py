@@ -9,7 +9,7 @@ import rockflex as rf
 from builders import make_frame
 from rockflex.models import parse_model
 from rockflex.models._spring_model import code_of, codes_for, decoded, heave_at
-from rockflex.study._case import Case
+from rockflex.study._prepared_case import PreparedCase
 
 FRAME = make_frame(n_stories=3, base_mass=120e3, stiffness_ratio=0.125, period=0.4, aspect_ratio=6.0)
 P = FRAME.rocking()
@@ -31,8 +31,8 @@ SHAKING = 6.0 * np.sin(7.0 * T) * np.exp(-0.2 * T)
 def test_a_constant_vertical_acceleration_is_another_gravity(ground, model, upwards):
     """Of a base on springs, once it stands where that gravity presses it: its start is that of g."""
     tied = parse_model(model).of(P, ground=GROUNDS[ground])
-    run = Case(tied).run(rf.GroundMotion(SHAKING, 0.01, vertical=np.full(T.size, upwards)))
-    other = Case(replace(tied, gravity=tied.gravity + upwards)).run(rf.GroundMotion(SHAKING, 0.01))
+    run = PreparedCase(tied).run(rf.GroundMotion(SHAKING, 0.01, vertical=np.full(T.size, upwards)))
+    other = PreparedCase(replace(tied, gravity=tied.gravity + upwards)).run(rf.GroundMotion(SHAKING, 0.01))
     names = "max_rotation", "max_top_displacement", "max_base_moment", "max_slip", "max_edge_uplift", "n_uplifts"
     for name in (*names, "min_vertical_reaction", "max_horizontal_reaction"):
         assert getattr(run, name) == pytest.approx(getattr(other, name), rel=1e-9), name
@@ -43,8 +43,8 @@ def test_a_base_held_by_friction_dampers_under_vertical_acceleration(upwards):
     held = rf.Restrained(FRAME, rf.FrictionDamper(force=1.5 * P.m_tot * 9.81))
     tied = parse_model("2DOF-S").of(held.rocking())
     motion = rf.GroundMotion(16.0 / 6.0 * SHAKING, 0.01, vertical=np.full(T.size, upwards))
-    run = Case(tied, history=True).run(motion)
-    other = Case(replace(tied, gravity=tied.gravity + upwards)).run(rf.GroundMotion(16.0 / 6.0 * SHAKING, 0.01))
+    run = PreparedCase(tied, history=True).run(motion)
+    other = PreparedCase(replace(tied, gravity=tied.gravity + upwards)).run(rf.GroundMotion(16.0 / 6.0 * SHAKING, 0.01))
     assert run.max_rotation == pytest.approx(other.max_rotation, rel=1e-10)
     assert run.energy.closing_error < 1e-10
 

@@ -14,7 +14,7 @@ from builders import make_frame
 from rockflex import GroundMotion, simulate, simulate_many
 from rockflex.solve import RunStoppedError, stopping_when
 from rockflex.study.parallel import map_runs
-from rockflex.web._app import Server
+from rockflex.web._app import PageServer
 from rockflex.web._refusal import Refusal
 
 FRAME = make_frame(n_stories=3, period=0.8, aspect_ratio=6.0)
@@ -82,6 +82,6 @@ def test_the_page_stops_a_run_that_its_visitor_has_left():
     begun = monotonic()
     # A browser of other tests may have its event loop in this thread.
     with ThreadPoolExecutor() as pool, pytest.raises(Refusal) as caught:
-        pool.submit(lambda: asyncio.run(Server().run(Left(), long_run))).result()
+        pool.submit(lambda: asyncio.run(PageServer().run(Left(), long_run))).result()
     assert caught.value.status == 499
     assert monotonic() - begun < SOON

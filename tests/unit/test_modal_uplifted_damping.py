@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from rockflex.modal._uplifted import uplifted_damping
-from rockflex.papers.silva_stojadinovic_2024._inputs import TOWER, frame_of
+from rockflex.modal._uplifted import uplifted_damping_ratios
+from rockflex.papers.silva_stojadinovic_2024._inputs import TOWER, table_1_frame
 
 
 def roots_of(p):
@@ -44,7 +44,7 @@ ROUNDING = 1e3 * np.finfo(float).eps
 @pytest.mark.parametrize("name", ["#1", "#2", "#6"])
 @pytest.mark.parametrize("n_modes", [1, 2, 5])
 def test_against_the_state_matrix_in_forty_digits(name, n_modes):
-    p = frame_of(name).rocking(n_modes)
+    p = table_1_frame(name).rocking(n_modes)
     found = rf.uplifted_modes(p).damping_ratio
     ratios, sizes = expected(p)
     assert found.shape == (n_modes,)
@@ -59,7 +59,7 @@ def test_a_damping_ratio_of_each_mode():
 
 @pytest.mark.parametrize(("name", "found", "rule"), [("#1", 12.5, 12.2), ("#2", 9.5, 9.3), ("#6", 6.7, 6.6)])
 def test_two_per_cent_become_several_times_as_much_with_one_mode(name, found, rule):
-    p = frame_of(name).rocking(1)
+    p = table_1_frame(name).rocking(1)
     modes = rf.uplifted_modes(p)
     assert round(100.0 * modes.damping_ratio[0], 1) == found
     assert round(2.0 * modes.ratio[0], 1) == rule
@@ -70,20 +70,20 @@ def test_two_per_cent_become_several_times_as_much_with_one_mode(name, found, ru
 
 @pytest.mark.parametrize("zeta", [1e-3, 0.02, 0.15])
 def test_one_mode_without_weight_in_closed_form(zeta):
-    p = frame_of("#1").rocking(1)
+    p = table_1_frame("#1").rocking(1)
     weightless = replace(p, l0r=1e-12 * p.l0r, zeta=zeta)
     modes = rf.uplifted_modes(weightless)
     assert modes.damping_ratio[0] == pytest.approx(zeta * modes.ratio[0], rel=1e-10)
 
 
 def test_without_damping_there_is_none():
-    found = rf.uplifted_modes(replace(frame_of("#1").rocking(), zeta=0.0)).damping_ratio
+    found = rf.uplifted_modes(replace(table_1_frame("#1").rocking(), zeta=0.0)).damping_ratio
     np.testing.assert_allclose(found, 0.0, atol=ROUNDING)
 
 
 def test_an_overdamped_mode_has_two_real_roots():
     """ζ ω*/ω = 1.2 with one mode: the motion creeps back, and sum and product of its roots give ζ*."""
-    p = replace(frame_of("#1").rocking(1), zeta=0.2)
+    p = replace(table_1_frame("#1").rocking(1), zeta=0.2)
     roots = np.array(roots_of(p))
     assert np.abs(roots.imag).max() < 1e-12
     falling = np.sort(roots.real)[:2]  # the two fastest to decay; the others are the rotation's
@@ -94,7 +94,7 @@ def test_an_overdamped_mode_has_two_real_roots():
 
 def test_overdamped_beside_modes_that_vibrate():
     """Two real roots beside the rotation's belong to one mode: the last, which the base's own inertia makes stiff."""
-    p = replace(frame_of("#1").rocking(), zeta=0.5)
+    p = replace(table_1_frame("#1").rocking(), zeta=0.5)
     found = rf.uplifted_modes(p).damping_ratio
     roots = np.array(roots_of(p))
     still = np.sort(roots.real[np.abs(roots.imag) < 1e-12 * np.abs(roots)])
@@ -108,13 +108,13 @@ def test_overdamped_beside_modes_that_vibrate():
 def test_pairs_of_several_overdamped_modes():
     """Uncoupled oscillators: of four real roots the slowest and the fastest are one pair, the other two the other."""
     squares, zeta = np.array([-1.0, 100.0, 110.0]), np.array([0.0, 3.0, 1.5])
-    found = uplifted_damping(squares, np.diag(2.0 * zeta * np.sqrt(np.abs(squares))))
+    found = uplifted_damping_ratios(squares, np.diag(2.0 * zeta * np.sqrt(np.abs(squares))))
     np.testing.assert_allclose(found, zeta[1:], rtol=1e-12)
 
 
 def test_tendons_that_hold_the_rotation():
     """Its sway is a vibration too, with the lowest frequency; it is left out."""
-    held = rf.Restrained(frame_of("#1"), rf.Tendon(1e6, 2e9)).rocking()
+    held = rf.Restrained(table_1_frame("#1"), rf.Tendon(1e6, 2e9)).rocking()
     assert held.rocking_stiffness > 0.0
     ratios, sizes = expected(held)
     found = rf.uplifted_modes(held).damping_ratio
@@ -124,7 +124,7 @@ def test_tendons_that_hold_the_rotation():
 
 def test_free_vibration_decays_at_that_rate():
     """Of a nearly weightless structure with one mode that rocks freely, D falls by exp(-2π ζ*/√(1 - ζ*²)) a period."""
-    p = frame_of("#1").rocking(1)
+    p = table_1_frame("#1").rocking(1)
     p = replace(p, l0r=1e-3 * p.l0r)
     modes = rf.uplifted_modes(p)
     zeta, omega = modes.damping_ratio[0], modes.omega[0]

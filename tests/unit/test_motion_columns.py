@@ -499,7 +499,7 @@ def test_without_openpyxl(tmp_path, monkeypatch):
 
 def test_the_page_takes_workbooks(tmp_path):
     pytest.importorskip("starlette")
-    from rockflex.web._uploads import read_record
+    from rockflex.web._uploads import read_uploaded_record
 
     content = io.BytesIO(write_excel(tmp_path, {"S": [["time (s)", "acc (g)"], *ROWS]}).read_bytes())
-    assert read_record("mine.xlsx", content.getvalue(), None, None).name == "mine"
+    assert read_uploaded_record("mine.xlsx", content.getvalue(), None, None).name == "mine"

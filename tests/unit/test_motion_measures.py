@@ -18,12 +18,12 @@ from rockflex.kinds import load_study
 from rockflex.motion import (
     MEASURES,
     GroundMotion,
-    Measure,
-    Shaking,
-    intensities,
-    intensity,
+    IntensityMeasure,
+    MeasureInput,
     quiet_motion,
     record_measures,
+    scalable_measure,
+    scalable_measures,
 )
 from rockflex.plot import plot_clouds
 from rockflex.study import run_plan
@@ -32,7 +32,7 @@ from rockflex.study.stripes import StripeStudy
 RECORDS = [GroundMotion(np.random.default_rng(seed).normal(size=n), dt) for seed, n, dt in [(1, 40, 0.3), (2, 7, 0.02)]]
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]
 BLOCK = rf.rigid_block(0.2, 1.5)
-MEAN = Measure(
+MEAN = IntensityMeasure(
     name="mean_a",
     label="MA",
     unit="m/s²",
@@ -169,11 +169,11 @@ def test_words_of_a_label_that_is_words():
     assert MEASURES["relative_pga"].axis == r"PGA/($g\,\tan α$)"
 
 
-@pytest.mark.parametrize("measure", intensities(), ids=lambda measure: measure.name)
+@pytest.mark.parametrize("measure", scalable_measures(), ids=lambda measure: measure.name)
 @pytest.mark.parametrize("factor", [-1.3, 0.4])
 def test_scaled_is_computed_from_the_scaled_motion(measure, factor):
     def of(motion):
-        return measure.of(Shaking(motion, omega=6.0, damping_ratio=0.02, lifting=1.3, rate=2.1))
+        return measure.of(MeasureInput(motion, omega=6.0, damping_ratio=0.02, lifting=1.3, rate=2.1))
 
     both = EL_CENTRO.with_vertical(0.5 * EL_CENTRO.acceleration[::-1])
     value = of(both)
@@ -184,20 +184,20 @@ def test_scaled_is_computed_from_the_scaled_motion(measure, factor):
 
 def test_no_factor_takes_a_motion_to_a_duration():
     duration = MEASURES["d5_95"]
-    assert duration not in intensities()
+    assert duration not in scalable_measures()
     assert duration.scaled(3.0, 2.0) == 3.0
     assert duration.factor(3.0, 6.0) == math.inf
     with pytest.raises(rf.InputError, match=r"relative_pgv, but 'd5_95' was given\."):
-        intensity("d5_95")
+        scalable_measure("d5_95")
 
 
 def test_without_a_structure_its_measures_are_missing():
     for measure in MEASURES.values():
-        assert math.isnan(measure.of(Shaking(EL_CENTRO))) == (measure not in record_measures())
+        assert math.isnan(measure.of(MeasureInput(EL_CENTRO))) == (measure not in record_measures())
 
 
 def test_the_spectrum_of_a_stiff_structure_is_the_peak_of_the_ground():
-    stiff = Shaking(EL_CENTRO, omega=1e8, damping_ratio=0.02)
+    stiff = MeasureInput(EL_CENTRO, omega=1e8, damping_ratio=0.02)
     assert MEASURES["sa_t1"].of(stiff) == MEASURES["sa_t1_5"].of(stiff) == pytest.approx(EL_CENTRO.pga)
 
 
@@ -223,7 +223,7 @@ def test_an_added_measure_is_accepted_in_a_study_file(tmp_path):
 def test_an_added_measure_is_told_on_the_command_line():
     found = json.loads(CliRunner().invoke(app, ["motion", "el-centro-1940", "--json"]).stdout)
     assert found["units"]["mean_a"] == "m/s²"
-    assert found["motions"][0]["mean_a"] == MEAN.of(Shaking(EL_CENTRO))
+    assert found["motions"][0]["mean_a"] == MEAN.of(MeasureInput(EL_CENTRO))
     printed = CliRunner().invoke(app, ["motion", "el-centro-1940"]).stdout
     rows = [line.split() for line in printed.splitlines()]
     assert ["PGA", "PGV", "PGD", "Arias", "CAV", "D5-95", "MA", "Sa(1", "s)"] in rows

@@ -9,7 +9,7 @@ import pytest
 import rockflex as rf
 from record_samples import load_obspy
 from rockflex.motion import _obspy
-from rockflex.motion._obspy import format_of
+from rockflex.motion._obspy import obspy_format
 
 COUNTS = np.array([0, 100, -250, 4000, -10, 0], dtype=np.int32)
 
@@ -82,7 +82,7 @@ def test_no_file_is_unpickled(obspy, tmp_path):
     (tmp_path / "a.dat").write_bytes(pickle.dumps(Trap()))
     with pytest.raises(rf.InputError, match=r"a\.dat is a binary file"):
         rf.read_motion(tmp_path / "a.dat", units="g")
-    assert format_of(pickle.dumps(obspy.Stream([trace(obspy, "HNE")]))) is None
+    assert obspy_format(pickle.dumps(obspy.Stream([trace(obspy, "HNE")]))) is None
 
 
 def test_an_accelerograph_states_its_calibration(obspy):
@@ -100,26 +100,26 @@ def test_an_accelerograph_states_its_calibration(obspy):
 
 
 def test_without_obspy(tmp_path, monkeypatch):
-    monkeypatch.setattr(_obspy, "is_installed", lambda: False)
+    monkeypatch.setattr(_obspy, "is_obspy_installed", lambda: False)
     (tmp_path / "a.mseed").write_bytes(b"\0\1\2" * 50)
     with pytest.raises(rf.InputError, match=r"a\.mseed is a binary file, .* ObsPy: pip install 'rockflex\[obspy\]'"):
         rf.read_motion(tmp_path / "a.mseed")
-    assert format_of(b"") is None
+    assert obspy_format(b"") is None
 
 
 def test_the_page_reads_no_foreign_formats(obspy, tmp_path):
     pytest.importorskip("starlette")
     from rockflex.web._refusal import Refusal
-    from rockflex.web._uploads import read_record
+    from rockflex.web._uploads import read_uploaded_record
 
     content = write(obspy, tmp_path / "a.mseed", "HNE").read_bytes()
     with pytest.raises(Refusal) as caught:
-        read_record("a.mseed", content, "g", None)
+        read_uploaded_record("a.mseed", content, "g", None)
     assert "a.mseed is a binary file" in caught.value.errors["record.upload"]
 
 
 def test_a_text_that_obspy_takes_for_its_own_but_cannot_read(obspy, tmp_path):
     (tmp_path / "a.txt").write_text("WID2 of no file\nabc\n")
-    assert format_of((tmp_path / "a.txt").read_bytes()) is not None
+    assert obspy_format((tmp_path / "a.txt").read_bytes()) is not None
     with pytest.raises(rf.InputError, match=r"a\.txt holds no numbers: a record is expected as AT2, CSV or columns"):
         rf.read_motion(tmp_path / "a.txt", units="g")

@@ -8,7 +8,7 @@ from record_samples import SEARCH_RESULTS, at2, cosmos, esm, knet
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, RecordWarning
 from rockflex.motion import read_suite
-from rockflex.motion._record_table import read_table
+from rockflex.motion._record_table import read_record_table
 
 AT2 = "Some Event, 1/1/2001, Some Station, {}\nACCELERATION IN UNITS OF G\nNPTS= 3, DT= .1\n0 {} 0\n"
 FLATFILE = (
@@ -328,7 +328,7 @@ def test_search_results_of_peer(folder_record_table):
     ]
     # What the header says remains.
     assert {motion.metadata.event for motion in suite} == {"Some Event"}
-    table = read_table(folder_record_table / "_SearchResults.csv")
+    table = read_record_table(folder_record_table / "_SearchResults.csv")
     first = table.by_number[9001]
     assert (first.event, first.year, first.station) == ("Somewhere, Italy-02", 1940, "Array #9, East")
     assert table.by_file["rsn9001_some_abc-up.at2"].direction == "vertical"

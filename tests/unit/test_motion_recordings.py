@@ -19,8 +19,8 @@ from rockflex import (
     simulate,
     simulate_many,
 )
-from rockflex.motion import direction_of
-from rockflex.motion._recordings import file_names, pair_vertical
+from rockflex.motion import component_direction
+from rockflex.motion._recordings import file_names_text, pair_vertical_records
 from rockflex.study import overturning_scales
 
 VERTICAL = (
@@ -93,12 +93,12 @@ AT2 = "{}, 1/1/2001, {}, {}\nACCELERATION IN UNITS OF G\nNPTS= 3, DT= {}\n0 {} 0
 
 @pytest.mark.parametrize("name", VERTICAL)
 def test_names_of_vertical_components(name):
-    assert direction_of(Path(name)) == ("down" if "DWN" in name else "vertical")
+    assert component_direction(Path(name)) == ("down" if "DWN" in name else "vertical")
 
 
 @pytest.mark.parametrize("name", UNKNOWN)
 def test_names_that_say_nothing_of_it(name):
-    assert direction_of(Path("UP-UP") / name) is None
+    assert component_direction(Path("UP-UP") / name) is None
 
 
 @pytest.mark.parametrize(
@@ -106,17 +106,17 @@ def test_names_that_say_nothing_of_it(name):
 )
 def test_components_that_a_header_calls_vertical(component):
     expected = "down" if component in ("DWN", "DOWN") else "vertical"
-    assert direction_of(Path("RSN1_X_ABC.AT2"), component) == expected
+    assert component_direction(Path("RSN1_X_ABC.AT2"), component) == expected
 
 
 @pytest.mark.parametrize(
     "component", ["0", "90", "000", "345", "N", "E", "NS", "EW", "L", "T1", "N55W", "S 35 E", "HNE"]
 )
 def test_components_that_a_header_calls_horizontal(component):
-    assert direction_of(Path("RSN1_X_ABC.AT2"), component) == "horizontal"
+    assert component_direction(Path("RSN1_X_ABC.AT2"), component) == "horizontal"
     # A station's name may end in these letters; what stands apart in the file's name counts all the same.
-    assert direction_of(Path("RSN1_X_ABCUP.AT2"), component) == "horizontal"
-    assert direction_of(Path("RSN1_X_ABC-UP.AT2"), component) == "vertical"
+    assert component_direction(Path("RSN1_X_ABCUP.AT2"), component) == "horizontal"
+    assert component_direction(Path("RSN1_X_ABC-UP.AT2"), component) == "vertical"
 
 
 @pytest.mark.parametrize(("component", "direction"), [("UP", "vertical"), ("360", "horizontal"), ("Upland", None)])
@@ -162,7 +162,7 @@ def pairs_of(horizontal, vertical):
     """Which vertical record, by its name, each horizontal one gets; file names as they are in one folder."""
     along = {Path(name): motion(name) for name in horizontal}
     upwards = {Path(name): motion(name, direction="vertical") for name in vertical}
-    both, without, left = pair_vertical(along, upwards)
+    both, without, left = pair_vertical_records(along, upwards)
     found = {file.name: each.metadata.vertical_source for file, each in both.items() if each.vertical is not None}
     return found, {file.name: reason for file, reason in without.items()}, [file.name for file in left]
 
@@ -199,17 +199,17 @@ def test_stations_whose_names_begin_alike():
 def test_other_folders_and_other_stations_are_none():
     found, without, left = pairs_of(["ABC090.AT2", "ABCD.AT2"], ["ABD-UP.AT2"])
     assert (found, without, left) == ({}, {"ABC090.AT2": "", "ABCD.AT2": ""}, ["ABD-UP.AT2"])
-    both, *_ = pair_vertical({Path("a/X090.csv"): motion("h")}, {Path("b/X-UP.csv"): motion("v")})
+    both, *_ = pair_vertical_records({Path("a/X090.csv"): motion("h")}, {Path("b/X-UP.csv"): motion("v")})
     assert both[Path("a/X090.csv")].vertical is None
 
 
 def test_headers_tell_what_names_do_not():
     along = {Path("a/first.csv"): motion("1", rsn=7), Path("a/second.csv"): motion("2", event="E", year=1, station="S")}
     upwards = {Path("b/up.csv"): motion("v7", rsn=7), Path("b/v.csv"): motion("vs", event="E", year=1, station="S")}
-    both, without, left = pair_vertical(along, upwards)
+    both, without, left = pair_vertical_records(along, upwards)
     assert [each.metadata.vertical_source for each in both.values()] == ["v7", "vs"]
     assert (without, left) == ({}, [])
-    nothing = pair_vertical({Path("c.csv"): motion("3", event="E", station="S")}, upwards)
+    nothing = pair_vertical_records({Path("c.csv"): motion("3", event="E", station="S")}, upwards)
     assert nothing[1] == {Path("c.csv"): ""}
 
 
@@ -221,13 +221,13 @@ def test_of_two_none_is_chosen():
 
 def test_a_record_with_both_stays_as_it_is():
     own = GroundMotion([0.0, 1.0, 0.0], 0.1, "ABC090", vertical=[0.0, 2.0, 0.0])
-    both, without, left = pair_vertical({Path("ABC090.csv"): own}, {Path("ABC-UP.csv"): motion("ABC-UP")})
+    both, without, left = pair_vertical_records({Path("ABC090.csv"): own}, {Path("ABC-UP.csv"): motion("ABC-UP")})
     assert both[Path("ABC090.csv")] is own
     assert (without, left) == ({}, [Path("ABC-UP.csv")])
 
 
 def test_many_names_are_shortened():
-    assert file_names(Path(f"{k}.txt") for k in range(12)).endswith(", 9.txt and 2 more")
+    assert file_names_text(Path(f"{k}.txt") for k in range(12)).endswith(", 9.txt and 2 more")
 
 
 def test_folder(tmp_path):

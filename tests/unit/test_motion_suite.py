@@ -12,7 +12,7 @@ import pytest
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.motion import GroundMotion, Suite, load_suite, suite_names
-from rockflex.motion._suite import DATA, decode, encode, read_embedded
+from rockflex.motion._suite import DATA, pack_decimal_samples, read_embedded_suite, unpack_decimal_samples
 
 MOTIONS = [GroundMotion([0, k, 0], 0.1, name=f"m{k}") for k in range(1, 5)]
 SUITE = Suite(MOTIONS, "four")
@@ -72,7 +72,7 @@ def test_embedded_records_are_what_was_published(name):
     suite = load_suite(name)
     assert load_suite(name) is suite
     assert (len(suite), suite.name) == (count, name)
-    for motion, (entry, samples) in zip(suite, read_embedded(name), strict=True):
+    for motion, (entry, samples) in zip(suite, read_embedded_suite(name), strict=True):
         assert motion.name == entry["name"]
         assert motion.acceleration.size == samples.size == entry["npts"]
         assert hashlib.sha256(samples.astype("<f8").tobytes()).hexdigest() == entry["sha256"]
@@ -102,9 +102,9 @@ def test_metadata_and_licences_are_there():
 
 def test_encoding_is_exact():
     samples = np.array([float(f"{m}e-{e}") for m in (0, 1, -935864, 8425513, -1178028) for e in (3, 7, 12, 14)])
-    assert decode(encode(samples, 7)).tobytes() == samples.tobytes()
+    assert unpack_decimal_samples(pack_decimal_samples(samples, 7)).tobytes() == samples.tobytes()
     with pytest.raises(ValueError, match="not decimals of 7 significant digits"):
-        encode(np.array([1 / 3]), 7)
+        pack_decimal_samples(np.array([1 / 3]), 7)
 
 
 def test_conversion_reproduces_the_data(tmp_path):

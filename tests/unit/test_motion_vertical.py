@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rockflex import GroundMotion, InputError, RecordInfo, RecordWarning, Suite, read_at2, read_motion
-from rockflex.motion import MEASURES, Shaking, check_horizontal, record_measures, vertical_measures
+from rockflex.motion import MEASURES, MeasureInput, check_horizontal_component, record_measures, vertical_measures
 
 ALONG = np.array([0.0, 2.0, -4.0, 1.0, 0.0])
 UPWARDS = np.array([0.0, -1.0, 3.0, 0.5, 0.0])
@@ -99,12 +99,12 @@ def test_measures_of_the_vertical_component():
     )
     quiet = GroundMotion(np.zeros(5), 0.1, vertical=UPWARDS)
     assert math.isnan(quiet.vertical_ratio([0.5])[0])
-    assert math.isnan(MEASURES["pva_pga"].of(Shaking(quiet)))
+    assert math.isnan(MEASURES["pva_pga"].of(MeasureInput(quiet)))
 
 
 def test_the_registered_measures():
     assert [measure.name for measure in vertical_measures()] == ["pva", "pva_pga"]
-    assert [measure.of(Shaking(BOTH)) for measure in vertical_measures()] == [3.0, 0.75]
+    assert [measure.of(MeasureInput(BOTH)) for measure in vertical_measures()] == [3.0, 0.75]
     assert not set(map(id, vertical_measures())) & set(map(id, record_measures()))
     assert MEASURES["pva"].scaled(3.0, -2.0) == BOTH.scaled(-2.0).pva
     assert MEASURES["pva_pga"].scaled(0.75, -2.0) == 0.75
@@ -118,8 +118,8 @@ def test_without_a_vertical_component_there_is_no_motion_of_it():
 
 def test_the_vertical_motion_shakes_nothing_horizontally():
     with pytest.raises(InputError, match="A horizontal ground motion is expected, but 'both' is a vertical component"):
-        check_horizontal(BOTH.vertical_motion)
-    check_horizontal(BOTH)
+        check_horizontal_component(BOTH.vertical_motion)
+    check_horizontal_component(BOTH)
     assert BOTH.vertical_motion.metadata == RecordInfo(year=1999, direction="vertical")
 
 

@@ -5,7 +5,7 @@ import pytest
 
 import rockflex as rf
 from drawing import drawn, notes, uplift_intervals
-from rockflex.plot._curves import curves_of
+from rockflex.plot._response_curves import response_curves
 
 PIER = rf.CantileverWithTipMass(
     height=12.0, tip_mass=500e3, mass_per_length=10e3, bending_stiffness=4.0e10, base_mass=120e3, half_width=1.5,
@@ -67,9 +67,9 @@ def test_a_base_on_springs_is_uplifted_while_an_edge_is_off_its_spring(hops, sta
     lifted = hops.spring_force[:, [0, -1]] == 0.0
     # A spring that pushes no more but is still compressed is not lifted.
     assert not np.any(hops.history.uplifted & ~lifted.any(axis=1))
-    (curve,) = curves_of(hops)
+    (curve,) = response_curves(hops)
     assert curve.uplifts.shape[0] > 5
-    np.testing.assert_array_equal(curves_of(stands)[0].uplifts, uplift_intervals(stands))
+    np.testing.assert_array_equal(response_curves(stands)[0].uplifts, uplift_intervals(stands))
     outer = hops.history.model.springs.positions[[0, -1]]
     heights = hops.heave[:, None] - outer * hops.rotation[:, None]
     inside = (heights.max(axis=1) > 1e-6) & (np.roll(heights, 1, axis=0).max(axis=1) > 1e-6)

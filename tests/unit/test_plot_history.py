@@ -16,7 +16,7 @@ import rockflex as rf
 from builders import make_frame
 from drawing import drawn, notes, spans, uplift_intervals
 from rockflex.plot import plot_history, plot_spread
-from rockflex.plot._curves import curves_of
+from rockflex.plot._response_curves import response_curves
 
 FRAME = make_frame()
 MODELS = ("2DOF-S", "3DOF-S", "MDOF-S", "fixed")
@@ -184,7 +184,7 @@ def test_takes_one_response_any_iterable_and_the_column_of_a_table(four):
 
 
 def test_sixteen_responses_are_told_apart_and_no_more(four):
-    looks = [c.style for c in curves_of([*four, *[four[0]] * 12])]
+    looks = [c.style for c in response_curves([*four, *[four[0]] * 12])]
     assert len({(style.color, style.dashes) for style in looks}) == 16
     with pytest.raises(rf.InputError, match=r"^17 responses are too many to distinguish in one figure\. Plot fewer"):
         plot_history([*four, *[four[0]] * 13])
@@ -193,8 +193,8 @@ def test_sixteen_responses_are_told_apart_and_no_more(four):
 def test_black_is_for_the_model_with_the_most_modes(four):
     five = rf.simulate(FRAME, RECORD, "5DOF-S")
     four_modes = rf.simulate(FRAME, RECORD, "4DOF-S")
-    assert [c.style.color for c in curves_of([four_modes, five])][1] == "#000000"
-    assert [c.style.color for c in curves_of([five, four[2]])][1] == "#000000"
+    assert [c.style.color for c in response_curves([four_modes, five])][1] == "#000000"
+    assert [c.style.color for c in response_curves([five, four[2]])][1] == "#000000"
 
 
 def test_what_cannot_be_drawn_is_named(four):
@@ -285,7 +285,7 @@ def test_complete_and_yielding_models_have_looks_of_their_own(four):
     labels = ("2DOF-C", "2DOF-C-SI", "3DOF-C-E", "2DOF-S")
     models = [rf.simulate(FRAME, RECORD, label) for label in labels]
     models.append(rf.simulate(FRAME, RECORD, "2DOF-S", bouc_wen=rf.BoucWen(0.02)))
-    curves = curves_of([*models, *four[2:]])
+    curves = response_curves([*models, *four[2:]])
     colors = {curve.label: curve.style.color for curve in curves}
     assert colors["2DOF-C"] == "#cc79a7"
     assert colors["2DOF-C-SI"] == "#e69f00"

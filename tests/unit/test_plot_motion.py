@@ -8,7 +8,7 @@ from scipy.integrate import cumulative_trapezoid
 
 import rockflex as rf
 from drawing import drawn
-from rockflex._numbers import prefixed, short
+from rockflex._number_format import short_number, unit_with_prefix
 from rockflex.plot import plot_motion, plot_selection
 
 RECORD = rf.load_suite("el-centro-1940")[0]
@@ -94,14 +94,14 @@ def test_motion_refuses_what_is_none():
     [(2.5e9, (1e9, "GN m")), (1e6, (1e6, "MN m")), (-3e4, (1e3, "kN m")), (999.0, (1.0, "N m")), (0.0, (1.0, "N m"))],
 )
 def test_units_suit_the_largest_value(largest, expected):
-    assert prefixed(largest, "N m") == expected
+    assert unit_with_prefix(largest, "N m") == expected
 
 
 @pytest.mark.parametrize(
     ("value", "text"), [(2345.6, "2350"), (-0.012345, "−0.0123"), (1.0, "1"), (0.0, "0"), (380123.0, "380000")]
 )
 def test_numbers_have_three_digits(value, text):
-    assert short(value) == text
+    assert short_number(value) == text
 
 
 def lines(axes):

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 import rockflex as rf
 from page import check_page
 from rockflex.cli import app
-from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, _section_3_3, reproduce
+from rockflex.papers.silva_stojadinovic_2024 import TARGETS, PaperRecords, _section_3_3, reproduce_targets
 
 
 def invoke(*arguments):
@@ -99,8 +99,8 @@ def test_a_negative_seed_is_refused():
 
 def test_populations_have_the_given_seeds(at2, monkeypatch):
     monkeypatch.setattr(_section_3_3, "PAIRS", 3)
-    records = Records(at2, 10, seed=7)
-    pairs = _section_3_3.pool(records)
+    records = PaperRecords(at2, 10, seed=7)
+    pairs = _section_3_3.population_pool(records)
     for place in (0, 9):
         alone = rf.run_population(records.suite, 3, 7 + place).reset_index(drop=True)
         pd.testing.assert_frame_equal(pairs.iloc[3 * place : 3 * place + 3].reset_index(drop=True), alone)
@@ -113,7 +113,7 @@ def test_the_seed_reaches_the_records(monkeypatch):
         given.append((arguments, named))
         raise rf.InputError("enough")
 
-    monkeypatch.setattr("rockflex.papers.silva_stojadinovic_2024.Records", kept)
+    monkeypatch.setattr("rockflex.papers.silva_stojadinovic_2024.PaperRecords", kept)
     assert invoke("figure-9", "--seed", 5, "--seeds", 12).exit_code == 2
     assert invoke("figure-9").exit_code == 2
     assert given == [((None,), {"seeds": 12, "seed": 5}), ((None,), {})]
@@ -137,10 +137,10 @@ def test_records_of_ones_own(at2, monkeypatch):
     done = invoke("figure-6", "--records", at2)
     assert done.exit_code == 0, done.stderr
     assert f"8 records of the folder {at2.name}, in place of the paper's 210" in done.stderr
-    records = Records(at2)
+    records = PaperRecords(at2)
     assert set(records.suite.names) == set(rf.load_suite("fema-p695-far-field")[:16].names[::2])
     assert records.el_centro.name == rf.load_suite("el-centro-1940")[0].name
-    (drawn,) = reproduce(["figure-8"], Records(at2, seeds=10))
+    (drawn,) = reproduce_targets(["figure-8"], PaperRecords(at2, seeds=10))
     assert drawn.numbers == ()
     assert [check.holds for check in drawn.checks] == [True] * 10
 
@@ -160,13 +160,13 @@ def test_too_few_records_name_the_target(at2, tmp_path):
     file = next(iter(sorted(at2.iterdir())))
     (one / file.name).write_bytes(file.read_bytes())
     with pytest.raises(rf.InputError, match=r"^figure-6: "):
-        reproduce(["figure-6"], Records(one))
+        reproduce_targets(["figure-6"], PaperRecords(one))
 
 
 def test_figures_are_drawn_when_asked_for_only(monkeypatch):
     drawn = []
     monkeypatch.setattr(rf, "plot_tower", lambda *_: drawn.append(1))
-    (result,) = reproduce(["figure-14"])
+    (result,) = reproduce_targets(["figure-14"])
     assert drawn == []
     result.figures["figure-14"]()
     assert drawn == [1]
@@ -174,5 +174,5 @@ def test_figures_are_drawn_when_asked_for_only(monkeypatch):
 
 def test_progress_and_an_empty_list():
     done = []
-    results = reproduce(["figure-14", "table-1", "table-1"], progress=done.append)
+    results = reproduce_targets(["figure-14", "table-1", "table-1"], progress=done.append)
     assert done == [result.name for result in results] == ["table-1", "figure-14"]

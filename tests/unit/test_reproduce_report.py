@@ -13,29 +13,47 @@ from matplotlib.figure import Figure
 import rockflex
 from page import Page, check_page
 from rockflex.papers import silva_stojadinovic_2024 as paper
-from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
-from rockflex.papers.silva_stojadinovic_2024._comparison import Interval, check, compared, count_of, stated, statistic
-from rockflex.report import Document, Remark, Result, to_csv, to_html, to_markdown, write_document
-from rockflex.report._write import inline
+from rockflex.papers.silva_stojadinovic_2024 import RemarkKind, Verdict
+from rockflex.papers.silva_stojadinovic_2024._comparison import (
+    ResampledInterval,
+    compared_count,
+    compared_number,
+    compared_statement,
+    compared_statistic,
+    construction_check,
+)
+from rockflex.report import (
+    PublicationReport,
+    Remark,
+    ReproducedResult,
+    report_numbers_to_csv,
+    report_to_html,
+    report_to_markdown,
+    write_publication_report,
+)
+from rockflex.report._publication_files import inline_svg
 
 MEANINGS = {str(verdict): verdict.meaning for verdict in Verdict}
-KINDS = {str(kind): kind.meaning for kind in Kind}
+KINDS = {str(kind): kind.meaning for kind in RemarkKind}
 NUMBERS = (
-    compared("ω_1 <b>", "Table 3", "1.66", 1.6557, "rad/s"),
-    compared("a|b & c_*", "Section 1", "0.27", 0.16, note='says "so" & <more>'),
-    statistic("R²", "Section 3.3", "0.99", Interval(0.983, 0.978, 0.988)),
-    stated("friction", "Section 3.1", "higher than 2", float("inf"), "> 2", agreed=Verdict.EQUIVALENT),
-    statistic("difference", "Section 3.2", "0.002", Interval(0.00093, 0.00064, 0.00329), "rad"),
-    count_of("pairs that rock", "Section 3.3", "693", Interval(882.0, 867.0, 900.0)),
+    compared_number("ω_1 <b>", "Table 3", "1.66", 1.6557, "rad/s"),
+    compared_number("a|b & c_*", "Section 1", "0.27", 0.16, note='says "so" & <more>'),
+    compared_statistic("R²", "Section 3.3", "0.99", ResampledInterval(0.983, 0.978, 0.988)),
+    compared_statement("friction", "Section 3.1", "higher than 2", float("inf"), "> 2", agreed=Verdict.EQUIVALENT),
+    compared_statistic("difference", "Section 3.2", "0.002", ResampledInterval(0.00093, 0.00064, 0.00329), "rad"),
+    compared_count("pairs that rock", "Section 3.3", "693", ResampledInterval(882.0, 867.0, 900.0)),
 )
-CHECKS = (check("T_1 & <x>", "Section 3.1", "0.5", 0.5, unit="s"), check("M_r", "Table 2", "m_tot g B", 1.1, "< 1"))
+CHECKS = (
+    construction_check("T_1 & <x>", "Section 3.1", "0.5", 0.5, unit="s"),
+    construction_check("M_r", "Table 2", "m_tot g B", 1.1, "< 1"),
+)
 computed = []
 ROOT = Path(rockflex.__file__).parent
 
 
 def remark():
     computed.append(1)
-    return Remark(Kind.AFTERWARDS, "Slices <b>", "20 of 20 & more.", ("h*_2 | m", "met"), [("51.33", "yes")])
+    return Remark(RemarkKind.AFTERWARDS, "Slices <b>", "20 of 20 & more.", ("h*_2 | m", "met"), [("51.33", "yes")])
 
 
 def drawing():
@@ -49,25 +67,25 @@ def drawing():
 @pytest.fixture(scope="module")
 def document():
     sections = [
-        Result(
+        ReproducedResult(
             "figure-3",
             "First & <only>",
             NUMBERS,
             {"figure-3": drawing, "figure-3-spread": drawing},
             "A note_1.",
             CHECKS,
-            (remark, lambda: Remark(Kind.BESIDE, "Short", "No table.")),
+            (remark, lambda: Remark(RemarkKind.BESIDE, "Short", "No table.")),
         ),
-        Result("table-1", "Second"),
+        ReproducedResult("table-1", "Second"),
     ]
-    return Document("A title", "A source", "72 records", {"rockflex": "1.2"}, MEANINGS, KINDS, sections)
+    return PublicationReport("A title", "A source", "72 records", {"rockflex": "1.2"}, MEANINGS, KINDS, sections)
 
 
 @pytest.fixture(scope="module")
 def folder(document, tmp_path_factory):
     out = tmp_path_factory.mktemp("report")
     drawn = []
-    files = write_document(document, out, drawn.append)
+    files = write_publication_report(document, out, drawn.append)
     assert drawn == ["figure-3", "figure-3-spread"]
     assert [file.name for file in files] == [
         "figure-3.svg", "figure-3-spread.svg", "report.html", "report.md", "numbers.csv",
@@ -118,15 +136,15 @@ def test_checks_and_remarks_are_shown_and_not_counted(folder, document):
 
 def test_remarks_are_computed_once_and_when_they_are_asked_for(document):
     assert computed == [1]  # for the page and the Markdown together
-    before = Result("figure-3", "First", remarking=(remark,))
+    before = ReproducedResult("figure-3", "First", remarking=(remark,))
     assert computed == [1]
     assert before.remarks is before.remarks
     assert computed == [1, 1]
 
 
 def test_a_page_without_failures_has_no_list_of_them(document):
-    fine = replace(document, sections=[Result("table-1", "Second", NUMBERS[:1])])
-    text = to_html(fine, {})
+    fine = replace(document, sections=[ReproducedResult("table-1", "Second", NUMBERS[:1])])
+    text = report_to_html(fine, {})
     check_page(text, 0)
     assert 'id="failing"' not in text
     assert "Checks of ourselves, not counted" not in text
@@ -134,7 +152,7 @@ def test_a_page_without_failures_has_no_list_of_them(document):
 
 def test_markdown_holds_the_same(folder, document):
     text = (folder / "report.md").read_text("utf-8")
-    assert text == to_markdown(document)
+    assert text == report_to_markdown(document)
     rows = [line for line in text.splitlines() if line.startswith("|")]
     assert len({len(re.findall(r"(?<!\\)\|", row)) for row in rows}) == 4  # of the four kinds of table
     assert r"a\|b & c\_\*" in text
@@ -145,7 +163,7 @@ def test_markdown_holds_the_same(folder, document):
 
 def test_the_table_has_all_digits(folder, document):
     text = (folder / "numbers.csv").read_text("utf-8")
-    assert text == to_csv(document)
+    assert text == report_numbers_to_csv(document)
     rows = list(csv.DictReader(io.StringIO(text)))
     assert [row["verdict"] for row in rows] == [str(line.verdict) for line in NUMBERS]
     assert [float(row["rockflex"]) for row in rows] == [line.ours for line in NUMBERS]
@@ -160,7 +178,7 @@ def test_inline_figures_do_not_share_names():
         '<g id="g" clip-path="url(#p)"><use xlink:href="#m1"/>'
         '<image xlink:href="data:image/png;base64,AA=="/></g></svg>'
     )
-    assert inline(text, "f", "label") == (
+    assert inline_svg(text, "f", "label") == (
         '<svg viewBox="0 0 3 2" role="img" aria-label="label" class="drawing"><defs><path id="f-m1"/></defs>'
         '<g id="f-g" clip-path="url(#f-p)"><use href="#f-m1"/><image href="data:image/png;base64,AA=="/></g></svg>'
     )
@@ -210,5 +228,5 @@ def test_the_walk_sees_what_is_forbidden():
 
 
 def test_every_target_has_a_title_of_its_own():
-    titles = [paper.title_of(target) for target in paper.TARGETS]
+    titles = [paper.target_title(target) for target in paper.TARGETS]
     assert len(set(titles)) == len(titles)

@@ -9,21 +9,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
+from rockflex.papers.silva_stojadinovic_2024 import RemarkKind, Verdict
 from rockflex.papers.silva_stojadinovic_2024._comparison import (
     MAX_INTERVAL_WIDTH,
-    Interval,
-    check,
-    compared,
-    count_of,
-    range_of,
-    stated,
-    statistic,
-    tendency,
+    ResampledInterval,
+    compared_count,
+    compared_number,
+    compared_statement,
+    compared_statistic,
+    compared_tendency,
+    construction_check,
+    printed_range,
 )
 from rockflex.papers.silva_stojadinovic_2024._inputs import TOWER
 from rockflex.papers.silva_stojadinovic_2024._section_3_2 import friction_intervals
-from rockflex.papers.silva_stojadinovic_2024._section_4 import RITZ, first_frequency, ritz_of_slices
+from rockflex.papers.silva_stojadinovic_2024._section_4 import RITZ, first_frequency_by_elements, ritz_modes_with_slices
 
 
 @pytest.mark.parametrize(
@@ -43,7 +43,7 @@ from rockflex.papers.silva_stojadinovic_2024._section_4 import RITZ, first_frequ
     ],
 )
 def test_a_value_stands_for_what_rounds_to_it(printed, low, high):
-    found = range_of(printed)
+    found = printed_range(printed)
     assert (found.low, found.high) == pytest.approx((low, high), rel=1e-12)
     assert not found.is_bound
     width = high - low
@@ -63,25 +63,25 @@ def test_a_value_stands_for_what_rounds_to_it(printed, low, high):
     ],
 )
 def test_bounds(printed, inside, outside):
-    found = range_of(printed)
+    found = printed_range(printed)
     assert found.is_bound
     assert all(value in found for value in inside)
     assert not any(value in found for value in (*outside, math.nan))
 
 
 def test_digits_may_be_cut_off_away_from_zero_only():
-    positive, negative = range_of("17.25", truncated=True), range_of("−1.18", truncated=True)
+    positive, negative = printed_range("17.25", truncated=True), printed_range("−1.18", truncated=True)
     assert 17.2599 in positive
     assert 17.2449 not in positive
     assert -1.1899 in negative
     assert -1.1749 not in negative
-    assert 17.2599 not in range_of("17.25")
+    assert 17.2599 not in printed_range("17.25")
 
 
 @pytest.mark.parametrize("printed", ["", "large", "1.2.3", "1.66 m", "8.485e6", "> large", "3 to 5"])
 def test_what_is_no_number_is_refused(printed):
     with pytest.raises(rf.InputError) as raised:
-        range_of(printed)
+        printed_range(printed)
     message = str(raised.value)
     assert "must read like '1.66', 'about 44', '580000/3' or '≤ 3.2'" in message
     assert repr(printed) in message
@@ -91,22 +91,22 @@ def test_what_is_no_number_is_refused(printed):
 def test_every_number_reproduces_its_own_rounding_and_not_the_next(value, decimals):
     printed = f"{value:.{decimals}f}"
     step = 10.0**-decimals
-    assert compared("x", "y", printed, value).verdict is Verdict.REPRODUCED
+    assert compared_number("x", "y", printed, value).verdict is Verdict.REPRODUCED
     for off in (1.01, -1.01):
-        line = compared("x", "y", printed, float(printed) + off * step)
+        line = compared_number("x", "y", printed, float(printed) + off * step)
         assert line.verdict is Verdict.NOT
         assert line.difference == pytest.approx(off * step, rel=1e-6, abs=1e-10)
 
 
 def test_a_wrong_number_does_not_come_out_as_reproduced():
-    line = compared("ω_1", "Section 4.1.1", "1.678", 1.65568, "rad/s")
+    line = compared_number("ω_1", "Section 4.1.1", "1.678", 1.65568, "rad/s")
     assert line.verdict is Verdict.NOT
     assert str(line.verdict) == "does not reproduce"
     assert line.difference == pytest.approx(-0.02232)
     assert line.difference_as_text == "−0.02232 (−1.3 %)"
     assert line.ours_as_text == "1.65568"
-    assert compared("ω_1", "", "1.66", 1.65568).verdict is Verdict.REPRODUCED
-    assert compared("ω_1", "", "1.66", math.nan).verdict is Verdict.NOT
+    assert compared_number("ω_1", "", "1.66", 1.65568).verdict is Verdict.REPRODUCED
+    assert compared_number("ω_1", "", "1.66", math.nan).verdict is Verdict.NOT
 
 
 @pytest.mark.parametrize(
@@ -123,7 +123,7 @@ def test_a_wrong_number_does_not_come_out_as_reproduced():
     ],
 )
 def test_about_so_much_has_a_tolerance_that_the_line_states(printed, ours, verdict):
-    line = compared("ratio", "Section 4.2", printed, ours)
+    line = compared_number("ratio", "Section 4.2", printed, ours)
     assert line.verdict is verdict
     assert ("20 %" in line.criterion) == (printed != "2")
 
@@ -131,22 +131,22 @@ def test_about_so_much_has_a_tolerance_that_the_line_states(printed, ours, verdi
 @pytest.mark.parametrize(("printed", "low", "high"), [("306", 94.0, 124.0), ("306", 290.0, 320.0), ("2", 0.0, 5.0)])
 def test_a_count_of_outcomes_under_other_records_is_not_compared(printed, low, high):
     """Neither agreement nor difference is evidence, whatever the interval is."""
-    line = count_of("pairs", "Section 3.3", printed, Interval(0.5 * (low + high), low, high))
+    line = compared_count("pairs", "Section 3.3", printed, ResampledInterval(0.5 * (low + high), low, high))
     assert line.verdict is Verdict.INCOMPARABLE
     assert line.difference == 0.5 * (low + high) - float(printed)
 
 
 def test_ground_of_a_value_that_agrees_and_of_one_that_does_not():
-    assert compared("B/h", "", "0.16", 0.16, agreed=Verdict.EQUIVALENT).verdict is Verdict.EQUIVALENT
-    assert compared("μ", "", "0.27", 0.16, agreed=Verdict.EQUIVALENT).verdict is Verdict.NOT
+    assert compared_number("B/h", "", "0.16", 0.16, agreed=Verdict.EQUIVALENT).verdict is Verdict.EQUIVALENT
+    assert compared_number("μ", "", "0.27", 0.16, agreed=Verdict.EQUIVALENT).verdict is Verdict.NOT
 
 
 def test_a_value_that_is_cut_off_says_so():
-    cut = compared("h*_3", "Table 3", "31.40", 31.4076, "m", truncated=True)
+    cut = compared_number("h*_3", "Table 3", "31.40", 31.4076, "m", truncated=True)
     assert (cut.verdict, cut.criterion) == (Verdict.REPRODUCED, "cut off, not rounded, to it")
-    rounded = compared("h*_1", "Table 3", "141.63", 141.6332, "m", truncated=True)
+    rounded = compared_number("h*_1", "Table 3", "141.63", 141.6332, "m", truncated=True)
     assert (rounded.verdict, rounded.criterion) == (Verdict.REPRODUCED, "must round to it")
-    assert compared("h*_2", "Table 3", "51.33", 51.3422, "m", truncated=True).verdict is Verdict.NOT
+    assert compared_number("h*_2", "Table 3", "51.33", 51.3422, "m", truncated=True).verdict is Verdict.NOT
 
 
 @pytest.mark.parametrize(
@@ -165,7 +165,7 @@ def test_a_value_that_is_cut_off_says_so():
     ],
 )
 def test_statistics_are_judged_by_their_interval_and_its_width(printed, low, high, verdict):
-    line = statistic("x", "Section 3.3", printed, Interval(0.983, low, high))
+    line = compared_statistic("x", "Section 3.3", printed, ResampledInterval(0.983, low, high))
     assert line.verdict is verdict
     known = not math.isnan(low)
     assert line.criterion.startswith("90 % interval" if known else "too few runs for an interval")
@@ -176,11 +176,11 @@ def test_statistics_are_judged_by_their_interval_and_its_width(printed, low, hig
 @given(st.floats(0.1, 100.0), st.floats(0.0, 2.0), st.floats(0.0, 2.0))
 def test_a_wider_interval_is_never_compatible_where_a_narrower_one_tells_nothing(value, below, above):
     printed = f"{value:.2f}"
-    inner = Interval(value, value - below * 0.25 * value, value + above * 0.25 * value)
-    outer = Interval(value, inner.low - 0.5 * value, inner.high + 0.5 * value)
-    assert statistic("x", "y", printed, outer).verdict is Verdict.UNDECIDED
+    inner = ResampledInterval(value, value - below * 0.25 * value, value + above * 0.25 * value)
+    outer = ResampledInterval(value, inner.low - 0.5 * value, inner.high + 0.5 * value)
+    assert compared_statistic("x", "y", printed, outer).verdict is Verdict.UNDECIDED
     narrow = inner.high - inner.low <= MAX_INTERVAL_WIDTH * float(printed)
-    assert (statistic("x", "y", printed, inner).verdict is Verdict.COMPATIBLE) == narrow
+    assert (compared_statistic("x", "y", printed, inner).verdict is Verdict.COMPATIBLE) == narrow
 
 
 @pytest.mark.parametrize(
@@ -195,41 +195,41 @@ def test_a_wider_interval_is_never_compatible_where_a_narrower_one_tells_nothing
     ],
 )
 def test_a_tendency_must_hold_over_the_whole_interval(criterion, low, high, verdict):
-    line = tendency("ratio", "Section 3.2", "more", Interval(1.2, low, high), criterion)
+    line = compared_tendency("ratio", "Section 3.2", "more", ResampledInterval(1.2, low, high), criterion)
     assert line.verdict is verdict
     assert line.criterion.startswith(f"{criterion} over the 90 % interval ")
     assert (line.difference, line.difference_as_text) == (None, "")
 
 
 def test_checks_hold_or_do_not_and_have_no_verdict():
-    built = check("T_1", "Section 3.1", "0.5", 0.4999, unit="s", note="built so")
+    built = construction_check("T_1", "Section 3.1", "0.5", 0.4999, unit="s", note="built so")
     assert (built.holds, built.criterion, built.ours_as_text) == (True, "must round to it", "0.500")
-    assert not check("T_1", "Section 3.1", "0.5", 0.56).holds
-    assert not check("m*_1", "Table 2", "a formula", 1.1, "< 1").holds
-    assert check("m*_1", "Table 2", "a formula", 0.9, "< 1").criterion == "< 1"
+    assert not construction_check("T_1", "Section 3.1", "0.5", 0.56).holds
+    assert not construction_check("m*_1", "Table 2", "a formula", 1.1, "< 1").holds
+    assert construction_check("m*_1", "Table 2", "a formula", 0.9, "< 1").criterion == "< 1"
     assert not hasattr(built, "verdict")
 
 
 def test_statements_pass_by_their_criterion_alone():
-    assert stated("slope", "", "overestimates", 0.97, "< 1").verdict is Verdict.REPRODUCED
-    wrong = stated("ratio", "", "underestimates", 1.09, "< 1", agreed=Verdict.EQUIVALENT)
+    assert compared_statement("slope", "", "overestimates", 0.97, "< 1").verdict is Verdict.REPRODUCED
+    wrong = compared_statement("ratio", "", "underestimates", 1.09, "< 1", agreed=Verdict.EQUIVALENT)
     assert wrong.verdict is Verdict.NOT
     assert (wrong.difference, wrong.difference_as_text) == (None, "")
-    assert stated("friction", "", "higher than 2", math.inf, "> 2").ours_as_text == "∞"
-    assert stated("bound", "", "below", 1.0009, "≤ 1").ours_as_text == "1.001"
+    assert compared_statement("friction", "", "higher than 2", math.inf, "> 2").ours_as_text == "∞"
+    assert compared_statement("bound", "", "below", 1.0009, "≤ 1").ours_as_text == "1.001"
 
 
 def test_texts():
-    assert compared("n", "", "306", 118.0).ours_as_text == "118"
-    assert compared("n", "", "306", 118.0).difference_as_text == "−188 (−61 %)"
-    assert compared("x", "", "0.5", 0.5 + 1e-16).difference_as_text == "0"
-    assert compared("x", "", "≤ 3.2", 3.1).difference_as_text == ""
-    assert compared("x", "", "< 5", 148.13).difference_as_text == "+143.13 (+2863 %)"
-    assert compared("x", "", "0.1", -1e-9).ours_as_text == "−1.0e−09"
-    assert compared("x", "", "1", math.nan).ours_as_text == "none"
-    assert compared("x", "", "1", -math.inf).ours_as_text == "−∞"
-    assert isinstance(compared("x", "", "1", np.float64(1.0)).ours, float)
-    for kinds in (Verdict, Kind):
+    assert compared_number("n", "", "306", 118.0).ours_as_text == "118"
+    assert compared_number("n", "", "306", 118.0).difference_as_text == "−188 (−61 %)"
+    assert compared_number("x", "", "0.5", 0.5 + 1e-16).difference_as_text == "0"
+    assert compared_number("x", "", "≤ 3.2", 3.1).difference_as_text == ""
+    assert compared_number("x", "", "< 5", 148.13).difference_as_text == "+143.13 (+2863 %)"
+    assert compared_number("x", "", "0.1", -1e-9).ours_as_text == "−1.0e−09"
+    assert compared_number("x", "", "1", math.nan).ours_as_text == "none"
+    assert compared_number("x", "", "1", -math.inf).ours_as_text == "−∞"
+    assert isinstance(compared_number("x", "", "1", np.float64(1.0)).ours, float)
+    for kinds in (Verdict, RemarkKind):
         assert len({each.meaning for each in kinds}) == len(kinds)
 
 
@@ -252,7 +252,7 @@ def test_sliding_by_both_signs():
 
 def test_thin_slices_meet_every_entry_of_table_3():
     def missed(slices):
-        ours = ritz_of_slices(slices)
+        ours = ritz_modes_with_slices(slices)
         return [
             (name, n) for name, (row, _) in RITZ.items() for n, text in enumerate(row)
             if f"{ours[name][n]:.2f}" != text.replace("−", "-")
@@ -260,7 +260,7 @@ def test_thin_slices_meet_every_entry_of_table_3():
 
     assert all(not missed(round(200 / height)) for height in (0.029, 0.032, 0.036))
     assert ("h*", 1) in missed(40_000)
-    exact, fine = TOWER.rocking(), ritz_of_slices(400_000)
+    exact, fine = TOWER.rocking(), ritz_modes_with_slices(400_000)
     for name, values in (("ω", exact.omega), ("m*", exact.effective_mass / 1e6), ("h*", exact.effective_height)):
         assert fine[name] == pytest.approx(values, rel=2e-4)
     assert fine["Γ"] == pytest.approx(exact.top_ordinate, rel=2e-4)
@@ -269,9 +269,9 @@ def test_thin_slices_meet_every_entry_of_table_3():
 def test_plain_finite_elements_converge_before_rounding_grows():
     """With few elements rounding is far below what sampling the stiffness at one place does, of the first order."""
     exact = TOWER.rocking().omega[0]
-    low, high = ([first_frequency(n, place) / exact - 1 for n in (25, 50, 100)] for place in (0.0, 1.0))
+    low, high = ([first_frequency_by_elements(n, place) / exact - 1 for n in (25, 50, 100)] for place in (0.0, 1.0))
     assert all(value > 0 for value in low)
     assert all(value < 0 for value in high)
     for errors in (low, high):
         assert [errors[0] / errors[1], errors[1] / errors[2]] == pytest.approx([2.0, 2.0], rel=0.05)
-    assert first_frequency(100, 0.5) == pytest.approx(exact, rel=1e-4)
+    assert first_frequency_by_elements(100, 0.5) == pytest.approx(exact, rel=1e-4)

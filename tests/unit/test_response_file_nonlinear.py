@@ -25,7 +25,7 @@ from rockflex import (
 )
 from rockflex._constants import GRAVITY
 from rockflex.models import ForgottenLaw, NonlinearModel
-from rockflex.study import Case
+from rockflex.study import PreparedCase
 
 MOTION = GroundMotion(load_suite("el-centro-1940")[0].acceleration[60:210] * 2.5, 0.02, name="El Centro")
 FRAME = make_frame(n_stories=3, base_mass=60e3, stiffness_ratio=1.0, period=0.5, aspect_ratio=7.0, damping_ratio=0.03)
@@ -205,7 +205,7 @@ def test_a_run_of_elements_that_balanced_the_weight_is_read_as_it_was_written(tm
     p = FRAME.rocking()
     held = Restrained(FRAME, [Tendon(1e5, p.l0r * GRAVITY / p.half_width**2, yield_force=1e9), *more]).rocking()
     model = NonlinearModel("MDOF-S", held, complete=False)
-    run = Case(model, history=True, floors=True).run(MOTION)
+    run = PreparedCase(model, history=True, floors=True).run(MOTION)
     back = Response.load(run.save(tmp_path / "run"))
     same(back, run)
     assert isinstance(back.history.model, NonlinearModel)

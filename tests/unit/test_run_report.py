@@ -11,8 +11,8 @@ import pytest
 import rockflex as rf
 from report_case import FRAME, HELD, PIER, PULSE, SPRINGS, runs
 from report_page import number, read
-from rockflex._numbers import rounded
-from rockflex.report.run import _checks, _page
+from rockflex._number_format import rounded_number
+from rockflex.report.run import _report_page, _run_checks
 
 MODELS = ("2DOF-S", "MDOF-S", "fixed")
 SIZES = {
@@ -145,7 +145,7 @@ def test_what_would_take_minutes_is_left_out(tmp_path, monkeypatch):
     found = runs(HELD, PULSE, ["2DOF-S"], ground=rf.Ground(springs=SPRINGS.springs, base_inertia=5e5))
     text = read(rf.write_report(found, tmp_path / "r.html")).text
     assert "not computed" not in text
-    monkeypatch.setattr(_checks, "MAX_WORK", found[0].time.size * SPRINGS.springs.n - 1)
+    monkeypatch.setattr(_run_checks, "MAX_WORK", found[0].time.size * SPRINGS.springs.n - 1)
     monkeypatch.setattr(rf.History, "required_friction", property(lambda _: pytest.fail("computed")))
     reader = read(rf.write_report(found, tmp_path / "r.html"))
     assert [cell[0] for cell in reader.tables["checks"][1]].count("not computed") == 2
@@ -177,7 +177,7 @@ def test_of_many_warnings_the_first_are_listed(tmp_path):
     assert len({text for run in pulled for text in run.warnings}) == 6
     text = read(rf.write_report(pulled, tmp_path / "r.html")).text
     assert f"2DOF-S (4): {pulled[3].warnings[0]}" in text
-    assert f"F/Fy = {rounded(pulled[0].tendon_utilisation)} > 1" in text
+    assert f"F/Fy = {rounded_number(pulled[0].tendon_utilisation)} > 1" in text
     assert "and 2 more warnings; see the responses" in text
     alike = read(rf.write_report(pulled[:1] * 2, tmp_path / "r.html")).text
     assert f"2DOF-S (1), 2DOF-S (2): {pulled[0].warnings[0]}" in alike
@@ -216,7 +216,7 @@ def test_names_that_are_markup_and_models_that_occur_twice(tmp_path):
     ],
 )  # fmt: skip
 def test_numbers_have_three_digits(value, text):
-    assert rounded(value) == text
+    assert rounded_number(value) == text
 
 
 def test_re_centring_is_that_of_a_base_at_rest(tmp_path):
@@ -229,7 +229,7 @@ def test_re_centring_is_that_of_a_base_at_rest(tmp_path):
     text, value = next((text, value) for text, name, value in row if name == "settled_rotation")
     assert value == 0.0
     assert text.startswith("closes")
-    ratios = [rounded(p.recentring_ratio), rounded(p.recentring_ratio_at(run.max_rotation))]
+    ratios = [rounded_number(p.recentring_ratio), rounded_number(p.recentring_ratio_at(run.max_rotation))]
     assert all(each in text for each in ratios)
     assert ratios[0] != ratios[1]
     # A stronger fuse holds it open.
@@ -248,7 +248,7 @@ def test_the_static_bearing_pressure_stands_beside_that_of_a_spring(tmp_path):
     (row,) = read(rf.write_report(run, tmp_path / "r.html", structure=PIER)).tables["checks"][1:]
     text, value = next((text, value) for text, name, value in row if name == "bearing_pressure")
     assert value == run.bearing_pressure.max()
-    assert rounded(run.soil_pressure.max() / 1e3) in text
+    assert rounded_number(run.soil_pressure.max() / 1e3) in text
 
 
 def test_the_page_says_what_forces_with_an_impact_law_leave_out(page, tmp_path):
@@ -332,7 +332,7 @@ def test_an_earlier_page_survives_an_error(one, tmp_path, monkeypatch):
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(_page, "write_whole", full)
+    monkeypatch.setattr(_report_page, "write_file_atomically", full)
     with pytest.raises(rf.InputError, match=r"Cannot write to .*: No space left on device"):
         rf.write_report(one, path)
     assert path.read_bytes() == before

@@ -6,9 +6,17 @@ import numpy as np
 import pytest
 
 from rockflex import InputError, SolverError
-from rockflex._checks import finite, finite_matrix, finite_vector, in_range, instance, positive, whole_number
-from rockflex._files import path_of
-from rockflex._shown import counted, shortened, shown
+from rockflex._checks import (
+    checked_finite,
+    checked_finite_matrix,
+    checked_finite_vector,
+    checked_in_range,
+    checked_instance,
+    checked_positive,
+    checked_whole_number,
+)
+from rockflex._files import checked_file_path
+from rockflex._shown import number_with_noun, shortened, shown
 
 
 @pytest.mark.parametrize(
@@ -61,46 +69,49 @@ HUGE = 10**400
 @pytest.mark.parametrize(
     ("check", "message"),
     [
-        (lambda: positive("a", HUGE, "m"), "a must be a number in m, but an integer of about 400 digits was given."),
-        (lambda: positive("a", 1j, "m"), "a must be a number in m, but 1j was given."),
-        (lambda: positive("a", np.ones(1), "m"), "a must be a number in m, but array([1.]) was given."),
         (
-            lambda: finite("a", HUGE, "m"),
+            lambda: checked_positive("a", HUGE, "m"),
+            "a must be a number in m, but an integer of about 400 digits was given.",
+        ),
+        (lambda: checked_positive("a", 1j, "m"), "a must be a number in m, but 1j was given."),
+        (lambda: checked_positive("a", np.ones(1), "m"), "a must be a number in m, but array([1.]) was given."),
+        (
+            lambda: checked_finite("a", HUGE, "m"),
             "a must be a finite number in m, but an integer of about 400 digits was given.",
         ),
         (
-            lambda: in_range("a", -(10**5000), 0.0, 1.0),
+            lambda: checked_in_range("a", -(10**5000), 0.0, 1.0),
             "a must be a number, but an integer of about 5000 digits was given.",
         ),
         (
-            lambda: whole_number("a", HUGE, 1, 9),
+            lambda: checked_whole_number("a", HUGE, 1, 9),
             "a must be a whole number from 1 to 9, but an integer of about 400 digits was given.",
         ),
         (
-            lambda: finite_vector("a", [1.0, HUGE], "m"),
+            lambda: checked_finite_vector("a", [1.0, HUGE], "m"),
             "a must be a sequence of numbers in m, but list with a number too large for double precision was given.",
         ),
         (
-            lambda: finite_vector("a", np.ones(2) * 1j, "m"),
+            lambda: checked_finite_vector("a", np.ones(2) * 1j, "m"),
             "a must be a sequence of numbers in m, but ndarray of complex numbers was given.",
         ),
         (
-            lambda: finite_vector("a", np.zeros(2, "M8[D]"), "m"),
+            lambda: checked_finite_vector("a", np.zeros(2, "M8[D]"), "m"),
             "a must be a sequence of numbers in m, but ndarray was given.",
         ),
         (
-            lambda: finite_matrix("a", [[1.0], [1.0, 2.0]], "m", (2, 2)),
+            lambda: checked_finite_matrix("a", [[1.0], [1.0, 2.0]], "m", (2, 2)),
             "a must be a matrix of numbers in m, but list whose rows differ in length was given.",
         ),
-        (lambda: instance("a", InputError, str), "a must be of type str, but the class InputError was given."),
-        (lambda: instance("a", 1, str), "a must be of type str, but int was given."),
-        (lambda: path_of("path", 1), "path must be a path, but int was given."),
+        (lambda: checked_instance("a", InputError, str), "a must be of type str, but the class InputError was given."),
+        (lambda: checked_instance("a", 1, str), "a must be of type str, but int was given."),
+        (lambda: checked_file_path("path", 1), "path must be a path, but int was given."),
         (
-            lambda: path_of("path", "a\0b"),
+            lambda: checked_file_path("path", "a\0b"),
             "path must be a valid path, but 'a\\x00b' was given: a path cannot contain a null character.",
         ),
         (
-            lambda: path_of("path", "\ud800"),
+            lambda: checked_file_path("path", "\ud800"),
             "path must be a valid path, but '\\ud800' was given: it contains a character that is not allowed in a "
             "path.",
         ),
@@ -114,9 +125,9 @@ def test_messages(check: object, message: str) -> None:
 
 def test_a_path_too_long() -> None:
     with pytest.raises(InputError, match=r"^path must be a valid path, but 'xxx.*x' was given: File name too long"):
-        path_of("path", "x" * 10**5)
+        checked_file_path("path", "x" * 10**5)
 
 
 def test_a_number_has_its_noun_in_the_right_form():
-    assert [counted(n, "record") for n in (0, 1, 2)] == ["0 records", "1 record", "2 records"]
-    assert [counted(n, "entry", "entries") for n in (1, 3)] == ["1 entry", "3 entries"]
+    assert [number_with_noun(n, "record") for n in (0, 1, 2)] == ["0 records", "1 record", "2 records"]
+    assert [number_with_noun(n, "entry", "entries") for n in (1, 3)] == ["1 entry", "3 entries"]

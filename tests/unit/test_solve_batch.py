@@ -8,7 +8,7 @@ from builders import frame_values
 from rockflex.models import parse_model
 from rockflex.response import NAMES, STATUSES, columns_of, respond
 from rockflex.solve import Excitation, WorkLimitError, run_all
-from rockflex.study import Case
+from rockflex.study import PreparedCase
 
 RECORD = rf.load_suite("el-centro-1940")[0].acceleration
 FRAME = rf.Frame(**frame_values(n_stories=3, base_mass=60e3, period=0.5, aspect_ratio=8.0, damping_ratio=0.03))
@@ -48,7 +48,7 @@ def case_of(name):
     tied = {key: given.pop(key) for key in ("bouc_wen", "ground") if key in given}
     model = parse_model(name.split(",")[0]).of(properties, None, tied.get("bouc_wen"), tied.get("ground"))
     runs = RUNS if vertical is None else [run._replace(vertical=vertical[: run.acceleration.size]) for run in RUNS]
-    return Case(model, **given), runs
+    return PreparedCase(model, **given), runs
 
 
 def solved(case, runs, **options):
@@ -111,7 +111,7 @@ def test_a_law_that_fails_in_one_run_fails_that_run():
                 raise ValueError(f"too fast: {rotation_velocity:.3g} rad/s")
             return modal_velocity + properties.effective_height * rotation_velocity, 0.0
 
-    case = Case(parse_model("MDOF-S").of(P, Fussy()))
+    case = PreparedCase(parse_model("MDOF-S").of(P, Fussy()))
     found = solved(case, [RUNS[0], Excitation(RECORD[:400], None, 0.8), RUNS[1], RUNS[0]])
     assert sorted(found.failures) == [0, 2, 3]
     for place in (0, 2, 3):
@@ -125,7 +125,7 @@ def test_a_law_that_fails_in_one_run_fails_that_run():
 def test_a_work_limit_is_that_of_each_run():
     """What a run takes more than estimated ends that run only, and not those after it."""
     law = rf.Restitution(0.9, 1e-6)
-    case = Case(parse_model("rigid").of(P, law))
+    case = PreparedCase(parse_model("rigid").of(P, law))
     calm, wild = Excitation(0.5 * RECORD[:200]), Excitation(np.concatenate((3.0 * RECORD[:200], np.zeros(3000))))
     limit = 1.05 * case.engine.task(wild, 0.02).work().total
     found = solved(case, [calm, wild, calm], work_limit=limit)

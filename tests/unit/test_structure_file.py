@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 import rockflex as rf
 from builders import PROPERTIES, frame_values
-from rockflex.structure.file import ELEMENTS, KINDS, StructureEntry, Table, checked, key_of
+from rockflex.structure.file import ELEMENTS, KINDS, StructureEntry, TomlTable, parse_toml_table, schema_key_of_field
 
 EXAMPLES = Path(rf.__file__).parents[2] / "examples"
 BASE = {"base_mass": 60e3, "half_width": 1.8, "damping_ratio": 0.02}
@@ -286,12 +286,25 @@ ARGUMENTS = {
     },
     "viscous_damper": {"position": -0.6, "coefficient": 3e5},
     "friction_damper": {"position": 0.1, "force": 1e5},
+    "flag_shaped_bar": {
+        "position": 0.2,
+        "stiffness": 1e8,
+        "yield_force": 2e5,
+        "post_yield_ratio": 0.05,
+        "flag_depth": 0.8,
+        "tension_only": True,
+    },
+    "gap_bar": {"position": -0.1, "stiffness": 1e8, "gap": 0.01, "both_ways": True},
+    "multilinear_bar": {"position": 0.3, "elongations": [0.01, 0.03], "forces": [1e5, 2e5], "tension_only": True},
 }
 CLASSES = {
     "tendon": rf.Tendon,
     "yielding_dissipator": rf.YieldingDissipator,
     "viscous_damper": rf.ViscousDamper,
     "friction_damper": rf.FrictionDamper,
+    "flag_shaped_bar": rf.FlagShapedBar,
+    "gap_bar": rf.GapBar,
+    "multilinear_bar": rf.MultilinearBar,
 }
 
 
@@ -380,7 +393,8 @@ def test_values_of_elements_out_of_range_name_the_element(failing, kind, changes
 
 def test_wrong_keys_of_elements(failing):
     frame, damper = text("frame", FRAME), element("friction_damper")
-    kinds = '"tendon", "yielding_dissipator", "viscous_damper" or "friction_damper"'
+    *most, last = (f'"{kind}"' for kind in ELEMENTS)
+    kinds = f"{', '.join(most)} or {last}"
     assert failing(frame + damper + damper.replace("friction_", "")) == (
         f": [[elements]] no. 2, kind must be {kinds}, but 'damper' was given."
     )
@@ -409,15 +423,15 @@ def test_wrong_keys_of_elements(failing):
 
 def test_an_entry_is_written_and_read_again(write):
     content = text("frame", FRAME) + TENDONS + "".join(map(element, ELEMENTS))
-    entry = checked(StructureEntry, tomllib.loads(content))
+    entry = parse_toml_table(StructureEntry, tomllib.loads(content))
     again = tomli_w.dumps(entry.model_dump(exclude_none=True))
-    assert checked(StructureEntry, tomllib.loads(again)) == entry
+    assert parse_toml_table(StructureEntry, tomllib.loads(again)) == entry
     assert rf.read_structure(write(again)) == entry.build()
     described = entry.describe()
     assert described["elements"] == [{"kind": kind, **values} for kind, values in ARGUMENTS.items()]
     assert [each["position"] for each in described["tendons"]] == [-0.5, 0.0, 0.5]
     # An entry without elements has the document, and so the folder of its study, that it always had.
-    assert "elements" not in checked(StructureEntry, {"frame": FRAME}).model_dump(exclude_none=True)
+    assert "elements" not in parse_toml_table(StructureEntry, {"frame": FRAME}).model_dump(exclude_none=True)
 
 
 def test_one_structure_a_file(failing):
@@ -470,7 +484,7 @@ def test_entry_is_frozen_named_and_says_what_it_holds():
         entry.name = "B"
 
 
-class Study(Table):
+class Study(TomlTable):
     """A file that holds several structures."""
 
     structures: list[StructureEntry]
@@ -479,9 +493,9 @@ class Study(Table):
 def test_entries_in_another_file_are_told_by_their_number():
     good = {"lumped": LUMPED}
     bad = {"frame": {**FRAME, "n_stories": 2.5}, "tendons": [TENDON, {"stiffness": 1.0}]}
-    assert len(checked(Study, {"structures": [good]}).structures) == 1
+    assert len(parse_toml_table(Study, {"structures": [good]}).structures) == 1
     with pytest.raises(rf.InputError) as caught:
-        checked(Study, {"structures": [good, bad, {}]}, "study.toml")
+        parse_toml_table(Study, {"structures": [good, bad, {}]}, "study.toml")
     first, second, third = str(caught.value).removeprefix("study.toml: ").split(". [[")
     assert first == (
         "[[structures]] no. 2, [structures.frame] n_stories must be the number of stories, a whole number, but 2.5 was "
@@ -518,7 +532,7 @@ def test_chimney_of_section_4_1_1():
 @pytest.mark.parametrize("model", [*KINDS.values(), StructureEntry])
 def test_every_key_is_described(model):
     for name, field in model.model_fields.items():
-        key = key_of(field)
+        key = schema_key_of_field(field)
         assert key.description, name
         assert not key.description.endswith(".")
         assert "{}" not in key.expected

@@ -14,10 +14,10 @@ from builders import frame_values, make_frame
 from rockflex import InputError
 from rockflex.cli import app
 from rockflex.models import parse_model
-from rockflex.structure.file import checked
-from rockflex.study._arguments import expand_scales, parse_scales
-from rockflex.study._case import RunOptions, yielding
-from rockflex.study._tables import OF_ELEMENTS, OF_GROUND
+from rockflex.structure.file import parse_toml_table
+from rockflex.study._arguments import expand_scale_range, parse_scale_range
+from rockflex.study._prepared_case import RunOptions, yielding_model_labels
+from rockflex.study._result_tables import OF_ELEMENTS, OF_GROUND
 from rockflex.study.spec import RunOptionKeys
 
 STRUCTURE = str(Path(rf.__file__).parents[2] / "examples" / "structure_1.toml")
@@ -53,7 +53,7 @@ half_diagonal = 3.0
     ],
 )
 def test_a_range_is_the_list_of_its_factors(given, factors):
-    assert expand_scales(given) == factors
+    assert expand_scale_range(given) == factors
     assert rf.CloudStudy(**BASE, scales=given) == rf.CloudStudy(**BASE, scales=factors)
     assert rf.CloudStudy(**BASE, scales=given).document()["scales"] == factors
 
@@ -91,7 +91,7 @@ def test_steps_lead_from_the_smallest_to_the_largest(smallest, largest, step):
 
 @pytest.mark.parametrize(("text", "factors"), [("2", [2.0]), ("-1e-1", [-0.1]), ("0.5:1:0.25", [0.5, 0.75, 1.0])])
 def test_factors_from_a_text(text, factors):
-    assert parse_scales(text) == factors
+    assert parse_scale_range(text) == factors
 
 
 def test_a_file_has_a_range(tmp_path):
@@ -220,7 +220,7 @@ FRAME = make_frame(n_stories=2)
 
 
 def test_a_table_of_a_file_gives_the_options_of_a_call():
-    table = checked(
+    table = parse_toml_table(
         RunOptionKeys,
         {
             "impact": "restitution",
@@ -254,7 +254,7 @@ def test_the_hysteresis_is_of_the_labelled_models_or_of_all_if_none_is(labels, w
     options = RunOptions.of(bouc_wen=YIELDS).among(models)
     tied = [options.tied(model, FRAME.rocking(1)) for model in models]
     assert [model.bouc_wen is not None for model in tied] == with_hysteresis
-    assert yielding(labels) == [label for label in labels if label.endswith("-BW")]
+    assert yielding_model_labels(labels) == [label for label in labels if label.endswith("-BW")]
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,8 @@ import pytest
 import rockflex as rf
 from builders import frame_values, make_frame
 from rockflex.kinds import KINDS
-from rockflex.study import PivotLifts, pivot_lifts, record_groups, run_plan
-from rockflex.study._run_matrix import checksums, study_matrix
+from rockflex.study import PivotLifts, count_pivot_lifts, record_groups, run_plan
+from rockflex.study._run_matrix import record_checksums, study_matrix
 from rockflex.study.cloud import CloudPlan, CloudStudy, run_cloud
 
 FRAME = frame_values(n_stories=3, period=0.6, aspect_ratio=8.0)
@@ -246,10 +246,10 @@ def test_the_peak_of_a_vertical_component_is_a_measure():
 def test_checksums_follow_the_samples():
     motions = [rf.GroundMotion([0.0, 1.0, 0.0], 0.01, "a"), rf.GroundMotion([0.0, 1.0, 0.0], 0.02, "b")]
     motions += [rf.GroundMotion([0.0, 1.0, 5e-324], 0.01, "c"), rf.GroundMotion([0.0, 1.0, 0.0], 0.01, "d")]
-    sums = checksums(motions)
+    sums = record_checksums(motions)
     motions += [motions[0].with_vertical(np.array([0.0, up, 0.0])) for up in (1.0, 2.0)]
     motions[4:] = [dataclasses.replace(motion, name=name) for motion, name in zip(motions[4:], "ef", strict=True)]
-    sums = checksums(motions)
+    sums = record_checksums(motions)
     assert sums["a"] == sums["d"]
     assert len(set(sums.values())) == 5
     assert set(study().plan().checksums) == {"FF-1-a", "FF-1-b", "FF-3-a"}
@@ -333,17 +333,17 @@ RUNS = pd.DataFrame(
 
 
 def test_only_runs_that_rock_and_stand_count() -> None:
-    assert pivot_lifts(RUNS) == [PivotLifts("A", "MDOF-S", 2, 1), PivotLifts("B", "MDOF-S", 1, 0)]
+    assert count_pivot_lifts(RUNS) == [PivotLifts("A", "MDOF-S", 2, 1), PivotLifts("B", "MDOF-S", 1, 0)]
 
 
 def test_widths_of_a_design_are_counted_together_and_pairs_by_model() -> None:
-    assert pivot_lifts(KINDS["design"].runs(RUNS.assign(tendon="none"))) == [
+    assert count_pivot_lifts(KINDS["design"].runs(RUNS.assign(tendon="none"))) == [
         PivotLifts("Designs, tendons: none", "MDOF-S", 3, 1)
     ]
     names = {"status": "status_mdof", "min_vertical_reaction": "min_vertical_reaction_mdof"}
     pairs = RUNS.rename(columns=names).drop(columns=["structure", "model"])
     pairs = pairs.assign(status_2dof="rocking", min_vertical_reaction_2dof=-1.0)
-    lifts = pivot_lifts(KINDS["population"].runs(pairs))
+    lifts = count_pivot_lifts(KINDS["population"].runs(pairs))
     assert lifts == [PivotLifts("Population", "MDOF-S", 3, 1), PivotLifts("Population", "2DOF-S", 6, 6)]
 
 
@@ -361,7 +361,7 @@ def test_flexural_frames_would_lift_often_and_shear_frames_do_not() -> None:
     for name, stiffness_ratio in (("flexure", 0.0), ("shear", float("inf"))):
         frame = make_frame(stiffness_ratio=stiffness_ratio, period=0.5)
         runs = rf.run_cloud(frame, list(suite)[::4], ["MDOF-S"], (2.0,))
-        (found,) = pivot_lifts(runs)
+        (found,) = count_pivot_lifts(runs)
         standing = runs[runs["status"] == "rocking"]
         assert found.lifting == (standing["min_vertical_reaction"] < 0.0).sum()
         share[name] = found.lifting / found.rocking
@@ -384,7 +384,7 @@ def test_runs_beyond_the_balance_rotation_are_counted_and_told() -> None:
     runs = RUNS.assign(
         balance_ratio=[1.2, 0.9, 5.0, float("nan"), 0.0, 3.0], max_rotation=[0.1, 0.1, 1.571, None, 0, 0.3]
     )
-    assert [each.beyond for each in pivot_lifts(runs)] == [1, 1]
-    assert "θ passes α" in str(pivot_lifts(runs)[1])
-    assert "such as rigid-C" in str(pivot_lifts(runs.assign(model="rigid"))[1])
-    assert [each.beyond for each in pivot_lifts(runs.assign(model="MDOF-C-SI"))] == [0, 0]
+    assert [each.beyond for each in count_pivot_lifts(runs)] == [1, 1]
+    assert "θ passes α" in str(count_pivot_lifts(runs)[1])
+    assert "such as rigid-C" in str(count_pivot_lifts(runs.assign(model="rigid"))[1])
+    assert [each.beyond for each in count_pivot_lifts(runs.assign(model="MDOF-C-SI"))] == [0, 0]

@@ -9,7 +9,7 @@ import pytest
 
 import rockflex as rf
 from rockflex import _versions
-from rockflex._versions import commit_of
+from rockflex._versions import git_commit
 
 pytestmark = pytest.mark.skipif(shutil.which("git") is None, reason="there is no Git")
 TEXT = 'study = "population"\npairs = 3\nruns_per_chunk = 2\nrecords.suites = ["el-centro-1940"]\n'
@@ -39,18 +39,18 @@ def head(folder: Path) -> str:
 
 def test_the_commit_of_a_file(repository):
     file = repository / "study.toml"
-    assert commit_of(file, known=True) == commit_of(file, known=False) == head(repository)
+    assert git_commit(file, known=True) == git_commit(file, known=False) == head(repository)
     (repository / "notes.txt").write_text("not known to Git", "utf-8")
-    assert commit_of(file, known=True) == head(repository)
+    assert git_commit(file, known=True) == head(repository)
     file.write_text(TEXT + "seed = 1\n", "utf-8")
-    assert commit_of(file, known=True) == f"{head(repository)}+changes"
+    assert git_commit(file, known=True) == f"{head(repository)}+changes"
 
 
 def test_a_file_that_git_does_not_know(repository):
     other = repository / "other.toml"
     other.write_text(TEXT, "utf-8")
-    assert commit_of(other, known=True) is None  # an installation in a folder of someone else's repository
-    assert commit_of(other, known=False) == f"{head(repository)}+changes"
+    assert git_commit(other, known=True) is None  # an installation in a folder of someone else's repository
+    assert git_commit(other, known=False) == f"{head(repository)}+changes"
 
 
 def test_no_program_of_the_repository_runs(repository, tmp_path):
@@ -58,29 +58,29 @@ def test_no_program_of_the_repository_runs(repository, tmp_path):
     (repository / ".gitattributes").write_text("*.toml filter=evil\n", "utf-8")
     git(repository, "config", "filter.evil.clean", f"touch {marker}; cat")
     (repository / "study.toml").write_text(TEXT + "seed = 2\n", "utf-8")
-    assert commit_of(repository / "study.toml", known=True) == f"{head(repository)}+changes"
+    assert git_commit(repository / "study.toml", known=True) == f"{head(repository)}+changes"
     assert not marker.exists()
 
 
 def test_names_with_wildcards_are_names(repository):
     file = repository / "*.toml"
     file.write_text(TEXT, "utf-8")
-    assert commit_of(file, known=True) is None
+    assert git_commit(file, known=True) is None
 
 
 def test_without_a_repository_or_a_commit_or_git(tmp_path, repository, monkeypatch):
-    assert commit_of(tmp_path / "study.toml", known=False) is None
+    assert git_commit(tmp_path / "study.toml", known=False) is None
     empty = tmp_path / "empty"
     empty.mkdir()
     git(empty, "init", "-q")
-    assert commit_of(empty / "study.toml", known=False) is None
+    assert git_commit(empty / "study.toml", known=False) is None
     monkeypatch.setenv("PATH", str(tmp_path))
-    assert commit_of(repository / "study.toml", known=True) is None
+    assert git_commit(repository / "study.toml", known=True) is None
 
 
 def test_a_variable_of_git_does_not_lead_elsewhere(repository, tmp_path, monkeypatch):
     monkeypatch.setenv("GIT_DIR", str(tmp_path / "nowhere"))
-    right = commit_of(repository / "study.toml", known=True)
+    right = git_commit(repository / "study.toml", known=True)
     monkeypatch.delenv("GIT_DIR")
     assert right == head(repository)
 
@@ -109,7 +109,7 @@ def commits_of(part: Path) -> str:
 def test_a_study_without_a_file_or_a_repository_resumes_too(repository, tmp_path, monkeypatch):
     file, out = repository / "study.toml", tmp_path / "out"
     rf.fill_study(file, out, share=(1, 2))
-    monkeypatch.setattr(_versions, "_git", lambda *_: None)
+    monkeypatch.setattr(_versions, "_git_output", lambda *_: None)
     assert "study commit" not in rf.fill_study(rf.PopulationStudy(**content()), tmp_path / "new").manifest.versions
     assert rf.fill_study(file, out).finished
 

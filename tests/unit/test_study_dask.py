@@ -15,7 +15,7 @@ from dask_cluster import Cluster
 from rockflex import InputError
 from rockflex.study import _dask_worker, parallel
 from rockflex.study.folders import StudyFolder
-from rockflex.study.parallel import ClusterError, map_dask
+from rockflex.study.parallel import ClusterError, map_chunks_on_dask
 from toy_study import DeadlyPlan, FailingPlan, FlakyPlan, ToyPlan, run_study
 
 pytestmark = pytest.mark.slow
@@ -52,7 +52,7 @@ def sent(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, ...]]:
 
 def test_few_tasks_are_in_flight(cluster: Cluster, sent: list[tuple[int, ...]]) -> None:
     came: set[int] = set()
-    for number, _ in map_dask(ToyPlan(delay=0.02), range(20), cluster.address):
+    for number, _ in map_chunks_on_dask(ToyPlan(delay=0.02), range(20), cluster.address):
         came.add(number)
         assert sum(not came.issuperset(batch) for batch in sent) <= 4 + 1  # two for each of two threads, and this one
     assert [number for batch in sent for number in batch] == list(range(20))
@@ -60,7 +60,7 @@ def test_few_tasks_are_in_flight(cluster: Cluster, sent: list[tuple[int, ...]]) 
 
 def test_short_chunks_share_a_task(cluster: Cluster, sent: list[tuple[int, ...]]) -> None:
     asked = [number for number in range(600) if number % 3]  # what is missing in a folder has gaps
-    found = dict(map_dask(ToyPlan(rows=3), asked, cluster.address))
+    found = dict(map_chunks_on_dask(ToyPlan(rows=3), asked, cluster.address))
     assert sorted(found) == asked
     assert found[500].to_pandas().equals(ToyPlan(rows=3).frame(500))
     assert [number for batch in sent for number in batch] == asked
@@ -73,41 +73,41 @@ def test_short_chunks_share_a_task(cluster: Cluster, sent: list[tuple[int, ...]]
 def test_an_error_within_a_task_names_its_chunk(
     cluster: Cluster, monkeypatch: pytest.MonkeyPatch, sent: list[tuple[int, ...]]
 ) -> None:
-    monkeypatch.setattr(parallel, "batch_size", lambda left, threads, chunk_time: 4)
+    monkeypatch.setattr(parallel, "chunks_per_task", lambda left, threads, chunk_time: 4)
     with pytest.raises(ArithmeticError, match="beyond repair") as caught:
-        list(map_dask(FailingPlan(), range(8), cluster.address, retries=0))
+        list(map_chunks_on_dask(FailingPlan(), range(8), cluster.address, retries=0))
     assert sent == [(0, 1, 2, 3), (4, 5, 6, 7)]
     assert "raised by chunk 2 on a worker" in caught.value.__notes__[0]
     assert caught.value.__notes__[1].endswith("of the 8 chunks requested had come back.")
 
 
 def test_nothing_asked_is_nothing_done() -> None:
-    assert list(map_dask(ToyPlan(), [], "nowhere")) == []
+    assert list(map_chunks_on_dask(ToyPlan(), [], "nowhere")) == []
 
 
 def test_a_chunk_that_raises_ends_the_map_with_its_number(cluster: Cluster) -> None:
     with pytest.raises(ArithmeticError, match="beyond repair") as caught:
-        list(map_dask(FailingPlan(), range(4), cluster.address, retries=1))
+        list(map_chunks_on_dask(FailingPlan(), range(4), cluster.address, retries=1))
     assert "raised by chunk 2 on a worker" in caught.value.__notes__[0]
 
 
 def test_a_chunk_that_raises_is_tried_again(tmp_path: Path, cluster: Cluster) -> None:
     plan = FlakyPlan(folder=str(tmp_path))
     with pytest.raises(OSError, match="the network is down") as caught:  # and not the scheduler's
-        list(map_dask(plan, [0], cluster.address, retries=0))
+        list(map_chunks_on_dask(plan, [0], cluster.address, retries=0))
     assert "raised by chunk 0" in caught.value.__notes__[0]
-    assert {number for number, _ in map_dask(plan, range(6), cluster.address, retries=1)} == set(range(6))
+    assert {number for number, _ in map_chunks_on_dask(plan, range(6), cluster.address, retries=1)} == set(range(6))
 
 
 def test_a_consumer_that_stops_frees_the_cluster(cluster: Cluster) -> None:
-    results = map_dask(ToyPlan(n_chunks=100, delay=0.2), range(100), cluster.address)
+    results = map_chunks_on_dask(ToyPlan(n_chunks=100, delay=0.2), range(100), cluster.address)
     next(results)
     results.close()
     with distributed.Client(cluster.address, set_as_default=False) as client:
         there = client.run(lambda dask_worker: [name for name in dask_worker.plugins if name.startswith("rockflex")])
     assert list(there.values()) == [[], []]
     begin = time.monotonic()
-    assert len(list(map_dask(ToyPlan(), range(2), cluster.address))) == 2
+    assert len(list(map_chunks_on_dask(ToyPlan(), range(2), cluster.address))) == 2
     assert time.monotonic() - begin < 5.0
 
 
@@ -116,31 +116,31 @@ def test_a_plan_that_workers_cannot_load_is_refused(cluster: Cluster, monkeypatc
         pass
 
     with pytest.raises(InputError, match=r"cannot be sent to workers: .*Local.* top of a module"):
-        next(map_dask(Local(), [0], cluster.address))
-    monkeypatch.setattr(parallel, "_pickled", lambda plan: b"cnowhere_to_be_found\nPlan\n.")
+        next(map_chunks_on_dask(Local(), [0], cluster.address))
+    monkeypatch.setattr(parallel, "_pickled_plan", lambda plan: b"cnowhere_to_be_found\nPlan\n.")
     with pytest.raises(
         InputError, match=r"The worker tcp://\S+ cannot load the plan \(ModuleNotFoundError: .*nowhere_to_be_found"
     ):
-        next(map_dask(ToyPlan(), [0], cluster.address))
+        next(map_chunks_on_dask(ToyPlan(), [0], cluster.address))
 
 
 def test_workers_of_other_versions_are_refused(cluster: Cluster, monkeypatch: pytest.MonkeyPatch) -> None:
-    real = _dask_worker.installed_versions()
+    real = _dask_worker.worker_package_versions()
     with monkeypatch.context() as patch:
         # The function is sent by its name, so that the workers run their own.
-        fake = functools.update_wrapper(lambda: real | {"numpy": "0.1"}, _dask_worker.installed_versions)
-        patch.setattr(_dask_worker, "installed_versions", fake)
+        fake = functools.update_wrapper(lambda: real | {"numpy": "0.1"}, _dask_worker.worker_package_versions)
+        patch.setattr(_dask_worker, "worker_package_versions", fake)
         message = rf"The worker tcp://\S+ has numpy {real['numpy']} and not 0\.1\. Start the workers in the same env"
         with patch.context() as before:
             before.delattr(distributed.Client, "register_plugin")  # nothing is sent to them
             with pytest.raises(InputError, match=message):
-                next(map_dask(ToyPlan(), [0], cluster.address))
-        patch.setattr(parallel, "_refuse_workers", lambda *_: None)  # as of a worker that joins later
+                next(map_chunks_on_dask(ToyPlan(), [0], cluster.address))
+        patch.setattr(parallel, "_refuse_dask_workers", lambda *_: None)  # as of a worker that joins later
         with pytest.raises(InputError, match=message):
-            next(map_dask(ToyPlan(), [0], cluster.address, retries=0))
+            next(map_chunks_on_dask(ToyPlan(), [0], cluster.address, retries=0))
     there = {name: version for name, version in real.items() if name != "scipy"}
     with pytest.raises(InputError, match="The worker w has scipy none and not"):
-        _dask_worker.refuse_other_versions("w", there, real)
+        _dask_worker.refuse_other_worker_versions("w", there, real)
 
 
 def test_an_address_where_nothing_answers_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -150,13 +150,13 @@ def test_an_address_where_nothing_answers_is_refused(monkeypatch: pytest.MonkeyP
         port = free.getsockname()[1]
         for address in (f"tcp://127.0.0.1:{port}", "tcp://", "ftp://x:1", "127.0.0.1:port"):
             with pytest.raises(InputError, match=r"No Dask scheduler answers at .* Start one by `dask scheduler`"):
-                next(map_dask(ToyPlan(), [0], address))
+                next(map_chunks_on_dask(ToyPlan(), [0], address))
     with pytest.raises(InputError, match="address must be that of a Dask scheduler"):
-        next(map_dask(ToyPlan(), [0], ""))
+        next(map_chunks_on_dask(ToyPlan(), [0], ""))
     with pytest.raises(InputError, match="retries must be a whole number of at least 0"):
-        next(map_dask(ToyPlan(), [0], "a", retries=-1))
+        next(map_chunks_on_dask(ToyPlan(), [0], "a", retries=-1))
     with pytest.raises(InputError, match="patience must be a positive number in s"):
-        next(map_dask(ToyPlan(), [0], "a", patience=0))
+        next(map_chunks_on_dask(ToyPlan(), [0], "a", patience=0))
 
 
 def test_without_dask_the_message_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -172,14 +172,14 @@ def test_without_dask_the_message_says_what_to_install(monkeypatch: pytest.Monke
     with pytest.raises(
         InputError, match=r"needs the package 'distributed'\. Install it by pip install 'rockflex\[clus"
     ):
-        next(map_dask(ToyPlan(), [0], "tcp://127.0.0.1:1"))
+        next(map_chunks_on_dask(ToyPlan(), [0], "tcp://127.0.0.1:1"))
 
 
 def test_workers_may_die_and_join_on_the_way(tmp_path: Path) -> None:
     plan = ToyPlan(n_chunks=16, delay=0.15)
     with Cluster(tmp_path) as own:
         seen: list[int] = []
-        for number, table in map_dask(plan, range(16), own.address):
+        for number, table in map_chunks_on_dask(plan, range(16), own.address):
             seen.append(number)
             assert table.to_pandas().equals(plan.frame(number))
             if len(seen) == 3:
@@ -193,7 +193,7 @@ def test_workers_may_die_and_join_on_the_way(tmp_path: Path) -> None:
 def test_a_cluster_without_workers_is_given_up(tmp_path: Path) -> None:
     message = r"has had no worker for 0\.5 s; 0 of the 3 chunks .* Start workers"
     with Cluster(tmp_path, workers=0) as own, pytest.raises(ClusterError, match=message):
-        next(map_dask(ToyPlan(), range(3), own.address, patience=0.5))
+        next(map_chunks_on_dask(ToyPlan(), range(3), own.address, patience=0.5))
 
 
 def test_workers_without_rockflex_are_refused(tmp_path: Path) -> None:
@@ -204,7 +204,7 @@ def test_workers_without_rockflex_are_refused(tmp_path: Path) -> None:
         Cluster(tmp_path, workers=1, **another_package.environment(tmp_path / "empty")) as own,
         pytest.raises(InputError, match=message),
     ):
-        next(map_dask(ToyPlan(), [0], own.address))
+        next(map_chunks_on_dask(ToyPlan(), [0], own.address))
 
 
 def test_a_chunk_that_kills_workers_is_named(tmp_path: Path) -> None:
@@ -213,25 +213,25 @@ def test_a_chunk_that_kills_workers_is_named(tmp_path: Path) -> None:
         Cluster(tmp_path, workers=2, DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as own,
         pytest.raises(ClusterError, match=message),
     ):
-        list(map_dask(DeadlyPlan(), range(3), own.address))
+        list(map_chunks_on_dask(DeadlyPlan(), range(3), own.address))
 
 
 def test_a_task_that_kills_workers_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(parallel, "batch_size", lambda left, threads, chunk_time: 3)
+    monkeypatch.setattr(parallel, "chunks_per_task", lambda left, threads, chunk_time: 3)
     with (
         Cluster(tmp_path, DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as own,
         pytest.raises(
             ClusterError, match=r"One of the chunks 0 to 2 was on one worker after another when it died; 0 of"
         ),
     ):
-        list(map_dask(DeadlyPlan(), range(3), own.address))
+        list(map_chunks_on_dask(DeadlyPlan(), range(3), own.address))
 
 
 def test_a_lost_scheduler_is_told_and_the_study_resumes(tmp_path: Path) -> None:
     plan, study = ToyPlan(n_chunks=10, delay=0.1), tmp_path / "study"
     real = plan.whole()
     with Cluster(tmp_path) as own:
-        results = map_dask(plan, range(10), own.address)
+        results = map_chunks_on_dask(plan, range(10), own.address)
         with StudyFolder.open(study, {}, 10, {}) as folder:
             for _ in range(4):
                 folder.write(*next(results))

@@ -11,8 +11,8 @@ import rockflex as rf
 from design_case import CONTENT, FRAME, HEIGHT, LEVELS, PROPERTIES, STRUCTURE, SUITE, WIDTHS
 from rockflex.study import ChunkedPlan
 from rockflex.study.design import DesignStudy
-from rockflex.study.design._designs import designs_of, half_widths_of
-from rockflex.study.design._fit import state_of
+from rockflex.study.design._designs import checked_half_widths, designs_of_structure
+from rockflex.study.design._exceedance_fit import design_limit_state
 
 CURVE = {"im": [0.5, 30.0], "rate": [0.1, 2e-5]}
 SPECTRAL = {"level": None, "measure": "sa_t1", "hazard": CURVE}
@@ -61,13 +61,13 @@ def test_facts_of_a_design_are_closed_forms(runs):
 
 @pytest.mark.parametrize("ratio", [0.0, 0.5, 1.0, 3.0])
 def test_ratio_of_stiffness_is_that_of_the_slope(ratio):
-    for design in designs_of(PROPERTIES, WIDTHS, [rf.TendonLevel(0.1, ratio)], 0.0):
+    for design in designs_of_structure(PROPERTIES, WIDTHS, [rf.TendonLevel(0.1, ratio)], 0.0):
         expected = (ratio - 1.0) * PROPERTIES.l0r * 9.81
         assert design.properties.rocking_stiffness == pytest.approx(expected, rel=1e-12, abs=1e-6)
 
 
 def test_a_base_whose_mass_grows():
-    for design in designs_of(PROPERTIES, WIDTHS, [], 6e3):
+    for design in designs_of_structure(PROPERTIES, WIDTHS, [], 6e3):
         b = design.properties.half_width
         made = built(b, base_mass=50e3 + 6e3 * 2.0 * (b - PROPERTIES.half_width)).rocking()
         for name in ("m_tot", "i_theta", "l0r", "translational_inertia", "resisting_moment"):
@@ -76,12 +76,12 @@ def test_a_base_whose_mass_grows():
 
 def test_rotary_inertia_and_tendons_of_its_own_stay():
     tower = rf.TaperedTower(200.0, 8.0, 4.0, 1.0, 2400.0, 25e9, 0.02).rocking()
-    (wide,) = designs_of(tower, [10.0], [], 0.0)
+    (wide,) = designs_of_structure(tower, [10.0], [], 0.0)
     rotary = tower.i_theta - tower.translational_inertia - tower.m_tot * 64.0
     assert wide.properties.i_theta == pytest.approx(tower.translational_inertia + rotary + tower.m_tot * 100.0)
     pair = [rf.Tendon(1e5, 1e6, -0.5), rf.Tendon(1e5, 1e6, 0.5)]
     held = rf.Restrained(STRUCTURE, pair).rocking()
-    (design,) = designs_of(held, [2.0], [], 0.0)
+    (design,) = designs_of_structure(held, [2.0], [], 0.0)
     assert (design.tendon, design.properties.tendons) == ("its own tendons", tuple(pair))
     table = rf.run_design(held, SUITE[0], [1.0, 2.0])
     np.testing.assert_allclose(
@@ -231,15 +231,15 @@ def test_damaged_arguments_of_a_design(call, message):
 
 
 def test_half_widths_rise():
-    assert half_widths_of([2.0, 1.0]) == [1.0, 2.0]
-    assert half_widths_of({"smallest": 1, "largest": 2, "count": 5}) == [1.0, 1.25, 1.5, 1.75, 2.0]
+    assert checked_half_widths([2.0, 1.0]) == [1.0, 2.0]
+    assert checked_half_widths({"smallest": 1, "largest": 2, "count": 5}) == [1.0, 1.25, 1.5, 1.75, 2.0]
 
 
 def test_limits():
-    assert state_of(0.02, 0.1).threshold == 0.02
-    assert state_of("nominal", 0.1).threshold == 0.1
-    assert state_of("0.5 nominal", 0.1).threshold == 0.05
-    assert state_of("overturning", 0.1).threshold == math.pi / 2
+    assert design_limit_state(0.02, 0.1).threshold == 0.02
+    assert design_limit_state("nominal", 0.1).threshold == 0.1
+    assert design_limit_state("0.5 nominal", 0.1).threshold == 0.05
+    assert design_limit_state("overturning", 0.1).threshold == math.pi / 2
     for limit in (0.0, 1e-5, 1.6, math.nan, True, "x nominal", "0.5 0.5 nominal", "", "0.0005 nominal", None):
         with pytest.raises(rf.InputError, match=r"limit must be a rotation from 0\.0001 rad"):
-            state_of(limit, 0.1)
+            design_limit_state(limit, 0.1)

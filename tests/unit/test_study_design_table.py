@@ -10,8 +10,8 @@ from scipy.optimize import minimize
 import rockflex as rf
 from builders import make_frame
 from design_case import HAZARD, HEIGHT, WIDTHS
-from rockflex.fragility import resample_weights, resampled_exceedance
-from rockflex.fragility._regression import Scoring, fit_curves
+from rockflex.fragility import bootstrap_weights, resampled_exceedance
+from rockflex.fragility._regression import FirthScoringOptions, fit_logistic_curves
 
 
 @pytest.fixture
@@ -93,7 +93,7 @@ def test_resamples_are_those_of_the_bootstrap():
         return rows
 
     rf.bootstrap_band(fit, np.arange(1.0, 8.0), np.arange(7), groups, at=[1.0], n=30, seed=9, curve=lambda *_: [0.5])
-    np.testing.assert_array_equal(resample_weights(groups, 30, 9), seen[1:])
+    np.testing.assert_array_equal(bootstrap_weights(groups, 30, 9), seen[1:])
 
 
 def test_penalised_fits_maximise_the_penalised_likelihood():
@@ -114,7 +114,7 @@ def test_penalised_fits_maximise_the_penalised_likelihood():
         corners = [[0.0, 0.0], [4.0, 4.0], [-4.0, 4.0]]
         options = {"xatol": 1e-8, "fatol": 1e-12, "maxiter": 2000, "initial_simplex": corners}
         best = minimize(unlikely, corners[0], method="Nelder-Mead", options=options)
-        curve = fit_curves(x, y, times[None].astype(float), Scoring(1e-8))
+        curve = fit_logistic_curves(x, y, times[None].astype(float), FirthScoringOptions(1e-8))
         assert curve.separated
         np.testing.assert_allclose(curve.parameters[0], best.x, rtol=1e-5, atol=1e-5)
 

@@ -22,7 +22,13 @@ import rockflex as rf
 from builders import frame_values
 from rockflex import InputError, _files
 from rockflex.study.folders import StudyFolder, _folder
-from rockflex.study.folders._parts import PartError, check, encode, read, verify
+from rockflex.study.folders._parts import (
+    PartError,
+    encode_part,
+    part_schema_of_content,
+    read_part_table,
+    verified_part_content,
+)
 from toy_study import SPEC, VERSIONS, ToyPlan, opened, run_study
 
 PLAN = ToyPlan(n_chunks=4, rows=30)
@@ -273,10 +279,10 @@ def test_the_columns_to_compare_with_are_looked_for_once(tmp_path: Path, monkeyp
     run_study(str(tmp_path), plan)
     (tmp_path / "parts" / "part-00000.parquet").unlink()
     seen: list[int] = []
-    real = _folder.schema_at
+    real = _folder.part_schema_at
     with opened(str(tmp_path), plan) as folder:
         monkeypatch.setattr(
-            _folder, "schema_at", lambda path, study, number: seen.append(number) or real(path, study, number)
+            _folder, "part_schema_at", lambda path, study, number: seen.append(number) or real(path, study, number)
         )
         for number in (0, 7, 8, 7):
             folder.write(number, plan.chunk(number))
@@ -400,7 +406,7 @@ def swapped(path: Path) -> None:
 
 
 def of_another_study(path: Path) -> None:
-    path.write_bytes(encode(PLAN.chunk(1), "0" * 32, 1, VERSIONS))
+    path.write_bytes(encode_part(PLAN.chunk(1), "0" * 32, 1, VERSIONS))
 
 
 @pytest.mark.parametrize(
@@ -435,32 +441,32 @@ def test_a_damaged_part_is_named_and_computed_anew(done: Path, damage, reason: s
 
 def test_every_flipped_bit_is_seen(tmp_path: Path) -> None:
     path = tmp_path / "part"
-    content = encode(ToyPlan(rows=3).chunk(0), "s", 0, VERSIONS)
+    content = encode_part(ToyPlan(rows=3).chunk(0), "s", 0, VERSIONS)
     path.write_bytes(content)
-    assert verify(path, "s", 0) == content
+    assert verified_part_content(path, "s", 0) == content
     for place in np.random.default_rng(1).integers(0, 8 * len(content), 1000):
         damaged = bytearray(content)
         damaged[place // 8] ^= 1 << (place % 8)
         path.write_bytes(damaged)
         with pytest.raises(PartError):
-            verify(path, "s", 0)
+            verified_part_content(path, "s", 0)
 
 
 def test_every_cut_is_seen(tmp_path: Path) -> None:
     path = tmp_path / "part"
-    content = encode(ToyPlan(rows=3).chunk(0), "s", 0, VERSIONS)
+    content = encode_part(ToyPlan(rows=3).chunk(0), "s", 0, VERSIONS)
     for length in range(0, len(content), 7):
         for padding in (b"", bytes(len(content) - length)):
             path.write_bytes(content[:length] + padding)
             with pytest.raises(PartError):
-                verify(path, "s", 0)
+                verified_part_content(path, "s", 0)
 
 
 def test_data_that_look_like_the_checksum_do_no_harm(tmp_path: Path) -> None:
     path = tmp_path / "part"
     table = pa.table({"rockflex-crc32:00000000": ["rockflex-crc32:00000000"] * 3})
-    path.write_bytes(encode(table, "s", 0, {"a": "rockflex-crc32:00000000"}))
-    assert read(path, "s", 0).equals(table)
+    path.write_bytes(encode_part(table, "s", 0, {"a": "rockflex-crc32:00000000"}))
+    assert read_part_table(path, "s", 0).equals(table)
 
 
 def test_an_empty_chunk_keeps_its_columns(tmp_path: Path) -> None:
@@ -472,9 +478,9 @@ def test_an_empty_chunk_keeps_its_columns(tmp_path: Path) -> None:
 
 def test_parts_with_other_columns_are_refused_on_reading(done: Path) -> None:
     study = StudyFolder.load(done)
-    content = encode(PLAN.chunk(1).drop_columns(["error"]), study.manifest.study, 1, VERSIONS)
+    content = encode_part(PLAN.chunk(1).drop_columns(["error"]), study.manifest.study, 1, VERSIONS)
     (done / "parts" / "part-00001.parquet").write_bytes(content)
-    assert "error" not in check(content, study.manifest.study, 1).names
+    assert "error" not in part_schema_of_content(content, study.manifest.study, 1).names
     message = r"part-00001.parquet and the first part have other columns:\n  error: large_string, None\nAll chunks"
     with pytest.raises(InputError, match=message):
         study.table()

@@ -13,12 +13,12 @@ from rockflex.study import run_plan
 from rockflex.study._run_matrix import study_matrix
 from rockflex.study.incremental import (
     IncrementalStudy,
-    Ladder,
-    grid_scales,
+    ScaleLadder,
     incremental_capacities,
+    max_bisections_below_scales,
+    max_bisections_between_scales,
+    rising_scales,
     run_incremental,
-    steps_between,
-    steps_from_rest,
 )
 from rockflex.study.stripes import StripePlan, StripeStudy, stripe_counts
 
@@ -30,18 +30,20 @@ RECORDS = {"suites": ["fema-p695-far-field"], "include": ["FF-1-*", "FF-3-a"]}
 
 
 def ladder(outcome, scales, growth=2.0, tolerance=0.01):
-    return Ladder(lambda scale: {"scale": scale, "overturned": outcome(scale)}, scales, growth, tolerance).run_all()
+    return ScaleLadder(
+        lambda scale: {"scale": scale, "overturned": outcome(scale)}, scales, growth, tolerance
+    ).run_all()
 
 
 def test_rungs():
-    assert grid_scales(1.0, 8.0, 2.0) == [1.0, 2.0, 4.0, 8.0]
-    assert grid_scales(1.0, 9.0, 2.0) == [1.0, 2.0, 4.0, 8.0, 9.0]
-    assert grid_scales(0.1, 20.0, 1.15)[-1] == 20.0
-    assert grid_scales(1.0, 1.5, 2.0) == [1.0, 1.5]
+    assert rising_scales(1.0, 8.0, 2.0) == [1.0, 2.0, 4.0, 8.0]
+    assert rising_scales(1.0, 9.0, 2.0) == [1.0, 2.0, 4.0, 8.0, 9.0]
+    assert rising_scales(0.1, 20.0, 1.15)[-1] == 20.0
+    assert rising_scales(1.0, 1.5, 2.0) == [1.0, 1.5]
 
 
 def test_one_boundary():
-    rows = ladder(lambda scale: scale > 3.1, grid_scales(1.0, 16.0, 2.0))
+    rows = ladder(lambda scale: scale > 3.1, rising_scales(1.0, 16.0, 2.0))
     scales = [row["scale"] for row in rows]
     assert scales == sorted(scales)
     first = rows[0]
@@ -50,21 +52,21 @@ def test_one_boundary():
     assert first["last_survival_scale"] <= 3.1 < first["first_overturning_scale"]
     assert (first["resurrections"], first["right_censored"]) == (0, False)
     assert all(row["first_overturning_scale"] == first["first_overturning_scale"] for row in rows)
-    assert 5 < len(rows) <= 5 + steps_between(2.0, 0.01)
+    assert 5 < len(rows) <= 5 + max_bisections_between_scales(2.0, 0.01)
 
 
 def test_resurrections_are_kept():
-    rows = ladder(lambda scale: 2.5 < scale < 5.0 or scale > 11.0, grid_scales(1.0, 32.0, 2.0))
+    rows = ladder(lambda scale: 2.5 < scale < 5.0 or scale > 11.0, rising_scales(1.0, 32.0, 2.0))
     first = rows[0]
     assert first["first_overturning_scale"] == pytest.approx(2.5, rel=0.01)
     assert first["last_survival_scale"] == pytest.approx(11.0, rel=0.01)
     assert first["resurrections"] == 1
-    standing = ladder(lambda scale: 2.5 < scale < 5.0, grid_scales(1.0, 32.0, 2.0))[0]
+    standing = ladder(lambda scale: 2.5 < scale < 5.0, rising_scales(1.0, 32.0, 2.0))[0]
     assert (standing["last_survival_scale"], standing["resurrections"], standing["right_censored"]) == (32.0, 1, False)
 
 
 def test_nothing_overturns():
-    rows = ladder(lambda scale: False, grid_scales(1.0, 8.0, 2.0))
+    rows = ladder(lambda scale: False, rising_scales(1.0, 8.0, 2.0))
     assert len(rows) == 4
     assert rows[0]["first_overturning_scale"] is None
     assert (rows[0]["last_survival_scale"], rows[0]["right_censored"], rows[0]["resurrections"]) == (8.0, True, 0)
@@ -72,31 +74,31 @@ def test_nothing_overturns():
 
 @pytest.mark.parametrize("boundary", [0.3, 0.9, 0.01])
 def test_all_rungs_overturn(boundary):
-    rows = ladder(lambda scale: scale > boundary, grid_scales(1.0, 8.0, 2.0))
+    rows = ladder(lambda scale: scale > boundary, rising_scales(1.0, 8.0, 2.0))
     assert rows[0]["first_overturning_scale"] == pytest.approx(boundary, rel=0.0101)
-    assert len(rows) <= 4 + steps_from_rest(0.01)
+    assert len(rows) <= 4 + max_bisections_below_scales(0.01)
 
 
 def test_everything_overturns():
-    rows = ladder(lambda scale: True, grid_scales(1.0, 8.0, 2.0))
-    assert len(rows) == 4 + steps_from_rest(0.01)
+    rows = ladder(lambda scale: True, rising_scales(1.0, 8.0, 2.0))
+    assert len(rows) == 4 + max_bisections_below_scales(0.01)
     assert rows[0]["last_survival_scale"] is None
 
 
 def test_unsolved_runs_say_nothing():
-    rows = ladder(lambda scale: None if scale == 4.0 else scale > 5.0, grid_scales(1.0, 8.0, 2.0))
+    rows = ladder(lambda scale: None if scale == 4.0 else scale > 5.0, rising_scales(1.0, 8.0, 2.0))
     assert rows[0]["first_overturning_scale"] == pytest.approx(5.0, rel=0.01)
     assert sum(row["overturned"] is None for row in rows) == 1
-    failed = ladder(lambda scale: None, grid_scales(1.0, 8.0, 2.0))
+    failed = ladder(lambda scale: None, rising_scales(1.0, 8.0, 2.0))
     assert failed[0]["right_censored"] is None
-    stopped = ladder(lambda scale: scale > 5.0 if scale in (1.0, 2.0, 4.0, 8.0) else None, grid_scales(1.0, 8.0, 2.0))
+    stopped = ladder(lambda scale: scale > 5.0 if scale in (1.0, 2.0, 4.0, 8.0) else None, rising_scales(1.0, 8.0, 2.0))
     assert len(stopped) == 5
     assert stopped[0]["first_overturning_scale"] == 8.0
 
 
 def test_ladder_of_a_block_is_what_overturning_scales_finds():
     runs = run_incremental(BLOCK, PULSE, "rigid", 0.5, 8.0, 1.05, 1e-4)
-    found = rf.overturning_scales(BLOCK, PULSE, grid_scales(0.5, 8.0, 1.05), "rigid", tolerance=1e-4)
+    found = rf.overturning_scales(BLOCK, PULSE, rising_scales(0.5, 8.0, 1.05), "rigid", tolerance=1e-4)
     assert runs["first_overturning_scale"].unique() == pytest.approx([found.lowest], rel=2e-4)
     if math.isfinite(found.highest_standing):
         assert runs["last_survival_scale"].unique() == pytest.approx([found.highest_standing], rel=2e-4)

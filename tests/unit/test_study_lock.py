@@ -17,7 +17,7 @@ import pytest
 import toy_study
 from rockflex import InputError
 from rockflex.study.folders import StudyFolder, _lock
-from rockflex.study.folders._lock import Lock
+from rockflex.study.folders._lock import FolderLock
 from toy_study import ToyPlan, opened, run_study
 
 PLAN = ToyPlan(n_chunks=2)
@@ -60,8 +60,8 @@ def test_the_lock_goes_with_its_object(tmp_path: Path) -> None:
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
 def test_a_forked_child_does_not_take_the_lock_along(tmp_path: Path) -> None:
     program = (
-        "import os, sys\nfrom pathlib import Path\nfrom rockflex.study.folders._lock import Lock\n"
-        "lock = Lock.acquire(Path(sys.argv[1]))\npid = os.fork()\n"
+        "import os, sys\nfrom pathlib import Path\nfrom rockflex.study.folders._lock import FolderLock\n"
+        "lock = FolderLock.acquire(Path(sys.argv[1]))\npid = os.fork()\n"
         "if not pid:\n    lock.release(); os._exit(0)\n"
         "os.waitpid(pid, 0); lock.check(); print('held')"
     )
@@ -75,7 +75,7 @@ def test_a_forked_child_does_not_take_the_lock_along(tmp_path: Path) -> None:
 def test_the_lock_of_a_dead_process_is_taken_over(tmp_path: Path) -> None:
     path = tmp_path / "lock"
     path.write_text(holder(pid=dead_pid()))
-    Lock.acquire(path).release()
+    FolderLock.acquire(path).release()
     assert list(tmp_path.iterdir()) == []
 
 
@@ -83,14 +83,14 @@ def test_the_lock_of_a_dead_process_is_taken_over(tmp_path: Path) -> None:
 def test_a_number_given_to_a_new_process_is_no_life(tmp_path: Path) -> None:
     path = tmp_path / "lock"
     path.write_text(holder(start="1"))
-    Lock.acquire(path).release()
+    FolderLock.acquire(path).release()
     with subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE) as child:
-        path.write_text(holder(pid=child.pid, start=_lock._start(child.pid)))
+        path.write_text(holder(pid=child.pid, start=_lock._process_start(child.pid)))
         with pytest.raises(InputError, match=f"process {child.pid}"):
-            Lock.acquire(path)
+            FolderLock.acquire(path)
         child.kill()
         os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT)  # dead, and not yet buried
-        Lock.acquire(path).release()
+        FolderLock.acquire(path).release()
 
 
 def test_where_starts_are_unknown_the_number_decides(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -99,25 +99,25 @@ def test_where_starts_are_unknown_the_number_decides(tmp_path: Path, monkeypatch
 
     path, dead = tmp_path / "lock", dead_pid()
     monkeypatch.setattr(Path, "read_text", nothing)
-    assert _lock._start(dead) is None
-    assert _lock._start(os.getpid()) == ""
+    assert _lock._process_start(dead) is None
+    assert _lock._process_start(os.getpid()) == ""
 
     def forbidden(*_: object) -> None:
         raise PermissionError
 
     monkeypatch.setattr(os, "kill", forbidden)
-    assert _lock._start(dead) == ""
+    assert _lock._process_start(dead) == ""
     monkeypatch.undo()
     path.write_text(holder(start=""))
     with pytest.raises(InputError, match="in use by process"):
-        Lock.acquire(path)
+        FolderLock.acquire(path)
 
 
 def test_the_lock_of_another_host_stands(tmp_path: Path) -> None:
     path = tmp_path / "lock"
     path.write_text(holder(pid=dead_pid(), host="elsewhere"))
     with pytest.raises(InputError, match=r"on elsewhere since noon\. Wait .* If it no longer runs, delete"):
-        Lock.acquire(path)
+        FolderLock.acquire(path)
 
 
 @pytest.mark.parametrize("content", ["", "{", "[1]", "{}"])
@@ -126,7 +126,7 @@ def test_an_unreadable_lock_is_given_a_moment(tmp_path: Path, content: str, monk
     path = tmp_path / "lock"
     path.write_text(content)
     begin = time.monotonic()
-    lock = Lock.acquire(path)
+    lock = FolderLock.acquire(path)
     assert time.monotonic() - begin > 0.1
     lock.release()
 
@@ -136,7 +136,7 @@ def test_a_lock_taken_over_by_another_in_the_meantime_is_given_back(
 ) -> None:
     path, real = tmp_path / "lock", Path.rename
     path.write_text(holder(pid=dead_pid()))
-    fresh = holder(start=_lock._start(os.getpid()), since="just now")
+    fresh = holder(start=_lock._process_start(os.getpid()), since="just now")
 
     def overtaken(self: Path, target: Path) -> Path:
         monkeypatch.undo()
@@ -145,7 +145,7 @@ def test_a_lock_taken_over_by_another_in_the_meantime_is_given_back(
 
     monkeypatch.setattr(Path, "rename", overtaken)
     with pytest.raises(InputError, match="since just now"):
-        Lock.acquire(path)
+        FolderLock.acquire(path)
     assert path.read_text() == fresh
     assert list(tmp_path.iterdir()) == [path]
 
@@ -154,9 +154,9 @@ def test_of_many_that_find_a_dead_lock_one_gets_it(tmp_path: Path) -> None:
     path = tmp_path / "lock"
     path.write_text(holder(pid=dead_pid()))
     program = (
-        "import sys, time\nfrom pathlib import Path\nfrom rockflex.study.folders._lock import Lock\n"
+        "import sys, time\nfrom pathlib import Path\nfrom rockflex.study.folders._lock import FolderLock\n"
         "from rockflex import InputError\nsys.stdin.readline()\n"
-        "try:\n    lock = Lock.acquire(Path(sys.argv[1]))\n    print('mine', flush=True)\n"
+        "try:\n    lock = FolderLock.acquire(Path(sys.argv[1]))\n    print('mine', flush=True)\n"
         "    sys.stdin.readline(); lock.check()\n"
         "except InputError:\n    print('refused', flush=True)"
     )
@@ -179,7 +179,7 @@ def test_a_damaged_lock_is_given_a_moment(
 ) -> None:
     monkeypatch.setattr(_lock, "MIN_STALE_AGE", 0.1)
     (tmp_path / "lock").write_text(holder(**changes))
-    Lock.acquire(tmp_path / "lock").release()
+    FolderLock.acquire(tmp_path / "lock").release()
 
 
 @pytest.mark.parametrize("content", [b"", b"\xff\xfe", b"[" * 100_000])
@@ -191,24 +191,24 @@ def test_a_lock_from_the_future_is_not_waited_for(
     path.write_bytes(content)
     os.utime(path, (time.time() + 1e6,) * 2)
     begin = time.monotonic()
-    Lock.acquire(path).release()
+    FolderLock.acquire(path).release()
     assert 0.1 < time.monotonic() - begin < 2.0
 
 
 def test_what_is_no_lock_is_not_taken_away(tmp_path: Path) -> None:
     (tmp_path / "lock").mkdir()
     with pytest.raises(InputError, match=r"lock is not a file, but the study's lock belongs there\. Move it away"):
-        Lock.acquire(tmp_path / "lock")
+        FolderLock.acquire(tmp_path / "lock")
     path = tmp_path / "other"
     path.write_text(holder(host="h" * 10**5))
     with pytest.raises(InputError, match=r"on hhh.* \.\.\. h.* since noon\. Wait .* delete .*other and try again"):
-        Lock.acquire(path)
+        FolderLock.acquire(path)
 
 
 def test_a_link_to_nothing_is_taken_away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(_lock, "MIN_STALE_AGE", 0.1)
     (tmp_path / "lock").symlink_to(tmp_path / "nothing")
-    Lock.acquire(tmp_path / "lock").release()
+    FolderLock.acquire(tmp_path / "lock").release()
 
 
 LONG_PLAN = ToyPlan(n_chunks=30, delay=0.3)

@@ -11,9 +11,9 @@ import pytest
 from scipy import stats
 
 import rockflex as rf
-from rockflex.kinds import KINDS, Findings
+from rockflex.kinds import KINDS, StudyFindings
 from rockflex.study import run_plan
-from rockflex.study._random_variables import Variables, draws, is_formula, names_of, value_of
+from rockflex.study._random_variables import RandomVariables, formula_value, is_formula, names_in_formula, uniform_draws
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "controlled_rocking_walls.toml"
 G = 9.81
@@ -68,15 +68,15 @@ def runs():
 )
 def test_formulas(formula, value):
     assert is_formula(formula)
-    found = value_of(formula, {"x": 2})
+    found = formula_value(formula, {"x": 2})
     assert found == pytest.approx(value)
     assert type(found) is type(value)
-    assert names_of(formula) <= {"x"}
+    assert names_in_formula(formula) <= {"x"}
 
 
 def test_what_is_a_formula():
     assert not any(map(is_formula, ("wall", 1.0, None, ["= x"], " = x")))
-    assert names_of("= min(a, b) * c_1 - a") == {"a", "b", "c_1"}
+    assert names_in_formula("= min(a, b) * c_1 - a") == {"a", "b", "c_1"}
 
 
 @pytest.mark.parametrize(
@@ -87,10 +87,10 @@ def test_what_is_a_formula():
 )  # fmt: skip
 def test_only_arithmetic_is_a_formula(formula):
     if formula == "= min":
-        assert names_of(formula) == {"min"}  # a name that no variable may have
+        assert names_in_formula(formula) == {"min"}  # a name that no variable may have
         return
     with pytest.raises(rf.InputError) as caught:
-        value_of(formula, {"x": 1.0})
+        formula_value(formula, {"x": 1.0})
     assert str(caught.value).endswith(
         "is not a formula. Expected numbers, names of variables, + - * / **, parentheses, and min, max, sqrt, exp, "
         "log, in at most 200 characters."
@@ -110,7 +110,7 @@ def test_only_arithmetic_is_a_formula(formula):
 )
 def test_a_formula_without_a_value(formula, said):
     with pytest.raises(rf.InputError, match=re.escape(said)):
-        value_of(formula, {"x": 0.0})
+        formula_value(formula, {"x": 0.0})
 
 
 DISTRIBUTIONS = {
@@ -123,7 +123,7 @@ DISTRIBUTIONS = {
 
 def test_draws_have_their_distributions_and_are_independent():
     given = {name: table for name, (table, _) in DISTRIBUTIONS.items()}
-    variables = Variables(given | {"w": {"whole": [2, 5]}, "o": {"one_of": [1.0, math.inf]}, "c": 7}, {})
+    variables = RandomVariables(given | {"w": {"whole": [2, 5]}, "o": {"one_of": [1.0, math.inf]}, "c": 7}, {})
     drawn = [variables.draw(1, number) for number in range(2000)]
     for name, (_, expected) in DISTRIBUTIONS.items():
         assert stats.kstest([each[name] for each in drawn], expected.cdf).pvalue > 1e-3
@@ -135,12 +135,12 @@ def test_draws_have_their_distributions_and_are_independent():
     assert all(type(each["w"]) is int for each in drawn)
     numbers = np.array([[each[name] for name in (*DISTRIBUTIONS, "w")] for each in drawn])
     assert np.abs(np.corrcoef(numbers.T) - np.eye(5)).max() < 0.08
-    assert all(0.0 < draw < 1.0 for draw in draws(1, 2, "u", 1000))
+    assert all(0.0 < draw < 1.0 for draw in uniform_draws(1, 2, "u", 1000))
 
 
 def test_a_draw_depends_on_seed_number_and_name_alone():
-    few = Variables({"b": {"uniform": [0.0, 1.0]}}, {})
-    many = Variables({"c": "= b + a", "a": {"uniform": [0.0, 1.0]}, "b": {"uniform": [0.0, 1.0]}}, {})
+    few = RandomVariables({"b": {"uniform": [0.0, 1.0]}}, {})
+    many = RandomVariables({"c": "= b + a", "a": {"uniform": [0.0, 1.0]}, "b": {"uniform": [0.0, 1.0]}}, {})
     drawn = many.draw(5, 1000)
     assert list(drawn) == ["c", "a", "b"]
     assert drawn["b"] == few.draw(5, 1000)["b"] != drawn["a"]
@@ -154,7 +154,7 @@ def test_a_draw_depends_on_seed_number_and_name_alone():
 def test_structures_are_those_of_the_formulas():
     for number in range(4):
         p = study().structure_of(number)
-        values = Variables(VARIABLES, {}).draw(3, number)
+        values = RandomVariables(VARIABLES, {}).draw(3, number)
         height, weight = values["height"], p.m_tot * G
         wall = rf.WallFrame(height, 2e4 * height, 0.0, 4e4, 0.05 * height**0.75, 6.0, 0.02, n_modes=2)
         tendon = rf.Tendon(0.5 * weight, 0.4 * (p.l0r * G) / p.half_width**2)
@@ -232,14 +232,14 @@ def test_structures_that_cannot_be_built_are_rows_with_an_error():
     assert table.loc[~lost, "status"].notna().all()
     said = table.loc[lost, "error"].iloc[0]
     assert said.startswith("[[elements]] no. 2: yield_force must be a positive, finite number in N, but -")
-    found = Findings()
+    found = StudyFindings()
     KINDS["monte_carlo"].report(study(), table, found)
     n = int(lost.sum()) // 5
     assert found.remarks == [f"{n} of 12 structures cannot be built; their runs have an error"]
 
 
 def test_the_report_counts_all_structures_together(runs):
-    found = Findings()
+    found = StudyFindings()
     KINDS["monte_carlo"].report(study(), runs, found)
     values, outcomes, lines = found.tables.values()
     assert [row["variable"] for row in values] == [*VARIABLES, "recentring_ratio"]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rockflex import InputError
-from rockflex.study.parallel import MAX_TASK_RATE, MIN_TASK_TIME, TASKS_PER_THREAD, batch_size, map_threads
+from rockflex.study.parallel import MAX_TASK_RATE, MIN_TASK_TIME, TASKS_PER_THREAD, chunks_per_task, map_threads
 
 WORKERS = pytest.mark.parametrize("workers", [1, 2, 7, None])
 
@@ -110,7 +110,7 @@ def schedule(chunks: int, threads: int, seconds: float) -> tuple[float, int]:
     """Time until all threads are done, and the number of tasks, if every chunk takes these seconds."""
     busy, tasks, place = [0.0] * threads, 0, 0
     while place < chunks:
-        size = batch_size(chunks - place, threads, seconds)
+        size = chunks_per_task(chunks - place, threads, seconds)
         assert 1 <= size <= chunks - place
         heapq.heapreplace(busy, busy[0] + size * seconds)
         place, tasks = place + size, tasks + 1
@@ -118,16 +118,16 @@ def schedule(chunks: int, threads: int, seconds: float) -> tuple[float, int]:
 
 
 def test_the_first_tasks_are_short() -> None:
-    assert batch_size(1_000_000, 1000, None) == 1
+    assert chunks_per_task(1_000_000, 1000, None) == 1
 
 
 def test_long_chunks_are_tasks_of_their_own() -> None:
-    assert batch_size(1000, 2, 5.0) == 1
-    assert batch_size(1000, 2, MIN_TASK_TIME) == 1
+    assert chunks_per_task(1000, 2, 5.0) == 1
+    assert chunks_per_task(1000, 2, MIN_TASK_TIME) == 1
 
 
 def test_a_chunk_that_takes_no_time_is_no_division_by_zero() -> None:
-    assert batch_size(100, 1, 0.0) == 100 // (2 * TASKS_PER_THREAD)
+    assert chunks_per_task(100, 1, 0.0) == 100 // (2 * TASKS_PER_THREAD)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 
 import rockflex as rf
 from rockflex import InputError
-from rockflex.study.progress import MAX_INTERVAL, MIN_INTERVAL, LogLines, bar
+from rockflex.study.progress import MAX_INTERVAL, MIN_INTERVAL, ProgressLogLines, progress_bar
 
 FRAME = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
 HELD = rf.Restrained(FRAME, rf.Tendon(initial_force=300e3, stiffness=2e6))
@@ -139,7 +139,7 @@ def test_a_bar_is_drawn_in_a_terminal(monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("COLUMNS", "100")
     monkeypatch.setattr(sys, "stderr", Terminal())
-    with bar("Runs") as show:
+    with progress_bar("Runs") as show:
         show(0, 400, "")
         show(100, 400, "7 rows/s")
         show(400, 400, "")
@@ -155,7 +155,7 @@ def test_the_time_left_is_that_of_the_whole_time(monkeypatch):
     monkeypatch.setattr(sys, "stderr", Terminal())
     now = iter([0.0, 0.0, 300.0, 300.0, 300.0, 300.0, 600.0, 600.0])
     monkeypatch.setattr("rockflex.study.progress.perf_counter", lambda: next(now))
-    with bar("Parts") as show:
+    with progress_bar("Parts") as show:
         show(50, 100, "")
         for done in (51, 52, 53, 54, 60):
             show(done, 100, "")
@@ -175,7 +175,7 @@ def test_the_results_are_those_without_a_bar(monkeypatch):
 def lines_of(capsys: pytest.CaptureFixture[str], done: list[tuple[float, int]], *, last: bool = False) -> list[str]:
     """The lines of a study of 200 parts that reports what is done at these times in s."""
     now = [0.0]
-    lines = LogLines("cloud", last=last, clock=lambda: now[0])
+    lines = ProgressLogLines("cloud", last=last, clock=lambda: now[0])
     for time, parts in done:
         now[0] = time
         lines.show(parts, 200)

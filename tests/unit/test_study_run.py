@@ -14,16 +14,16 @@ import rockflex as rf
 from builders import frame_values
 from rockflex import InputError
 from rockflex.engine import VECTOR_LEVEL
-from rockflex.kinds import KINDS, Findings, _run, kind_named
+from rockflex.kinds import KINDS, StudyFindings, _run_study, study_kind_named
 from rockflex.structure.file import StructureEntry
-from rockflex.study import ChunkedPlan, Spec
+from rockflex.study import ChunkedPlan, StudySpec
 
 
 @pytest.mark.parametrize("name", KINDS)
 def test_a_record_describes_its_kind(name):
     kind = KINDS[name]
     spec = kind.spec()
-    assert issubclass(spec, Spec)
+    assert issubclass(spec, StudySpec)
     assert (kind.name, spec.model_fields["study"].default) == (name, name)
     assert kind.summary.endswith(".")
 
@@ -40,7 +40,7 @@ def test_the_page_shows_kinds_of_the_registry():
 
 def test_an_unknown_kind():
     with pytest.raises(rf.InputError) as caught:
-        kind_named("clod")
+        study_kind_named("clod")
     assert str(caught.value) == (
         'study must be one of "cloud", "incremental", "stripes", "population", "monte_carlo", "design", but '
         "'clod' was given. Did you mean \"cloud\"?"
@@ -48,7 +48,7 @@ def test_an_unknown_kind():
 
 
 def test_a_fit_that_fails_is_named():
-    found = Findings()
+    found = StudyFindings()
 
     def fit():
         raise rf.InputError("No run rocks.")
@@ -270,7 +270,7 @@ def test_a_changed_shape_is_another_study(tmp_path):
 def test_a_folder_records_the_level_of_vector_instructions(tmp_path, monkeypatch):
     level = rf.fill_study(STUDY, tmp_path, share=(1, 2)).manifest.versions["vector instructions"]
     assert level == VECTOR_LEVEL
-    monkeypatch.setattr(_run, "VECTOR_LEVEL", "v9")
+    monkeypatch.setattr(_run_study, "VECTOR_LEVEL", "v9")
     with pytest.raises(InputError, match=rf'vector instructions: "{level}" in the folder, "v9" now\n.*ROCKFLEX_SIMD'):
         rf.fill_study(STUDY, tmp_path)
     assert rf.fill_study(STUDY, tmp_path, any_version=True).finished

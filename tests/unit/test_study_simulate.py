@@ -21,7 +21,7 @@ from rockflex import (
 )
 from rockflex._shown import shown
 from rockflex.study import _simulate
-from rockflex.study._case import Case
+from rockflex.study._prepared_case import PreparedCase
 
 MOTION = GroundMotion(load_suite("el-centro-1940")[0].acceleration[:300] * 2.0, 0.02, name="El Centro")
 FRAME = make_frame(n_stories=3, base_mass=60e3, stiffness_ratio=1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.03)
@@ -168,13 +168,13 @@ PULSE = rf.one_sine_pulse(amplitude=4.0, period=0.8)
 def prepared(monkeypatch):
     """The cases that were prepared."""
     _simulate._cache.clear()
-    found, prepare = [], Case.__post_init__
+    found, prepare = [], PreparedCase.__post_init__
 
     def watched(self):
         prepare(self)
         found.append(self)
 
-    monkeypatch.setattr(Case, "__post_init__", watched)
+    monkeypatch.setattr(PreparedCase, "__post_init__", watched)
     return found
 
 

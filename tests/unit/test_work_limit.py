@@ -11,8 +11,8 @@ from builders import frame_values
 from rockflex import InputError, SolverError
 from rockflex.models import parse_model
 from rockflex.solve import Pace, Task, WorkLimitError, pace_of
-from rockflex.study import Case
-from rockflex.study._arguments import WORK_LIMIT, work_limit_of
+from rockflex.study import PreparedCase
+from rockflex.study._arguments import WORK_LIMIT, checked_work_limit
 
 EL_CENTRO = rf.load_suite("el-centro-1940")[0]
 LIFT = 'Or raise work_limit, or lift it: work_limit=None ("none" in a file and on the command line).'
@@ -28,7 +28,7 @@ def frame(**given):
 def task(label="MDOF-S", structure=None, motion=EL_CENTRO, free=0.0, bouc_wen=None, output="peaks"):
     model = parse_model(label).of((structure or frame()).rocking(), None, bouc_wen)
     whole = output == "history"
-    return Case(model, free, history=whole, floors=whole).task(motion)
+    return PreparedCase(model, free, history=whole, floors=whole).task(motion)
 
 
 @pytest.mark.parametrize(
@@ -126,7 +126,7 @@ def test_the_fastest_vibration_is_that_of_the_uplifted_structure(label, lifts) -
     expected = rf.uplifted_modes(p).omega[-1] if lifts else p.omega[-1]
     model = parse_model(label).of(p)
     assert 0.999999 * expected <= pace_of(model, 4).fastest <= 1.03 * expected  # a bound
-    assert Case(model).engine.pace.fastest == pace_of(model, 4).fastest
+    assert PreparedCase(model).engine.pace.fastest == pace_of(model, 4).fastest
 
 
 def test_work_grows_with_what_it_is_said_to_grow_with() -> None:
@@ -153,9 +153,9 @@ def test_a_limit_that_is_none_is_refused(value) -> None:
 
 
 def test_no_limit_has_three_names() -> None:
-    assert work_limit_of(None) is None
-    assert work_limit_of("none") is None
-    assert work_limit_of(math.inf) is None
+    assert checked_work_limit(None) is None
+    assert checked_work_limit("none") is None
+    assert checked_work_limit(math.inf) is None
 
 
 def test_a_history_that_no_memory_holds_is_refused() -> None:

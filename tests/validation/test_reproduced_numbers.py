@@ -13,10 +13,21 @@ import pytest
 
 import rockflex as rf
 from drawing import drawn
-from rockflex.papers.silva_stojadinovic_2024 import TARGETS, Records, Verdict, _section_3_3, _section_4, reproduce
-from rockflex.papers.silva_stojadinovic_2024._comparison import Interval
-from rockflex.papers.silva_stojadinovic_2024._section_3_2 import cloud, differences, places
-from rockflex.papers.silva_stojadinovic_2024._section_3_3 import COUNTS, intervals, pool
+from rockflex.papers.silva_stojadinovic_2024 import (
+    TARGETS,
+    PaperRecords,
+    Verdict,
+    _section_3_3,
+    _section_4,
+    reproduce_targets,
+)
+from rockflex.papers.silva_stojadinovic_2024._comparison import ResampledInterval
+from rockflex.papers.silva_stojadinovic_2024._section_3_2 import (
+    cases_of_differences,
+    differences_between_models,
+    run_cloud_of_paper,
+)
+from rockflex.papers.silva_stojadinovic_2024._section_3_3 import COUNTS, population_intervals, population_pool
 
 PAIRS = 300  # of a population, in place of the report's thousand
 SLOW = {"sliding"}  # tested with few records
@@ -50,12 +61,14 @@ OWN = {"figure-8": 10, "figure-11": 1, "table-2": 8, "figure-3": 4, "figure-4": 
 def records():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(_section_3_3, "PAIRS", PAIRS)
-        yield Records(seeds=10)
+        yield PaperRecords(seeds=10)
 
 
 @pytest.fixture(scope="module")
 def results(records):
-    return {result.name: result for result in reproduce([name for name in TARGETS if name not in SLOW], records)}
+    return {
+        result.name: result for result in reproduce_targets([name for name in TARGETS if name not in SLOW], records)
+    }
 
 
 def lines(results):
@@ -200,7 +213,7 @@ def test_known_values(results):
 
 @pytest.mark.parametrize("quantity", ["max_rotation", "max_top_displacement"])
 def test_differences_of_the_clouds_by_hand(records, quantity):
-    runs = cloud(records)
+    runs = run_cloud_of_paper(records)
     assert len(runs) == 6 * 3 * 2 * 72
     kept = runs[(runs["status"] == "rocking") & (runs["max_rotation"] > 1e-4)]
     medians = {}
@@ -208,7 +221,7 @@ def test_differences_of_the_clouds_by_hand(records, quantity):
         slope, start = np.polyfit(np.log(group["pgv"]), np.log(group[quantity]), 1)
         medians[key] = np.exp(start + slope * np.log(0.4))
     away = {(s, m): (abs(v - medians[s, "MDOF-S"]), abs(v / medians[s, "MDOF-S"] - 1)) for (s, m), v in medians.items()}
-    found, largest = differences(records, quantity), places(records, quantity).idxmax()
+    found, largest = differences_between_models(records, quantity), cases_of_differences(records, quantity).idxmax()
     for by, (name, other), place in (
         (0, ("median, largest", "median, of the largest"), "median"),
         (1, ("median, of the largest relative", "median, largest relative"), "median_relative"),
@@ -230,10 +243,10 @@ def test_fig_6_is_judged_where_the_difference_is_largest_in_rad(results):
 
 
 def test_draws_of_a_population_spread_as_populations_do(records):
-    pairs = pool(records)
+    pairs = population_pool(records)
     assert len(pairs) == 10 * PAIRS
     resting = (pairs["status_mdof"] == "no_uplift").to_numpy().reshape(10, PAIRS)
-    share, found = resting.mean(), intervals(records)["no uplift"]
+    share, found = resting.mean(), population_intervals(records)["no uplift"]
     # A tenth drawn from ten populations without replacement: hypergeometric, its 5 and 95 % quantiles.
     spread = 1.645 * np.sqrt(PAIRS * share * (1 - share) * 0.9)
     assert found.estimate == pytest.approx(PAIRS * share, abs=0.003 * PAIRS)
@@ -245,10 +258,10 @@ def test_a_measure_that_few_draws_have_is_none(records, monkeypatch):
     calls = iter(range(10**6))
     monkeypatch.setattr(_section_3_3, "DRAWS", 20)
     monkeypatch.setattr(
-        _section_3_3, "measures_of", lambda _: {"x": float(i) if (i := next(calls)) % 10 else np.nan, "y": 1.0}
+        _section_3_3, "population_measures", lambda _: {"x": float(i) if (i := next(calls)) % 10 else np.nan, "y": 1.0}
     )
-    found = _section_3_3.intervals.__wrapped__(records)
-    assert found["y"] == Interval(1.0, 1.0, 1.0)
+    found = _section_3_3.population_intervals.__wrapped__(records)
+    assert found["y"] == ResampledInterval(1.0, 1.0, 1.0)
     assert all(np.isnan(found["x"]))
 
 
@@ -264,5 +277,5 @@ def test_every_figure_can_be_drawn(results, name):
 def test_ours_would_fail_if_the_structure_were_another(monkeypatch):
     other = rf.TaperedTower(199.0, 8.0, 4.0, 1.0, 2400.0, 25e9, 0.02)
     monkeypatch.setattr(_section_4, "TOWER", other)
-    assert reproduce(["figure-14"])[0].count(Verdict.REPRODUCED) == 0
-    assert reproduce(["table-3"])[0].count(Verdict.REPRODUCED) < 15
+    assert reproduce_targets(["figure-14"])[0].count(Verdict.REPRODUCED) == 0
+    assert reproduce_targets(["table-3"])[0].count(Verdict.REPRODUCED) < 15

@@ -11,11 +11,11 @@ from PIL import Image
 
 import rockflex as rf
 from rockflex.web import _downloads
-from rockflex.web._downloads import animation
+from rockflex.web._downloads import animation_file
 from rockflex.web._forms import PRESETS
-from rockflex.web._jobs import FileJob
-from rockflex.web._state import parse_state
-from rockflex.web._uploads import Uploads
+from rockflex.web._jobs import BackgroundFileJob
+from rockflex.web._state import parse_page_state
+from rockflex.web._uploads import UploadedRecords
 
 STATE = {"models": ["2DOF-S", "MDOF-S", "fixed"], "scale": 1.5}
 TONNES = {
@@ -64,7 +64,7 @@ def test_what_takes_long_is_left_out_and_said(client, monkeypatch) -> None:
     def refuse(*_):
         raise _downloads.Refusal({"energy": "too long"})
 
-    monkeypatch.setattr(_downloads, "check_energy", refuse)
+    monkeypatch.setattr(_downloads, "check_work_of_energy", refuse)
     text = client.download("/api/download/report", client.state(models=["2DOF-S"]))[1].decode()
     assert text.count("<td>not computed</td>") == 2
 
@@ -180,8 +180,8 @@ LONG = {"record": SHORT, "models": ["MDOF-S", "2DOF-S", "fixed"], "free_vibratio
 
 def test_it_ends_when_nobody_waits(client, monkeypatch) -> None:
     monkeypatch.setattr("rockflex.web._jobs.ABANDONED_AFTER", 0.5)
-    state = parse_state(client.state(**LONG))
-    job = FileJob(lambda told: animation(state, Uploads(), told))
+    state = parse_page_state(client.state(**LONG))
+    job = BackgroundFileJob(lambda told: animation_file(state, UploadedRecords(), told))
     job.compute()
     assert job.status == "cancelled"
     assert job.file is None

@@ -8,6 +8,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
+from rockflex.structure.file import ELEMENTS
 from rockflex.study.spec import GroundTable
 from rockflex.web._forms import PRESETS
 
@@ -25,7 +26,7 @@ def test_elements_of_all_kinds_are_added_changed_and_removed(visitor) -> None:
     page = visitor.page
     bare = visitor.value("dd[data-value] >> nth=2")
     kinds = page.evaluate("Object.keys(rockflexPage.about.elements)")
-    assert kinds == ["tendon", "yielding_dissipator", "viscous_damper", "friction_damper"]
+    assert kinds == [*ELEMENTS]
     for place, kind in enumerate(kinds):
         page.get_by_label("Element to add").select_option(kind)
         page.get_by_role("button", name="Add an element").click()

@@ -9,7 +9,7 @@ import rockflex as rf
 from rockflex.structure.file import StructureEntry
 from rockflex.web import _downloads
 from rockflex.web._forms import PRESETS
-from rockflex.web._structure import build
+from rockflex.web._structure import build_page_structure
 
 pytestmark = pytest.mark.web
 
@@ -419,7 +419,7 @@ def test_new_springs_wait_for_the_structure_they_suit(visitor, kind) -> None:
     assert "ground" not in visitor.state()
     held.release()
     page.wait_for_selector("#springs")
-    p = build(StructureEntry.model_validate(PRESETS[chimney]["structure"])).properties
+    p = build_page_structure(StructureEntry.model_validate(PRESETS[chimney]["structure"])).properties
     ground = visitor.state()["ground"]
     assert ground["mat_mass"] == float(f"{0.1 * p.m_tot:.2g}")
     stiffness = p.m_tot * 9.81 / 0.005

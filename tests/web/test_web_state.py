@@ -14,22 +14,22 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rockflex as rf
-from rockflex._json import plain
-from rockflex._schema import Key
+from rockflex._json import as_json_value
+from rockflex._schema import SchemaKey
 from rockflex.motion import MEASURES
-from rockflex.structure.file import ELEMENTS, KINDS, Table
-from rockflex.web._encoding import envelope
-from rockflex.web._forms import PRESETS, _fields, forms
+from rockflex.structure.file import ELEMENTS, KINDS, TomlTable
+from rockflex.web._encoding import envelope_indices
+from rockflex.web._forms import PRESETS, _form_fields, forms_of_structures
 from rockflex.web._refusal import Refusal
-from rockflex.web._state import State, TargetChoice, parse_json, parse_state
-from rockflex.web._structure import build, structure_view
+from rockflex.web._state import PageState, TargetChoice, parse_page_json, parse_page_state
+from rockflex.web._structure import build_page_structure, structure_view
 
 FRAME = PRESETS[0]["structure"]
 
 
 def errors(state):
     with pytest.raises(Refusal) as caught:
-        parse_state(state)
+        parse_page_state(state)
     return caught.value.errors
 
 
@@ -39,13 +39,15 @@ def frame(**changes):
 
 @pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset["title"])
 def test_every_preset_can_be_built_and_goes_through_a_link(preset) -> None:
-    state = parse_state({"structure": preset["structure"]})
-    link = json.dumps(plain(state.model_dump(exclude_none=True)), allow_nan=False)
-    assert parse_state(parse_json(link.encode())) == state
+    state = parse_page_state({"structure": preset["structure"]})
+    link = json.dumps(as_json_value(state.model_dump(exclude_none=True)), allow_nan=False)
+    assert parse_page_state(parse_page_json(link.encode())) == state
     view = structure_view(state.structure)
     json.dumps(view, allow_nan=False)
-    assert view["modes"][0]["period"] == pytest.approx(2 * np.pi / build(state.structure).properties.omega[0])
-    p = build(state.structure).properties
+    assert view["modes"][0]["period"] == pytest.approx(
+        2 * np.pi / build_page_structure(state.structure).properties.omega[0]
+    )
+    p = build_page_structure(state.structure).properties
     for place, pivot in enumerate(p.pivots):
         lifted = rf.uplifted_modes(p, side=pivot.side)
         shown = [mode["uplifted"][place]["damping"] for mode in view["modes"]]
@@ -98,7 +100,7 @@ def test_what_cannot_be_used_is_said_beside_its_field(state, path, text) -> None
 
 
 def test_links_with_the_old_name_of_the_confidence_still_open() -> None:
-    state = parse_state({"structure": FRAME, "cloud": {"level": 0.8}})
+    state = parse_page_state({"structure": FRAME, "cloud": {"level": 0.8}})
     assert state.cloud.confidence == 0.8
     assert "level" not in state.model_dump()["cloud"]
     text = "it must be the confidence of the bands, from 0.5 to 0.99, but 2.0 was given."
@@ -159,17 +161,17 @@ def test_lists_and_matrices_are_limited() -> None:
 
 def test_errors_of_building_stand_beside_the_field_that_they_name() -> None:
     tower = PRESETS[6]["structure"]["tapered_tower"]
-    state = parse_state({"structure": {"tapered_tower": tower | {"wall": 50.0}}})
+    state = parse_page_state({"structure": {"tapered_tower": tower | {"wall": 50.0}}})
     with pytest.raises(Refusal) as caught:
         structure_view(state.structure)
     (path,) = caught.value.errors
     assert path == "structure.tapered_tower.wall"
     held = PRESETS[8]["structure"] | {"tendons": [{"position": 1.6, "initial_force": 1.0, "stiffness": 1.0}]}
     with pytest.raises(Refusal) as caught:
-        structure_view(parse_state({"structure": held}).structure)
+        structure_view(parse_page_state({"structure": held}).structure)
     assert "structure.elements.0.position" in caught.value.errors
     with pytest.raises(Refusal) as caught:
-        structure_view(parse_state({"structure": FRAME | {"eccentricity": -1.1}}).structure)
+        structure_view(parse_page_state({"structure": FRAME | {"eccentricity": -1.1}}).structure)
     assert caught.value.errors["structure.eccentricity"].startswith("eccentricity must be smaller than half_width, 1.0")
 
 
@@ -205,7 +207,7 @@ LUMPED = {"stiffness": [[2.0, -1.0], [-1.0, 1.0]], "heights": [3.0, 6.0], "base_
 )  # fmt: skip
 def test_the_field_of_an_error_is_that_of_the_form(structure, path, text) -> None:
     with pytest.raises(Refusal) as caught:
-        structure_view(parse_state({"structure": structure}).structure)
+        structure_view(parse_page_state({"structure": structure}).structure)
     (found,) = caught.value.errors.items()
     assert found[0] == path
     assert found[1].startswith(text)
@@ -219,8 +221,8 @@ def test_errors_of_the_hysteresis_stand_beside_their_field() -> None:
 
 
 def test_the_parameters_of_both_edges_are_shown() -> None:
-    state = parse_state({"structure": PRESETS[-1]["structure"]})
-    p = build(state.structure).properties
+    state = parse_page_state({"structure": PRESETS[-1]["structure"]})
+    p = build_page_structure(state.structure).properties
     shown = structure_view(state.structure)
     assert (shown["eccentricity"], shown["half_width"]) == (0.3, 1.9)
     moments = {each["help"]: each["value"] for each in shown["properties"] if each["symbol"] == "M_r"}
@@ -229,7 +231,7 @@ def test_the_parameters_of_both_edges_are_shown() -> None:
         "to the left: moment at which the base lifts": p.pivot(-1).resisting_moment,
     }
     assert {each["symbol"]: each["value"] for each in shown["properties"]}["e"] == 0.3
-    plain_view = structure_view(parse_state({"structure": FRAME}).structure)
+    plain_view = structure_view(parse_page_state({"structure": FRAME}).structure)
     symbols = [each["symbol"] for each in plain_view["properties"]]
     assert symbols == ["B", "m_tot", "M_r", "L₀ʳ", "I_θ", "a_lift", "α", "θ_nom"]
     assert plain_view["eccentricity"] == 0.0
@@ -257,14 +259,14 @@ LINK = (
 
 def test_an_old_link_still_opens() -> None:
     content = json.loads(base64.urlsafe_b64decode(LINK + "=" * (-len(LINK) % 4)))
-    state = parse_state(content)
+    state = parse_page_state(content)
     content["cloud"]["confidence"] = content["cloud"].pop("level")  # its name now
     content["record"] |= {"folder": "", "given": "", "vertical": False}  # which it did not have
-    content["target"] = plain(TargetChoice.model_validate({}).model_dump(exclude_none=True))
+    content["target"] = as_json_value(TargetChoice.model_validate({}).model_dump(exclude_none=True))
     (tendon,) = content["structure"]["tendons"]
     content["structure"] |= {"tendons": [], "elements": [{"kind": "tendon", **tendon}]}
-    assert plain(state.model_dump(exclude_none=True)) == content
-    assert build(state.structure).properties.elements == (rf.Tendon(8e5, 1e7, -0.6, 2e6),)
+    assert as_json_value(state.model_dump(exclude_none=True)) == content
+    assert build_page_structure(state.structure).properties.elements == (rf.Tendon(8e5, 1e7, -0.6, 2e6),)
     assert state.structure.eccentricity == 0.1
     assert state.law() == rf.Restitution(0.8)
     assert state.hysteresis() == rf.BoucWen(0.05, exponent=4.0)
@@ -273,12 +275,12 @@ def test_an_old_link_still_opens() -> None:
 def test_json_that_is_none_is_refused() -> None:
     for body in (b"{", b"\xff", b"[" * 100_000, b""):
         with pytest.raises(Refusal, match="not valid JSON"):
-            parse_json(body)
-    assert parse_json(b'{"a": ' + b"9" * 5000 + b"}")["a"] == math.inf
+            parse_page_json(body)
+    assert parse_page_json(b'{"a": ' + b"9" * 5000 + b"}")["a"] == math.inf
 
 
 def test_the_forms_have_every_field_of_every_kind() -> None:
-    found = forms()
+    found = forms_of_structures()
     json.dumps(found, allow_nan=False)
     assert set(found["kinds"]) == set(KINDS)
     for kind, table in KINDS.items():
@@ -310,26 +312,26 @@ values = st.recursive(
 @given(values)
 def test_any_value_is_a_state_or_a_refusal(value) -> None:
     with suppress(Refusal):
-        assert isinstance(parse_state(value), State)
+        assert isinstance(parse_page_state(value), PageState)
 
 
 def test_what_has_no_balance_says_why() -> None:
     held = FRAME | {"tendons": [{"initial_force": 1e5, "stiffness": 1e12}]}
     for structure, none in ((FRAME, None), (held, "the tendons always bring it back")):
-        properties = structure_view(parse_state({"structure": structure}).structure)["properties"]
+        properties = structure_view(parse_page_state({"structure": structure}).structure)["properties"]
         (alpha,) = (each for each in properties if each["symbol"] == "α")
         assert ((alpha["value"] is None), alpha.get("none")) == (none is not None, none)
 
 
 def test_units_and_helps_are_data_and_not_found_in_texts() -> None:
-    class Plate(Table):
-        depth: Annotated[float, Key("how deep, in m below, it lies", "ft")]
-        area: Annotated[float, Key("its area in m", form="a table of {}, a number in s")]
+    class Plate(TomlTable):
+        depth: Annotated[float, SchemaKey("how deep, in m below, it lies", "ft")]
+        area: Annotated[float, SchemaKey("its area in m", form="a table of {}, a number in s")]
 
-    depth, area = _fields(Plate)
+    depth, area = _form_fields(Plate)
     assert (depth["unit"], depth["help"]) == ("ft", "How deep, in m below, it lies.")
     assert (area["unit"], area["help"]) == ("", "Its area in m.")
-    kinds = forms()["kinds"]
+    kinds = forms_of_structures()["kinds"]
     units = {(kind, each["name"]): each["unit"] for kind, table in kinds.items() for each in table["fields"]}
     assert units["frame", "period"] == "s"
     assert units["fish_bone", "beam_stiffness"] == "N m/rad"
@@ -346,7 +348,7 @@ def test_any_value_in_any_field_of_a_structure_is_built_or_refused(field, value)
     kind, name = field
     first = next((p["structure"][kind] for p in PRESETS if kind in p["structure"]), {})
     with suppress(Refusal):
-        structure_view(parse_state({"structure": {kind: first | {name: value}}}).structure)
+        structure_view(parse_page_state({"structure": {kind: first | {name: value}}}).structure)
 
 
 @given(
@@ -356,13 +358,13 @@ def test_any_number_in_any_field_of_a_structure_is_built_or_refused(field, value
     kind, name = field
     first = next(p["structure"][kind] for p in PRESETS if kind in p["structure"])
     with suppress(Refusal):
-        structure_view(parse_state({"structure": {kind: first | {name: value}}}).structure)
+        structure_view(parse_page_state({"structure": {kind: first | {name: value}}}).structure)
 
 
 def test_a_thinned_curve_keeps_its_extremes() -> None:
     rng = np.random.default_rng(1)
     curves = [rng.normal(size=50_000), np.cumsum(rng.normal(size=50_000))]
-    kept = envelope(curves, 1000)
+    kept = envelope_indices(curves, 1000)
     assert kept.size <= 1010
     assert kept[0] == 0
     assert kept[-1] == 49_999
@@ -417,7 +419,7 @@ def test_an_added_measure_is_offered_taken_and_told(client) -> None:
         "of_base": False,
     }
     assert (lifts["axis"], lifts["of_base"]) == ("2 PGA", True)
-    state = parse_state(STRUCTURE | {"cloud": {"measure": "lifts"}, "design": {"measure": "twice"}})
+    state = parse_page_state(STRUCTURE | {"cloud": {"measure": "lifts"}, "design": {"measure": "twice"}})
     assert (state.cloud.measure, state.design.measure) == ("lifts", "twice")
     told = client.ask("/api/record", client.state())["measures"]
     values = {each["help"]: each["value"] for each in told if each["unit"] == "m/s²"}
@@ -430,7 +432,7 @@ def test_an_added_measure_is_offered_taken_and_told(client) -> None:
 )
 def test_another_is_refused(part, name) -> None:
     with pytest.raises(Refusal) as caught:
-        parse_state(STRUCTURE | {part: {"measure": name}})
+        parse_page_state(STRUCTURE | {part: {"measure": name}})
     assert caught.value.errors == {f"{part}.measure": f"it must be an intensity measure, but {name!r} was given."}
 
 
@@ -453,5 +455,5 @@ def test_the_limits_of_its_lists(client) -> None:
 def test_another_limit_is_refused(path) -> None:
     part, name = path.split(".")
     with pytest.raises(Refusal) as caught:
-        parse_state(STRUCTURE | {part: {"limit": name}})
+        parse_page_state(STRUCTURE | {part: {"limit": name}})
     assert caught.value.errors == {f"{part}.limit": f"it must be a limit state, but {name!r} was given."}

@@ -14,15 +14,15 @@ from builders import frame_values
 from rockflex.models import LinearModel, _label
 from rockflex.structure.file import StructureEntry
 from rockflex.web import _downloads
-from rockflex.web._downloads import download
-from rockflex.web._forms import PRESETS, forms
+from rockflex.web._downloads import download_file
+from rockflex.web._forms import PRESETS, forms_of_structures
 from rockflex.web._refusal import Refusal
-from rockflex.web._response import responses
+from rockflex.web._response import simulate_state_models
 from rockflex.web._script import response_script
-from rockflex.web._state import parse_state
+from rockflex.web._state import parse_page_state
 from rockflex.web._structure import structure_view
-from rockflex.web._studies import common_content
-from rockflex.web._uploads import Uploads
+from rockflex.web._studies import common_study_content
+from rockflex.web._uploads import UploadedRecords
 
 PIER = next(each["structure"] for each in PRESETS if each["structure"]["name"] == "Pier with fuses")
 BARE = {key: value for key, value in PIER.items() if key != "elements"}
@@ -36,7 +36,7 @@ def state(*elements: Any, **more: Any) -> dict[str, Any]:
 
 def refused(*elements: Any) -> dict[str, str]:
     with pytest.raises(Refusal) as caught:
-        structure_view(parse_state(state(*elements)).structure)
+        structure_view(parse_page_state(state(*elements)).structure)
     return caught.value.errors
 
 
@@ -48,8 +48,8 @@ def refused(*elements: Any) -> dict[str, str]:
         ({"kind": "friction_damper"}, "force", "it is missing: the force at which the damper slides, a number in N."),
         ({**FUSE, "coefficient": 1.0}, "coefficient", "it is not known here."),
         ({**FUSE, "tension_only": "yes"}, "tension_only", "it must be true or false: whether the fuse cannot push"),
-        ({**FUSE, "kind": "spring"}, "kind", "it must be \"tendon\", \"yielding_dissipator\", \"viscous_damper\" or"),
-        ({"stiffness": 1.0}, "kind", "it is missing: \"tendon\", \"yielding_dissipator\", \"viscous_damper\" or"),
+        ({**FUSE, "kind": "spring"}, "kind", "it must be \"tendon\", \"yielding_dissipator\", \"viscous_damper\", "),
+        ({"stiffness": 1.0}, "kind", "it is missing: \"tendon\", \"yielding_dissipator\", \"viscous_damper\", "),
         ({**FUSE, "yield_force": 1e16}, "yield_force", "it must be from -1e+15 to 1e+15, but 1e+16 was given."),
         ({**FUSE, "yield_force": 0.0}, "yield_force", "yield_force must be a positive, finite number in N, but 0.0"),
         ({**FUSE, "position": 2.0}, "position", "Elements must act within half_width = 1.5 m to each side"),
@@ -66,24 +66,24 @@ def test_a_bad_element_is_answered_beside_its_field(element, path, text) -> None
 
 
 def test_the_page_takes_twenty_elements() -> None:
-    structure_view(parse_state(state(*[FUSE] * 20)).structure)
+    structure_view(parse_page_state(state(*[FUSE] * 20)).structure)
     assert refused(*[FUSE] * 21) == {"structure.elements": "it holds 21 values, but the page takes 20 at most."}
     assert refused("x") == {"structure.elements.0": "it must be a list of tables, each under a heading [[elements]], "
                             "but 'x' was given."}  # fmt: skip
 
 
 def test_tendons_of_older_links_are_the_first_elements() -> None:
-    old = parse_state({"structure": BARE | {"tendons": [TENDON], "elements": [FUSE]}})
-    assert old == parse_state(state({"kind": "tendon", **TENDON}, FUSE))
+    old = parse_page_state({"structure": BARE | {"tendons": [TENDON], "elements": [FUSE]}})
+    assert old == parse_page_state(state({"kind": "tendon", **TENDON}, FUSE))
     built = StructureEntry.model_validate(BARE | {"tendons": [TENDON], "elements": [FUSE]}).build()
     assert old.structure.build().rocking().elements == built.rocking().elements
-    empty = parse_state({"structure": BARE | {"tendons": []}})
+    empty = parse_page_state({"structure": BARE | {"tendons": []}})
     assert empty.structure.elements is None
     with pytest.raises(Refusal) as caught:
-        parse_state({"structure": BARE | {"tendons": "two"}})
+        parse_page_state({"structure": BARE | {"tendons": "two"}})
     assert "it must be a list of tables" in caught.value.errors["structure.tendons"]
     with pytest.raises(Refusal) as caught:
-        parse_state({"structure": BARE | {"tendons": [TENDON], "elements": 3}})
+        parse_page_state({"structure": BARE | {"tendons": [TENDON], "elements": 3}})
     assert "it must be a list of tables" in caught.value.errors["structure.elements"]
 
 
@@ -223,7 +223,9 @@ def made(monkeypatch):
 
 
 def state_of(ground, **other):
-    return parse_state({"structure": FRAME, "models": ["2DOF-S"], "free_vibration": 0.0, "ground": ground, **other})
+    return parse_page_state(
+        {"structure": FRAME, "models": ["2DOF-S"], "free_vibration": 0.0, "ground": ground, **other}
+    )
 
 
 @pytest.mark.parametrize("ground", GROUNDS)
@@ -231,12 +233,12 @@ def state_of(ground, **other):
 def test_runs_programs_and_studies_have_the_ground(made, tmp_path, monkeypatch, ground, eccentricity):
     monkeypatch.chdir(tmp_path)
     state = state_of(ground, structure=FRAME | ({"eccentricity": eccentricity} if eccentricity else {}))
-    built, _, (response,) = responses(state, Uploads())
+    built, _, (response,) = simulate_state_models(state, UploadedRecords())
     assert made == [state.ground.under(built.properties)]
     exec(compile(response_script(state), "response.py", "exec"), space := {})
     assert made[1] == made[0]
     assert space["responses"]["2DOF-S"].max_rotation == pytest.approx(response.max_rotation, rel=1e-12)
-    study = rf.CloudStudy(**common_content(state, Uploads(), "cloud", ["2DOF-S"], "Cloud"))
+    study = rf.CloudStudy(**common_study_content(state, UploadedRecords(), "cloud", ["2DOF-S"], "Cloud"))
     assert study.ground == state.ground
 
 
@@ -259,7 +261,7 @@ def test_wrong_values_are_refused(ground, path, text):
 def test_contradictions_name_their_field():
     state = state_of({"springs": {"stiffness": 5e8}})
     with pytest.raises(Refusal) as raised:
-        responses(state, Uploads())
+        simulate_state_models(state, UploadedRecords())
     ((path, said),) = raised.value.errors.items()
     assert path == "ground.base_inertia"
     assert said.startswith("A base without rotary inertia")
@@ -275,8 +277,8 @@ RECORD = {"source": "suite", "suite": "fema-p695-far-field", "name": "FF-2-a"}
 
 def test_histories_have_the_columns_of_the_base():
     state = state_of(SOFT, record=RECORD, scale=2.0)
-    _, _, (run,) = responses(state, Uploads())
-    name, _, content = download(state, "histories", Uploads())
+    _, _, (run,) = simulate_state_models(state, UploadedRecords())
+    name, _, content = download_file(state, "histories", UploadedRecords())
     table = pd.read_csv(io.BytesIO(content))
     assert name == "histories.csv"
     expected = {
@@ -286,14 +288,14 @@ def test_histories_have_the_columns_of_the_base():
     assert list(table.columns)[-len(expected) :] == list(expected)
     for head, values in expected.items():
         np.testing.assert_allclose(table[head], values, rtol=1e-8, atol=1e-12)
-    _, _, content = download(state, "peaks", Uploads())
+    _, _, content = download_file(state, "peaks", UploadedRecords())
     assert pd.read_csv(io.BytesIO(content))["max_slip"][0] == run.max_slip > 0.0
 
 
 def test_histories_of_too_many_springs_are_refused(monkeypatch):
     monkeypatch.setattr(_downloads, "MAX_HISTORY_VALUES", 1000)
     with pytest.raises(Refusal) as raised:
-        download(state_of(SOFT), "histories", Uploads())
+        download_file(state_of(SOFT), "histories", UploadedRecords())
     assert raised.value.errors["models"].startswith("the histories with the forces of all springs have ")
 
 
@@ -326,7 +328,7 @@ KINDS = {
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_form_has_a_section_of_one_part(kind):
-    (section,) = (each for each in forms()["kinds"][kind]["fields"] if each["name"] == "section")
+    (section,) = (each for each in forms_of_structures()["kinds"][kind]["fields"] if each["name"] == "section")
     assert (section["type"], section["required"]) == ("table", False)
     shape, *sizes = section["fields"]
     assert shape["choices"] == ["rectangle", "box", "circle", "tube"]
@@ -338,7 +340,9 @@ def test_the_form_has_a_section_of_one_part(kind):
 def test_a_section_makes_the_structure_and_the_program(kind, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     given, expected = KINDS[kind]
-    state = parse_state({"structure": {kind: given | {"section": TUBE}}, "models": ["rigid"], "free_vibration": 0.0})
+    state = parse_page_state(
+        {"structure": {kind: given | {"section": TUBE}}, "models": ["rigid"], "free_vibration": 0.0}
+    )
     assert state.structure.build() == expected
     structure_view(state.structure)
     exec(compile(response_script(state), "response.py", "exec"), space := {})
@@ -357,5 +361,5 @@ def test_a_section_makes_the_structure_and_the_program(kind, tmp_path, monkeypat
 )
 def test_refusals_are_at_the_field(changes, path, said):
     with pytest.raises(Refusal) as refused:
-        structure_view(parse_state({"structure": {"cantilever": BASE | {"tip_mass": 5e4} | changes}}).structure)
+        structure_view(parse_page_state({"structure": {"cantilever": BASE | {"tip_mass": 5e4} | changes}}).structure)
     assert said in refused.value.errors[path]

@@ -11,7 +11,7 @@ import rockflex as rf
 from builders import make_frame
 from rockflex.study.design import TendonLevel, smallest_width
 from rockflex.web._forms import PRESETS
-from rockflex.web._jobs import MAX_STUDIES, Job, Jobs
+from rockflex.web._jobs import MAX_STUDIES, BackgroundJobs, StudyJob
 from rockflex.web._refusal import Refusal
 
 HANG = 120.0  # s: a guard against what never ends, not a measure of speed
@@ -187,27 +187,27 @@ def ended(job, seconds=5.0):
 
 def test_a_job_that_nobody_looks_at_ends(monkeypatch) -> None:
     monkeypatch.setattr("rockflex.web._jobs.ABANDONED_AFTER", 0.05)
-    job = Job(Plan(), "cloud")
+    job = StudyJob(Plan(), "cloud")
     job.compute()
     assert job.status == "cancelled"
     assert 0 < job.runs < 100
 
 
 def test_a_failure_is_told_without_a_traceback(caplog) -> None:
-    job = Job(Plan(rf.InputError("The record is wrong.")), "cloud")
+    job = StudyJob(Plan(rf.InputError("The record is wrong.")), "cloud")
     job.compute()
     assert (job.status, job.message) == ("failed", "The record is wrong.")
-    job = Job(Plan(ZeroDivisionError("secret")), "cloud")
+    job = StudyJob(Plan(ZeroDivisionError("secret")), "cloud")
     job.compute()
     assert (job.status, job.message) == ("failed", "An internal error occurred; the log of the server has the details.")
     assert "ZeroDivisionError" in caplog.text
 
 
 def test_jobs_are_many_but_limited() -> None:
-    jobs = Jobs("studies", MAX_STUDIES)
-    tokens = [jobs.start(Job(Plan(), "cloud")) for _ in range(12)]
+    jobs = BackgroundJobs("studies", MAX_STUDIES)
+    tokens = [jobs.start(StudyJob(Plan(), "cloud")) for _ in range(12)]
     with pytest.raises(Refusal, match="busy with other studies"):
-        jobs.start(Job(Plan(), "cloud"))
+        jobs.start(StudyJob(Plan(), "cloud"))
     jobs.cancel(tokens[-1])
     assert jobs.get(tokens[-1]).status == "cancelled"
     assert len(set(tokens)) == 12

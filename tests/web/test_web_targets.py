@@ -11,8 +11,8 @@ from test_web_uploads import GIVEN, body_of, give
 import rockflex as rf
 from rockflex.solve import RunStoppedError, stopping_when
 from rockflex.web._selection import selection_view
-from rockflex.web._state import parse_state
-from rockflex.web._uploads import Uploads
+from rockflex.web._state import parse_page_state
+from rockflex.web._uploads import UploadedRecords
 
 SUITE = rf.load_suite("fema-p695-far-field")
 SITE = "period (s), sa (g)\n0.0, 0.3\n0.1, 0.75\n0.5, 0.75\n2.0, 0.1875\n"
@@ -89,10 +89,10 @@ def test_what_cannot_be_is_said_beside_its_field(client, choice, path, said) -> 
 
 
 def test_a_choice_that_nobody_waits_for_is_not_begun(client) -> None:
-    state = parse_state(client.state(target={"count": 9, "longest": 1.23}))
+    state = parse_page_state(client.state(target={"count": 9, "longest": 1.23}))
     with stopping_when(lambda: True), pytest.raises(RunStoppedError):
-        selection_view(state, Uploads())
-    assert len(selection_view(state, Uploads())["records"]) == 9
+        selection_view(state, UploadedRecords())
+    assert len(selection_view(state, UploadedRecords())["records"]) == 9
 
 
 def test_files_of_the_choice(client, tmp_path, monkeypatch) -> None:

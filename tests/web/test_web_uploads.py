@@ -20,13 +20,26 @@ import rockflex as rf
 from record_samples import cosmos, esm, knet
 from rockflex.structure.file import StructureEntry
 from rockflex.web import _app
-from rockflex.web._downloads import download
+from rockflex.web._downloads import download_file
 from rockflex.web._earthquake import record_view
-from rockflex.web._folders import Folders, SentFile, flat_names, read_folder, unpacked
+from rockflex.web._folders import (
+    RecordFolders,
+    SentRecordFile,
+    flat_file_names,
+    read_record_folder,
+    unpacked_record_files,
+)
 from rockflex.web._limits import MAX_FILE_BYTES, MAX_FOLDER_BYTES, MAX_FOLDER_FILES
 from rockflex.web._refusal import Refusal
-from rockflex.web._state import parse_state
-from rockflex.web._uploads import MAX_RECORDS, Uploads, clean_name, read_matrices, read_record, read_vertical
+from rockflex.web._state import parse_page_state
+from rockflex.web._uploads import (
+    MAX_RECORDS,
+    UploadedRecords,
+    clean_upload_name,
+    read_uploaded_matrices,
+    read_uploaded_record,
+    read_uploaded_vertical,
+)
 
 HANG = 120.0  # s: a guard against what never ends, not a measure of speed
 
@@ -56,20 +69,22 @@ def npz(**arrays):
 @pytest.mark.parametrize(("name", "content"), [("quake.csv", CSV), ("RSN1_X.AT2", AT2)])
 def test_a_record_is_what_the_library_reads(tmp_path, name, content) -> None:
     (tmp_path / name).write_bytes(content)
-    motion, expected = read_record(name, content, None, None), rf.read_motion(tmp_path / name)
+    motion, expected = read_uploaded_record(name, content, None, None), rf.read_motion(tmp_path / name)
     assert np.array_equal(motion.acceleration, expected.acceleration)
     assert (motion.dt, motion.name) == (expected.dt, expected.name)
 
 
 def test_a_column_may_be_vertical_and_comes_back(client, tmp_path) -> None:
     content = b"time (s),acc (m/s2),vertical (m/s2)\n0,0,0\n0.01,1,0.5\n0.02,0,0\n"
-    assert read_record("a.csv", content, None, None).vertical.tolist() == [0.0, 0.5, 0.0]
+    assert read_uploaded_record("a.csv", content, None, None).vertical.tolist() == [0.0, 0.5, 0.0]
     alone = b"time (s),vertical (m/s2)\n0,0\n0.01,1\n0.02,0\n"
-    assert "is a vertical component by its header or its name" in refusal(read_record, "a.csv", alone, None, None)
-    uploads = Uploads()
-    key = uploads.add(read_record("a.csv", content, None, None), content, "")
-    state = parse_state(client.state() | {"record": {"source": "upload", "upload": key}})
-    name, saved = download(state, "record", uploads)[0::2]
+    assert "is a vertical component by its header or its name" in refusal(
+        read_uploaded_record, "a.csv", alone, None, None
+    )
+    uploads = UploadedRecords()
+    key = uploads.add(read_uploaded_record("a.csv", content, None, None), content, "")
+    state = parse_page_state(client.state() | {"record": {"source": "upload", "upload": key}})
+    name, saved = download_file(state, "record", uploads)[0::2]
     (tmp_path / name).write_bytes(saved)
     assert rf.read_motion(tmp_path / name).vertical.tolist() == [0.0, 0.5, 0.0]
     told = record_view(state, None, uploads)["measures"]
@@ -77,25 +92,25 @@ def test_a_column_may_be_vertical_and_comes_back(client, tmp_path) -> None:
 
 
 def test_files_of_networks() -> None:
-    east = read_record("MYG0020601182325.EW", knet("E-W").encode(), None, None)
+    east = read_uploaded_record("MYG0020601182325.EW", knet("E-W").encode(), None, None)
     assert (east.name, east.metadata.source_format, east.metadata.direction) == (
         "MYG0020601182325",
         "K-NET",
         "horizontal",
     )
-    up = read_vertical("MYG0020601182325.UD", knet("U-D").encode(), None, None, east)
+    up = read_uploaded_vertical("MYG0020601182325.UD", knet("U-D").encode(), None, None, east)
     assert np.array_equal(up.vertical, east.acceleration)
-    assert read_record("a.asc", esm().encode(), None, None).pga == 0.12125
-    said = refusal(read_record, "a.v2c", (cosmos(90) + cosmos(180)).encode(), None, None)
+    assert read_uploaded_record("a.asc", esm().encode(), None, None).pga == 0.12125
+    said = refusal(read_uploaded_record, "a.v2c", (cosmos(90) + cosmos(180)).encode(), None, None)
     assert said == "a.v2c holds 2 components: '090', '180'. Choose a file with a single one."
 
 
 def test_a_name_with_folders_is_no_path(tmp_path) -> None:
-    motion = read_record("../../etc/pass wd<b>.csv", CSV, None, None)
+    motion = read_uploaded_record("../../etc/pass wd<b>.csv", CSV, None, None)
     assert motion.name == "pass wd_b_"
-    assert clean_name("C:\\temp\\..\\a.csv") == "a.csv"
-    assert clean_name("/") == "record"
-    assert len(clean_name("x" * 500)) == 80
+    assert clean_upload_name("C:\\temp\\..\\a.csv") == "a.csv"
+    assert clean_upload_name("/") == "record"
+    assert len(clean_upload_name("x" * 500)) == 80
 
 
 @pytest.mark.parametrize(
@@ -114,7 +129,7 @@ def test_a_name_with_folders_is_no_path(tmp_path) -> None:
     ],
 )
 def test_a_bad_record_is_refused_with_a_reason(content, text) -> None:
-    assert text in refusal(read_record, "mine.txt", content, None, None)
+    assert text in refusal(read_uploaded_record, "mine.txt", content, None, None)
 
 
 @pytest.mark.parametrize(
@@ -133,14 +148,14 @@ def test_a_bad_record_is_refused_with_a_reason(content, text) -> None:
 )
 def test_a_file_made_to_keep_the_reader_busy_is_refused_in_time(content) -> None:
     for name in ("mine.txt", "mine.at2"):
-        refusal(read_record, name, content, None, None)
+        refusal(read_uploaded_record, name, content, None, None)
 
 
 @given(st.binary(max_size=400) | st.text("0123456789.eE+-,; \t\n()[]#NPTSDT=", max_size=300).map(str.encode))
 def test_any_bytes_are_a_record_or_a_refusal(content) -> None:
     for name in ("mine.at2", "mine.csv"):
         with suppress(Refusal):
-            assert np.isfinite(read_record(name, content, "g", 0.01).acceleration).all()
+            assert np.isfinite(read_uploaded_record(name, content, "g", 0.01).acceleration).all()
 
 
 @given(st.data())
@@ -149,7 +164,7 @@ def test_a_record_with_a_slip_is_read_or_refused(data) -> None:
     for _ in range(data.draw(st.integers(1, 4))):
         content[data.draw(st.integers(0, len(content) - 1))] = data.draw(st.integers(0, 255))
     with suppress(Refusal):
-        read_record("mine.at2", bytes(content), None, None)
+        read_uploaded_record("mine.at2", bytes(content), None, None)
 
 
 def beam(length, ei):
@@ -165,10 +180,10 @@ def beam(length, ei):
 
 def test_matrices_are_read() -> None:
     m, k, h = np.diag([2.0, 3.0]), np.array([[4.0, -2.0], [-2.0, 2.0]]), np.array([3.0, 6.0])
-    found = read_matrices("fe.npz", npz(mass=m, stiffness=k, heights=h), "")
+    found = read_uploaded_matrices("fe.npz", npz(mass=m, stiffness=k, heights=h), "")
     assert found == {"mass": m.tolist(), "stiffness": k.tolist(), "heights": h.tolist()}
-    assert read_matrices("k.csv", b"4,-2\n-2,2\n", "stiffness") == {"stiffness": k.tolist()}
-    assert read_matrices("h.csv", b"3\n6\n", "heights") == {"heights": [3.0, 6.0]}
+    assert read_uploaded_matrices("k.csv", b"4,-2\n-2,2\n", "stiffness") == {"stiffness": k.tolist()}
+    assert read_uploaded_matrices("h.csv", b"3\n6\n", "heights") == {"heights": [3.0, 6.0]}
 
 
 NAN = np.nan
@@ -182,7 +197,7 @@ SCALARS = {"base_mass": 60e3, "half_width": 1.8, "damping_ratio": 0.02}
 )
 def test_rotations_are_imported_in_any_layout(client, heights) -> None:
     expected = rf.from_matrices(**BAR, heights={0: 8.0, 2: 16.0}, rotations=[1, 3], **SCALARS)
-    found = read_matrices("fe.npz", npz(**BAR, heights=heights, rotations=[1, 3]), "")
+    found = read_uploaded_matrices("fe.npz", npz(**BAR, heights=heights, rotations=[1, 3]), "")
     view = client.ask("/api/structure", client.state(structure={"matrices": found | SCALARS}))
     periods = [mode["period"] for mode in view["modes"]]
     np.testing.assert_allclose(periods, expected.modal().period, rtol=1e-12)
@@ -210,7 +225,7 @@ def test_rotations_are_imported_in_any_layout(client, heights) -> None:
     ],
 )
 def test_freedoms_in_csv_files(content, part, found) -> None:
-    assert read_matrices("a.csv", content, part) == {part: found}
+    assert read_uploaded_matrices("a.csv", content, part) == {part: found}
 
 
 @pytest.mark.parametrize(
@@ -235,7 +250,7 @@ def test_freedoms_in_csv_files(content, part, found) -> None:
     ],
 )
 def test_bad_matrices_are_refused_with_a_reason(name, content, part, text) -> None:
-    assert text in refusal(read_matrices, name, content, part)
+    assert text in refusal(read_uploaded_matrices, name, content, part)
 
 
 def test_a_file_that_unpacks_to_gigabytes_is_refused_before_it_is_unpacked() -> None:
@@ -244,18 +259,18 @@ def test_a_file_that_unpacks_to_gigabytes_is_refused_before_it_is_unpacked() -> 
     np.lib.format.write_array_header_1_0(header, {"descr": "<f8", "fortran_order": False, "shape": (50_000, 50_000)})
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("stiffness.npy", header.getvalue() + bytes(4_000_000))
-    assert "numbers for up to 200 freedoms" in refusal(read_matrices, "k.npz", file.getvalue(), "")
+    assert "numbers for up to 200 freedoms" in refusal(read_uploaded_matrices, "k.npz", file.getvalue(), "")
 
 
 @given(st.binary(max_size=300))
 def test_any_bytes_are_matrices_or_a_refusal(content) -> None:
     for name in ("k.npz", "k.csv"):
         with suppress(Refusal):
-            read_matrices(name, content, "mass")
+            read_uploaded_matrices(name, content, "mass")
 
 
 def test_the_latest_records_are_kept_by_their_checksum() -> None:
-    kept, motion = Uploads(), rf.quiet_motion(1.0)
+    kept, motion = UploadedRecords(), rf.quiet_motion(1.0)
     keys = [kept.add(motion, bytes([i]), "") for i in range(MAX_RECORDS + 1)]
     assert kept.get(keys[-1]) is motion
     with pytest.raises(Refusal, match=r"which a link does not contain\. Choose the file again\.") as caught:
@@ -264,18 +279,18 @@ def test_the_latest_records_are_kept_by_their_checksum() -> None:
 
 
 def test_a_vertical_component_joins_its_record_and_contradictions_are_told(tmp_path):
-    along = read_record("a.csv", CSV, None, None)
+    along = read_uploaded_record("a.csv", CSV, None, None)
     rows = "".join(f"{along.dt * i:.4f},{0.1 * i}\n" for i in range(along.acceleration.size))
-    both = read_vertical("up.csv", f"time (s),vertical (m/s2)\n{rows}".encode(), None, None, along)
+    both = read_uploaded_vertical("up.csv", f"time (s),vertical (m/s2)\n{rows}".encode(), None, None, along)
     np.testing.assert_array_equal(both.acceleration, along.acceleration)
     assert both.vertical.tolist() == pytest.approx([0.1 * i for i in range(along.acceleration.size)])
     assert both.name == "a"
     east = f"Event, 1/1/2001, Station, 090\nUNITS OF G\nNPTS= 4, DT= {along.dt}\n0 .3 -.2 0\n"
     with pytest.raises(Refusal) as raised:
-        read_vertical("RSN1_X_ABC090.AT2", east.encode(), None, None, along)
+        read_uploaded_vertical("RSN1_X_ABC090.AT2", east.encode(), None, None, along)
     assert "is a horizontal component" in raised.value.errors["record.vertical"]
     with pytest.raises(Refusal) as raised:
-        read_vertical("up.csv", b"nothing\n", None, None, along)
+        read_uploaded_vertical("up.csv", b"nothing\n", None, None, along)
     assert raised.value.errors["record.vertical"].startswith("up.csv")
 
 
@@ -441,31 +456,35 @@ def test_a_folder_that_the_server_does_not_have(client) -> None:
 def test_names_that_point_out_of_the_folder_are_refused(name) -> None:
     content = at2(0.2).encode()
     for body in (body_of({name: content}), body_of({"a.zip": zipped({name: content})})):
-        assert "points out of its folder" in refused(unpacked, body)
+        assert "points out of its folder" in refused(unpacked_record_files, body)
 
 
 def test_archives_that_grow_are_refused() -> None:
     zeros = b"0\n" * (MAX_FILE_BYTES // 2 - 10)
     bomb = zipped({f"{i}.txt": zeros for i in range(MAX_FOLDER_BYTES // len(zeros) + 1)})
     assert len(bomb) < MAX_FOLDER_BYTES / 50
-    assert refused(unpacked, body_of({"bomb.zip": bomb})) == (
+    assert refused(unpacked_record_files, body_of({"bomb.zip": bomb})) == (
         "the files have more than 80 MB, which is more than the page takes. Choose fewer."
     )
     single = zipped({"a.AT2": at2(0.2).encode(), "large.txt": b"0\n" * MAX_FILE_BYTES})
-    files = {each.name: each for each in unpacked(body_of({"one.zip": single}))}
+    files = {each.name: each for each in unpacked_record_files(body_of({"one.zip": single}))}
     assert files["large.txt"].content is None
     assert files["a.AT2"].content is not None
     many = zipped({f"{i}.txt": b"" for i in range(MAX_FOLDER_FILES + 1)})
-    assert "501 files, but the page takes 500" in refused(unpacked, body_of({"many.zip": many}))
-    assert "more than 500 files" in refused(unpacked, body_of({f"{i}.txt": b"" for i in range(MAX_FOLDER_FILES + 1)}))
-    assert "more than 500 files" in refused(unpacked, body_of({"x.zip": b"PK\x03\x04" + b"PK\x01\x02" * 2000}))
+    assert "501 files, but the page takes 500" in refused(unpacked_record_files, body_of({"many.zip": many}))
+    assert "more than 500 files" in refused(
+        unpacked_record_files, body_of({f"{i}.txt": b"" for i in range(MAX_FOLDER_FILES + 1)})
+    )
+    assert "more than 500 files" in refused(
+        unpacked_record_files, body_of({"x.zip": b"PK\x03\x04" + b"PK\x01\x02" * 2000})
+    )
     book = zipped({"xl/workbook.xml": b"0" * (MAX_FOLDER_BYTES + 1)})
-    assert "more than 80 MB" in refused(unpacked, body_of({"book.xlsx": book}))
+    assert "more than 80 MB" in refused(unpacked_record_files, body_of({"book.xlsx": book}))
 
 
 def test_damaged_requests_and_archives_are_refused(client) -> None:
-    assert "damaged archive" in refused(unpacked, body_of({"a.zip": b"PK\x03\x04 and no more"}))
-    assert refused(unpacked, body_of({})) == "there is no file in it."
+    assert "damaged archive" in refused(unpacked_record_files, body_of({"a.zip": b"PK\x03\x04 and no more"}))
+    assert refused(unpacked_record_files, body_of({})) == "there is no file in it."
     for body in (b"", b"no list\n", b"{}\n", b'[{"name": 3}]\n', b'[{"name": "a", "size": 9, "sent": true}]\nabc',
                  b"[]\nabc", b'[{"name": "a", "size": -1, "sent": true}]\n', b"[" * 3000 + b"\n"):  # fmt: skip
         status, answer = give(client, body)
@@ -480,11 +499,15 @@ def test_damaged_requests_and_archives_are_refused(client) -> None:
 
 
 def test_names_in_one_folder_differ_and_are_short() -> None:
-    names = flat_names(["a/x.txt", "b/x.txt", "b/X.TXT", "x.txt", "a/" + "y" * 300 + ".AT2", "c/a<b>|?.csv", "a/."])
+    names = flat_file_names(
+        ["a/x.txt", "b/x.txt", "b/X.TXT", "x.txt", "a/" + "y" * 300 + ".AT2", "c/a<b>|?.csv", "a/."]
+    )
     assert len({name.casefold() for name in names}) == len(names)
     assert max(map(len, names)) < 100
     assert names[4].endswith(".AT2")
-    long = flat_names(["\N{VOLCANO}" * 75 + ".csv", "b/" + "\N{VOLCANO}" * 75 + ".csv", "c." + "\N{VOLCANO}" * 75] * 2)
+    long = flat_file_names(
+        ["\N{VOLCANO}" * 75 + ".csv", "b/" + "\N{VOLCANO}" * 75 + ".csv", "c." + "\N{VOLCANO}" * 75] * 2
+    )
     assert len(set(long)) == 6
     assert all(len(name.encode()) <= 255 and name.isprintable() for name in long)
     assert not any(set('<>:"|?*/\\') & set(name) for name in names)
@@ -493,8 +516,12 @@ def test_names_in_one_folder_differ_and_are_short() -> None:
 def test_records_too_long_are_left_out_and_files_of_one_name_are_told_apart() -> None:
     long = at2(0.2, n=3101, dt=0.1).encode()
     same = b"time (s),acc (m/s2)\n0.00,0\n0.02,1\n0.04,0\n"
-    found = read_folder(
-        [SentFile("long.AT2", long, len(long)), SentFile("x.csv", same, len(same)), SentFile("x.txt", same, 1)],
+    found = read_record_folder(
+        [
+            SentRecordFile("long.AT2", long, len(long)),
+            SentRecordFile("x.csv", same, len(same)),
+            SentRecordFile("x.txt", same, 1),
+        ],
         None,
         None,
     )
@@ -502,16 +529,18 @@ def test_records_too_long_are_left_out_and_files_of_one_name_are_told_apart() ->
     entry = next(each for each in found.report["entries"] if each["file"] == "long.AT2")
     assert not entry["taken"]
     assert "3101 samples over 310 s, but the page takes" in entry["reason"]
-    large = read_folder([SentFile("x.csv", same, 40), SentFile("big.csv", None, 7_000_000)], None, None)
+    large = read_record_folder(
+        [SentRecordFile("x.csv", same, 40), SentRecordFile("big.csv", None, 7_000_000)], None, None
+    )
     assert large.report["entries"][0]["reason"] == "it has 7.0 MB, but the page takes files of 5 MB at most"
 
 
 def test_only_as_many_folders_are_kept_as_there_is_room_for(monkeypatch) -> None:
     monkeypatch.setattr("rockflex.web._folders.MAX_CACHED_SAMPLES", 300)
-    folders, tokens = Folders(), []
+    folders, tokens = RecordFolders(), []
     for size in (0.1, 0.2, 0.3):
-        files = [SentFile("a.AT2", at2(size).encode(), 1)]
-        tokens.append(folders.add(read_folder(files, None, None), files, ""))
+        files = [SentRecordFile("a.AT2", at2(size).encode(), 1)]
+        tokens.append(folders.add(read_record_folder(files, None, None), files, ""))
     assert "Give the folder again" in refused(folders.get, tokens[0])
     assert folders.get(tokens[2]).along[0].pga == pytest.approx(0.3 * 9.81, rel=0.01)
 
@@ -531,9 +560,9 @@ def test_only_a_few_folders_are_received_at_once(monkeypatch) -> None:
         inside[0] -= 1
         return found
 
-    monkeypatch.setattr(_app, "file_of", file_of)
+    monkeypatch.setattr(_app, "uploaded_file_bytes", file_of)
     request = SimpleNamespace(query_params={})
-    server = _app.Server()
+    server = _app.PageServer()
     monkeypatch.setattr(server, "answer", answer)
 
     async def all_at_once() -> list[int]:

@@ -7,8 +7,8 @@ import typer
 
 from rockflex._errors import InputError
 from rockflex.cli import _options as options
-from rockflex.cli._console import note, warn
-from rockflex.study.progress import bar
+from rockflex.cli._console import print_remark, print_warning_messages
+from rockflex.study.progress import progress_bar
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -106,22 +106,22 @@ def animate(
     """
     if out is None:
         raise InputError("An animation is a file. Give its path by --out, such as --out run.gif or --out run.mp4.")
-    from rockflex.cli._batch import RunArguments, prepare, run_batch
-    from rockflex.cli._options import naming
-    from rockflex.cli._run_results import print_failures, print_warnings
-    from rockflex.plot._style import literal
+    from rockflex.cli._batch import RunArguments, prepare_batch, run_batch
+    from rockflex.cli._options import naming_flags_in_errors
+    from rockflex.cli._run_results import print_failed_runs, print_run_warnings
+    from rockflex.plot._style import literal_text
     from rockflex.plot.animation import animate as draw
-    from rockflex.plot.animation import file_of
+    from rockflex.plot.animation import animation_path_and_suffix
 
-    with naming(FLAGS):
-        target, _ = file_of(out)
+    with naming_flags_in_errors(FLAGS):
+        target, _ = animation_path_and_suffix(out)
     if target.exists() and not force:
         raise InputError(f"The file {target} exists. Give another one by --out, or --force to replace it.")
     asked = RunArguments(
         arguments=arguments or [], structure=structure, motion=motion, model=model, scale=[repr(scale)],
         free_vibration=free_vibration, work_limit=work_limit, units=units, dt=dt, vertical=vertical,
     )  # fmt: skip
-    prepared = prepare(context, asked, histories=1)
+    prepared = prepare_batch(context, asked, histories=1)
     loaded, batch = prepared.loaded, prepared.batch
     if not batch.history:
         first = prepared.found[0]
@@ -131,16 +131,16 @@ def animate(
         )
     runs = run_batch(batch)
     responses = [run.response for run in runs if run.response is not None]
-    title = None if scale == 1.0 else f"{literal(batch.motions[0].name)} × {scale:g}"
-    with naming(FLAGS), bar("Frames", transient=True) as show:
+    title = None if scale == 1.0 else f"{literal_text(batch.motions[0].name)} × {scale:g}"
+    with naming_flags_in_errors(FLAGS), progress_bar("Frames", transient=True) as show:
         draw(
             responses, target, [response.model for response in responses], structure=loaded.built, speed=speed,
             frames_per_second=frames_per_second, amplification=amplification, start=start, stop=stop,
             panels=None if panels is None else [name.strip() for name in panels.split(",")], title=title, width=width,
             progress=lambda done, total: show(done, total, ""),
         )  # fmt: skip
-    note(f"Written to {target}")
-    warn(loaded.warnings)
-    print_warnings(runs)
-    if print_failures(runs):
+    print_remark(f"Written to {target}")
+    print_warning_messages(loaded.warnings)
+    print_run_warnings(runs)
+    if print_failed_runs(runs):
         raise typer.Exit(1)

@@ -10,7 +10,7 @@ from typer.core import TyperGroup
 from rockflex import __version__
 from rockflex._errors import InputError, SolverError
 from rockflex.cli import _animate, _modes, _motion, _reproduce, _run, _select, _study, _survey
-from rockflex.cli._console import complain, note, remarks
+from rockflex.cli._console import print_error, print_remark, printing_warnings_as_remarks
 from rockflex.cli._options import FrameCommand, RunCommand
 from rockflex.kinds import KINDS
 
@@ -35,11 +35,11 @@ def serve(
 ) -> None:
     """Serve the web page: structure, earthquake, response, fragility and design."""
     from rockflex.web import serve as start
-    from rockflex.web._hosts import address_of, is_loopback
+    from rockflex.web._hosts import is_loopback_host, page_address
 
-    if not is_loopback(host):
-        note(f"Everyone who can reach {host} can use the page: it has no passwords.")
-    note(f"{address_of(host, port)} (stop with Ctrl-C)")
+    if not is_loopback_host(host):
+        print_remark(f"Everyone who can reach {host} can use the page: it has no passwords.")
+    print_remark(f"{page_address(host, port)} (stop with Ctrl-C)")
     with suppress(KeyboardInterrupt):  # the usual way to stop it
         start(port, host, names=name or (), open_browser=open_browser)
 
@@ -66,25 +66,25 @@ rockflex reproduce --out out/paper
 cannot be used; 130: stopped by Ctrl-C."""
 
 
-class Commands(TyperGroup):
+class RockflexCommands(TyperGroup):
     """Commands whose errors end in one paragraph on stderr and an exit code: 2 for input, 1 for the solver."""
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command."""
         try:
-            with remarks():
+            with printing_warnings_as_remarks():
                 return super().invoke(ctx)
         except (InputError, SolverError) as error:
-            complain(str(error))
+            print_error(str(error))
             raise typer.Exit(2 if isinstance(error, InputError) else 1) from error
         except KeyboardInterrupt as stop:
-            note("Stopped; nothing was written.")
+            print_remark("Stopped; nothing was written.")
             raise typer.Exit(130) from stop
 
 
 app = typer.Typer(
     name="rockflex",
-    cls=Commands,
+    cls=RockflexCommands,
     epilog=EPILOG,
     no_args_is_help=True,
     add_completion=False,
@@ -99,13 +99,15 @@ app.command("motion", epilog=_motion.EPILOG)(_motion.motion)
 app.command("survey", epilog=_survey.EPILOG, no_args_is_help=True)(_survey.survey)
 app.command("select", epilog=_select.EPILOG, no_args_is_help=True)(_select.select)
 for kind in KINDS.values():
-    app.command(kind.command, epilog=_study.epilog(kind.command), no_args_is_help=True)(_study.command_of(kind))
+    app.command(kind.command, epilog=_study.study_command_epilog(kind.command), no_args_is_help=True)(
+        _study.study_command(kind)
+    )
 app.command("figures", epilog=_study.FIGURES_EPILOG, no_args_is_help=True)(_study.figures)
 app.command("serve", epilog=SERVE_EPILOG)(serve)
 app.command("reproduce", epilog=_reproduce.EPILOG)(_reproduce.reproduce)
 
 
-def _version(asked: bool) -> None:
+def _print_version(asked: bool) -> None:
     if asked:
         typer.echo(f"rockflex {__version__}")
         raise typer.Exit
@@ -115,7 +117,7 @@ def _version(asked: bool) -> None:
 def rockflex(
     _: Annotated[
         bool,
-        typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit."),
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit."),
     ] = False,
 ) -> None:
     """Seismic response of flexible structures whose base may uplift and rock: exact, and fast."""

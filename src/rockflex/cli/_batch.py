@@ -11,31 +11,38 @@ from typing import Any
 import typer
 
 from rockflex._errors import SolverError
-from rockflex._schema import BedKeys, BoucWenKeys, FrameFlags, GroundKeys, ImpactKeys, InitialKeys
-from rockflex.cli._console import note, progress
-from rockflex.cli._find_motions import FoundMotion, find_motions, quiet_ground
-from rockflex.cli._options import flag_values, naming
+from rockflex._schema import BoucWenKeys, FrameFlags, GroundKeys, ImpactKeys, InitialStateKeys, SpringBedKeys
+from rockflex.cli._console import console_progress_bar, print_remark
+from rockflex.cli._find_motions import FoundMotion, find_motions, quiet_ground_motion
+from rockflex.cli._options import flag_values, naming_flags_in_errors
 from rockflex.cli._run_options import (
-    choose_models,
-    describe_options,
+    choose_run_models,
+    describe_run_options,
     make_run_options,
     number_or_word,
     parse_work_limit,
 )
-from rockflex.cli._structures import LoadedStructure, load_structure, split_arguments
+from rockflex.cli._structures import LoadedStructure, load_structure, split_structure_file_argument
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion, OnError
 from rockflex.response import PEAKS, Response, friction_coefficient, warnings_of
 from rockflex.solve import WorkLimitError
-from rockflex.study import Case, RunOptions, factors_of, free_vibration_time, parse_scales, yielding
+from rockflex.study import (
+    PreparedCase,
+    RunOptions,
+    checked_scale_factors,
+    free_vibration_time,
+    parse_scale_range,
+    yielding_model_labels,
+)
 from rockflex.study.parallel import map_runs
 
 MAX_TIMED_RUNS = 64  # runs; more are not timed one by one
 
 
 @dataclass(frozen=True)
-class Batch:
+class RunBatch:
     """The runs of one command: every motion at every scale with every model."""
 
     properties: RockingProperties
@@ -50,7 +57,7 @@ class Batch:
     friction: float | None = None
     """Coefficient of friction at which sliding is reported, or None."""
 
-    def case(self, model: str) -> Case:
+    def case(self, model: str) -> PreparedCase:
         """Return the case of one model, with its history where that is written or the friction is needed."""
         whole = self.history or self.friction is not None
         return self.options.case(parse_model(model), self.properties, history=whole, floors=whole)
@@ -60,7 +67,7 @@ class Batch:
         free = "settle" if self.options.free_vibration is None else self.options.free_vibration
         described = {"models": self.models, "scales": self.scales, "free_vibration": free}
         friction = {} if self.friction is None else {"friction": self.friction}
-        return described | describe_options(self.options, self.ground_values) | friction
+        return described | describe_run_options(self.options, self.ground_values) | friction
 
     @property
     def size(self) -> int:
@@ -69,7 +76,7 @@ class Batch:
 
 
 @dataclass(frozen=True)
-class Run:
+class BatchRun:
     """One run: its motion, scale and model, its peaks by name, and its outcome."""
 
     motion: str
@@ -110,7 +117,7 @@ OF_ELEMENTS = ("max_element_force", "max_element_elongation")
 SLIDING = ("required_friction", "required_friction_excluding_impacts", "sliding_time")
 
 
-def run_batch(batch: Batch) -> list[Run]:
+def run_batch(batch: RunBatch) -> list[BatchRun]:
     """Perform a batch, motions outermost, then scales, then models; one run that cannot be solved is not an error.
 
     Raises
@@ -123,13 +130,13 @@ def run_batch(batch: Batch) -> list[Run]:
     cases = {model: batch.case(model) for model in batch.models}
     many = batch.size > MAX_TIMED_RUNS
 
-    def run(task: tuple[int, tuple[GroundMotion, float, str]]) -> tuple[int, Run]:
+    def run(task: tuple[int, tuple[GroundMotion, float, str]]) -> tuple[int, BatchRun]:
         place, (motion, scale, model) = task
-        return place, _run_one(batch, cases[model], motion, scale, timed=not many)
+        return place, _run_one_of_batch(batch, cases[model], motion, scale, timed=not many)
 
     tasks = enumerate(product(batch.motions, batch.scales, batch.models))
-    done: list[tuple[int, Run]] = []
-    with progress("Simulating", batch.size) if many else nullcontext() as advance:
+    done: list[tuple[int, BatchRun]] = []
+    with console_progress_bar("Simulating", batch.size) if many else nullcontext() as advance:
         for item in map_runs(run, tasks, batch.workers if many else batch.workers or 1):
             done.append(item)
             if advance is not None:
@@ -146,7 +153,9 @@ def run_batch(batch: Batch) -> list[Run]:
     return runs
 
 
-def _run_one(batch: Batch, case: Case, motion: GroundMotion, scale: float, *, timed: bool) -> Run:
+def _run_one_of_batch(
+    batch: RunBatch, case: PreparedCase, motion: GroundMotion, scale: float, *, timed: bool
+) -> BatchRun:
     model = case.model.label
     start = perf_counter()
     try:
@@ -154,15 +163,17 @@ def _run_one(batch: Batch, case: Case, motion: GroundMotion, scale: float, *, ti
     except (SolverError, WorkLimitError) as error:
         lost: dict[str, float | None] = {} if batch.friction is None else dict.fromkeys(SLIDING, None)
         refused = isinstance(error, WorkLimitError)
-        return Run(motion.name, scale, model, None, str(error), dict.fromkeys(COLUMNS), friction=lost, refused=refused)
+        return BatchRun(
+            motion.name, scale, model, None, str(error), dict.fromkeys(COLUMNS), friction=lost, refused=refused
+        )
     elapsed = perf_counter() - start if timed else None
     peaks = {name: getattr(response, name) for name in COLUMNS}
     kept = response if batch.history else None
-    friction, elements = _friction(batch, response), _elements(batch, response)
-    return Run(motion.name, scale, model, response.status, None, peaks, elapsed, kept, friction, elements)
+    friction, elements = _required_friction_of_run(batch, response), _element_peaks_of_run(batch, response)
+    return BatchRun(motion.name, scale, model, response.status, None, peaks, elapsed, kept, friction, elements)
 
 
-def _elements(batch: Batch, response: Response) -> dict[str, list[float]]:
+def _element_peaks_of_run(batch: RunBatch, response: Response) -> dict[str, list[float]]:
     """Return the peaks of the elements, and the energy that each dissipated if the history is known."""
     if not batch.properties.elements:
         return {}
@@ -170,7 +181,7 @@ def _elements(batch: Batch, response: Response) -> dict[str, list[float]]:
     return {name: getattr(response, name).tolist() for name in names}
 
 
-def _friction(batch: Batch, response: Response) -> dict[str, float | None]:
+def _required_friction_of_run(batch: RunBatch, response: Response) -> dict[str, float | None]:
     """Return the friction of one run, if requested."""
     if batch.friction is None:
         return {}
@@ -205,15 +216,15 @@ class RunArguments:
 
 
 @dataclass(frozen=True)
-class Prepared:
+class PreparedBatch:
     """A structure, the motions that were found, and the runs of one with the other."""
 
     loaded: LoadedStructure
     found: list[FoundMotion]
-    batch: Batch
+    batch: RunBatch
 
 
-def prepare(context: typer.Context, arguments: RunArguments, *, histories: int) -> Prepared:
+def prepare_batch(context: typer.Context, arguments: RunArguments, *, histories: int) -> PreparedBatch:
     """Return the runs that the arguments and the generated flags of a command ask for.
 
     Histories are kept of up to `histories` motions, each scale counted.
@@ -223,30 +234,30 @@ def prepare(context: typer.Context, arguments: RunArguments, *, histories: int) 
     InputError
         If an argument, a file or a record cannot be used.
     """
-    file, names = split_arguments(arguments.structure, arguments.arguments)
+    file, names = split_structure_file_argument(arguments.structure, arguments.arguments)
     loaded = load_structure(file, flag_values(context, FrameFlags))
-    law, bouc_wen, initial = (flag_values(context, table) for table in (ImpactKeys, BoucWenKeys, InitialKeys))
-    ground = flag_values(context, GroundKeys) | flag_values(context, BedKeys)
+    law, bouc_wen, initial = (flag_values(context, table) for table in (ImpactKeys, BoucWenKeys, InitialStateKeys))
+    ground = flag_values(context, GroundKeys) | flag_values(context, SpringBedKeys)
     options, ground_values = make_run_options(
         file, loaded.run_options, law, bouc_wen, initial, ground, loaded.properties
     )
-    models = choose_models(arguments.model, loaded.properties, options, by_flag=bool(bouc_wen))
-    if options.bouc_wen is not None and not yielding(models):
-        note(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was given")
+    models = choose_run_models(arguments.model, loaded.properties, options, by_flag=bool(bouc_wen))
+    if options.bouc_wen is not None and not yielding_model_labels(models):
+        print_remark(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was given")
     names += arguments.motion or []
-    with naming(FLAGS):
+    with naming_flags_in_errors(FLAGS):
         free = number_or_word(arguments.free_vibration)
         free_vibration_time(free)
         mu = None if arguments.friction is None else friction_coefficient(arguments.friction)
         if names or arguments.vertical or not initial:
             found = find_motions(names, arguments.units, arguments.dt, arguments.on_error, arguments.vertical)
         else:
-            found, free = quiet_ground(free)
-        given_scales = [factor for text in arguments.scale for factor in parse_scales(text)]
+            found, free = quiet_ground_motion(free)
+        given_scales = [factor for text in arguments.scale for factor in parse_scale_range(text)]
         strongest = max((each.motion for each in found), key=lambda it: it.pga)
-        scales = list(dict.fromkeys(factors_of(given_scales, strongest)))
+        scales = list(dict.fromkeys(checked_scale_factors(given_scales, strongest)))
         limit = parse_work_limit(arguments.work_limit)
-        batch = Batch(
+        batch = RunBatch(
             properties=loaded.properties,
             motions=[each.motion for each in found],
             scales=scales,
@@ -257,4 +268,4 @@ def prepare(context: typer.Context, arguments: RunArguments, *, histories: int) 
             workers=arguments.workers,
             friction=mu,
         )
-    return Prepared(loaded, found, batch)
+    return PreparedBatch(loaded, found, batch)

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Self
 
 from rockflex._errors import RecordWarning
-from rockflex.study.progress import bar, counter
+from rockflex.study.progress import progress_bar, progress_counter
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 
-def complain(message: str) -> None:
+def print_error(message: str) -> None:
     """Print an error to stderr as one paragraph."""
     from rich.console import Console
     from rich.text import Text
@@ -24,21 +24,21 @@ def complain(message: str) -> None:
     Console(stderr=True).print(text, soft_wrap=True)
 
 
-def note(message: str) -> None:
+def print_remark(message: str) -> None:
     """Print a remark to stderr."""
     from rich.console import Console
 
     Console(stderr=True).print(message, markup=False, highlight=False, soft_wrap=True)
 
 
-def warn(messages: Iterable[str]) -> None:
+def print_warning_messages(messages: Iterable[str]) -> None:
     """Print warnings to stderr."""
     for message in messages:
-        note(f"Warning: {message}")
+        print_remark(f"Warning: {message}")
 
 
 @contextmanager
-def remarks() -> Generator[None]:
+def printing_warnings_as_remarks() -> Generator[None]:
     """Print each warning about records once, as a remark."""
     told: set[str] = set()
     with warnings.catch_warnings():
@@ -51,20 +51,20 @@ def remarks() -> Generator[None]:
             elif str(message) not in told:
                 # Python itself forgets what it told whenever its filters change.
                 told.add(str(message))
-                note(str(message))
+                print_remark(str(message))
 
         warnings.showwarning = tell
         yield
 
 
-def output() -> "Console":
+def stdout_console() -> "Console":
     """Return the console of stdout."""
     from rich.console import Console
 
     return Console(highlight=False)
 
 
-class Styled(str):
+class StyledCell(str):
     """A cell of a table, and its style."""
 
     __slots__ = ("style",)
@@ -76,7 +76,7 @@ class Styled(str):
         return cell
 
 
-def grid(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1) -> "Table":
+def console_table(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1) -> "Table":
     """Return a table with `n_left` columns of words, aligned to the left, followed by columns of numbers."""
     from rich import box
     from rich.table import Table
@@ -94,14 +94,14 @@ def grid(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1
 
 
 @contextmanager
-def progress(title: str, total: int) -> Generator[Callable[[int], None]]:
+def console_progress_bar(title: str, total: int) -> Generator[Callable[[int], None]]:
     """Show a bar on stderr, or lines if it is no terminal; the yielded function advances it by a number of steps."""
-    with bar(title, transient=True) as show:
-        yield counter(lambda done, total: show(done, total, ""), total)
+    with progress_bar(title, transient=True) as show:
+        yield progress_counter(lambda done, total: show(done, total, ""), total)
 
 
 @contextmanager
-def waiting(title: str) -> Generator[None]:
+def console_waiting(title: str) -> Generator[None]:
     """Show on stderr that something takes time, if it is a terminal."""
     from rich.console import Console
 
@@ -117,7 +117,7 @@ def waiting(title: str) -> Generator[None]:
 
 
 @contextmanager
-def steps(title: str) -> Generator[Callable[[str], None]]:
+def console_steps(title: str) -> Generator[Callable[[str], None]]:
     """Show the present step and its time on stderr, if it is a terminal; the yielded function starts a step."""
     from rich.console import Console
 
@@ -132,39 +132,39 @@ def steps(title: str) -> Generator[Callable[[str], None]]:
         tasks: list[TaskID] = []
 
         def start(name: str) -> None:
-            _end(bar, tasks)
+            _end_last_step(bar, tasks)
             tasks.append(bar.add_task(f"{title} {name}", total=1))
 
         yield start
-        _end(bar, tasks)
+        _end_last_step(bar, tasks)
 
 
-def _end(bar: "Progress", tasks: "list[TaskID]") -> None:
+def _end_last_step(bar: "Progress", tasks: "list[TaskID]") -> None:
     """Mark the last step as done."""
     if tasks:
         bar.update(tasks[-1], completed=1)
 
 
-def fits(console: "Console", table: "Table") -> bool:
+def table_fits_console(console: "Console", table: "Table") -> bool:
     """Tell whether a table fits the width of the terminal."""
-    return _width(console, table) <= console.width
+    return _console_table_width(console, table) <= console.width
 
 
-def show(console: "Console", table: "Table") -> None:
+def print_console_table(console: "Console", table: "Table") -> None:
     """Print a table in full, even where it is wider than the terminal."""
     from rich.console import Console
 
-    width = _width(console, table)
+    width = _console_table_width(console, table)
     if width > console.width:
         console = Console(width=width, highlight=False)
     console.print(table)
 
 
-def _width(console: "Console", table: "Table") -> int:
+def _console_table_width(console: "Console", table: "Table") -> int:
     return console.measure(table, options=console.options.update(width=100_000)).maximum
 
 
-def number(value: float | None, digits: int = 4) -> str:
+def number_for_console(value: float | None, digits: int = 4) -> str:
     """Write a number with `digits` significant digits, with an exponent only if it is very large or small."""
     if value is None or math.isnan(value):
         return "-"

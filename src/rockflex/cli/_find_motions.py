@@ -15,11 +15,11 @@ from rockflex.motion import (
     GroundMotion,
     OnError,
     Vertical,
-    folder_files,
     load_suite,
     quiet_motion,
-    read_files,
+    read_components_by_file,
     read_motion,
+    record_files_in_folder,
     suite_names,
 )
 
@@ -36,7 +36,7 @@ class FoundMotion:
     @property
     def sha256(self) -> str:
         """SHA-256 of the horizontal samples in m/s² as little-endian doubles."""
-        return _digest(self.motion.acceleration)
+        return _checksum_of_samples(self.motion.acceleration)
 
     def same(self, other: "FoundMotion") -> bool:
         """Whether the samples of both motions are the same."""
@@ -59,10 +59,10 @@ class FoundMotion:
 
     def _vertical(self) -> dict[str, Any]:
         vertical = self.motion.vertical
-        return {} if vertical is None else {"pva": self.motion.pva, "vertical_sha256": _digest(vertical)}
+        return {} if vertical is None else {"pva": self.motion.pva, "vertical_sha256": _checksum_of_samples(vertical)}
 
 
-def embedded_suites() -> list[dict[str, Any]]:
+def embedded_suite_facts() -> list[dict[str, Any]]:
     """Return the name, size, first and last record of every embedded suite."""
     suites = [load_suite(name) for name in suite_names()]
     return [
@@ -101,9 +101,9 @@ def find_motions(
             f"No ground motion was given. Name a suite ({', '.join(suite_names())}), a record in one, such as "
             "fema-p695-far-field/FF-12-a, or a file."
         )
-    files = {name: _files(name) for name in names if name.partition("/")[0] not in suite_names()}
+    files = {name: _record_files_of_name(name) for name in names if name.partition("/")[0] not in suite_names()}
     pair = "pair" if vertical == "pair" else None
-    read = _read([file for each in files.values() for file in each], units, dt, on_error, pair)
+    read = _read_components_of_files([file for each in files.values() for file in each], units, dt, on_error, pair)
     found: dict[str, FoundMotion] = {}
     for name in names:
         suite, _, record = name.partition("/")
@@ -129,22 +129,22 @@ def find_motions(
             "Name the files or their folder, or give the file of the vertical component of one record: --vertical FILE."
         )
     if own_file:
-        return [_with_vertical(list(found.values()), str(vertical), units, dt)]
+        return [_with_vertical_component(list(found.values()), str(vertical), units, dt)]
     return list(found.values())
 
 
-def _with_vertical(found: list[FoundMotion], file: str, units: str | None, dt: float | None) -> FoundMotion:
+def _with_vertical_component(found: list[FoundMotion], file: str, units: str | None, dt: float | None) -> FoundMotion:
     if len(found) != 1:
         raise InputError(
             f"--vertical {file} is the vertical component of one motion, but {len(found)} were given. Name one motion, "
             "or name all files of a station, or their folder, with --vertical pair."
         )
-    with _naming_flags():
+    with _naming_units_and_dt_flags():
         motion = found[0].motion.with_vertical(read_motion(file, units=units, dt=dt))
     return FoundMotion(motion, found[0].origin)
 
 
-def quiet_ground(free: float | Literal["settle"]) -> tuple[list[FoundMotion], float | Literal["settle"]]:
+def quiet_ground_motion(free: float | Literal["settle"]) -> tuple[list[FoundMotion], float | Literal["settle"]]:
     """Return ground at rest for a free vibration, and the free vibration that follows it.
 
     Raises
@@ -162,7 +162,7 @@ def quiet_ground(free: float | Literal["settle"]) -> tuple[list[FoundMotion], fl
     return [FoundMotion(quiet_motion(free), "at rest")], 0.0
 
 
-def _files(name: str) -> list[Path]:
+def _record_files_of_name(name: str) -> list[Path]:
     """Return the file of a name, or the files of a directory."""
     path = Path(name)
     if path.suffix.lower() == ".toml":
@@ -176,18 +176,18 @@ def _files(name: str) -> list[Path]:
             f"{shown(name)} is neither a suite ({', '.join(suite_names())}), nor a record in one, such as "
             f"fema-p695-far-field/FF-12-a, nor a file or directory (working directory: {Path.cwd()}).{hint}"
         )
-    return folder_files(path) if path.is_dir() else [path]
+    return record_files_in_folder(path) if path.is_dir() else [path]
 
 
-def _read(
+def _read_components_of_files(
     files: Sequence[Path], units: str | None, dt: float | None, on_error: OnError, pair: Vertical | None
 ) -> dict[Path, list[GroundMotion]]:
-    with _naming_flags():
-        return read_files(files, units, dt, on_error, pair, skip="--on-error skip")
+    with _naming_units_and_dt_flags():
+        return read_components_by_file(files, units, dt, on_error, pair, skip="--on-error skip")
 
 
 @contextmanager
-def _naming_flags() -> Generator[None]:
+def _naming_units_and_dt_flags() -> Generator[None]:
     """Name the options in messages about `units` and `dt`."""
     try:
         yield
@@ -198,5 +198,5 @@ def _naming_flags() -> Generator[None]:
         raise InputError(text, longest=len(text), field=error.field) from error
 
 
-def _digest(samples: Array) -> str:
+def _checksum_of_samples(samples: Array) -> str:
     return hashlib.sha256(samples.astype("<f8").tobytes()).hexdigest()

@@ -5,12 +5,19 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rockflex._errors import InputError
-from rockflex._numbers import moment_unit
+from rockflex._number_format import moment_unit
 from rockflex._schema import FrameFlags
 from rockflex.cli import _options as options
-from rockflex.cli._console import grid, note, number, output, show, warn
+from rockflex.cli._console import (
+    console_table,
+    number_for_console,
+    print_console_table,
+    print_remark,
+    print_warning_messages,
+    stdout_console,
+)
 from rockflex.cli._options import flag_values
-from rockflex.cli._output import check_folder, staged, to_json, versions
+from rockflex.cli._output import check_output_folder, document_to_json, staged_output_folder, versions_in_results
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -76,22 +83,27 @@ def modes(
     force: options.Force = False,
 ) -> None:
     """Print the modes of a structure on a fixed base, and its rocking parameters."""
-    from rockflex._checks import whole_number
-    from rockflex.cli._structures import ELEMENT_UNITS, describe_properties, load_structure, split_arguments
+    from rockflex._checks import checked_whole_number
+    from rockflex.cli._structures import (
+        ELEMENT_UNITS,
+        describe_rocking_properties,
+        load_structure,
+        split_structure_file_argument,
+    )
 
-    check_folder(out, force=force)
-    path, rest = split_arguments(structure, [] if file is None else [file])
+    check_output_folder(out, force=force)
+    path, rest = split_structure_file_argument(structure, [] if file is None else [file])
     if rest:
         raise InputError(f"{file} is not a structure file: a name that ends in .toml is expected.")
     loaded = load_structure(path, flag_values(context, FrameFlags))
     properties = loaded.properties
     if n_modes is not None:
-        properties = properties.truncated(whole_number("n_modes", n_modes, 1, properties.n_modes))
-    rows = _rows(loaded, properties)
-    lifted = _uplifted_rows(properties)
-    rocking = describe_properties(properties)
+        properties = properties.truncated(checked_whole_number("n_modes", n_modes, 1, properties.n_modes))
+    rows = _fixed_base_mode_rows(loaded, properties)
+    lifted = _uplifted_mode_rows(properties)
+    rocking = describe_rocking_properties(properties)
     document: dict[str, Any] = {
-        "versions": versions(),
+        "versions": versions_in_results(),
         "structure": loaded.describe(),
         "modes": rows,
         "uplifted": lifted,
@@ -99,25 +111,25 @@ def modes(
         "units": UNITS | ELEMENT_UNITS,
         "warnings": list(loaded.warnings),
     }
-    need = _adequacy(loaded) if adequacy else None
+    need = _adequacy_of_loaded(loaded) if adequacy else None
     if need is not None:
         document["adequacy"] = _describe_adequacy(need)
     if out is not None:
-        _write(out, document, loaded, properties.n_modes, force=force)
+        _write_modes(out, document, loaded, properties.n_modes, force=force)
     if json:
-        typer.echo(to_json(document))
+        typer.echo(document_to_json(document))
     else:
         print_modes(loaded, rows, lifted, properties)
         if need is not None:
             _print_adequacy(need)
-    warn(document["warnings"])
+    print_warning_messages(document["warnings"])
 
 
-def _rows(loaded: "LoadedStructure", properties: "RockingProperties") -> list[dict[str, Any]]:
+def _fixed_base_mode_rows(loaded: "LoadedStructure", properties: "RockingProperties") -> list[dict[str, Any]]:
     """One row per mode, in SI units; the share refers to the mass above the base if known, else to the total mass."""
     import math
 
-    return _rows_of(
+    return _mode_rows_of_columns(
         mode=range(1, properties.n_modes + 1),
         period=2.0 * math.pi / properties.omega,
         omega=properties.omega,
@@ -129,7 +141,7 @@ def _rows(loaded: "LoadedStructure", properties: "RockingProperties") -> list[di
     )
 
 
-def _uplifted_rows(properties: "RockingProperties") -> list[dict[str, Any]]:
+def _uplifted_mode_rows(properties: "RockingProperties") -> list[dict[str, Any]]:
     """One row per vibration about a pivot, or about both where they differ, with the same modes, in SI units."""
     import math
 
@@ -139,7 +151,7 @@ def _uplifted_rows(properties: "RockingProperties") -> list[dict[str, Any]]:
     for pivot in properties.pivots:
         found = uplifted_modes(properties, side=pivot.side)
         about = {} if properties.symmetric else {"side": SIDES[pivot.side]}
-        found = _rows_of(
+        found = _mode_rows_of_columns(
             mode=range(1, properties.n_modes + 1),
             period=2.0 * math.pi / found.omega,
             omega=found.omega,
@@ -150,11 +162,11 @@ def _uplifted_rows(properties: "RockingProperties") -> list[dict[str, Any]]:
     return rows
 
 
-def _rows_of(**columns: "Iterable[Any]") -> list[dict[str, Any]]:
+def _mode_rows_of_columns(**columns: "Iterable[Any]") -> list[dict[str, Any]]:
     return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
-def _adequacy(loaded: "LoadedStructure") -> "Adequacy":
+def _adequacy_of_loaded(loaded: "LoadedStructure") -> "Adequacy":
     from rockflex.modal import adequacy
 
     return adequacy(loaded.properties, base_mass=loaded.base_mass)
@@ -165,7 +177,7 @@ def _describe_adequacy(need: "Adequacy") -> dict[str, Any]:
     from dataclasses import asdict
 
     of_rows = ("base_moment", "base_moment_left", "base_shear", "base_shear_left", "frequency_error")
-    rows = _rows_of(modes=range(1, need.n_modes + 1), **{name: getattr(need, name) for name in of_rows})
+    rows = _mode_rows_of_columns(modes=range(1, need.n_modes + 1), **{name: getattr(need, name) for name in of_rows})
     head = {name: getattr(need, name) for name in ("model", "model_for_shear", "reason")}
     rest = {name: getattr(need, name) for name in ("reference_error", "mass", "base_known")}
     return {**head, "rows": rows, **rest, "tolerance": asdict(need.tolerance)}
@@ -173,7 +185,7 @@ def _describe_adequacy(need: "Adequacy") -> dict[str, Any]:
 
 def _print_adequacy(need: "Adequacy") -> None:
 
-    console = output()
+    console = stdout_console()
     mass = "m*_n/Σm" if need.base_known else "m*_n/m_tot"
     headings = ("modes", "m*_n h*_n/L_0^r", "left out [%]", mass, "left out [%]", "ω*_1 error [%]", "ω*_2 error [%]")
     columns = (
@@ -183,21 +195,23 @@ def _print_adequacy(need: "Adequacy") -> None:
         100.0 * need.base_shear_left,
         *(100.0 * need.frequency_error).T,
     )
-    rows = [[str(k + 1), *(number(float(column[k]), 3) for column in columns)] for k in range(need.n_modes)]
+    rows = [[str(k + 1), *(number_for_console(float(column[k]), 3) for column in columns)] for k in range(need.n_modes)]
     console.print("\nNumber of modes needed", markup=False)
-    show(console, grid(headings, rows))
+    print_console_table(console, console_table(headings, rows))
     console.print()
     console.print(need.reason, markup=False)
 
 
-def _write(folder: "Path", document: dict[str, Any], loaded: "LoadedStructure", n_modes: int, *, force: bool) -> None:
+def _write_modes(
+    folder: "Path", document: dict[str, Any], loaded: "LoadedStructure", n_modes: int, *, force: bool
+) -> None:
     import pandas as pd
 
     from rockflex.modal import RockingProperties
 
     built = loaded.built
     drawn = not isinstance(built, RockingProperties)
-    with staged(folder, document, force=force) as stage:
+    with staged_output_folder(folder, document, force=force) as stage:
         # As in the printed tables: each mode on a fixed base, then the mode of the same number while uplifted.
         lifted = pd.DataFrame(document["uplifted"]).drop(columns="mode", errors="ignore").add_prefix("uplifted_")
         pd.DataFrame(document["modes"]).join(lifted).to_csv(stage / "modes.csv", index=False, lineterminator="\n")
@@ -205,7 +219,7 @@ def _write(folder: "Path", document: dict[str, Any], loaded: "LoadedStructure", 
             from rockflex.plot import plot_mode_shapes, save_figure
 
             save_figure(plot_mode_shapes(built.modal(), n_modes=n_modes), stage / "mode-shapes.png")
-    note(f"Written to {folder}" + ("" if drawn else f"; no figure, because [{loaded.kind}] has no mode shapes"))
+    print_remark(f"Written to {folder}" + ("" if drawn else f"; no figure, because [{loaded.kind}] has no mode shapes"))
 
 
 Rows = list[dict[str, Any]]
@@ -213,65 +227,75 @@ Rows = list[dict[str, Any]]
 
 def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "RockingProperties") -> None:
     """Print the modes on a fixed base and while uplifted, and the rocking parameters, for each edge if they differ."""
-    console = output()
+    console = stdout_console()
     console.print(f"{loaded.title}\n", markup=False, soft_wrap=True)
     share = "m*_n/m_tot" if loaded.base_mass is None else "m*_n/Σm"
     headings = ("mode", "T_n [s]", "ω_n [rad/s]", share, "h*_n [m]", "Γ_n φ_top", "ζ_n")
     keys = ("period", "omega", "mass_share", "effective_height", "top_ordinate", "zeta")
     if rows:
-        show(console, grid(headings, _mode_cells(rows, keys)))
+        print_console_table(console, console_table(headings, _mode_cells(rows, keys)))
         headings, keys = ("mode", "T*_n [s]", "ω*_n [rad/s]", "ω*_n/ω_n", "ζ*_n"), ("period", "omega", "ratio", "zeta")
         for side in ("",) if p.symmetric else ("right", "left"):
             about = f" about the {side} edge" if side else ""
             note = "" if side == "left" else "; with fewer (--modes) ζ*_n differs"
             console.print(f"\nWhile uplifted{about}, with these modes{note}", markup=False)
             kept = [row for row in lifted if row.get("side", "") == side]
-            show(console, grid(headings, _mode_cells(kept, keys)))
+            print_console_table(console, console_table(headings, _mode_cells(kept, keys)))
         console.print()
-    total = [(f"Sum of {share}", number(sum(float(row["mass_share"]) for row in rows)), "")] if rows else []
-    inertia = ("Moment of inertia about a pivot, I_θ", number(p.i_theta), "kg m²")
+    total = [(f"Sum of {share}", number_for_console(sum(float(row["mass_share"]) for row in rows)), "")] if rows else []
+    inertia = ("Moment of inertia about a pivot, I_θ", number_for_console(p.i_theta), "kg m²")
     values = (
         *total,
         *([inertia] if p.symmetric else []),
-        ("First moment of mass, L_0^r", number(p.l0r), "kg m"),
-        ("Total mass with the base, m_tot", number(p.m_tot), "kg"),
-        ("Half width of the base, B", number(p.half_width), "m"),
-        *([("Masses to the right of its middle, e", number(p.eccentricity), "m")] if p.eccentricity else []),
-        *([("Initial force of the tendons, P", number(p.prestress / 1e3), "kN")] if p.tendons else []),
-        *(_of_both_pivots(p) if p.symmetric else []),
+        ("First moment of mass, L_0^r", number_for_console(p.l0r), "kg m"),
+        ("Total mass with the base, m_tot", number_for_console(p.m_tot), "kg"),
+        ("Half width of the base, B", number_for_console(p.half_width), "m"),
+        *(
+            [("Masses to the right of its middle, e", number_for_console(p.eccentricity), "m")]
+            if p.eccentricity
+            else []
+        ),
+        *([("Initial force of the tendons, P", number_for_console(p.prestress / 1e3), "kN")] if p.tendons else []),
+        *(_parameters_of_both_pivots(p) if p.symmetric else []),
     )
-    show(console, grid(("Rocking", "", ""), values))
+    print_console_table(console, console_table(("Rocking", "", ""), values))
     if not p.symmetric:
         console.print()
-        show(console, grid(("About the edge", "right", "left", ""), _of_each_pivot(p)))
+        print_console_table(
+            console, console_table(("About the edge", "right", "left", ""), _parameters_of_each_pivot(p))
+        )
     if p.elements:
         from rockflex.cli._structures import elements_table
 
         console.print("\nBetween base and ground, x to the right of the masses", markup=False)
-        show(console, elements_table(p.elements))
+        print_console_table(console, elements_table(p.elements))
 
 
-def _of_both_pivots(p: "RockingProperties") -> list[tuple[str, str, str]]:
+def _parameters_of_both_pivots(p: "RockingProperties") -> list[tuple[str, str, str]]:
     """The parameters that are the same about both pivots."""
     size, unit = moment_unit(p.resisting_moment)
-    stiffness = ("Their stiffness while rocking", number(p.tendon_stiffness / size), f"{unit}/rad")
+    stiffness = ("Their stiffness while rocking", number_for_console(p.tendon_stiffness / size), f"{unit}/rad")
     weight = "(m_tot g + P)" if p.tendons else "m_tot g"
     return [
         *([stiffness] if p.tendons else []),
-        (f"Resisting moment, M_r = {weight} B", number(p.resisting_moment / size), unit),
-        ("Static uplift at a_lift = M_r/L_0^r", number(p.uplift_acceleration), "m/s²"),
+        (f"Resisting moment, M_r = {weight} B", number_for_console(p.resisting_moment / size), unit),
+        ("Static uplift at a_lift = M_r/L_0^r", number_for_console(p.uplift_acceleration), "m/s²"),
         *((name, values[0], unit) for name, values, unit in _self_centring_rows(p, size, unit)),
-        (f"Nominal limit, 0.7 atan({_slope(p, 'B')})", number(p.nominal_overturning_rotation), "rad"),
+        (
+            f"Nominal limit, 0.7 atan({_slenderness_formula(p, 'B')})",
+            number_for_console(p.nominal_overturning_rotation),
+            "rad",
+        ),
     ]
 
 
-def _of_each_pivot(p: "RockingProperties") -> list[tuple[str, str, str, str]]:
+def _parameters_of_each_pivot(p: "RockingProperties") -> list[tuple[str, str, str, str]]:
     """The parameters that differ between the pivots."""
     size, unit = moment_unit(p.resisting_moment)
     sides = (p.pivot(1), p.pivot(-1))
 
     def row(name: str, values: tuple[float, ...], unit: str) -> tuple[str, str, str, str]:
-        return (name, number(values[0]), number(values[1]), unit)
+        return (name, number_for_console(values[0]), number_for_console(values[1]), unit)
 
     stiffness = tuple(each.tendon_stiffness / size for each in sides)
     nominal = tuple(each.nominal_overturning_rotation for each in sides)
@@ -282,7 +306,7 @@ def _of_each_pivot(p: "RockingProperties") -> list[tuple[str, str, str, str]]:
         row("Resisting moment, M_r", tuple(each.resisting_moment / size for each in sides), unit),
         row("Static uplift at a_lift", tuple(each.uplift_acceleration for each in sides), "m/s²"),
         *((name, *values, unit) for name, values, unit in _self_centring_rows(p, size, unit)),
-        row(f"Nominal limit, 0.7 atan({_slope(p, 'b')})", nominal, "rad"),
+        row(f"Nominal limit, 0.7 atan({_slenderness_formula(p, 'b')})", nominal, "rad"),
     ]
 
 
@@ -296,19 +320,23 @@ def _self_centring_rows(p: "RockingProperties", size: float, unit: str) -> list[
         return of(right), of(left)
 
     def least(pivot: "Pivot") -> str:
-        return number(max(pivot.resisting_moment - pivot.dissipator_moment, 0.0) / size)
+        return number_for_console(max(pivot.resisting_moment - pivot.dissipator_moment, 0.0) / size)
 
     return [
-        ("Moment of the dissipators, M_d", both(lambda pivot: number(pivot.dissipator_moment / size)), unit),
-        ("Re-centring ratio, M_r/M_d", both(lambda pivot: number(pivot.recentring_ratio)), ""),
+        (
+            "Moment of the dissipators, M_d",
+            both(lambda pivot: number_for_console(pivot.dissipator_moment / size)),
+            unit,
+        ),
+        ("Re-centring ratio, M_r/M_d", both(lambda pivot: number_for_console(pivot.recentring_ratio)), ""),
         ("Least moment that lifts it after yielding, M_r - M_d", both(least), unit),
         ("Self-centring", both(lambda pivot: "yes" if pivot.self_centring else "no: it may stay open"), ""),
     ]
 
 
-def _slope(p: "RockingProperties", width: str) -> str:
+def _slenderness_formula(p: "RockingProperties", width: str) -> str:
     return f"{width}/h*_1" if p.n_modes else f"{width} m_tot/L_0^r"
 
 
 def _mode_cells(rows: Rows, keys: tuple[str, ...]) -> list[list[str]]:
-    return [[str(row["mode"]), *(number(float(row[key])) for key in keys)] for row in rows]
+    return [[str(row["mode"]), *(number_for_console(float(row[key])) for key in keys)] for row in rows]

@@ -6,10 +6,23 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rockflex._shown import counted
+from rockflex._shown import number_with_noun
 from rockflex.cli import _options as options
-from rockflex.cli._console import fits, grid, note, number, output, show
-from rockflex.cli._output import check_folder, file_stems, staged, to_json, versions
+from rockflex.cli._console import (
+    console_table,
+    number_for_console,
+    print_console_table,
+    print_remark,
+    stdout_console,
+    table_fits_console,
+)
+from rockflex.cli._output import (
+    check_output_folder,
+    document_to_json,
+    file_stems,
+    staged_output_folder,
+    versions_in_results,
+)
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -61,36 +74,36 @@ def motion(
     vertical: options.Vertical = None,
 ) -> None:
     """Print the data and the intensity measures of ground motions; without a name, list the embedded suites."""
-    from rockflex.cli._find_motions import embedded_suites, find_motions
+    from rockflex.cli._find_motions import embedded_suite_facts, find_motions
 
-    check_folder(out, force=force)
+    check_output_folder(out, force=force)
     # With a folder or a unit, motions are expected, and an empty list of names is an error.
     about_files = units is not None or dt is not None or vertical is not None or on_error != "raise"
     if not names and out is None and period is None and not about_files:
-        suites = embedded_suites()
+        suites = embedded_suite_facts()
         if json:
-            typer.echo(to_json({"versions": versions(), "suites": suites}))
+            typer.echo(document_to_json({"versions": versions_in_results(), "suites": suites}))
         else:
-            _print_suites(suites)
+            _print_embedded_suites(suites)
         return
     found = find_motions(names or [], units, dt, on_error, vertical)
     periods = list(dict.fromkeys(period or [1.0]))
-    rows = [{**item.describe(), **_measures(item, periods, damping)} for item in found]
+    rows = [{**item.describe(), **_measures_of_motion(item, periods, damping)} for item in found]
     document: dict[str, Any] = {
-        "versions": versions(),
+        "versions": versions_in_results(),
         "options": {"periods": periods, "damping_ratio": damping},
-        "units": _units(),
+        "units": _units_of_measures(),
         "motions": rows,
     }
     if out is not None:
-        _write(out, document, found, figures, force=force)
+        _write_motion_measures(out, document, found, figures, force=force)
     if json:
-        typer.echo(to_json(document))
+        typer.echo(document_to_json(document))
     else:
-        _print(rows, periods, damping)
+        _print_motion_measures(rows, periods, damping)
 
 
-def _units() -> dict[str, str]:
+def _units_of_measures() -> dict[str, str]:
     from rockflex.motion import record_measures, vertical_measures
 
     return {
@@ -109,10 +122,10 @@ def _units() -> dict[str, str]:
     }
 
 
-def _measures(item: "FoundMotion", periods: Sequence[float], damping: float) -> dict[str, float]:
-    from rockflex.motion import Shaking, record_measures, vertical_measures
+def _measures_of_motion(item: "FoundMotion", periods: Sequence[float], damping: float) -> dict[str, float]:
+    from rockflex.motion import MeasureInput, record_measures, vertical_measures
 
-    motion, shaking = item.motion, Shaking(item.motion)
+    motion, shaking = item.motion, MeasureInput(item.motion)
     spectral = {"sa": motion.spectrum(periods, damping).sa}
     measures = record_measures()
     if motion.vertical is not None:
@@ -127,20 +140,20 @@ def _measures(item: "FoundMotion", periods: Sequence[float], damping: float) -> 
     return {**{measure.name: measure.of(shaking) for measure in measures}, **at_periods}
 
 
-def _print_suites(suites: Sequence[dict[str, Any]]) -> None:
+def _print_embedded_suites(suites: Sequence[dict[str, Any]]) -> None:
 
-    console = output()
+    console = stdout_console()
     spans = [" ... ".join(dict.fromkeys((row["first"], row["last"]))) for row in suites]
     rows = [[row["suite"], span, str(row["motions"])] for row, span in zip(suites, spans, strict=True)]
-    show(console, grid(("suite", "records", "motions"), rows, 2))
+    print_console_table(console, console_table(("suite", "records", "motions"), rows, 2))
     console.print("\nDetails: rockflex motion SUITE, or SUITE/RECORD", markup=False, soft_wrap=True)
 
 
-def _print(rows: Sequence[dict[str, Any]], periods: Sequence[float], damping: float) -> None:
+def _print_motion_measures(rows: Sequence[dict[str, Any]], periods: Sequence[float], damping: float) -> None:
     from rockflex._constants import GRAVITY
     from rockflex.motion import record_measures
 
-    console = output()
+    console = stdout_console()
     chosen = [(measure, measure.unit == "m/s²") for measure in record_measures()]
     records: list[list[str]] = []
     measures: list[list[str]] = []
@@ -148,27 +161,29 @@ def _print(rows: Sequence[dict[str, Any]], periods: Sequence[float], damping: fl
         info = row["metadata"]
         facts = [None, None, None] if info is None else [info.magnitude, info.distance_km, info.vs30]
         words = ["-", "-"] if info is None else [info.event or "-", str(info.year or "-")]
-        samples = [f"{row['dt']:g}", str(row["npts"]), number(row["duration"])]
+        samples = [f"{row['dt']:g}", str(row["npts"]), number_for_console(row["duration"])]
         records.append([row["name"], *words, *("-" if fact is None else f"{fact:g}" for fact in facts), *samples])
-        spectral = [number(row[f"sa_{period:g}"] / GRAVITY) for period in periods]
-        own = [number(row[measure.name] / (GRAVITY if in_g else 1.0)) for measure, in_g in chosen]
+        spectral = [number_for_console(row[f"sa_{period:g}"] / GRAVITY) for period in periods]
+        own = [number_for_console(row[measure.name] / (GRAVITY if in_g else 1.0)) for measure, in_g in chosen]
         measures.append([row["name"], *own, *spectral])
     head = ("name", "event", "year", "M", "R [km]", "Vs30 [m/s]", "dt [s]", "npts", "length [s]")
-    table = grid(head, records, 2)
-    if not fits(console, table):
-        table = grid(head, [[name, fill(event, 12), *rest] for name, event, *rest in records], 2)
-    show(console, table)
+    table = console_table(head, records, 2)
+    if not table_fits_console(console, table):
+        table = console_table(head, [[name, fill(event, 12), *rest] for name, event, *rest in records], 2)
+    print_console_table(console, table)
     console.print()
     heads = [f"{measure.head} [g]" if in_g else measure.with_unit(measure.head) for measure, in_g in chosen]
     spectral = (f"Sa({period:g} s) [g]" for period in periods)
-    show(console, grid(("name", *(head.translate(PLAIN) for head in heads), *spectral), measures))
+    print_console_table(
+        console, console_table(("name", *(head.translate(PLAIN) for head in heads), *spectral), measures)
+    )
     if any("pva" in row for row in rows):
         console.print("\nVertical component", markup=False)
-        show(console, _vertical_table(rows, periods))
+        print_console_table(console, _vertical_measures_table(rows, periods))
     console.print(f"\nSa: pseudo-acceleration with {damping:g} damping; g = {GRAVITY} m/s²", markup=False)
 
 
-def _vertical_table(rows: Sequence[dict[str, Any]], periods: Sequence[float]) -> "Table":
+def _vertical_measures_table(rows: Sequence[dict[str, Any]], periods: Sequence[float]) -> "Table":
     from rockflex._constants import GRAVITY
 
     cells: list[list[str]] = []
@@ -176,12 +191,12 @@ def _vertical_table(rows: Sequence[dict[str, Any]], periods: Sequence[float]) ->
         keys = [("pva", GRAVITY), ("pva_pga", 1.0)]
         for period in periods:
             keys += [(f"sa_vertical_{period:g}", GRAVITY), (f"v_h_{period:g}", 1.0)]
-        cells.append([row["name"], *(number(row[key] / unit) if key in row else "-" for key, unit in keys)])
+        cells.append([row["name"], *(number_for_console(row[key] / unit) if key in row else "-" for key, unit in keys)])
     spectral = [head for period in periods for head in (f"Sa,v({period:g} s) [g]", f"V/H({period:g} s)")]
-    return grid(("name", "PVA [g]", "PVA/PGA", *spectral), cells)
+    return console_table(("name", "PVA [g]", "PVA/PGA", *spectral), cells)
 
 
-def _write(
+def _write_motion_measures(
     folder: "Path", document: dict[str, Any], found: Sequence["FoundMotion"], figures: int, *, force: bool
 ) -> None:
     from dataclasses import asdict
@@ -189,7 +204,7 @@ def _write(
     import pandas as pd
 
     few = len(found) <= figures
-    with staged(folder, document, force=force) as stage:
+    with staged_output_folder(folder, document, force=force) as stage:
         rows = [
             {**row, "metadata": None} | (asdict(row["metadata"]) if row["metadata"] else {})
             for row in document["motions"]
@@ -207,7 +222,7 @@ def _write(
                     series["vertical"] = item.motion.vertical
                 pd.DataFrame(series).to_csv(stage / f"{stem}.csv", index=False, lineterminator="\n")
                 save_figure(plot_motion(item.motion), stage / f"{stem}.png")
-    note(
+    print_remark(
         f"Written to {folder}"
-        + ("" if few else f"; series and figures only of up to {counted(figures, 'motion')}, by --figures")
+        + ("" if few else f"; series and figures only of up to {number_with_noun(figures, 'motion')}, by --figures")
     )

@@ -12,15 +12,15 @@ from typer.core import TyperCommand
 
 from rockflex._errors import InputError
 from rockflex._schema import (
-    BedKeys,
     BoucWenKeys,
     FrameFlags,
     GroundKeys,
     ImpactKeys,
-    InitialKeys,
-    Key,
-    flag_of,
-    keys_of,
+    InitialStateKeys,
+    SchemaKey,
+    SpringBedKeys,
+    command_line_flag,
+    schema_keys,
 )
 
 FRAME = "Structure by flags (all eight), in place of a file"
@@ -40,10 +40,12 @@ class FrameCommand(TyperCommand):
     def generated(self) -> list[Any]:
         """The options of all tables, which typer reads from the signature of a function."""
         found = {
-            _destination(name, key): Annotated[_kind_of(kind) | None, _option(table, name, key, panel)]
+            _option_destination(name, key): Annotated[
+                _option_type(kind) | None, _option_of_schema_key(table, name, key, panel)
+            ]
             for panel, tables in self.panels.items()
             for table in tables
-            for name, kind, key in keys_of(table)
+            for name, kind, key in schema_keys(table)
         }
 
         def function(**_: Any) -> None: ...
@@ -73,25 +75,25 @@ class RunCommand(FrameCommand):
     """A command that also takes the options of runs by flags."""
 
     panels: ClassVar[dict[str, tuple[type, ...]]] = {
-        ASSUMPTIONS: (ImpactKeys, BoucWenKeys, InitialKeys),
-        GROUND: (GroundKeys, BedKeys),
+        ASSUMPTIONS: (ImpactKeys, BoucWenKeys, InitialStateKeys),
+        GROUND: (GroundKeys, SpringBedKeys),
         FRAME: (FrameFlags,),
     }
 
 
 def flag_values(ctx: typer.Context, table: type) -> dict[str, Any]:
     """Return the values that the flags of a table give, by key."""
-    flags = ((name, _destination(name, key)) for name, _, key in keys_of(table))
+    flags = ((name, _option_destination(name, key)) for name, _, key in schema_keys(table))
     return {name: ctx.obj[flag] for name, flag in flags if flag in ctx.obj}
 
 
-def flags_of(*tables: type) -> dict[str, str]:
+def flags_of_tables(*tables: type) -> dict[str, str]:
     """Return the flag of each key of some tables."""
-    return {name: flag_of(name, key) for table in tables for name, _, key in keys_of(table)}
+    return {name: command_line_flag(name, key) for table in tables for name, _, key in schema_keys(table)}
 
 
 @contextmanager
-def naming(flags: Mapping[str, str]) -> Generator[None]:
+def naming_flags_in_errors(flags: Mapping[str, str]) -> Generator[None]:
     """Name the flag in the message of an `InputError` about one of these arguments."""
     try:
         yield
@@ -106,24 +108,24 @@ def naming(flags: Mapping[str, str]) -> Generator[None]:
         raise
 
 
-def _destination(name: str, key: Key) -> str:
+def _option_destination(name: str, key: SchemaKey) -> str:
     """Return the name of an option, which differs between tables with the same key."""
     return key.flag or name
 
 
-def _kind_of(annotation: Any) -> type:
+def _option_type(annotation: Any) -> type:
     kinds = get_args(annotation) or (annotation,)
     return next((kind for kind in (int, float) if kind in kinds), str)
 
 
-def _option(table: type, name: str, key: Key, panel: str) -> Any:
+def _option_of_schema_key(table: type, name: str, key: SchemaKey, panel: str) -> Any:
     default = getattr(table, name, None)
     words = key.description.removeprefix("the ")
     begins = words[:1].upper() if words[:2].isalpha() else words[:1]  # but not γ or n, which are symbols
     usual = "" if default is None else f"Default: {default:g}."
     sentences = (f"{begins}{words[1:]}{key.unit and f' in {key.unit}'}.", key.hint, usual)
     return typer.Option(
-        flag_of(name, key),
+        command_line_flag(name, key),
         metavar=key.metavar or key.unit.upper(),
         help=" ".join(filter(None, sentences)),
         rich_help_panel=panel,

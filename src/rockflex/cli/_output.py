@@ -10,25 +10,25 @@ from typing import Any
 
 from rockflex import __version__
 from rockflex._errors import InputError
-from rockflex._files import check_regular
-from rockflex._versions import versions_of
+from rockflex._files import check_regular_file
+from rockflex._versions import package_versions
 
 SUMMARY = "summary.json"
 
 
-def to_json(document: dict[str, Any], *, ascii_only: bool = True) -> str:
+def document_to_json(document: dict[str, Any], *, ascii_only: bool = True) -> str:
     """Return strictly valid JSON: NaN becomes null, and an infinity the string "inf" or "-inf"."""
-    from rockflex._json import plain
+    from rockflex._json import as_json_value
 
-    return json.dumps(plain(document), indent=2, ensure_ascii=ascii_only, allow_nan=False)
+    return json.dumps(as_json_value(document), indent=2, ensure_ascii=ascii_only, allow_nan=False)
 
 
-def versions() -> dict[str, str]:
+def versions_in_results() -> dict[str, str]:
     """Return the versions of the packages that the results depend on."""
-    return {"rockflex": __version__, **versions_of(("numpy", "scipy"))}
+    return {"rockflex": __version__, **package_versions(("numpy", "scipy"))}
 
 
-def check_folder(folder: Path | None, *, force: bool) -> None:
+def check_output_folder(folder: Path | None, *, force: bool) -> None:
     """Raise an InputError if the folder must not be written to, or --force was given without a folder."""
     if folder is None:
         if force:
@@ -45,7 +45,7 @@ def check_folder(folder: Path | None, *, force: bool) -> None:
 
 
 @contextmanager
-def staged(folder: Path, document: dict[str, Any], *, force: bool) -> Generator[Path, None, None]:
+def staged_output_folder(folder: Path, document: dict[str, Any], *, force: bool) -> Generator[Path, None, None]:
     """Yield a temporary folder; at the end its files move to `folder`, with `document` as summary.json.
 
     If anything fails before the end, `folder` is unchanged. Only earlier results there are removed or replaced.
@@ -55,7 +55,7 @@ def staged(folder: Path, document: dict[str, Any], *, force: bool) -> Generator[
     InputError
         If the folder must not, or cannot, be written to.
     """
-    check_folder(folder, force=force)
+    check_output_folder(folder, force=force)
     home = folder if folder.is_dir() else folder.absolute().parent
     try:
         home.mkdir(parents=True, exist_ok=True)
@@ -64,9 +64,9 @@ def staged(folder: Path, document: dict[str, Any], *, force: bool) -> Generator[
             stage.mkdir()
             yield stage
             names = sorted(file.name for file in stage.iterdir())
-            text = to_json({**document, "files": [*names, SUMMARY]}, ascii_only=False)
+            text = document_to_json({**document, "files": [*names, SUMMARY]}, ascii_only=False)
             (stage / SUMMARY).write_text(text + "\n", "utf-8", newline="\n")
-            _move(stage, folder, [*names, SUMMARY])
+            _move_output_files(stage, folder, [*names, SUMMARY])
     except OSError as error:
         raise InputError(
             f"Cannot write to {folder}: {error.strerror or error}. Give a folder that can be written to."
@@ -86,22 +86,22 @@ def file_stems(names: Iterable[str]) -> list[str]:
     return stems
 
 
-def _move(stage: Path, folder: Path, names: list[str]) -> None:
+def _move_output_files(stage: Path, folder: Path, names: list[str]) -> None:
     if not folder.exists():
         stage.rename(folder)
         return
     # Earlier results left in the folder would look like new ones.
-    for name in _earlier(folder):
+    for name in _files_of_earlier_output(folder):
         if name not in names:
             (folder / name).unlink(missing_ok=True)
     for name in names:
         (stage / name).replace(folder / name)
 
 
-def _earlier(folder: Path) -> list[str]:
+def _files_of_earlier_output(folder: Path) -> list[str]:
     """Names of the files that an earlier summary in the folder lists as its own."""
     try:
-        check_regular(folder / SUMMARY)
+        check_regular_file(folder / SUMMARY)
         document = json.loads((folder / SUMMARY).read_text("utf-8"))
         names = document["files"] if "rockflex" in document["versions"] else []
     except (OSError, ValueError, LookupError, TypeError):

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rockflex.cli import _options as options
-from rockflex.cli._console import grid, note, output, progress, show
-from rockflex.cli._output import check_folder, staged, versions
+from rockflex.cli._console import console_progress_bar, console_table, print_console_table, print_remark, stdout_console
+from rockflex.cli._output import check_output_folder, staged_output_folder, versions_in_results
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rockflex.papers.silva_stojadinovic_2024 import Records
-    from rockflex.report import Result
+    from rockflex.papers.silva_stojadinovic_2024 import PaperRecords
+    from rockflex.report import ReproducedResult
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -79,65 +79,69 @@ def reproduce(
 
     if names:
         for target in paper.TARGETS:
-            typer.echo(f"{target:10}  {paper.title_of(target)}")
+            typer.echo(f"{target:10}  {paper.target_title(target)}")
         return
 
-    check_folder(out, force=force)
+    check_output_folder(out, force=force)
     wanted = targets or list(paper.TARGETS)
     for target in wanted:
-        paper.title_of(target)
+        paper.target_title(target)
     chosen = {name: value for name, value in (("seeds", seeds), ("seed", seed)) if value is not None}
-    given = paper.Records(records, **chosen)
-    note(given.description)
-    with progress("Computing", len(set(wanted))) as advance:
-        results = paper.reproduce(wanted, given, lambda _: advance(1))
+    given = paper.PaperRecords(records, **chosen)
+    print_remark(given.description)
+    with console_progress_bar("Computing", len(set(wanted))) as advance:
+        results = paper.reproduce_targets(wanted, given, lambda _: advance(1))
     if out is None:
-        _print_numbers(results)
+        _print_reproduced_numbers(results)
     else:
-        _write(results, given, out, force=force)
-    _print_counts(results)
+        _write_reproduction(results, given, out, force=force)
+    _print_reproduction_counts(results)
     if out is not None:
-        note(f"Written to {out}: open {out / 'report.html'}")
+        print_remark(f"Written to {out}: open {out / 'report.html'}")
 
 
-def _write(results: "list[Result]", records: "Records", out: Path, *, force: bool) -> None:
-    from rockflex.papers.silva_stojadinovic_2024 import Kind, Verdict
-    from rockflex.report import Document, write_document
+def _write_reproduction(results: "list[ReproducedResult]", records: "PaperRecords", out: Path, *, force: bool) -> None:
+    from rockflex.papers.silva_stojadinovic_2024 import RemarkKind, Verdict
+    from rockflex.report import PublicationReport, write_publication_report
 
     verdicts = {str(verdict): verdict.meaning for verdict in Verdict}
-    kinds = {str(kind): kind.meaning for kind in Kind}
-    document = Document(TITLE, SOURCE, records.description, versions(), verdicts, kinds, results)
+    kinds = {str(kind): kind.meaning for kind in RemarkKind}
+    document = PublicationReport(TITLE, SOURCE, records.description, versions_in_results(), verdicts, kinds, results)
     summary = {
-        "versions": versions(),
+        "versions": versions_in_results(),
         "records": records.description,
         "targets": [result.name for result in results],
         "numbers": document.counts,
         "checks": document.checks,
     }
     figures = sum(len(result.figures) for result in results)
-    with staged(out, summary, force=force) as stage, progress("Drawing", figures) as advance:
-        write_document(document, stage, lambda _: advance(1))
+    with staged_output_folder(out, summary, force=force) as stage, console_progress_bar("Drawing", figures) as advance:
+        write_publication_report(document, stage, lambda _: advance(1))
 
 
-def _print_numbers(results: "Sequence[Result]") -> None:
+def _print_reproduced_numbers(results: "Sequence[ReproducedResult]") -> None:
 
-    console = output()
+    console = stdout_console()
     for result in results:
         typer.echo(f"{result.name}: {result.title}")
         rows = [
             (n.name, n.printed, n.ours_as_text, n.unit, n.difference_as_text, str(n.verdict)) for n in result.numbers
         ]
         if rows:
-            show(console, grid(("number", "paper", "rockflex", "unit", "difference", "verdict"), rows))
+            print_console_table(
+                console, console_table(("number", "paper", "rockflex", "unit", "difference", "verdict"), rows)
+            )
         checks = [(c.name, c.printed, c.ours_as_text, c.unit, "yes" if c.holds else "no") for c in result.checks]
         if checks:
-            show(console, grid(("check of ourselves", "paper", "rockflex", "unit", "holds"), checks))
+            print_console_table(
+                console, console_table(("check of ourselves", "paper", "rockflex", "unit", "holds"), checks)
+            )
         typer.echo()
 
 
-def _print_counts(results: "Sequence[Result]") -> None:
+def _print_reproduction_counts(results: "Sequence[ReproducedResult]") -> None:
     from rockflex.papers.silva_stojadinovic_2024 import Verdict
 
     rows = [(r.name, *(str(r.count(verdict)) for verdict in Verdict)) for r in results]
     rows.append(("all", *(str(sum(r.count(verdict) for r in results)) for verdict in Verdict)))
-    show(output(), grid(("target", *map(str, Verdict)), rows))
+    print_console_table(stdout_console(), console_table(("target", *map(str, Verdict)), rows))

@@ -5,8 +5,8 @@ from typing import Annotated, Any
 import typer
 
 from rockflex.cli import _options as options
-from rockflex.cli._console import warn
-from rockflex.cli._output import check_folder, to_json, versions
+from rockflex.cli._console import print_warning_messages
+from rockflex.cli._output import check_output_folder, document_to_json, versions_in_results
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -68,40 +68,40 @@ def run(
     """
     from time import perf_counter
 
-    from rockflex.cli._batch import FLAGS, RunArguments, prepare, run_batch
-    from rockflex.cli._options import naming
+    from rockflex.cli._batch import FLAGS, RunArguments, prepare_batch, run_batch
+    from rockflex.cli._options import naming_flags_in_errors
     from rockflex.cli._run_results import (
         UNITS,
-        check_page,
-        check_runs,
-        print_failures,
-        print_runs,
-        print_warnings,
-        write_page,
-        write_runs,
+        check_one_run_for_report,
+        checked_path_of_report,
+        print_failed_runs,
+        print_run_peaks,
+        print_run_warnings,
+        write_report_of_run,
+        write_run_results,
     )
-    from rockflex.cli._structures import describe_properties
+    from rockflex.cli._structures import describe_rocking_properties
 
-    check_folder(out, force=force and (out is not None or report is None))
-    page = None if report is None else check_page(report, force=force)
+    check_output_folder(out, force=force and (out is not None or report is None))
+    page = None if report is None else checked_path_of_report(report, force=force)
     asked = RunArguments(
         arguments=arguments or [], structure=structure, motion=motion, model=model, scale=scale,
         free_vibration=free_vibration, work_limit=work_limit, workers=workers, friction=friction, units=units, dt=dt,
         on_error=on_error, vertical=vertical,
     )  # fmt: skip
     drawn = 0 if out is None else figures
-    prepared = prepare(context, asked, histories=drawn if page is None else max(drawn, 1))
+    prepared = prepare_batch(context, asked, histories=drawn if page is None else max(drawn, 1))
     loaded, found, batch = prepared.loaded, prepared.found, prepared.batch
     if page is not None:
-        check_runs(batch)
+        check_one_run_for_report(batch)
     start = perf_counter()
-    with naming(FLAGS):
+    with naming_flags_in_errors(FLAGS):
         runs = run_batch(batch)
     elapsed = perf_counter() - start
     document: dict[str, Any] = {
-        "versions": versions(),
+        "versions": versions_in_results(),
         "structure": loaded.describe(),
-        "properties": describe_properties(batch.properties),
+        "properties": describe_rocking_properties(batch.properties),
         "motions": [item.describe() for item in found],
         "options": batch.describe(),
         "units": UNITS,
@@ -110,15 +110,15 @@ def run(
         "runs": [{**item.row(), "run_time": item.run_time, "warnings": list(item.warnings)} for item in runs],
     }
     if out is not None:
-        write_runs(out, document, batch, runs, figures=figures, force=force)
+        write_run_results(out, document, batch, runs, figures=figures, force=force)
     if json:
-        typer.echo(to_json(document))
+        typer.echo(document_to_json(document))
     else:
-        print_runs(loaded.title, batch, runs, elapsed, times=times)
-    warn(document["warnings"])
-    print_warnings(runs)
-    failed = print_failures(runs)
+        print_run_peaks(loaded.title, batch, runs, elapsed, times=times)
+    print_warning_messages(document["warnings"])
+    print_run_warnings(runs)
+    failed = print_failed_runs(runs)
     if page is not None:
-        write_page(page, loaded, batch, runs)
+        write_report_of_run(page, loaded, batch, runs)
     if failed and strict:
         raise typer.Exit(1)

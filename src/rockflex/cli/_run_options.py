@@ -9,21 +9,28 @@ from typing import Any
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex._schema import BedKeys, BoucWenKeys, GroundKeys, ImpactKeys, InitialKeys
-from rockflex.cli._options import flags_of, naming
+from rockflex._schema import BoucWenKeys, GroundKeys, ImpactKeys, InitialStateKeys, SpringBedKeys
+from rockflex.cli._options import flags_of_tables, naming_flags_in_errors
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, Restitution, parse_model
-from rockflex.structure.file import checked
-from rockflex.study import WORK_LIMIT, InitialState, RunOptions, ground_under, work_limit_of, yielding
-from rockflex.study.spec import GroundTable, RunOptionKeys, name_of
+from rockflex.structure.file import parse_toml_table
+from rockflex.study import (
+    WORK_LIMIT,
+    InitialState,
+    RunOptions,
+    checked_work_limit,
+    ground_under_structure,
+    yielding_model_labels,
+)
+from rockflex.study.spec import GroundTable, RunOptionKeys, impact_law_name
 
 _INERTIA = {"base_inertia", "mat_mass"}
-_FIELDS = {f"ground.{name}": (name, flag) for name, flag in flags_of(GroundKeys).items()} | {
-    f"ground.bed.{name}": (name, flag) for name, flag in flags_of(BedKeys).items()
+_FIELDS = {f"ground.{name}": (name, flag) for name, flag in flags_of_tables(GroundKeys).items()} | {
+    f"ground.bed.{name}": (name, flag) for name, flag in flags_of_tables(SpringBedKeys).items()
 }
 
 
-def make_ground(
+def make_run_ground(
     file: Path | None, in_file: dict[str, Any], flags: dict[str, Any], properties: RockingProperties
 ) -> tuple[Ground | None, dict[str, Any]]:
     """Combine the ground in a structure file with the ground given by flags, which take precedence.
@@ -33,7 +40,7 @@ def make_ground(
     file, in_file
         The structure file, and its table [ground]; empty without one.
     flags
-        Values by flags, named as in `GroundKeys` and `BedKeys`.
+        Values by flags, named as in `GroundKeys` and `SpringBedKeys`.
     properties
         The structure on the ground.
 
@@ -49,9 +56,9 @@ def make_ground(
     """
     if not in_file and not flags:
         return None, {}
-    table = checked(GroundTable, _merged(in_file, flags))
+    table = parse_toml_table(GroundTable, _merged_ground_options(in_file, flags))
     try:
-        with naming({key: flag for key, (name, flag) in _FIELDS.items() if name in flags}):
+        with naming_flags_in_errors({key: flag for key, (name, flag) in _FIELDS.items() if name in flags}):
             return table.under(properties), table.model_dump(exclude_none=True)
     except InputError as error:
         if flags:
@@ -59,7 +66,7 @@ def make_ground(
         raise InputError(f"{file}, {error}") from error
 
 
-def ground_lines(ground: Ground, properties: RockingProperties) -> list[str]:
+def lines_about_ground(ground: Ground, properties: RockingProperties) -> list[str]:
     """Return the ground under a structure in lines, for the head of a table."""
     lines: list[str] = []
     if ground.springs is not None:
@@ -76,9 +83,9 @@ def ground_lines(ground: Ground, properties: RockingProperties) -> list[str]:
     return lines
 
 
-def _merged(in_file: dict[str, Any], flags: dict[str, Any]) -> dict[str, Any]:
-    own = {name: flags[name] for name in flags_of(GroundKeys) if name in flags}
-    bed = {name: flags[name] for name in flags_of(BedKeys) if name in flags}
+def _merged_ground_options(in_file: dict[str, Any], flags: dict[str, Any]) -> dict[str, Any]:
+    own = {name: flags[name] for name in flags_of_tables(GroundKeys) if name in flags}
+    bed = {name: flags[name] for name in flags_of_tables(SpringBedKeys) if name in flags}
     replaced = _INERTIA if own.keys() & _INERTIA else set[str]()
     merged = {name: value for name, value in in_file.items() if name not in replaced} | own
     if not bed:
@@ -86,7 +93,7 @@ def _merged(in_file: dict[str, Any], flags: dict[str, Any]) -> dict[str, Any]:
     if "springs" in merged:
         raise InputError(
             "The ground of the structure file has springs, and the command line gives a bed "
-            f"({', '.join(flags_of(BedKeys)[name] for name in bed)}). Leave one of them out."
+            f"({', '.join(flags_of_tables(SpringBedKeys)[name] for name in bed)}). Leave one of them out."
         )
     merged["bed"] = merged.get("bed", {}) | bed
     if "breadth" not in merged["bed"]:
@@ -99,12 +106,12 @@ RIGID = ("rigid", "rigid-C")
 YIELDING = ("2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW")
 
 
-def describe_options(options: RunOptions, ground: dict[str, Any]) -> dict[str, Any]:
+def describe_run_options(options: RunOptions, ground: dict[str, Any]) -> dict[str, Any]:
     """Return the options that were given, for a document; `ground` has the values of the ground as they were given."""
     described: dict[str, Any] = {}
     if options.impact is not None:
         values = asdict(options.impact) if isinstance(options.impact, Restitution) else {}
-        described["impact"] = {"law": name_of(options.impact), **values}
+        described["impact"] = {"law": impact_law_name(options.impact), **values}
     if options.bouc_wen is not None:
         described["bouc_wen"] = asdict(options.bouc_wen)
     if options.initial is not None:
@@ -112,12 +119,12 @@ def describe_options(options: RunOptions, ground: dict[str, Any]) -> dict[str, A
     return described | ({"ground": ground} if ground else {})
 
 
-def option_lines(options: RunOptions, properties: RockingProperties) -> list[str]:
+def lines_about_run_options(options: RunOptions, properties: RockingProperties) -> list[str]:
     """Return the options that were given in lines, for the head of a table of runs of a structure."""
     lines: list[str] = []
     if options.impact is not None:
         e = f", e = {options.impact.e:g}" if isinstance(options.impact, Restitution) else ""
-        lines.append(f"Impact: {name_of(options.impact)}{e}")
+        lines.append(f"Impact: {impact_law_name(options.impact)}{e}")
     if options.bouc_wen is not None:
         b = options.bouc_wen
         lines.append(
@@ -126,8 +133,8 @@ def option_lines(options: RunOptions, properties: RockingProperties) -> list[str
         )
     if options.initial is not None:
         lines.append(f"At rest at θ = {options.initial.rotation:g} rad at t = 0")
-    ground = ground_under(properties, options.ground)
-    return lines if ground is None else [*lines, *ground_lines(ground, properties)]
+    ground = ground_under_structure(properties, options.ground)
+    return lines if ground is None else [*lines, *lines_about_ground(ground, properties)]
 
 
 def make_run_options(
@@ -146,7 +153,7 @@ def make_run_options(
     file, in_file
         The structure file, and its `impact`, `restitution`, `bouc_wen` and `ground` as far as it has them.
     law, bouc_wen, initial, ground
-        Values by flags, named as in `ImpactKeys`, `BoucWenKeys`, `InitialKeys`, and in `GroundKeys` and `BedKeys`.
+        Values by flags, named as in `ImpactKeys`, `BoucWenKeys`, `InitialStateKeys`, `GroundKeys` and `SpringBedKeys`.
     properties
         The structure, whose base the ground is under.
 
@@ -160,17 +167,17 @@ def make_run_options(
     InputError
         If they contradict each other, or a value is out of range.
     """
-    below = {} if "impact" in law else {name: in_file[name] for name in flags_of(ImpactKeys) if name in in_file}
-    with naming(flags_of(ImpactKeys)):
-        chosen = checked(RunOptionKeys, {**below, **law}).law()
-    with naming(flags_of(InitialKeys) | {"rotation": "--initial-rotation"}):
+    below = {} if "impact" in law else {name: in_file[name] for name in flags_of_tables(ImpactKeys) if name in in_file}
+    with naming_flags_in_errors(flags_of_tables(ImpactKeys)):
+        chosen = parse_toml_table(RunOptionKeys, {**below, **law}).law()
+    with naming_flags_in_errors(flags_of_tables(InitialStateKeys) | {"rotation": "--initial-rotation"}):
         start = InitialState(rotation=initial["initial_rotation"]) if initial else None
-    hysteresis = _bouc_wen(file, in_file.get("bouc_wen", {}), bouc_wen)
-    base, values = make_ground(file, in_file.get("ground", {}), ground, properties)
+    hysteresis = _bouc_wen_of_options(file, in_file.get("bouc_wen", {}), bouc_wen)
+    base, values = make_run_ground(file, in_file.get("ground", {}), ground, properties)
     return RunOptions(impact=chosen, bouc_wen=hysteresis, initial=start, ground=base), values
 
 
-def choose_models(
+def choose_run_models(
     given: Sequence[str] | None, properties: RockingProperties, options: RunOptions, *, by_flag: bool
 ) -> list[str]:
     """Return the given labels, split at commas, or the usual ones, after checking that they suit the rest.
@@ -185,7 +192,7 @@ def choose_models(
     if given is None:
         usual = USUAL if properties.n_modes else RIGID
         labels: list[str] = [*(usual if options.bouc_wen is None else YIELDING)]
-        ground = ground_under(properties, options.ground)
+        ground = ground_under_structure(properties, options.ground)
         if ground is not None and not ground.rigid:
             labels = [label for label in labels if (each := parse_model(label)).lifts and not each.complete]
             labels = [label for label in labels if not parse_model(label).yields]
@@ -195,7 +202,7 @@ def choose_models(
         labels = list(dict.fromkeys(label.strip() for item in given for label in item.split(",") if label.strip()))
     if not labels:
         raise InputError("No model was given. Expected labels such as 2DOF-S,MDOF-S,fixed.")
-    models, yields = list(map(parse_model, labels)), yielding(labels)
+    models, yields = list(map(parse_model, labels)), yielding_model_labels(labels)
     if yields and options.bouc_wen is None:
         raise InputError(
             f"{yields[0]} needs its hysteresis. Give --yield-displacement, or [bouc_wen] in the structure file."
@@ -228,18 +235,20 @@ def parse_work_limit(given: str | None) -> float | None:
     InputError
         If the text is neither a positive number nor "none".
     """
-    with naming({"work_limit": "--work-limit"}):
-        return WORK_LIMIT if given is None else work_limit_of(number_or_word(given))
+    with naming_flags_in_errors({"work_limit": "--work-limit"}):
+        return WORK_LIMIT if given is None else checked_work_limit(number_or_word(given))
 
 
-def _bouc_wen(file: Path | None, in_file: dict[str, float], flags: dict[str, float]) -> BoucWen | None:
+def _bouc_wen_of_options(file: Path | None, in_file: dict[str, float], flags: dict[str, float]) -> BoucWen | None:
     values = {**in_file, **flags}
     if not values:
         return None
     if "yield_displacement" not in values:
         raise InputError("The hysteresis needs its yield displacement. Give --yield-displacement DY in m.")
     try:
-        with naming({name: flag for name, flag in flags_of(BoucWenKeys).items() if name in flags}):
+        with naming_flags_in_errors(
+            {name: flag for name, flag in flags_of_tables(BoucWenKeys).items() if name in flags}
+        ):
             return BoucWen(**values)
     except InputError as error:
         if flags:

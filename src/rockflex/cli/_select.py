@@ -7,10 +7,16 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from rockflex._errors import InputError
-from rockflex._shown import counted, shown
+from rockflex._shown import number_with_noun, shown
 from rockflex.cli import _options as options
-from rockflex.cli._console import grid, note, number, output, show
-from rockflex.cli._output import check_folder, file_stems, staged, to_json, versions
+from rockflex.cli._console import console_table, number_for_console, print_console_table, print_remark, stdout_console
+from rockflex.cli._output import (
+    check_output_folder,
+    document_to_json,
+    file_stems,
+    staged_output_folder,
+    versions_in_results,
+)
 
 if TYPE_CHECKING:
     from rockflex.motion import Combination, Selection, TargetSpectrum
@@ -20,7 +26,7 @@ WORDS = {"yes": True, "no": False}
 Reader = Callable[[str, str], Any]
 
 
-def parse_target(text: str, damping: float | None) -> "TargetSpectrum":
+def parse_target_spectrum(text: str, damping: float | None) -> "TargetSpectrum":
     """Return the target of ``ec8:ag=0.25g,ground=C``, ``ec8-2024:...``, ``asce7:sds=1g,sd1=0.6g,tl=8`` or of a file.
 
     `damping` is the damping ratio of a target from a file; None means 5 %.
@@ -52,34 +58,40 @@ def parse_target(text: str, damping: float | None) -> "TargetSpectrum":
         raise InputError(
             "--damping is for a target from a file. Write ec8:...,damping=0.02; ASCE 7 has 5 %: leave --damping out."
         )
-    items = _items(code, rest)
+    items = _target_items(code, rest)
     if code == "ec8":
-        given = _read_items(code, items, {"ag": _acceleration}, {
-            "ground": _text, "type": _number, "importance": _number, "damping": _number,
+        given = _read_target_items(code, items, {"ag": _target_acceleration}, {
+            "ground": _target_text, "type": _target_number, "importance": _target_number, "damping": _target_number,
         })  # fmt: skip
-        return ec8_spectrum(**_renamed(given))
+        return ec8_spectrum(**_renamed_target_arguments(given))
     if code == "ec8-2024":
-        given = _read_items(code, items, {"s_alpha": _acceleration, "s_beta": _acceleration}, {
-            "site": _text, "f_alpha": _number, "f_beta": _number, "topography": _number, "damping": _number,
+        given = _read_target_items(code, items, {"s_alpha": _target_acceleration, "s_beta": _target_acceleration}, {
+            "site": _target_text, "f_alpha": _target_number, "f_beta": _target_number,
+            "topography": _target_number, "damping": _target_number,
         })  # fmt: skip
         factors = [given.pop(key, None) for key in ("f_alpha", "f_beta")]
         if (factors[0] is None) != (factors[1] is None):
             raise InputError(f"--target {code}:...: give both f_alpha and f_beta, or neither.")
         amplification = None if factors[0] is None else tuple(factors)
-        return ec8_second_spectrum(**_renamed(given), amplification=amplification)
+        return ec8_second_spectrum(**_renamed_target_arguments(given), amplification=amplification)
     if "ss" in items or "s1" in items or "site" in items:
-        needed: dict[str, Reader] = {"ss": _acceleration, "s1": _acceleration, "site": _text, "tl": _number}
-        return asce7_site_spectrum(**_read_items(code, items, needed, {"mce": _yes}))
-    needed = {"sds": _acceleration, "sd1": _acceleration, "tl": _number}
-    return asce7_spectrum(**_read_items(code, items, needed, {"mce": _yes}))
+        needed: dict[str, Reader] = {
+            "ss": _target_acceleration,
+            "s1": _target_acceleration,
+            "site": _target_text,
+            "tl": _target_number,
+        }
+        return asce7_site_spectrum(**_read_target_items(code, items, needed, {"mce": _target_yes_or_no}))
+    needed = {"sds": _target_acceleration, "sd1": _target_acceleration, "tl": _target_number}
+    return asce7_spectrum(**_read_target_items(code, items, needed, {"mce": _target_yes_or_no}))
 
 
-def _renamed(given: dict[str, Any]) -> dict[str, Any]:
+def _renamed_target_arguments(given: dict[str, Any]) -> dict[str, Any]:
     names = {"type": "kind", "damping": "damping_ratio"}
     return {names.get(key, key): value for key, value in given.items()}
 
 
-def numbers(flag: str, text: str, least: int, most: int | None = None) -> list[float]:
+def parse_comma_separated_numbers(flag: str, text: str, least: int, most: int | None = None) -> list[float]:
     """Return numbers separated by commas.
 
     Raises
@@ -87,14 +99,14 @@ def numbers(flag: str, text: str, least: int, most: int | None = None) -> list[f
     InputError
         If one is not a number, or there are too few or too many.
     """
-    values = [_number(flag, part.strip()) for part in text.split(",")]
+    values = [_target_number(flag, part.strip()) for part in text.split(",")]
     if len(values) < least or (most is not None and len(values) > most):
         count = f"{least}" if most == least else f"at least {least}"
         raise InputError(f"{flag} needs {count} numbers separated by commas, but {shown(text)} was given.")
     return values
 
 
-def _items(code: str, rest: str) -> dict[str, str]:
+def _target_items(code: str, rest: str) -> dict[str, str]:
     items: dict[str, str] = {}
     for part in filter(None, (part.strip() for part in rest.split(","))):
         key, equals, value = (each.strip() for each in part.partition("="))
@@ -107,7 +119,7 @@ def _items(code: str, rest: str) -> dict[str, str]:
     return items
 
 
-def _read_items(
+def _read_target_items(
     code: str, items: dict[str, str], needed: dict[str, Reader], optional: dict[str, Reader]
 ) -> dict[str, Any]:
     readers = needed | optional
@@ -121,10 +133,10 @@ def _read_items(
     return {key: readers[key](f"--target {code}: {key}", value) for key, value in items.items()}
 
 
-def _acceleration(name: str, text: str) -> float:
-    from rockflex.motion import UNITS, acceleration_in
+def _target_acceleration(name: str, text: str) -> float:
+    from rockflex.motion import UNITS, acceleration_in_text
 
-    value = acceleration_in(text)
+    value = acceleration_in_text(text)
     if value is None:
         raise InputError(
             f"{name} must be a number with its unit, such as 0.25g or 2.45m/s2, but {shown(text)} was given. The units "
@@ -133,19 +145,19 @@ def _acceleration(name: str, text: str) -> float:
     return value
 
 
-def _number(name: str, text: str) -> float:
+def _target_number(name: str, text: str) -> float:
     try:
         return float(text)
     except ValueError:
         raise InputError(f"{name} must be a number, but {shown(text)} was given.") from None
 
 
-def _text(name: str, text: str) -> str:
+def _target_text(name: str, text: str) -> str:
     del name
     return text
 
 
-def _yes(name: str, text: str) -> bool:
+def _target_yes_or_no(name: str, text: str) -> bool:
     if text not in WORDS:
         raise InputError(f"{name} must be yes or no, but {shown(text)} was given.")
     return WORDS[text]
@@ -255,16 +267,16 @@ def select(
     from rockflex.motion import Suite
 
     if out is not None or records is None:
-        check_folder(out, force=force)
+        check_output_folder(out, force=force)
     if records is not None:
-        _check_records(records, out, force=force)
-    wanted = parse_target(target, damping)
-    low, high = numbers("--limits", limits, 2, 2)
+        _check_selected_records_folder(records, out, force=force)
+    wanted = parse_target_spectrum(target, damping)
+    low, high = parse_comma_separated_numbers("--limits", limits, 2, 2)
     found = find_motions(names, units, dt, on_error, vertical)
     chosen = Suite(item.motion for item in found).select(
         wanted,
         count,
-        numbers("--periods", periods, 1),
+        parse_comma_separated_numbers("--periods", periods, 1),
         measure=_MEASURES[measure],
         scale_limits=(low, high),
         per_event=per_event,
@@ -273,7 +285,7 @@ def select(
         least_ratio=least,
     )
     document: dict[str, Any] = {
-        "versions": versions(),
+        "versions": versions_in_results(),
         "options": {
             "measure": measure,
             "scale_limits": [low, high],
@@ -284,7 +296,7 @@ def select(
         },
         "target": wanted,
         "units": {"sa": "m/s²", "period": "s", "distance_km": "km", "vs30": "m/s"},
-        "records": _records(chosen),
+        "records": _selected_record_rows(chosen),
         "motions": [item.describe() for item in found if item.motion.name in chosen.suite],
         "misfit": chosen.misfit,
         "least_ratio": chosen.least_ratio,
@@ -292,28 +304,28 @@ def select(
         "spectra": chosen.spectra().to_dict("list"),
     }
     if out is not None:
-        _write(out, document, chosen, force=force)
+        _write_selection(out, document, chosen, force=force)
     if records is not None:
-        _write_records(records, document, chosen, force=force)
+        _write_selected_records(records, document, chosen, force=force)
     if json:
-        typer.echo(to_json(document))
+        typer.echo(document_to_json(document))
     else:
-        _print(chosen)
+        _print_selection(chosen)
 
 
-def _check_records(folder: Path, out: Path | None, *, force: bool) -> None:
+def _check_selected_records_folder(folder: Path, out: Path | None, *, force: bool) -> None:
 
     if out is not None and folder.absolute() == out.absolute():
         raise InputError(
             f"--records {folder} is the folder of --out, too. Give it one of its own: every CSV file in it is a record."
         )
     try:
-        check_folder(folder, force=force)
+        check_output_folder(folder, force=force)
     except InputError as error:
         raise InputError(str(error).replace("--out", "--records")) from error
 
 
-def _records(chosen: "Selection[Any]") -> list[dict[str, Any]]:
+def _selected_record_rows(chosen: "Selection[Any]") -> list[dict[str, Any]]:
     """One row for each record, as in the table, with None for what is not known."""
     table = chosen.table().astype(object)
     return [
@@ -321,9 +333,9 @@ def _records(chosen: "Selection[Any]") -> list[dict[str, Any]]:
     ]
 
 
-def _print(chosen: "Selection[Any]") -> None:
+def _print_selection(chosen: "Selection[Any]") -> None:
 
-    console = output()
+    console = stdout_console()
     rows = [
         [
             row["record"],
@@ -331,17 +343,19 @@ def _print(chosen: "Selection[Any]") -> None:
             str(row["year"] or "-"),
             "-" if row["magnitude"] is None else f"{row['magnitude']:g}",
             "-" if row["distance_km"] is None else f"{row['distance_km']:g}",
-            number(row["factor"]),
-            number(row["misfit"], 3),
+            number_for_console(row["factor"]),
+            number_for_console(row["misfit"], 3),
             f"{row['least_ratio']:.2f} ... {row['largest_ratio']:.2f}",
         ]
-        for row in _records(chosen)
+        for row in _selected_record_rows(chosen)
     ]
-    show(console, grid(("record", "event", "year", "M", "R [km]", "factor", "misfit", "Sa/target"), rows, 2))
+    print_console_table(
+        console, console_table(("record", "event", "year", "M", "R [km]", "factor", "misfit", "Sa/target"), rows, 2)
+    )
     target = chosen.target
     lines = [
         f"\nTarget: {target.name}, damping {target.damping_ratio:g}, {chosen.periods[0]:g} to {chosen.periods[-1]:g} s",
-        f"Mean: misfit {number(chosen.misfit, 3)}, at least {chosen.least_ratio:.3f} of the target",
+        f"Mean: misfit {number_for_console(chosen.misfit, 3)}, at least {chosen.least_ratio:.3f} of the target",
     ]
     if len(chosen.names) > 1:
         spread = chosen.dispersion
@@ -351,20 +365,20 @@ def _print(chosen: "Selection[Any]") -> None:
     console.print("\n".join(lines), markup=False, soft_wrap=True)
 
 
-def _write(folder: Path, document: dict[str, Any], chosen: "Selection[Any]", *, force: bool) -> None:
+def _write_selection(folder: Path, document: dict[str, Any], chosen: "Selection[Any]", *, force: bool) -> None:
     from rockflex.plot import plot_selection, save_figure
 
-    with staged(folder, document, force=force) as stage:
+    with staged_output_folder(folder, document, force=force) as stage:
         chosen.table().to_csv(stage / "selection.csv", index=False, lineterminator="\n")
         chosen.spectra().to_csv(stage / "spectra.csv", index=False, lineterminator="\n")
         save_figure(plot_selection(chosen), stage / "selection.png")
-    note(f"Written to {folder}")
+    print_remark(f"Written to {folder}")
 
 
-def _write_records(folder: Path, document: dict[str, Any], chosen: "Selection[Any]", *, force: bool) -> None:
+def _write_selected_records(folder: Path, document: dict[str, Any], chosen: "Selection[Any]", *, force: bool) -> None:
     from rockflex.motion import record_csv
 
-    with staged(folder, document, force=force) as stage:
+    with staged_output_folder(folder, document, force=force) as stage:
         for stem, motion in zip(file_stems(motion.name for motion in chosen.suite), chosen.suite, strict=True):
             (stage / f"{stem}.csv").write_text(record_csv(motion), "utf-8", newline="\n")
-    note(f"{counted(len(chosen.suite), 'scaled record')} written to {folder}")
+    print_remark(f"{number_with_noun(len(chosen.suite), 'scaled record')} written to {folder}")

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from rockflex._errors import InputError
 from rockflex._schema import FrameFlags, FrameKeys
-from rockflex._shown import counted
-from rockflex.cli._console import grid, number
-from rockflex.cli._options import flags_of, naming
+from rockflex._shown import number_with_noun
+from rockflex.cli._console import console_table, number_for_console
+from rockflex.cli._options import flags_of_tables, naming_flags_in_errors
 from rockflex.modal import (
     BaseElement,
     ElementLaw,
@@ -22,7 +22,15 @@ from rockflex.modal import (
     law_parameters,
 )
 from rockflex.structure import Eccentric, Frame, Restrained, structure_warnings
-from rockflex.structure.file import ELEMENTS, KINDS, Built, StructureEntry, build_in, checked, read_toml
+from rockflex.structure.file import (
+    ELEMENTS,
+    KINDS,
+    Built,
+    StructureEntry,
+    build_structure_in_file,
+    parse_toml_table,
+    read_toml_file,
+)
 from rockflex.study.spec import RunOptionKeys
 
 if TYPE_CHECKING:
@@ -54,14 +62,14 @@ _WORDS = 2  # columns of words
 
 def describe_elements(elements: Sequence[BaseElement]) -> list[dict[str, Any]]:
     """Return the kind and the values of each element, for a document."""
-    return [{"kind": _kind(each), **asdict(each)} for each in elements]
+    return [{"kind": _element_kind(each), **asdict(each)} for each in elements]
 
 
 def elements_table(elements: Sequence[BaseElement]) -> "Table":
     """Return the table of elements, without the columns that none of them needs."""
     rows = [(str(place), *_element_row(each)) for place, each in enumerate(elements, start=1)]
     kept = [k for k in range(len(_ELEMENT_HEADINGS)) if k < _WORDS or any(row[k] != "-" for row in rows)]
-    return grid([_ELEMENT_HEADINGS[k] for k in kept], ([row[k] for k in kept] for row in rows), _WORDS)
+    return console_table([_ELEMENT_HEADINGS[k] for k in kept], ([row[k] for k in kept] for row in rows), _WORDS)
 
 
 def _element_row(element: BaseElement) -> tuple[str, ...]:
@@ -81,14 +89,14 @@ def _element_row(element: BaseElement) -> tuple[str, ...]:
         strength = element.force / 1e3
     only = ", tension only" if isinstance(element, YieldingDissipator) and element.tension_only else ""
     values = (element.position, stiffness, damping, prestress, strength, ratio, breaks)
-    return (_kind(element).replace("_", " ") + only, *map(number, values))
+    return (_element_kind(element).replace("_", " ") + only, *map(number_for_console, values))
 
 
-def _kind(element: BaseElement) -> str:
+def _element_kind(element: BaseElement) -> str:
     return next((kind for kind, table in ELEMENTS.items() if table.makes is type(element)), type(element).__name__)
 
 
-FLAGS = flags_of(FrameFlags)
+FLAGS = flags_of_tables(FrameFlags)
 
 
 class StructureFile(RunOptionKeys, StructureEntry):
@@ -133,7 +141,7 @@ class LoadedStructure:
         shift = f", e = {p.eccentricity:.4g} m" if p.eccentricity else ""
         if p.n_modes == 0:
             return f"{self.name}: rigid, B/h = {p.half_width * p.m_tot / p.l0r:.4g}{shift}"
-        modes = counted(p.n_modes, "mode")
+        modes = number_with_noun(p.n_modes, "mode")
         slenderness = p.effective_height[0] / p.half_width
         period = 2.0 * math.pi / p.omega[0]
         return f"{self.name}: {modes}, T_1 = {period:.4g} s, h*_1/B = {slenderness:.4g}, ζ_1 = {p.zeta[0]:.4g}{shift}"
@@ -148,7 +156,7 @@ class LoadedStructure:
         return {"name": self.name, "kind": self.kind, **self.values, **self.run_options}
 
 
-def split_arguments(option: Path | None, arguments: Sequence[str]) -> tuple[Path | None, list[str]]:
+def split_structure_file_argument(option: Path | None, arguments: Sequence[str]) -> tuple[Path | None, list[str]]:
     """Return the structure file, given by --structure or as the first argument, and the remaining arguments.
 
     Raises
@@ -173,19 +181,19 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
         message names the file and the key.
     """
     if file is None:
-        return _from_flags(flags)
+        return _frame_from_flags(flags)
     if flags:
-        raise InputError(f"The structure was given by {file} and by {_flag_names(flags)}. Give one or the other.")
-    content = read_toml(file, "structure")
+        raise InputError(f"The structure was given by {file} and by {_flag_names_text(flags)}. Give one or the other.")
+    content = read_toml_file(file, "structure")
     if "study" in content:
-        raise _study_given(file, content["study"])
-    document = checked(StructureFile, content, str(file))
+        raise _study_in_place_of_structure(file, content["study"])
+    document = parse_toml_table(StructureFile, content, str(file))
     run_options = document.model_dump(include=set(RunOptionKeys.model_fields), exclude_unset=True)
-    built = build_in(file, document)
+    built = build_structure_in_file(file, document)
     return LoadedStructure(document.name or file.stem, document.kind, document.describe(), built, run_options)
 
 
-def _study_given(file: Path, name: object) -> InputError:
+def _study_in_place_of_structure(file: Path, name: object) -> InputError:
     """Return the error for the file of a study in place of one of a structure."""
     from rockflex.kinds import KINDS
 
@@ -194,7 +202,7 @@ def _study_given(file: Path, name: object) -> InputError:
     return InputError(f"{file} is the file of a study, but one of a structure is expected. {remedy}")
 
 
-def describe_properties(properties: RockingProperties) -> dict[str, Any]:
+def describe_rocking_properties(properties: RockingProperties) -> dict[str, Any]:
     """Return every parameter of a rocking structure by name, for a document; `pivots` where the two differ."""
     names = (
         *KINDS["properties"].model_fields,
@@ -213,19 +221,20 @@ def describe_properties(properties: RockingProperties) -> dict[str, Any]:
     return described | {"eccentricity": properties.eccentricity, "pivots": pivots}
 
 
-def _from_flags(given: dict[str, Any]) -> LoadedStructure:
-    needed = flags_of(FrameKeys)
+def _frame_from_flags(given: dict[str, Any]) -> LoadedStructure:
+    needed = flags_of_tables(FrameKeys)
     missing = [name for name in needed if name not in given]
     if missing:
-        lack = f"The frame lacks {_flag_names(missing)}." if given else "No structure was given."
+        lack = f"The frame lacks {_flag_names_text(missing)}." if given else "No structure was given."
         raise InputError(
-            f"{lack} Give a structure file, such as structure.toml, or all the flags of a frame: {_flag_names(needed)}."
+            f"{lack} Give a structure file, such as structure.toml, or all the flags of a frame: "
+            f"{_flag_names_text(needed)}."
         )
-    with naming(FLAGS):
+    with naming_flags_in_errors(FLAGS):
         frame = Frame(**{name: value for name, value in given.items() if name in needed})
         built = Eccentric(frame, given["eccentricity"]) if "eccentricity" in given else frame
     return LoadedStructure(f"{frame.n_stories}-story frame", "frame", given, built)
 
 
-def _flag_names(names: Iterable[str]) -> str:
+def _flag_names_text(names: Iterable[str]) -> str:
     return ", ".join(FLAGS[name] for name in names)

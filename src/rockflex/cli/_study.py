@@ -9,24 +9,31 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 import typer
 
 from rockflex._errors import InputError, SolverError
-from rockflex._shown import counted, shown
+from rockflex._shown import number_with_noun, shown
 from rockflex.cli import _options as options
-from rockflex.cli._console import complain, grid, note, number, output, show
-from rockflex.cli._output import check_folder, staged, to_json, versions
-from rockflex.kinds import KINDS, Findings, StudyKind, kind_named
-from rockflex.study.progress import bar, duration, row_rate
+from rockflex.cli._console import (
+    console_table,
+    number_for_console,
+    print_console_table,
+    print_error,
+    print_remark,
+    stdout_console,
+)
+from rockflex.cli._output import check_output_folder, document_to_json, staged_output_folder, versions_in_results
+from rockflex.kinds import KINDS, StudyFindings, StudyKind, study_kind_named
+from rockflex.study.progress import duration_text, progress_bar, row_rate_text
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rockflex.study import Spec
+    from rockflex.study import StudySpec
     from rockflex.study.progress import Progress
 
 
 Result = TypeVar("Result")
 
 
-def epilog(command: str) -> str:
+def study_command_epilog(command: str) -> str:
     """Examples of a command."""
     return f"""[bold]Examples[/bold]
 
@@ -65,7 +72,7 @@ Share = Annotated[
 Strict = Annotated[bool, typer.Option("--strict", help="Exit with 1 if a run or a fit failed.")]
 
 
-def command_of(kind: StudyKind) -> Callable[..., None]:
+def study_command(kind: StudyKind) -> Callable[..., None]:
     """Return the command that runs studies of a kind: all take the same arguments."""
 
     def command(
@@ -80,18 +87,18 @@ def command_of(kind: StudyKind) -> Callable[..., None]:
         json: options.Json = False,
         strict: Strict = False,
     ) -> None:
-        study = _load(kind, file, work_limit)
+        study = _load_study_of_kind(kind, file, work_limit)
         if share is not None:
             if out is None or dry_run or json or strict:
                 raise InputError("--share only stores runs: it needs --out, and no --dry-run, --json or --strict.")
-            _store_share(study, file, out, share, dask, workers, any_version=any_version)
+            _store_study_share(study, file, out, share, dask, workers, any_version=any_version)
             return
         if dry_run:
-            _announce(study, file, workers, json=json)
+            _announce_study(study, file, workers, json=json)
             return
         from rockflex.kinds import run_study
 
-        table, seconds = _watched(
+        table, seconds = _study_with_progress(
             study,
             file,
             out,
@@ -101,8 +108,8 @@ def command_of(kind: StudyKind) -> Callable[..., None]:
         )
 
         if out is not None:
-            note(f"Stored in {out}; rockflex figures {out} draws it")
-        failed, unfitted = summarise(kind, study, table, seconds, json=json)
+            print_remark(f"Stored in {out}; rockflex figures {out} draws it")
+        failed, unfitted = print_study_summary(kind, study, table, seconds, json=json)
         if strict and (failed or unfitted):
             raise typer.Exit(1)
 
@@ -110,7 +117,7 @@ def command_of(kind: StudyKind) -> Callable[..., None]:
     return command
 
 
-def _load(kind: StudyKind, file: Path, work_limit: str | None) -> "Spec":
+def _load_study_of_kind(kind: StudyKind, file: Path, work_limit: str | None) -> "StudySpec":
     from rockflex.kinds import KINDS, load_study
 
     study = load_study(file)
@@ -124,7 +131,7 @@ def _load(kind: StudyKind, file: Path, work_limit: str | None) -> "Spec":
     return study.model_copy(update={"work_limit": parse_work_limit(work_limit) or "none"})
 
 
-def _announce(study: "Spec", file: Path, workers: int | None, *, json: bool) -> None:
+def _announce_study(study: "StudySpec", file: Path, workers: int | None, *, json: bool) -> None:
     """Print how many runs a study has and about how long it takes."""
     from rockflex.kinds import estimate_time
 
@@ -140,17 +147,17 @@ def _announce(study: "Spec", file: Path, workers: int | None, *, json: bool) -> 
         "estimated_time": seconds,
     }
     if json:
-        typer.echo(to_json(document))
+        typer.echo(document_to_json(document))
         return
     typer.echo(
-        f"{file}: {at_most}{counted(plan.n_runs, 'run')} in {counted(plan.n_chunks, 'part')}, "
-        f"{counted(len(plan.motions), 'record')}; "
-        f"about {at_most}{duration(seconds)} here"
+        f"{file}: {at_most}{number_with_noun(plan.n_runs, 'run')} in {number_with_noun(plan.n_chunks, 'part')}, "
+        f"{number_with_noun(len(plan.motions), 'record')}; "
+        f"about {at_most}{duration_text(seconds)} here"
     )
 
 
-def _store_share(
-    study: "Spec", file: Path, out: Path, share: str, dask: str | None, workers: int | None, *, any_version: bool
+def _store_study_share(
+    study: "StudySpec", file: Path, out: Path, share: str, dask: str | None, workers: int | None, *, any_version: bool
 ) -> None:
     """Store one share of a study."""
     from rockflex.kinds import fill_study
@@ -158,7 +165,7 @@ def _store_share(
     place, stroke, count = share.partition("/")
     if not (stroke and place.isdecimal() and count.isdecimal()):
         raise InputError(f'--share must be K/N, such as 3/10, but "{share}" was given.')
-    folder, _ = _watched(
+    folder, _ = _study_with_progress(
         study,
         file,
         out,
@@ -172,11 +179,13 @@ def _store_share(
             progress=progress,
         ),
     )
-    note(f"Share {share} is stored in {out}: {folder.n_chunks - len(folder.missing())} of {folder.n_chunks} parts")
+    print_remark(
+        f"Share {share} is stored in {out}: {folder.n_chunks - len(folder.missing())} of {folder.n_chunks} parts"
+    )
 
 
-def _watched(
-    study: "Spec", file: Path, out: Path | None, work: "Callable[[Callable[[Progress], None]], Result]"
+def _study_with_progress(
+    study: "StudySpec", file: Path, out: Path | None, work: "Callable[[Callable[[Progress], None]], Result]"
 ) -> tuple[Result, float]:
     """Return the result of `work` and the time that it took in s; a terminal shows a progress bar."""
     from time import perf_counter
@@ -186,21 +195,21 @@ def _watched(
     last: list[Progress] = []
     start = perf_counter()
     try:
-        with bar(study.name or file.stem, transient=True) as show:
+        with progress_bar(study.name or file.stem, transient=True) as show:
 
             def progress(now: "Progress") -> None:
                 if not last and now.kept:
-                    note(f"{now.kept} of {now.parts} parts are already in {out}")
+                    print_remark(f"{now.kept} of {now.parts} parts are already in {out}")
                 last[:] = [now]
-                show(now.done, now.parts, row_rate(now, perf_counter() - start))
+                show(now.done, now.parts, row_rate_text(now, perf_counter() - start))
 
             result = work(progress)
     except KeyboardInterrupt as stop:
         done = f"{last[0].done} of {last[0].parts} parts are stored in {out}" if last and out else "Nothing was stored"
-        note(f"Stopped. {done}{'; the same command resumes it' if out else ', because no --out was given'}.")
+        print_remark(f"Stopped. {done}{'; the same command resumes it' if out else ', because no --out was given'}.")
         raise typer.Exit(130) from stop
     except ClusterError as error:
-        complain(str(error))
+        print_error(str(error))
         raise typer.Exit(1) from error
     return result, perf_counter() - start
 
@@ -208,63 +217,70 @@ def _watched(
 Tables = dict[str, list[dict[str, Any]]]
 
 
-def summarise(kind: StudyKind, study: "Spec", table: "pd.DataFrame", seconds: float, *, json: bool) -> tuple[int, int]:
+def print_study_summary(
+    kind: StudyKind, study: "StudySpec", table: "pd.DataFrame", seconds: float, *, json: bool
+) -> tuple[int, int]:
     """Print the summary of a study; return the number of failed runs and of failed fits."""
-    from rockflex.study import pivot_lifts
+    from rockflex.study import count_pivot_lifts
 
-    found = Findings()
+    found = StudyFindings()
     try:
         kind.report(study, table, found)
     except (InputError, SolverError) as error:  # the runs are stored, whatever can be derived from them
         found.unfitted.append(str(error))
     tables: Tables = {
-        title: [{str(key): _plain_value(value) for key, value in row.items()} for row in rows]
+        title: [{str(key): _plain_summary_value(value) for key, value in row.items()} for row in rows]
         for title, rows in found.tables.items()
     }
-    lifts = pivot_lifts(kind.runs(table))
+    lifts = count_pivot_lifts(kind.runs(table))
     failed = int(table["error"].notna().sum())
     if json:
-        document = {"versions": versions(), "study": study.document(), "rows": len(table), "failed": failed}
+        document = {"versions": versions_in_results(), "study": study.document(), "rows": len(table), "failed": failed}
         document |= {"elapsed": seconds, "unfitted": found.unfitted}
-        typer.echo(to_json(document | {"pivot_lifts": [each._asdict() for each in lifts], **tables}))
+        typer.echo(document_to_json(document | {"pivot_lifts": [each._asdict() for each in lifts], **tables}))
     else:
-        _print_tables(tables)
+        _print_summary_tables(tables)
         for text in (text for each in lifts for text in each.warnings):
             typer.echo(f"\n{text}")
-        typer.echo(f"\n{counted(len(table), 'row')} in {duration(seconds)}")
+        typer.echo(f"\n{number_with_noun(len(table), 'row')} in {duration_text(seconds)}")
     for remark in found.remarks:
-        note(remark)
+        print_remark(remark)
     for reason in dict.fromkeys(found.unfitted):
-        note(f"No fit: {reason}")
+        print_remark(f"No fit: {reason}")
     if failed:
         first = table.loc[table["error"].notna(), "error"].iloc[0]
-        note(f"{counted(failed, 'row has', 'rows have')} an error, the first: {first}")
+        print_remark(f"{number_with_noun(failed, 'row has', 'rows have')} an error, the first: {first}")
     return failed, len(found.unfitted)
 
 
-def _plain_value(value: Any) -> Any:
+def _plain_summary_value(value: Any) -> Any:
     """A number or a text; None for what is missing."""
     if isinstance(value, Number):
         return None if isinstance(value, float) and math.isnan(value) else value
     return None if value is None else str(value)
 
 
-def _print_tables(tables: Tables) -> None:
-    console = output()
+def _print_summary_tables(tables: Tables) -> None:
+    console = stdout_console()
     for place, (title, rows) in enumerate(tables.items()):
         if not rows:
             continue
         console.print(("\n" if place else "") + title, style="bold", markup=False)
         words = sum(isinstance(value, str) for value in rows[0].values())
-        show(console, grid(list(rows[0]), ([_cell(value) for value in row.values()] for row in rows), n_left=words))
+        print_console_table(
+            console,
+            console_table(
+                list(rows[0]), ([_summary_cell(value) for value in row.values()] for row in rows), n_left=words
+            ),
+        )
 
 
-def _cell(value: Any) -> str:
+def _summary_cell(value: Any) -> str:
     if isinstance(value, str):
         return value
     if value is None:
         return "-"
-    return str(int(value)) if isinstance(value, Integral) else number(float(value))
+    return str(int(value)) if isinstance(value, Integral) else number_for_console(float(value))
 
 
 FIGURES_EPILOG = """[bold]Examples[/bold]
@@ -302,9 +318,9 @@ def figures(
     from rockflex.study.folders import StudyFolder
 
     target = folder / "figures" if out is None else out
-    check_folder(target, force=force)
+    check_output_folder(target, force=force)
     study = StudyFolder.load(folder)
-    kind = kind_named(study.spec.get("study"))
+    kind = study_kind_named(study.spec.get("study"))
     if measure is not None and not kind.measured:
         raise InputError(
             f"--measure is for {', '.join(OTHERS)} and {LAST} studies, but the study in {folder} is of kind "
@@ -313,9 +329,9 @@ def figures(
     missing = len(study.missing())
     table = study.frame(partial=True)
     if missing:
-        note(f"{missing} of {study.n_chunks} parts are missing: the figures show the others")
+        print_remark(f"{missing} of {study.n_chunks} parts are missing: the figures show the others")
     document: dict[str, Any] = {
-        "versions": versions(),
+        "versions": versions_in_results(),
         "study": study.spec,
         "parts": study.n_chunks,
         "missing_parts": missing,
@@ -323,8 +339,8 @@ def figures(
     from rockflex.plot import save_figure
 
     undrawn: list[str] = []
-    with staged(target, document, force=force) as stage:
-        for stem, draw in kind.figures(study.spec, table, measure or "pgv", note):
+    with staged_output_folder(target, document, force=force) as stage:
+        for stem, draw in kind.figures(study.spec, table, measure or "pgv", print_remark):
             try:
                 save_figure(draw(), stage / f"{stem}.{form}")
             except (InputError, SolverError) as error:
@@ -332,5 +348,5 @@ def figures(
         if not any(stage.iterdir()):
             raise InputError(f"No figure of {folder} can be drawn. {' '.join(undrawn)}")
     for reason in undrawn:
-        note(f"No figure {reason}")
-    note(f"Written to {target}")
+        print_remark(f"No figure {reason}")
+    print_remark(f"Written to {target}")

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rockflex._errors import InputError
-from rockflex._shown import counted
+from rockflex._shown import number_with_noun
 from rockflex.cli import _options as options
-from rockflex.cli._console import grid, number, output, show
-from rockflex.cli._output import to_json, versions
+from rockflex.cli._console import console_table, number_for_console, print_console_table, stdout_console
+from rockflex.cli._output import document_to_json, versions_in_results
 
 if TYPE_CHECKING:
     from rockflex.motion import RecordSurvey, SurveyEntry
@@ -64,24 +64,24 @@ def survey(
             for each in found.stations
         ]
         document: dict[str, Any] = {
-            "versions": versions(),
+            "versions": versions_in_results(),
             "units": {"dt": "s", "pga": "m/s²", "stated_pga": "m/s²", "distance_km": "km", "vs30": "m/s"},
             "entries": found.entries,
             "stations": stations,
         }
-        typer.echo(to_json(document))
+        typer.echo(document_to_json(document))
     else:
-        _print(found)
+        _print_record_survey(found)
 
 
-def _print(found: "RecordSurvey") -> None:
+def _print_record_survey(found: "RecordSurvey") -> None:
     from rockflex._constants import GRAVITY
 
     def cells(entry: "SurveyEntry") -> list[str]:
         words = [entry.file, entry.format, entry.station, entry.component]
         facts = [entry.magnitude, entry.distance_km, entry.vs30]
         samples = ["-" if value is None else f"{value:g}" for value in (entry.dt, entry.n_samples)]
-        peak = "-" if entry.pga is None else number(entry.pga / GRAVITY)
+        peak = "-" if entry.pga is None else number_for_console(entry.pga / GRAVITY)
         return [
             *(word or "-" for word in words),
             "yes" if entry.taken else "no",
@@ -90,30 +90,30 @@ def _print(found: "RecordSurvey") -> None:
             *("-" if fact is None else f"{fact:g}" for fact in facts),
         ]
 
-    console = output()
+    console = stdout_console()
     head = ("file", "format", "station", "component", "taken", "dt [s]", "npts", "PGA [g]", "M", "R [km]", "Vs30 [m/s]")
-    show(console, grid(head, map(cells, found.entries), 5))
+    print_console_table(console, console_table(head, map(cells, found.entries), 5))
     taken, left = len(found.taken), len(found.left_out)
-    print_line = f"\n{taken} taken, {left} left out; {_stations(found)}"
+    print_line = f"\n{taken} taken, {left} left out; {_station_count_text(found)}"
     console.print(print_line, markup=False, soft_wrap=True)
     for title, entries in (("Left out", found.left_out), ("Taken, but", [each for each in found.taken if each.reason])):
         if entries:
             console.print(f"\n{title}:", markup=False)
-        for reason, names in _by_reason(entries).items():
-            console.print(f"  {_named(names)}: {reason}", markup=False, soft_wrap=True)
+        for reason, names in _files_by_survey_reason(entries).items():
+            console.print(f"  {_named_files_text(names)}: {reason}", markup=False, soft_wrap=True)
 
 
-def _stations(found: "RecordSurvey") -> str:
+def _station_count_text(found: "RecordSurvey") -> str:
     pairs = [len(each.horizontal) == 2 for each in found.stations]
     upright = [each.vertical is not None for each in found.stations]
     both = sum(pair and vertical for pair, vertical in zip(pairs, upright, strict=True))
     return (
-        f"{counted(len(pairs), 'recording')}: {sum(pairs)} with a horizontal pair, {sum(upright)} with a "
+        f"{number_with_noun(len(pairs), 'recording')}: {sum(pairs)} with a horizontal pair, {sum(upright)} with a "
         f"vertical component, {both} with both"
     )
 
 
-def _by_reason(entries: "Iterable[SurveyEntry]") -> dict[str, list[str]]:
+def _files_by_survey_reason(entries: "Iterable[SurveyEntry]") -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
     for entry in entries:
         names = found.setdefault(entry.reason, [])
@@ -122,6 +122,6 @@ def _by_reason(entries: "Iterable[SurveyEntry]") -> dict[str, list[str]]:
     return found
 
 
-def _named(names: list[str]) -> str:
+def _named_files_text(names: list[str]) -> str:
     more = f" and {len(names) - MAX_NAMED_FILES} more" if len(names) > MAX_NAMED_FILES else ""
     return ", ".join(names[:MAX_NAMED_FILES]) + more

@@ -1,11 +1,11 @@
 """Fragility and risk: regressions of study results, their confidence bands, and their integrals over hazard."""
 
-from rockflex.fragility._annual_rate import AnnualRate, annual_rate, quadrature, risk_targeted_median
-from rockflex.fragility._bootstrap import BootstrapBand, bootstrap_band, resample_weights, resampled_exceedance
+from rockflex.fragility._annual_rate import AnnualRate, annual_rate, hazard_quadrature, risk_targeted_median
+from rockflex.fragility._bootstrap import BootstrapBand, bootstrap_band, bootstrap_weights, resampled_exceedance
 from rockflex.fragility._cloud import CloudFit, compare_measures, fit_cloud
-from rockflex.fragility._clouds import CloudFits, fit_clouds, fit_each_cloud, recordings_of
+from rockflex.fragility._clouds import CloudFits, fit_clouds, fit_each_cloud, recordings_of_runs
 from rockflex.fragility._exports import write_nrml, write_pelicun
-from rockflex.fragility._hazard import HazardCurve, damping_of
+from rockflex.fragility._hazard import HazardCurve, measure_damping_of_runs
 from rockflex.fragility._limit_states import (
     LIMIT_STATES,
     NOMINAL,
@@ -16,12 +16,12 @@ from rockflex.fragility._limit_states import (
     TENDON_YIELD,
     UPLIFT,
     LimitState,
-    beyond,
-    limit_label,
-    observed_fractions,
-    residual_beyond,
-    rocked,
-    symbol_of_nominal,
+    limit_state_label,
+    nominal_rotation_symbol,
+    observed_exceedance_fractions,
+    residual_rotation_limit_state,
+    rocked_runs,
+    rotation_limit_state,
 )
 from rockflex.fragility._logistic import LogisticFit, UnanimousOutcome, fit_logistic
 from rockflex.fragility._lognormal import LognormalFragility, fit_capacities, fit_stripes
@@ -49,10 +49,9 @@ __all__ = [
     "RotationFragility",
     "UnanimousOutcome",
     "annual_rate",
-    "beyond",
     "bootstrap_band",
+    "bootstrap_weights",
     "compare_measures",
-    "damping_of",
     "fit_capacities",
     "fit_cloud",
     "fit_clouds",
@@ -60,16 +59,17 @@ __all__ = [
     "fit_logistic",
     "fit_outcomes",
     "fit_stripes",
-    "limit_label",
-    "observed_fractions",
-    "quadrature",
-    "recordings_of",
-    "resample_weights",
+    "hazard_quadrature",
+    "limit_state_label",
+    "measure_damping_of_runs",
+    "nominal_rotation_symbol",
+    "observed_exceedance_fractions",
+    "recordings_of_runs",
     "resampled_exceedance",
-    "residual_beyond",
+    "residual_rotation_limit_state",
     "risk_targeted_median",
-    "rocked",
-    "symbol_of_nominal",
+    "rocked_runs",
+    "rotation_limit_state",
     "write_nrml",
     "write_pelicun",
 ]

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._checks import in_range, instance, positive
+from rockflex._checks import checked_in_range, checked_instance, checked_positive
 from rockflex._errors import InputError
 from rockflex._values import Value
-from rockflex.fragility._arguments import Curve, Fragility, checked_confidence, checked_curve
+from rockflex.fragility._arguments import Curve, FragilityCurve, checked_confidence, checked_fragility_curve
 from rockflex.fragility._hazard import HazardCurve
-from rockflex.fragility._jackknife import sample_limits
+from rockflex.fragility._jackknife import sampled_band_limits
 from rockflex.fragility._logistic import UnanimousOutcome
 from rockflex.fragility._lognormal import LognormalFragility
 
@@ -62,10 +62,12 @@ class AnnualRate(Value):
 
     def probability_in(self, years: float) -> float:
         """Probability of at least one failure in `years`, 1 - exp(-rate years), as a Poisson process."""
-        return -math.expm1(-self.rate * positive("years", years, "years", zero=True))
+        return -math.expm1(-self.rate * checked_positive("years", years, "years", zero=True))
 
 
-def annual_rate(hazard: HazardCurve, fragility: Fragility | Curve, *, confidence: float | None = None) -> AnnualRate:
+def annual_rate(
+    hazard: HazardCurve, fragility: FragilityCurve | Curve, *, confidence: float | None = None
+) -> AnnualRate:
     """Integrate a fragility curve over a hazard curve, λ_f = ∫ P(im) |dλ(im)|.
 
     Between two points λ is a power law; adaptive Gauss-Kronrod quadrature in log IM integrates all segments at once.
@@ -97,19 +99,19 @@ def annual_rate(hazard: HazardCurve, fragility: Fragility | Curve, *, confidence
     >>> print(f"{found.beyond:.3g}")
     0.0001
     """
-    instance("hazard", hazard, HazardCurve)
-    probability = checked_curve(fragility)
+    checked_instance("hazard", hazard, HazardCurve)
+    probability = checked_fragility_curve(fragility)
     hazard.check_damping(getattr(fragility, "damping", None))
-    im, share = quadrature(hazard)
-    low, high = (math.nan, math.nan) if confidence is None else _band(fragility, im, share, confidence)
+    im, share = hazard_quadrature(hazard)
+    low, high = (math.nan, math.nan) if confidence is None else _annual_rate_band(fragility, im, share, confidence)
     ends, outside = getattr(fragility, "measured", None), math.nan
     if ends is not None:
         outside = float(np.sum((probability(im) * share)[(im < ends[0]) | (im > ends[1])]))
-    rate, below = _rate_within(hazard, probability), _rate_below(hazard, probability)
+    rate, below = _rate_within_hazard_curve(hazard, probability), _rate_below_hazard_curve(hazard, probability)
     return AnnualRate(rate, below, float(hazard.rate[-1]), low, high, outside)
 
 
-def quadrature(hazard: HazardCurve) -> tuple[Array, Array]:
+def hazard_quadrature(hazard: HazardCurve) -> tuple[Array, Array]:
     """Measures and weights: ∫ P |dλ| is close to the sum of P at these measures times the weights.
 
     Gauss and Legendre's rule in log IM, in each segment of the curve.
@@ -122,7 +124,7 @@ def quadrature(hazard: HazardCurve) -> tuple[Array, Array]:
     return im.ravel(), (0.5 * shares * falls).ravel()
 
 
-def _band(fragility: Any, im: Array, share: Array, confidence: float) -> tuple[float, float]:
+def _annual_rate_band(fragility: Any, im: Array, share: Array, confidence: float) -> tuple[float, float]:
     wanted = checked_confidence(confidence)
     if isinstance(fragility, UnanimousOutcome):
         return math.nan, math.nan
@@ -132,7 +134,7 @@ def _band(fragility: Any, im: Array, share: Array, confidence: float) -> tuple[f
             f"{type(fragility).__name__} was given. Leave confidence out for the rate alone.",
             field="confidence",
         )
-    low, high = sample_limits(fragility.drawn(im) @ share, wanted)
+    low, high = sampled_band_limits(fragility.drawn(im) @ share, wanted)
     return float(low), float(high)
 
 
@@ -171,13 +173,13 @@ def risk_targeted_median(
     """
     from scipy.optimize import brentq
 
-    instance("hazard", hazard, HazardCurve)
-    beta = positive("dispersion", dispersion, "natural logarithms")
-    target = positive("target_rate", target_rate, "1/year")
-    share = in_range("allowed_beyond", allowed_beyond, 0.0, math.inf)
+    checked_instance("hazard", hazard, HazardCurve)
+    beta = checked_positive("dispersion", dispersion, "natural logarithms")
+    target = checked_positive("target_rate", target_rate, "1/year")
+    share = checked_in_range("allowed_beyond", allowed_beyond, 0.0, math.inf)
 
     def rate(log_median: float) -> float:
-        return _rate_within(hazard, LognormalFragility(math.exp(log_median), beta).probability)
+        return _rate_within_hazard_curve(hazard, LognormalFragility(math.exp(log_median), beta).probability)
 
     low, high = math.log(hazard.im[0]), math.log(hazard.im[-1])
     most, least = rate(low), rate(high)
@@ -197,7 +199,7 @@ def risk_targeted_median(
     return median
 
 
-def _rate_within(hazard: HazardCurve, probability: Curve) -> float:
+def _rate_within_hazard_curve(hazard: HazardCurve, probability: Curve) -> float:
     from scipy.integrate import quad_vec
 
     start, width = np.log(hazard.im[:-1]), np.diff(np.log(hazard.im))
@@ -210,7 +212,7 @@ def _rate_within(hazard: HazardCurve, probability: Curve) -> float:
     return float(np.sum(parts))
 
 
-def _rate_below(hazard: HazardCurve, probability: Curve) -> float:
+def _rate_below_hazard_curve(hazard: HazardCurve, probability: Curve) -> float:
     """∫ P |dλ| below the first point, with the slope of the first segment; infinite if it diverges."""
     from scipy.integrate import quad_vec
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import finite_vector, float_array, in_range
+from rockflex._checks import checked_finite_vector, checked_in_range, float_array
 from rockflex._errors import InputError
 from rockflex._shown import shown
 
@@ -16,7 +16,7 @@ Curve = Callable[[Array], Array]
 
 def log_column(name: str, values: ArrayLike, leave_out: str) -> Array:
     """Natural logarithm of a column of positive numbers; `leave_out` says which rows to drop otherwise."""
-    column = finite_vector(name, values, "one unit")
+    column = checked_finite_vector(name, values, "one unit")
     bad = np.flatnonzero(column <= 0.0)
     if bad.size:
         raise InputError(
@@ -37,7 +37,7 @@ def log_measures(im: ArrayLike, name: str = "im") -> Array:
     return column
 
 
-def flags(name: str, values: ArrayLike) -> Bools:
+def boolean_column(name: str, values: ArrayLike) -> Bools:
     """Boolean array of a column of true and false, or of 1 and 0."""
     numbers = float_array(values)
     if numbers is None:
@@ -53,7 +53,7 @@ def flags(name: str, values: ArrayLike) -> Bools:
     return numbers == 1.0
 
 
-def same_length(**columns: NDArray[np.generic]) -> None:
+def check_same_column_length(**columns: NDArray[np.generic]) -> None:
     """Raise an InputError unless all columns have as many rows as the first."""
     sizes = {name: len(column) for name, column in columns.items()}
     if len(set(sizes.values())) > 1:
@@ -63,7 +63,7 @@ def same_length(**columns: NDArray[np.generic]) -> None:
         )
 
 
-def log_at(im: ArrayLike, name: str = "im") -> Array:
+def log_of_evaluation_points(im: ArrayLike, name: str = "im") -> Array:
     """Natural logarithm of the positive numbers, of any shape, at which a fit is evaluated."""
     array = float_array(im)
     if array is None:
@@ -76,7 +76,7 @@ def log_at(im: ArrayLike, name: str = "im") -> Array:
     return np.log(array)
 
 
-def fractions(name: str, values: ArrayLike) -> Array:
+def checked_probabilities(name: str, values: ArrayLike) -> Array:
     """Numbers strictly between 0 and 1, of any shape."""
     array = float_array(values)
     if array is None or not ((array > 0.0) & (array < 1.0)).all():
@@ -88,10 +88,10 @@ def fractions(name: str, values: ArrayLike) -> Array:
 
 def checked_confidence(confidence: float) -> float:
     """Confidence of a band, in [0, 1)."""
-    return in_range("confidence", confidence, 0.0, 1.0, hint="A 90 % band is confidence=0.9.")
+    return checked_in_range("confidence", confidence, 0.0, 1.0, hint="A 90 % band is confidence=0.9.")
 
 
-class Fragility(Protocol):
+class FragilityCurve(Protocol):
     """Any curve that gives a probability of failure at a measure."""
 
     def probability(self, im: Array, /) -> Array:
@@ -99,7 +99,7 @@ class Fragility(Protocol):
         ...
 
 
-def checked_curve(fragility: Fragility | Curve, name: str = "fragility") -> Curve:
+def checked_fragility_curve(fragility: FragilityCurve | Curve, name: str = "fragility") -> Curve:
     """Return the probability as a function of an array of measures; `name` is for messages.
 
     Raises

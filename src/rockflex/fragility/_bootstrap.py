@@ -8,21 +8,26 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import finite_vector, float_array, whole_number
+from rockflex._checks import checked_finite_vector, checked_whole_number, float_array
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex._values import Value
-from rockflex.fragility._arguments import checked_confidence, same_length
-from rockflex.fragility._jackknife import Recordings
+from rockflex.fragility._arguments import check_same_column_length, checked_confidence
+from rockflex.fragility._jackknife import RecordingGroups
 from rockflex.fragility._limit_states import OVERTURNED, ROCKED
-from rockflex.fragility._outcomes import total_probability
-from rockflex.fragility._regression import Scoring, Standardised, fit_curves, fit_lines
+from rockflex.fragility._outcomes import total_exceedance_probability
+from rockflex.fragility._regression import (
+    FirthScoringOptions,
+    StandardisedLogs,
+    fit_least_squares_lines,
+    fit_logistic_curves,
+)
 
 MAX_RESAMPLES = 1_000_000  # resamples
 MIN_RESAMPLES = 20  # fewest fitted resamples for meaningful quantiles
 MIN_GROUPS = 40  # blocks from which on percentiles are taken as they are
 Integers = NDArray[np.int64]
-RESAMPLE_SCORING = Scoring(1e-8)
+RESAMPLE_SCORING = FirthScoringOptions(1e-8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,12 +130,12 @@ def bootstrap_band(
     >>> print(f"{band.estimate[0]:.3g} from {band.low[0]:.3g} to {band.high[0]:.3g}")
     0.0137 from 0.0118 to 0.0152
     """
-    measures, grid = finite_vector("im", im, "one unit"), finite_vector("at", at, "one unit")
-    values = _checked_rows("outcome_or_response", outcome_or_response)
-    recordings = Recordings.of(np.arange(measures.size) if groups is None else groups)
-    same_length(im=measures, outcome_or_response=values, groups=recordings.codes)
-    wanted, times = checked_confidence(confidence), whole_number("n", n, MIN_RESAMPLES, MAX_RESAMPLES)
-    evaluate = _evaluate if curve is None else curve
+    measures, grid = checked_finite_vector("im", im, "one unit"), checked_finite_vector("at", at, "one unit")
+    values = _checked_resampled_rows("outcome_or_response", outcome_or_response)
+    recordings = RecordingGroups.of(np.arange(measures.size) if groups is None else groups)
+    check_same_column_length(im=measures, outcome_or_response=values, groups=recordings.codes)
+    wanted, times = checked_confidence(confidence), checked_whole_number("n", n, MIN_RESAMPLES, MAX_RESAMPLES)
+    evaluate = _fitted_curve_at if curve is None else curve
     for name, function in (("fit_function", fit_function), ("curve", evaluate)):
         if not callable(function):
             raise InputError(f"{name} must be a function, but {type(function).__name__} was given.")
@@ -138,11 +143,11 @@ def bootstrap_band(
     if estimate is None:
         raise InputError("curve must return numbers, one for each of `at`, but it returned something else.")
 
-    blocks = _rows_by_group(recordings)
+    blocks = _rows_by_recording(recordings)
     curves: list[Array] = []
     failures: list[str] = []
     separated = 0
-    for drawn in draw_groups(len(blocks), times, whole_number("seed", seed, 0)):
+    for drawn in draw_recording_groups(len(blocks), times, checked_whole_number("seed", seed, 0)):
         rows = np.concatenate([blocks[i] for i in drawn])
         try:
             fit = fit_function(measures[rows], values[rows])
@@ -160,12 +165,12 @@ def bootstrap_band(
             f"Only {len(curves)} of {times} resamples could be fitted, {MIN_RESAMPLES} are needed. The first failure: "
             f"{failures[0]}"
         )
-    low, high = np.quantile(curves, _percentiles(wanted, len(blocks)), axis=0)
-    note = _band_note(times, failures, separated, len(blocks))
+    low, high = np.quantile(curves, _band_percentiles(wanted, len(blocks)), axis=0)
+    note = _bootstrap_note(times, failures, separated, len(blocks))
     return BootstrapBand(grid, estimate, low, high, wanted, times, len(failures), separated, len(blocks), note)
 
 
-def _percentiles(confidence: float, n_blocks: int) -> tuple[float, float]:
+def _band_percentiles(confidence: float, n_blocks: int) -> tuple[float, float]:
     """Shares of the resamples below the limits of a band, so that few blocks do not make it too narrow."""
     from scipy.special import ndtr, stdtrit
 
@@ -173,11 +178,11 @@ def _percentiles(confidence: float, n_blocks: int) -> tuple[float, float]:
     return float(ndtr(-half)), float(ndtr(half))
 
 
-def _evaluate(fit: Any, grid: Array) -> Any:
+def _fitted_curve_at(fit: Any, grid: Array) -> Any:
     return fit.probability(grid) if hasattr(fit, "probability") else fit.median(grid)
 
 
-def _checked_rows(name: str, values: ArrayLike) -> NDArray[Any]:
+def _checked_resampled_rows(name: str, values: ArrayLike) -> NDArray[Any]:
     try:
         rows = np.asarray(values)
     except ValueError:
@@ -187,7 +192,7 @@ def _checked_rows(name: str, values: ArrayLike) -> NDArray[Any]:
     return rows
 
 
-def _rows_by_group(recordings: Recordings) -> list[NDArray[np.int64]]:
+def _rows_by_recording(recordings: RecordingGroups) -> list[NDArray[np.int64]]:
     """Rows of every group, in the order in which the groups first appear."""
     codes, n_groups = recordings
     if n_groups < 2:
@@ -197,7 +202,7 @@ def _rows_by_group(recordings: Recordings) -> list[NDArray[np.int64]]:
     return np.split(np.argsort(codes, kind="stable"), np.cumsum(np.bincount(codes))[:-1])
 
 
-def _band_note(n: int, failures: list[str], separated: int, groups: int) -> str:
+def _bootstrap_note(n: int, failures: list[str], separated: int, groups: int) -> str:
     notes: list[str] = []
     if failures:
         notes.append(
@@ -211,13 +216,13 @@ def _band_note(n: int, failures: list[str], separated: int, groups: int) -> str:
     return " ".join(notes)
 
 
-def draw_groups(n_groups: int, n: int, seed: int) -> Iterator[Integers]:
+def draw_recording_groups(n_groups: int, n: int, seed: int) -> Iterator[Integers]:
     """Numbers of the groups in each of `n` resamples, drawn with replacement."""
     generator = np.random.default_rng(seed)
     return (generator.integers(n_groups, size=n_groups) for _ in range(n))
 
 
-def resample_weights(groups: Integers, n: int, seed: int) -> Array:
+def bootstrap_weights(groups: Integers, n: int, seed: int) -> Array:
     """How often each run occurs in each resample of its groups, shape (n, n_runs), drawn as in `bootstrap_band`.
 
     Parameters
@@ -230,8 +235,8 @@ def resample_weights(groups: Integers, n: int, seed: int) -> Array:
     Examples
     --------
     >>> import numpy as np
-    >>> from rockflex.fragility import resample_weights
-    >>> weights = resample_weights(np.array([0, 0, 1]), n=20, seed=0)
+    >>> from rockflex.fragility import bootstrap_weights
+    >>> weights = bootstrap_weights(np.array([0, 0, 1]), n=20, seed=0)
     >>> weights.shape
     (20, 3)
     >>> bool((weights[:, 0] + weights[:, 2] == 2.0).all())
@@ -239,7 +244,8 @@ def resample_weights(groups: Integers, n: int, seed: int) -> Array:
     """
     count = int(groups.max()) + 1
     return np.array(
-        [np.bincount(drawn, minlength=count)[groups] for drawn in draw_groups(count, n, seed)], dtype=np.float64
+        [np.bincount(drawn, minlength=count)[groups] for drawn in draw_recording_groups(count, n, seed)],
+        dtype=np.float64,
     )
 
 
@@ -261,20 +267,20 @@ def resampled_exceedance(
     >>> print(f"{found[0, 0]:.3g}, {fit_outcomes(im, rotation, overturned).exceedance(0.5, 0.02):.3g}")
     0.759, 0.759
     """
-    scaled = Standardised(np.log(im))
+    scaled = StandardisedLogs(np.log(im))
     nodes, moves = scaled.of(np.log(at)), rotation > threshold
-    falls = _outcome_probability(scaled.x, overturned, weights, nodes)
+    falls = _resampled_outcome_curves(scaled.x, overturned, weights, nodes)
     if limit >= OVERTURNED:
         return falls
-    rocks = _outcome_probability(scaled.x, moves, weights * ~overturned, nodes)
+    rocks = _resampled_outcome_curves(scaled.x, moves, weights * ~overturned, nodes)
     rocked = moves & ~overturned
-    beyond = _limit_probability(
+    beyond = _resampled_limit_curves(
         np.log(im[rocked]), np.log(rotation[rocked]), weights[:, rocked], np.log(at), np.log(limit)
     )
-    return total_probability(falls, rocks, beyond)
+    return total_exceedance_probability(falls, rocks, beyond)
 
 
-def _outcome_probability(x: Array, outcome: Bools, weights: Array, nodes: Array) -> Array:
+def _resampled_outcome_curves(x: Array, outcome: Bools, weights: Array, nodes: Array) -> Array:
     """Logistic curve of each row at `nodes`; 0 or 1 where all outcomes are the same, NaN if all x are."""
     from scipy.special import expit
 
@@ -285,16 +291,16 @@ def _outcome_probability(x: Array, outcome: Bools, weights: Array, nodes: Array)
     found[~yes & no], found[yes & ~no] = 0.0, 1.0
     mixed = np.flatnonzero(yes & no & varied)
     if mixed.size:
-        b = fit_curves(x, outcome, weights[mixed], RESAMPLE_SCORING).parameters
+        b = fit_logistic_curves(x, outcome, weights[mixed], RESAMPLE_SCORING).parameters
         found[mixed] = expit(b[:, :1] + b[:, 1:] * nodes)
     return found
 
 
-def _limit_probability(x: Array, y: Array, weights: Array, at: Array, log_limit: float) -> Array:
+def _resampled_limit_curves(x: Array, y: Array, weights: Array, at: Array, log_limit: float) -> Array:
     """P(θ_max > limit | rocking) of each row at `at`; NaN for fewer than three runs or two x or y."""
     from scipy.special import ndtr
 
-    lines = fit_lines(x, y, weights)
+    lines = fit_least_squares_lines(x, y, weights)
     with np.errstate(all="ignore"):
         above = lines.intercept[:, None] + lines.slope[:, None] * at - log_limit
         found = ndtr(above / lines.dispersion[:, None])

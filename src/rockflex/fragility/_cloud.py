@@ -12,9 +12,16 @@ from rockflex._errors import InputError
 from rockflex._html import HtmlTable
 from rockflex._shown import shown
 from rockflex._values import Value
-from rockflex.fragility._arguments import checked_confidence, fractions, log_at, log_column, log_measures, same_length
-from rockflex.fragility._jackknife import Recordings, jackknife_covariance, quantile_of_t
-from rockflex.fragility._regression import fit_lines, standard_error
+from rockflex.fragility._arguments import (
+    check_same_column_length,
+    checked_confidence,
+    checked_probabilities,
+    log_column,
+    log_measures,
+    log_of_evaluation_points,
+)
+from rockflex.fragility._jackknife import RecordingGroups, jackknife_covariance, student_t_quantile
+from rockflex.fragility._regression import fit_least_squares_lines, standard_error_of_line
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -68,13 +75,13 @@ class CloudFit(HtmlTable, Value):
     def median(self, im: ArrayLike) -> Array:
         """Median response exp(c1) IM^c2, of the shape of `im`."""
         with np.errstate(over="ignore"):
-            return np.exp(self.c1 + self.c2 * log_at(im))
+            return np.exp(self.c1 + self.c2 * log_of_evaluation_points(im))
 
     def quantile(self, im: ArrayLike, p: ArrayLike) -> Array:
         """Response that a fraction `p` of the runs at `im` stay below; `im` and `p` broadcast."""
         from scipy.special import ndtri
 
-        return self.median(im) * np.exp(self.dispersion * ndtri(fractions("p", p)))
+        return self.median(im) * np.exp(self.dispersion * ndtri(checked_probabilities("p", p)))
 
     def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
         """Lower and upper confidence limits of the median.
@@ -82,9 +89,9 @@ class CloudFit(HtmlTable, Value):
         Student's t with `n_groups` - 1 degrees of freedom; n - 2 for independent runs. NaN if all runs belong to one
         recording.
         """
-        x = log_at(im)
-        times = quantile_of_t(checked_confidence(confidence), self.n_groups or self.n - 1)
-        half = times * standard_error(x, self.covariance)
+        x = log_of_evaluation_points(im)
+        times = student_t_quantile(checked_confidence(confidence), self.n_groups or self.n - 1)
+        half = times * standard_error_of_line(x, self.covariance)
         centre = self.c1 + self.c2 * x
         with np.errstate(over="ignore"):
             return np.exp(centre - half), np.exp(centre + half)
@@ -93,7 +100,7 @@ class CloudFit(HtmlTable, Value):
         """Probability that the response exceeds `limit` at `im`; the two broadcast."""
         from scipy.special import ndtr
 
-        above = self.c1 + self.c2 * log_at(im) - log_at(limit, "limit")
+        above = self.c1 + self.c2 * log_of_evaluation_points(im) - log_of_evaluation_points(limit, "limit")
         if self.dispersion == 0.0:
             return np.where(above > 0.0, 1.0, 0.0)
         return ndtr(above / self.dispersion)
@@ -129,30 +136,35 @@ def fit_cloud(im: ArrayLike, response: ArrayLike, groups: ArrayLike | None = Non
     y = log_column(
         "response", response, "A cloud holds the runs that responded: leave the others out, or see fit_outcomes."
     )
-    return fit_line(x, y, Recordings.beside(groups, im=x, response=y))[0]
+    return fit_cloud_line(x, y, RecordingGroups.beside(groups, im=x, response=y))[0]
 
 
-def fit_line(x: Array, y: Array, recordings: Recordings | None = None) -> tuple[CloudFit, Array | None]:
+def fit_cloud_line(x: Array, y: Array, recordings: RecordingGroups | None = None) -> tuple[CloudFit, Array | None]:
     """Least squares through logarithms of equal length; c1, c2 and ln(dispersion) without each recording."""
     if x.size < 3 or np.ptp(y) == 0.0:
         raise InputError(
             f"A cloud needs at least 3 runs with different responses, but {x.size} runs with {np.unique(y).size} "
             "different responses were given."
         )
-    c1, c2, mean, n, sxx, syy, residual = (float(value[0]) for value in fit_lines(x, y, np.ones((1, x.size))))
+    c1, c2, mean, n, sxx, syy, residual = (
+        float(value[0]) for value in fit_least_squares_lines(x, y, np.ones((1, x.size)))
+    )
     variance = residual / (n - 2.0)
     count, replicates = 0, None
     if recordings is None:
         covariance = variance * np.array([[1.0 / n + mean**2 / sxx, -mean / sxx], [-mean / sxx, 1.0 / sxx]])
     else:
-        count, replicates = int(recordings.held.sum()), recordings.without_each(lambda some: _parameters(x, y, some))
+        count, replicates = (
+            int(recordings.held.sum()),
+            recordings.without_each(lambda some: _cloud_parameters(x, y, some)),
+        )
         covariance = jackknife_covariance(replicates[recordings.held])[:2, :2]
     fit = CloudFit(c1, c2, math.sqrt(variance), 1.0 - residual / syy, x.size, covariance, count)
     return fit, replicates
 
 
-def _parameters(x: Array, y: Array, weights: Array) -> Array:
-    lines = fit_lines(x, y, weights)
+def _cloud_parameters(x: Array, y: Array, weights: Array) -> Array:
+    lines = fit_least_squares_lines(x, y, weights)
     with np.errstate(all="ignore"):  # NaN where too few runs are left
         return np.column_stack((lines.intercept, lines.slope, np.log(lines.dispersion)))
 
@@ -207,21 +219,21 @@ def compare_measures(
     """
     import pandas as pd
 
-    _check_table("measures", measures)
+    _check_measure_table("measures", measures)
     if isinstance(response, pd.Series):
-        _check_rows("response", response.index, measures.index)
+        _check_measure_rows("response", response.index, measures.index)
     columns: dict[str, Array] = {}
     if covariates is not None:
-        _check_table("covariates", covariates)
-        _check_rows("covariates", covariates.index, measures.index)
-        columns = {str(name): _numbers(str(name), covariates[name]) for name in covariates.columns}
+        _check_measure_table("covariates", covariates)
+        _check_measure_rows("covariates", covariates.index, measures.index)
+        columns = {str(name): _numeric_measure_column(str(name), covariates[name]) for name in covariates.columns}
     y = log_column("response", response, "Leave those runs out of all tables.")
 
     rows: dict[str, dict[str, float]] = {}
     for name in measures.columns:
         x = log_measures(measures[name].to_numpy(), f"measures[{shown(name)}]")
-        same_length(measures=x, response=y)
-        fit, _ = fit_line(x, y)
+        check_same_column_length(measures=x, response=y)
+        fit, _ = fit_cloud_line(x, y)
         residuals = y - (fit.c1 + fit.c2 * x)
         row = {
             "c2": fit.c2,
@@ -232,7 +244,7 @@ def compare_measures(
         }
         for other, column in columns.items():
             kept = np.isfinite(column)
-            row[f"p_{other}"] = _p_value(column[kept], residuals[kept])
+            row[f"p_{other}"] = _sufficiency_p_value(column[kept], residuals[kept])
             row[f"left_out_{other}"] = int((~kept).sum())
         rows[name] = row
     table = pd.DataFrame.from_dict(rows, orient="index").rename_axis("measure")
@@ -240,7 +252,7 @@ def compare_measures(
     return table.astype(dict.fromkeys(whole, np.int64)).sort_values("dispersion", kind="stable")
 
 
-def _check_table(name: str, table: object) -> None:
+def _check_measure_table(name: str, table: object) -> None:
     import pandas as pd
 
     if not isinstance(table, pd.DataFrame) or table.shape[1] == 0:
@@ -249,7 +261,7 @@ def _check_table(name: str, table: object) -> None:
         )
 
 
-def _check_rows(name: str, index: "pd.Index[Any]", expected: "pd.Index[Any]") -> None:
+def _check_measure_rows(name: str, index: "pd.Index[Any]", expected: "pd.Index[Any]") -> None:
     if not index.equals(expected):
         raise InputError(
             f"{name} must have the same row labels as measures, in the same order. Take all from one table, or drop "
@@ -257,7 +269,7 @@ def _check_rows(name: str, index: "pd.Index[Any]", expected: "pd.Index[Any]") ->
         )
 
 
-def _numbers(name: str, column: "pd.Series[Any]") -> Array:
+def _numeric_measure_column(name: str, column: "pd.Series[Any]") -> Array:
     try:
         return column.to_numpy(dtype=np.float64, na_value=np.nan)
     except (TypeError, ValueError) as error:
@@ -266,7 +278,7 @@ def _numbers(name: str, column: "pd.Series[Any]") -> Array:
         ) from error
 
 
-def _p_value(covariate: Array, residuals: Array) -> float:
+def _sufficiency_p_value(covariate: Array, residuals: Array) -> float:
     from scipy.stats import linregress
 
     if covariate.size < 3 or np.ptp(covariate) == 0.0:

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rockflex._arrays import Array, Bools
-from rockflex._cases import cases
+from rockflex._cases import runs_by_case
 from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.fragility._cloud import CloudFit, describe_power_law, fit_cloud
-from rockflex.fragility._hazard import damping_of
-from rockflex.fragility._limit_states import NOMINAL, OVERTURNING, ROCKED, UPLIFT, rocked
+from rockflex.fragility._hazard import measure_damping_of_runs
+from rockflex.fragility._limit_states import NOMINAL, OVERTURNING, ROCKED, UPLIFT, rocked_runs
 from rockflex.fragility._outcomes import OutcomeFragility, fit_outcomes
 
 if TYPE_CHECKING:
@@ -111,8 +111,8 @@ def fit_clouds(
     (3, 9, 0)
     """
     return [
-        _cloud_fits(structure, model, group, measure, threshold, nominal=nominal)
-        for structure, model, group in _cases(runs, measure)
+        _fits_of_cloud_case(structure, model, group, measure, threshold, nominal=nominal)
+        for structure, model, group in _cases_of_cloud(runs, measure)
     ]
 
 
@@ -146,15 +146,15 @@ def fit_each_cloud(
     """
     fits: list[CloudFits] = []
     reasons: dict[tuple[str, str], str] = {}
-    for structure, model, group in _cases(runs, measure):
+    for structure, model, group in _cases_of_cloud(runs, measure):
         try:
-            fits.append(_cloud_fits(structure, model, group, measure, threshold, nominal=nominal))
+            fits.append(_fits_of_cloud_case(structure, model, group, measure, threshold, nominal=nominal))
         except (InputError, SolverError) as error:
             reasons[structure, model] = str(error)
     return fits, reasons
 
 
-def recordings_of(runs: "pd.DataFrame") -> "pd.Series[Any] | None":
+def recordings_of_runs(runs: "pd.DataFrame") -> "pd.Series[Any] | None":
     """Recording of every run, by the column `group`, else by `motion` where motions repeat; None without either."""
     if "group" in runs:
         return runs["group"].astype(str)
@@ -162,16 +162,16 @@ def recordings_of(runs: "pd.DataFrame") -> "pd.Series[Any] | None":
     return runs["motion"].astype(str) if repeat else None
 
 
-def _cases(runs: "pd.DataFrame", measure: str) -> "Iterator[tuple[str, str, pd.DataFrame]]":
+def _cases_of_cloud(runs: "pd.DataFrame", measure: str) -> "Iterator[tuple[str, str, pd.DataFrame]]":
     """Runs of each structure with each model."""
     needed = ["structure", "model", "status", "max_rotation", *DISPLACEMENTS, "nominal_overturning", measure]
     lacking = [name for name in needed if name not in runs]
     if lacking:
         raise InputError(f"runs must be the table of a cloud study, but it has no column {', '.join(lacking)}.")
-    return cases(runs)
+    return runs_by_case(runs)
 
 
-def _cloud_fits(
+def _fits_of_cloud_case(
     structure: str, model: str, group: "pd.DataFrame", measure: str, threshold: float, *, nominal: bool
 ) -> CloudFits:
     solved = group[group["status"].notna()]
@@ -179,10 +179,10 @@ def _cloud_fits(
         raise InputError(f"No run of {shown(structure)} with {model} was solved. See the column error of the table.")
     fallen = (NOMINAL if nominal else OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
     im, rotation = (solved[name].to_numpy(dtype=float) for name in (measure, "max_rotation"))
-    rocks = ~fallen & rocked(solved, threshold).to_numpy(dtype=bool)
+    rocks = ~fallen & rocked_runs(solved, threshold).to_numpy(dtype=bool)
     lifts = UPLIFT.exceeded(solved).to_numpy(dtype=bool)
-    groups = recordings_of(solved)
-    damping = damping_of(solved, measure)
+    groups = recordings_of_runs(solved)
+    damping = measure_damping_of_runs(solved, measure)
     outcomes = fit_outcomes(im, rotation, fallen, groups, uplifted=lifts, threshold=threshold, damping=damping)
     relative, total = (
         _displacement_fit(im, solved[name].to_numpy(dtype=float), rocks, groups) for name in DISPLACEMENTS

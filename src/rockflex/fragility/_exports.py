@@ -15,16 +15,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import all_positive, finite_vector, positive
+from rockflex._checks import check_all_positive, checked_finite_vector, checked_positive
 from rockflex._errors import InputError
-from rockflex._files import path_of, write_whole
+from rockflex._files import checked_file_path, write_file_atomically
 from rockflex._shown import shown
-from rockflex.fragility._arguments import Curve, Fragility, checked_curve
-from rockflex.fragility._hazard import HAZARD_DAMPING, damping_text, kind_and_period, unit_of
+from rockflex.fragility._arguments import Curve, FragilityCurve, checked_fragility_curve
+from rockflex.fragility._hazard import HAZARD_DAMPING, damping_text, openquake_kind_and_period, openquake_measure_unit
 from rockflex.fragility._lognormal import LognormalFragility
 from rockflex.fragility._outcomes import OutcomeFragility
 
-States: TypeAlias = OutcomeFragility | Mapping[str, Fragility | Curve]
+States: TypeAlias = OutcomeFragility | Mapping[str, FragilityCurve | Curve]
 """Fits of the three outcomes, or a curve for each limit state by its name, from the mildest to the most severe."""
 
 _NAME = re.compile(r"[A-Za-z0-9_-]+")
@@ -42,7 +42,7 @@ _CLOSING_FACTOR = 1e6  # times the last level: where a curve that does not reach
 
 
 @dataclass(frozen=True)
-class Function:
+class FragilityFunction:
     """The limit states of one structure.
 
     Attributes
@@ -60,9 +60,9 @@ class Function:
     lognormal: Mapping[str, LognormalFragility] | None
 
 
-def functions_of(
+def fragility_functions(
     curves: Mapping[str, States], levels: ArrayLike, rotations: Mapping[str, float] | None, measure: str
-) -> tuple[list[Function], Array]:
+) -> tuple[list[FragilityFunction], Array]:
     """Return the limit states of each structure, and the levels of the measure, both checked.
 
     Raises
@@ -72,8 +72,8 @@ def functions_of(
         different limit states, a probability is not one, or a more severe limit state is more probable than a milder
         one.
     """
-    im = finite_vector("levels", levels, "the SI unit of the measure")
-    all_positive("levels", im, "in SI units")
+    im = checked_finite_vector("levels", levels, "the SI unit of the measure")
+    check_all_positive("levels", im, "in SI units")
     if im.size < 2 or (np.diff(im) <= 0.0).any():
         raise InputError(
             f"levels must be two or more measures that rise, but {shown(levels)} was given.", field="levels"
@@ -84,7 +84,7 @@ def functions_of(
             f"{shown(curves)} was given.",
             field="curves",
         )
-    limits = {name: positive(f"rotations[{name!r}]", value, "rad") for name, value in (rotations or {}).items()}
+    limits = {name: checked_positive(f"rotations[{name!r}]", value, "rad") for name, value in (rotations or {}).items()}
     if limits and not any(isinstance(states, OutcomeFragility) for states in curves.values()):
         raise InputError("rotations are limits of fitted outcomes, but curves has none.", field="rotations")
     if list(limits.values()) != sorted(set(limits.values())):
@@ -96,16 +96,16 @@ def functions_of(
     taken = [name for name in ("rocking", "overturning") if name in limits]
     if taken:
         raise InputError(f"{taken[0]} is a limit state of its own: give this rotation another name.", field="rotations")
-    found = [_structure_function(name, states, limits) for name, states in curves.items()]
+    found = [_structure_fragility_function(name, states, limits) for name, states in curves.items()]
     for name, states in curves.items():
-        _check_damping(name, states, measure)
-    _check_same_states(found)
+        _check_exported_damping(name, states, measure)
+    _check_same_limit_states(found)
     for each in found:
-        _check_order(each, im)
+        _check_limit_state_order(each, im)
     return found, im
 
 
-def _structure_function(name: Any, states: Any, rotations: Mapping[str, float]) -> Function:
+def _structure_fragility_function(name: Any, states: Any, rotations: Mapping[str, float]) -> FragilityFunction:
     if not isinstance(name, str) or not _IDENTIFIER.fullmatch(name):
         raise InputError(
             f"The name of a structure may contain letters of the English alphabet, digits and _ . : + -, but "
@@ -133,12 +133,12 @@ def _structure_function(name: Any, states: Any, rotations: Mapping[str, float]) 
                 f"{shown(limit)} was given.",
                 field="curves",
             )
-    checked = {limit: checked_curve(curve, f"curves[{name!r}][{limit!r}]") for limit, curve in given.items()}
+    checked = {limit: checked_fragility_curve(curve, f"curves[{name!r}][{limit!r}]") for limit, curve in given.items()}
     fits = {limit: curve for limit, curve in given.items() if isinstance(curve, LognormalFragility)}
-    return Function(name, checked, fits if len(fits) == len(given) else None)
+    return FragilityFunction(name, checked, fits if len(fits) == len(given) else None)
 
 
-def _check_damping(name: str, states: States, measure: str) -> None:
+def _check_exported_damping(name: str, states: States, measure: str) -> None:
     """Raise an InputError if a spectral measure is known not to be at the 5 % of risk programs."""
     for fit in states.values() if isinstance(states, Mapping) else [states]:
         damping = getattr(fit, "damping", None)
@@ -155,7 +155,7 @@ def _rocking_probability(outcomes: OutcomeFragility, im: Array) -> Array:
     return 1.0 - outcomes.probabilities(im).no_rocking
 
 
-def _check_same_states(found: list[Function]) -> None:
+def _check_same_limit_states(found: list[FragilityFunction]) -> None:
     first = found[0]
     for other in found[1:]:
         if list(other.curves) != list(first.curves):
@@ -166,7 +166,7 @@ def _check_same_states(found: list[Function]) -> None:
             )
 
 
-def _check_order(function: Function, levels: Array) -> None:
+def _check_limit_state_order(function: FragilityFunction, levels: Array) -> None:
     """A run that exceeds a limit state exceeds all milder ones, so that curves cannot cross."""
     at = np.union1d(levels, np.geomspace(levels[0], levels[-1], _N_CHECKED)[1:-1])
     milder, before = np.ones(at.size), ""
@@ -249,22 +249,22 @@ def write_nrml(
     >>> print(path.read_text().splitlines()[6].strip())
     <imls imt="PGV" minIML="5.0" maxIML="200.0" />
     """
-    target = path_of("path", path)
-    _, unit = unit_of(measure)
-    functions, im = functions_of(curves, levels, rotations, measure)
+    target = checked_file_path("path", path)
+    _, unit = openquake_measure_unit(measure)
+    functions, im = fragility_functions(curves, levels, rotations, measure)
     texts = {"description": description, "asset_category": asset_category, "loss_category": loss_category}
     for name, text in texts.items():
         if not isinstance(text, str) or not text.strip() or not text.isprintable():  # pyright: ignore[reportUnnecessaryIsInstance]
             raise InputError(f"{name} must be a line of text, but {shown(text)} was given.", field=name)
     shared = {"imt": measure}
     if no_damage_limit is not None:
-        limit = positive("no_damage_limit", no_damage_limit, "the SI unit of the measure")
+        limit = checked_positive("no_damage_limit", no_damage_limit, "the SI unit of the measure")
         if limit >= im[0]:
             raise InputError(
                 f"no_damage_limit must be below the first level, {im[0]:g}, but {limit:g} was given.",
                 field="no_damage_limit",
             )
-        shared["noDamageLimit"] = _text(limit / unit)
+        shared["noDamageLimit"] = _nrml_number_text(limit / unit)
 
     root = ET.Element("nrml", {"xmlns": _NAMESPACE})
     kind = {"id": "rockflex", "assetCategory": asset_category, "lossCategory": loss_category}
@@ -273,22 +273,24 @@ def write_nrml(
     ET.SubElement(model, "limitStates").text = " ".join(functions[0].curves)
     for function in functions:
         if function.lognormal is None:
-            _discrete(model, function, shared, im, unit)
+            _add_discrete_nrml_function(model, function, shared, im, unit)
         else:
-            _continuous(model, function.name, function.lognormal, shared, (im / unit)[[0, -1]], unit)
+            _add_continuous_nrml_function(model, function.name, function.lognormal, shared, (im / unit)[[0, -1]], unit)
     ET.indent(root)
-    return write_whole(target, ET.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n")
+    return write_file_atomically(target, ET.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n")
 
 
-def _discrete(model: ET.Element, function: Function, shared: dict[str, str], im: Array, unit: float) -> None:
+def _add_discrete_nrml_function(
+    model: ET.Element, function: FragilityFunction, shared: dict[str, str], im: Array, unit: float
+) -> None:
     element = ET.SubElement(model, "fragilityFunction", {"id": function.name, "format": "discrete"})
-    ET.SubElement(element, "imls", shared).text = " ".join(_text(value) for value in im / unit)
+    ET.SubElement(element, "imls", shared).text = " ".join(_nrml_number_text(value) for value in im / unit)
     for limit, curve in function.curves.items():
-        values = " ".join(_text(value) for value in curve(im))
+        values = " ".join(_nrml_number_text(value) for value in curve(im))
         ET.SubElement(element, "poes", {"ls": limit}).text = values
 
 
-def _continuous(
+def _add_continuous_nrml_function(
     model: ET.Element,
     name: str,
     curves: Mapping[str, LognormalFragility],
@@ -299,7 +301,9 @@ def _continuous(
     """OpenQuake takes the mean and the standard deviation of the capacity itself, not of its logarithm."""
     kind = {"id": name, "format": "continuous", "shape": "logncdf"}
     element = ET.SubElement(model, "fragilityFunction", kind)
-    ET.SubElement(element, "imls", {**shared, "minIML": _text(ends[0]), "maxIML": _text(ends[1])})
+    ET.SubElement(
+        element, "imls", {**shared, "minIML": _nrml_number_text(ends[0]), "maxIML": _nrml_number_text(ends[1])}
+    )
     for limit, curve in curves.items():
         try:
             mean = curve.median / unit * math.exp(0.5 * curve.beta**2)
@@ -312,10 +316,12 @@ def _continuous(
                 "and standard deviation in double precision.",
                 field="curves",
             )
-        ET.SubElement(element, "params", {"ls": limit, "mean": _text(mean), "stddev": _text(spread)})
+        ET.SubElement(
+            element, "params", {"ls": limit, "mean": _nrml_number_text(mean), "stddev": _nrml_number_text(spread)}
+        )
 
 
-def _text(value: float) -> str:
+def _nrml_number_text(value: float) -> str:
     return repr(float(value))
 
 
@@ -372,8 +378,8 @@ def write_pelicun(
     >>> print(path.read_text().splitlines()[1])
     pier,0,Peak Ground Acceleration,mps2,0,1,lognormal,2.0,0.5,,lognormal,5.0,0.5,
     """
-    target = path_of("path", path)
-    kind, period = kind_and_period(measure)
+    target = checked_file_path("path", path)
+    kind, period = openquake_kind_and_period(measure)
     if kind not in _PELICUN_DEMANDS:
         raise InputError(
             f"measure must be PGA, PGV or SA(T), the demands that Pelicun knows, but {measure} was given.",
@@ -381,29 +387,29 @@ def write_pelicun(
         )
     name, unit = _PELICUN_DEMANDS[kind]
     demand = f"{name}|{period}" if period else name
-    functions, im = functions_of(curves, levels, rotations, measure)
+    functions, im = fragility_functions(curves, levels, rotations, measure)
     states = range(1, len(functions[0].curves) + 1)
     head = ["ID", "Incomplete", "Demand-Type", "Demand-Unit", "Demand-Offset", "Demand-Directional"]
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerow([*head, *(f"LS{number}-{column}" for number in states for column in _STATE_COLUMNS)])
     for function in functions:
-        cells = [cell for limit in function.curves for cell in _state_cells(function, limit, im)]
+        cells = [cell for limit in function.curves for cell in _pelicun_state_cells(function, limit, im)]
         table.writerow([function.name, 0, demand, unit, 0, 1, *cells])
-    return write_whole(target, text.getvalue().encode())
+    return write_file_atomically(target, text.getvalue().encode())
 
 
-def _state_cells(function: Function, limit: str, im: Array) -> tuple[str, str, str, str]:
+def _pelicun_state_cells(function: FragilityFunction, limit: str, im: Array) -> tuple[str, str, str, str]:
     """Family, two parameters and no weights of damage states."""
     if function.lognormal is not None:
         fit = function.lognormal[limit]
         return "lognormal", repr(float(fit.median)), repr(float(fit.beta)), ""
-    x, y = _distribution_points(f"{function.name}: the probability of {limit}", im, function.curves[limit](im))
+    x, y = _pelicun_distribution_points(f"{function.name}: the probability of {limit}", im, function.curves[limit](im))
     points = ",".join(f"{value:.6g}" for value in x), ",".join(f"{value:.6g}" for value in y)
     return "multilinear_CDF", "|".join(points), "", ""
 
 
-def _distribution_points(what: str, im: Array, p: Array) -> tuple[list[float], list[float]]:
+def _pelicun_distribution_points(what: str, im: Array, p: Array) -> tuple[list[float], list[float]]:
     """Points of a distribution that rises from 0 to 1, as Pelicun rounds them."""
     falls = np.flatnonzero(np.diff(p) < -_MIN_RISE)
     if falls.size:
@@ -415,8 +421,8 @@ def _distribution_points(what: str, im: Array, p: Array) -> tuple[list[float], l
         )
     x, y = [0.0], [0.0]
     for level, value in zip(im, p, strict=True):
-        x.append(_six_digits(level))
-        y.append(_six_digits(max(value, y[-1] + _MIN_RISE)))
+        x.append(_rounded_to_six_digits(level))
+        y.append(_rounded_to_six_digits(max(value, y[-1] + _MIN_RISE)))
         if x[-1] <= x[-2]:
             raise InputError(f"levels must differ in their first six digits, but two are {x[-1]:g}.", field="levels")
         if y[-1] > 1.0 - _MIN_RISE:
@@ -424,5 +430,5 @@ def _distribution_points(what: str, im: Array, p: Array) -> tuple[list[float], l
     return [*x, _CLOSING_FACTOR * x[-1]], [*y, 1.0]
 
 
-def _six_digits(value: float) -> float:
+def _rounded_to_six_digits(value: float) -> float:
     return float(f"{value:.6g}")

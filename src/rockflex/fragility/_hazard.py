@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite_vector, in_range, positive
+from rockflex._checks import checked_finite_vector, checked_in_range, checked_positive
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._files import check_regular, path_of
-from rockflex._shown import counted, shown
+from rockflex._files import check_regular_file, checked_file_path
+from rockflex._shown import number_with_noun, shown
 from rockflex._values import Value
-from rockflex.fragility._arguments import log_at
+from rockflex.fragility._arguments import log_of_evaluation_points
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -41,7 +41,7 @@ _LEVEL_PREFIX = "poe-"
 HAZARD_DAMPING = 0.05  # of the spectra of hazard analyses, and of OpenQuake's and Pelicun's SA
 
 
-def unit_of(measure: str) -> tuple[str, float]:
+def openquake_measure_unit(measure: str) -> tuple[str, float]:
     """Return OpenQuake's unit of a measure such as "PGV" or "SA(1.0)", and this unit in SI units.
 
     Raises
@@ -49,11 +49,11 @@ def unit_of(measure: str) -> tuple[str, float]:
     InputError
         If there is no such measure.
     """
-    kind, _ = kind_and_period(measure)
+    kind, _ = openquake_kind_and_period(measure)
     return _OPENQUAKE_UNITS[kind]
 
 
-def kind_and_period(measure: str) -> tuple[str, str]:
+def openquake_kind_and_period(measure: str) -> tuple[str, str]:
     """Return the kind of a measure and its period as it is written, which is empty where there is none.
 
     Raises
@@ -75,7 +75,7 @@ def kind_and_period(measure: str) -> tuple[str, str]:
     )
 
 
-class ExportedCurve(NamedTuple):
+class OpenQuakeHazardCurve(NamedTuple):
     """Levels in SI units, the probabilities of exceeding them, and the years that these refer to."""
 
     im: list[float]
@@ -83,7 +83,7 @@ class ExportedCurve(NamedTuple):
     years: float
 
 
-def read_exported_curve(path: str | Path, site: Site | None) -> ExportedCurve:
+def read_openquake_hazard_curve(path: str | Path, site: Site | None) -> OpenQuakeHazardCurve:
     """Read the curve of one site.
 
     Raises
@@ -91,14 +91,14 @@ def read_exported_curve(path: str | Path, site: Site | None) -> ExportedCurve:
     InputError
         If the file cannot be read, is not such an export, or has no or more than one such site.
     """
-    file = path_of("path", path)
-    check_regular(file, "path")
+    file = checked_file_path("path", path)
+    check_regular_file(file, "path")
     try:
         lines = file.read_text("utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{file} cannot be read: {error}.", field="path") from error
     comments = [line for line in lines if line.startswith("#")]
-    years, measure = _years_and_measure(file, " ".join(comments))
+    years, measure = _hazard_years_and_measure(file, " ".join(comments))
     rows = list(csv.reader(line for line in lines if line.strip() and not line.startswith("#")))
     names = rows[0] if rows else []
     columns = [place for place, name in enumerate(names) if name.startswith(_LEVEL_PREFIX)]
@@ -108,13 +108,13 @@ def read_exported_curve(path: str | Path, site: Site | None) -> ExportedCurve:
             f"columns are {shown(', '.join(names))}.",
             field="path",
         )
-    row = _site_row(file, names, rows[1:], site)
-    _, unit = unit_of(measure)
-    levels = [_number(file, names[place].removeprefix(_LEVEL_PREFIX)) * unit for place in columns]
-    return ExportedCurve(levels, [_number(file, row[place]) for place in columns], years)
+    row = _hazard_row_of_site(file, names, rows[1:], site)
+    _, unit = openquake_measure_unit(measure)
+    levels = [_hazard_number(file, names[place].removeprefix(_LEVEL_PREFIX)) * unit for place in columns]
+    return OpenQuakeHazardCurve(levels, [_hazard_number(file, row[place]) for place in columns], years)
 
 
-def _years_and_measure(file: Path, comment: str) -> tuple[float, str]:
+def _hazard_years_and_measure(file: Path, comment: str) -> tuple[float, str]:
     """The years and the measure in the comment that such a file begins with."""
     years = re.search(r"investigation_time=([0-9.eE+-]+)", comment)
     measure = re.search(r"""imt=["']+([^"']+)""", comment)
@@ -124,13 +124,13 @@ def _years_and_measure(file: Path, comment: str) -> tuple[float, str]:
             "OpenQuake exports do. Otherwise read its columns, and give them to HazardCurve.from_poe.",
             field="path",
         )
-    return _number(file, years[1]), measure[1]
+    return _hazard_number(file, years[1]), measure[1]
 
 
-def _site_row(file: Path, names: Sequence[str], rows: list[list[str]], site: Site | None) -> list[str]:
+def _hazard_row_of_site(file: Path, names: Sequence[str], rows: list[list[str]], site: Site | None) -> list[str]:
     whole = [row for row in rows if len(row) == len(names)]
     if len(whole) < len(rows) or not rows:
-        wrong = counted(len(rows) - len(whole), "row differs", "rows differ") if rows else "it has none"
+        wrong = number_with_noun(len(rows) - len(whole), "row differs", "rows differ") if rows else "it has none"
         raise InputError(f"{file} must have a row of {len(names)} values for each site, but {wrong}.", field="path")
     if site is None:
         if len(rows) > 1:
@@ -144,10 +144,12 @@ def _site_row(file: Path, names: Sequence[str], rows: list[list[str]], site: Sit
         if not named:
             raise InputError(f"{file} has no site {shown(site)}, but {shown(rows[0][place])}, ...", field="site")
         return named[0]
-    return _nearest_row(file, names, rows, site)
+    return _hazard_row_nearest_to_site(file, names, rows, site)
 
 
-def _nearest_row(file: Path, names: Sequence[str], rows: list[list[str]], site: tuple[float, float]) -> list[str]:
+def _hazard_row_nearest_to_site(
+    file: Path, names: Sequence[str], rows: list[list[str]], site: tuple[float, float]
+) -> list[str]:
     try:
         longitude, latitude = (float(value) for value in site)
     except (TypeError, ValueError) as error:
@@ -155,7 +157,7 @@ def _nearest_row(file: Path, names: Sequence[str], rows: list[list[str]], site: 
             f"site must be (longitude, latitude) in degrees, or a name, but {shown(site)} was given.", field="site"
         ) from error
     at = names.index("lon"), names.index("lat")
-    places = [(_number(file, row[at[0]]), _number(file, row[at[1]])) for row in rows]
+    places = [(_hazard_number(file, row[at[0]]), _hazard_number(file, row[at[1]])) for row in rows]
     away = [math.hypot(x - longitude, y - latitude) for x, y in places]
     nearest = min(range(len(rows)), key=away.__getitem__)
     if not away[nearest] <= _SITE_TOLERANCE_DEG:
@@ -172,7 +174,7 @@ def _nearest_row(file: Path, names: Sequence[str], rows: list[list[str]], site: 
     return rows[nearest]
 
 
-def _number(file: Path, text: str) -> float:
+def _hazard_number(file: Path, text: str) -> float:
     try:
         number = float(text)
     except ValueError:
@@ -214,7 +216,7 @@ class HazardCurve(Value):
     damping: float
 
     def __init__(self, im: ArrayLike, rate: ArrayLike, *, damping: float = HAZARD_DAMPING) -> None:
-        measures, rates = finite_vector("im", im, "one unit"), finite_vector("rate", rate, "1/year")
+        measures, rates = checked_finite_vector("im", im, "one unit"), checked_finite_vector("rate", rate, "1/year")
         if measures.size != rates.size or measures.size < 2:
             raise InputError(
                 f"A hazard curve needs two points or more, a rate for each measure, but {measures.size} measures and "
@@ -230,7 +232,7 @@ class HazardCurve(Value):
                 f"rate must be positive and fall from point to point, but rate[{bad[0]}] = {rates[bad[0]]:g} does not. "
                 "Give annual rates of exceedance; drop the points at which the rate is zero."
             )
-        ratio = in_range("damping", damping, 0.0, 1.0, hint="5 % of critical is damping=0.05.")
+        ratio = checked_in_range("damping", damping, 0.0, 1.0, hint="5 % of critical is damping=0.05.")
         vars(self).update(im=measures, rate=rates, damping=ratio)
 
     def check_damping(self, damping: float | None) -> None:
@@ -272,7 +274,7 @@ class HazardCurve(Value):
         >>> print(f"1 in {1 / hazard.rate_at(2.0):.0f} years")
         1 in 475 years
         """
-        chances, span = finite_vector("poe", poe, "[0, 1]"), positive("years", years, "years")
+        chances, span = checked_finite_vector("poe", poe, "[0, 1]"), checked_positive("years", years, "years")
         bad = np.flatnonzero((chances <= 0.0) | (chances >= 1.0))
         if bad.size:
             i = int(bad[0])
@@ -324,7 +326,7 @@ class HazardCurve(Value):
         >>> hazard.im, hazard.rate.round(5)
         (array([0.1, 0.2]), array([0.01022, 0.00211]))
         """
-        found = read_exported_curve(path, site)
+        found = read_openquake_hazard_curve(path, site)
         im, poe = np.array(found.im), np.array(found.poe)
         if (poe < 0.0).any() or (poe > 1.0).any():
             raise InputError(f"{path} holds probabilities below 0 or above 1.", field="path")
@@ -344,11 +346,15 @@ class HazardCurve(Value):
 
     def rate_at(self, im: ArrayLike) -> Array:
         """Annual rate at which `im` is exceeded, interpolated linearly in logarithms."""
-        return np.exp(_interpolated("im", log_at(im), np.log(self.im), np.log(self.rate)))
+        return np.exp(_interpolated_hazard("im", log_of_evaluation_points(im), np.log(self.im), np.log(self.rate)))
 
     def im_at(self, rate: ArrayLike) -> Array:
         """Measure that is exceeded at an annual `rate`: the uniform-hazard value (2 % in 50 years is 1/2475)."""
-        return np.exp(_interpolated("rate", log_at(rate, "rate"), np.log(self.rate[::-1]), np.log(self.im[::-1])))
+        return np.exp(
+            _interpolated_hazard(
+                "rate", log_of_evaluation_points(rate, "rate"), np.log(self.rate[::-1]), np.log(self.im[::-1])
+            )
+        )
 
 
 def damping_text(damping: float) -> str:
@@ -356,7 +362,7 @@ def damping_text(damping: float) -> str:
     return "an unknown damping ratio" if math.isnan(damping) else f"a damping ratio of {damping:.4g}"
 
 
-def damping_of(runs: "pd.DataFrame", measure: str) -> float | None:
+def measure_damping_of_runs(runs: "pd.DataFrame", measure: str) -> float | None:
     """Return the damping ratio of an intensity measure of a study's runs; None of one that has none.
 
     NaN if the runs do not state it, or it differs between their structures.
@@ -364,10 +370,10 @@ def damping_of(runs: "pd.DataFrame", measure: str) -> float | None:
     Examples
     --------
     >>> import pandas as pd
-    >>> from rockflex.fragility import damping_of
+    >>> from rockflex.fragility import measure_damping_of_runs
     >>> runs = pd.DataFrame({"zeta_1": [0.02, 0.02]})
-    >>> damping_of(runs, "pgv"), damping_of(runs, "sa_t1"), damping_of(runs, "sa_t1_5")
-    (None, 0.02, 0.05)
+    >>> [measure_damping_of_runs(runs, measure) for measure in ("pgv", "sa_t1", "sa_t1_5")]
+    [None, 0.02, 0.05]
     """
     if measure == "sa_t1_5":
         return HAZARD_DAMPING
@@ -377,7 +383,7 @@ def damping_of(runs: "pd.DataFrame", measure: str) -> float | None:
     return float(found[0]) if len(found) == 1 else math.nan
 
 
-def damping_named(im: object, damping: float | None) -> float | None:
+def measure_damping_of_column(im: object, damping: float | None) -> float | None:
     """Damping ratio of a column of a study: the one given, else by the column's name; NaN if that does not tell it."""
     name = getattr(im, "name", None)
     if damping is not None or name not in ("sa_t1", "sd_t1", "sa_t1_5"):
@@ -385,7 +391,7 @@ def damping_named(im: object, damping: float | None) -> float | None:
     return HAZARD_DAMPING if name == "sa_t1_5" else math.nan
 
 
-def _interpolated(name: str, x: Array, points: Array, values: Array) -> Array:
+def _interpolated_hazard(name: str, x: Array, points: Array, values: Array) -> Array:
     margin = 1e-12 * (points[-1] - points[0])
     if (x < points[0] - margin).any() or (x > points[-1] + margin).any():
         raise InputError(

@@ -16,14 +16,14 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.fragility._arguments import same_length
+from rockflex.fragility._arguments import check_same_column_length
 
 N_SAMPLES = 2048  # parameters drawn; a power of two, as Sobol's sequence wants
 _MAX_WEIGHTS = 2_000_000  # weights held at once
 ONE_RECORDING = "All runs belong to one recording, so nothing is known about the scatter between recordings: no band."
 
 
-class Recordings(NamedTuple):
+class RecordingGroups(NamedTuple):
     """The number of the recording of every run, from 0 in the order in which they first appear, and how many there are.
 
     A subset of the runs may lack a recording; its parameters without that recording are then those of the subset.
@@ -70,12 +70,12 @@ class Recordings(NamedTuple):
             If it is no column of names or numbers, or not all columns have the same number of rows.
         """
         found = None if groups is None else cls.of(groups)
-        same_length(**columns, **({} if found is None else {"groups": found.codes}))
+        check_same_column_length(**columns, **({} if found is None else {"groups": found.codes}))
         return found
 
-    def some(self, chosen: Bools) -> "Recordings":
+    def some(self, chosen: Bools) -> "RecordingGroups":
         """The recordings of a subset of the runs, with the same numbers."""
-        return Recordings(self.codes[chosen], self.n)
+        return RecordingGroups(self.codes[chosen], self.n)
 
     @property
     def held(self) -> Bools:
@@ -103,7 +103,7 @@ def jackknife_covariance(replicates: Array) -> Array:
     return covariance
 
 
-def quantile_of_t(confidence: float, n_groups: int) -> float:
+def student_t_quantile(confidence: float, n_groups: int) -> float:
     """Half width of a band in standard errors; of the normal distribution for `n_groups` = 0, independent runs."""
     from scipy.special import ndtri, stdtrit
 
@@ -111,21 +111,21 @@ def quantile_of_t(confidence: float, n_groups: int) -> float:
     return float(stdtrit(n_groups - 1, p) if n_groups > 1 else ndtri(p) if n_groups == 0 else np.nan)
 
 
-def sample_parameters(parameters: ArrayLike, covariance: Array, n_groups: int) -> Array:
+def sampled_fit_parameters(parameters: ArrayLike, covariance: Array, n_groups: int) -> Array:
     """Parameters drawn from the t distribution of an estimate, shape (N_SAMPLES, k); the same ones on every call."""
     values, vectors = np.linalg.eigh(covariance) if np.isfinite(covariance).all() else (np.nan, np.eye(len(covariance)))
     root = vectors * np.sqrt(np.maximum(values, 0.0))
-    return np.asarray(parameters) + _standard_sample(len(covariance), n_groups) @ root.T
+    return np.asarray(parameters) + _student_t_sample(len(covariance), n_groups) @ root.T
 
 
-def sample_limits(values: Array, confidence: float) -> tuple[Any, Any]:
+def sampled_band_limits(values: Array, confidence: float) -> tuple[Any, Any]:
     """Lower and upper limit of values at drawn parameters, along the first axis."""
     low, high = np.quantile(values, (0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence), axis=0)
     return low, high
 
 
 @cache
-def _standard_sample(size: int, n_groups: int) -> Array:
+def _student_t_sample(size: int, n_groups: int) -> Array:
     """Quasi-random sample of Student's t in `size` dimensions, with unit scale; normal for `n_groups` = 0."""
     from scipy.special import chdtri, ndtri
     from scipy.stats import qmc

@@ -59,30 +59,30 @@ class LimitState:
         return self.bound or self.label
 
 
-def symbol_of_nominal(multiple: float = 1.0) -> str:
+def nominal_rotation_symbol(multiple: float = 1.0) -> str:
     """Return the event of a rotation beyond a multiple of 0.7 atan(B/h*_1), as `LimitState.symbol`."""
     times = "" if math.isclose(multiple, 1.0) else rf"{multiple:g}\cdot"
     return rf"θ_{{\mathrm{{max}}}}>{times}0.7\,\mathrm{{atan}}(B/h^*_1)"
 
 
-def _overturned(runs: Any) -> Any:
+def _overturned_runs(runs: Any) -> Any:
     return runs["status"] == "overturned"
 
 
-def beyond(rotation: float, name: str = "rotation", label: str = "") -> LimitState:
+def rotation_limit_state(rotation: float, name: str = "rotation", label: str = "") -> LimitState:
     """Return the limit state of a rotation in rad; an overturned run exceeds every rotation below π/2.
 
     Examples
     --------
-    >>> from rockflex.fragility import beyond
-    >>> beyond(0.02).label
+    >>> from rockflex.fragility import rotation_limit_state
+    >>> rotation_limit_state(0.02).label
     '0.02 rad'
-    >>> bool(beyond(0.02).exceeded({"max_rotation": 0.03, "status": "rocking"}))
+    >>> bool(rotation_limit_state(0.02).exceeded({"max_rotation": 0.03, "status": "rocking"}))
     True
     """
 
     def exceeded(runs: Any) -> Any:
-        return (runs["max_rotation"] > rotation) | (_overturned(runs) & (rotation < OVERTURNED))
+        return (runs["max_rotation"] > rotation) | (_overturned_runs(runs) & (rotation < OVERTURNED))
 
     symbol = rf"θ_{{\mathrm{{max}}}}>{rotation:g}\ \mathrm{{rad}}"
     return LimitState(
@@ -90,15 +90,15 @@ def beyond(rotation: float, name: str = "rotation", label: str = "") -> LimitSta
     )
 
 
-def residual_beyond(rotation: float) -> LimitState:
+def residual_rotation_limit_state(rotation: float) -> LimitState:
     """Return the limit state of a residual rotation in rad, of either sign.
 
     Examples
     --------
-    >>> from rockflex.fragility import residual_beyond
-    >>> residual_beyond(0.005).label
+    >>> from rockflex.fragility import residual_rotation_limit_state
+    >>> residual_rotation_limit_state(0.005).label
     'residual 0.005 rad'
-    >>> bool(residual_beyond(0.005).exceeded({"residual_rotation": -0.007, "status": "rocking"}))
+    >>> bool(residual_rotation_limit_state(0.005).exceeded({"residual_rotation": -0.007, "status": "rocking"}))
     True
     """
 
@@ -108,7 +108,7 @@ def residual_beyond(rotation: float) -> LimitState:
                 "The runs have no column residual_rotation. Tables of studies have it if a structure has dissipators, "
                 "dampers or yielding tendons, and those of simulate_many always do."
             )
-        return (abs(runs["residual_rotation"]) > rotation) | _overturned(runs)
+        return (abs(runs["residual_rotation"]) > rotation) | _overturned_runs(runs)
 
     symbol = rf"|θ_{{\mathrm{{res}}}}|>{rotation:g}\ \mathrm{{rad}}"
     return LimitState(name="residual", label=f"residual {rotation:g} rad", symbol=symbol, exceeded=exceeded)
@@ -119,7 +119,7 @@ UPLIFT = LimitState(
 )
 
 
-def rocked(runs: Any, threshold: float = ROCKED) -> Any:
+def rocked_runs(runs: Any, threshold: float = ROCKED) -> Any:
     """Return which runs of a table rocked: the base uplifted, and turned by more than `threshold` in rad.
 
     A base on springs also turns without uplift, which is no rocking. The threshold follows Silva & Stojadinović
@@ -127,25 +127,25 @@ def rocked(runs: Any, threshold: float = ROCKED) -> Any:
 
     Examples
     --------
-    >>> from rockflex.fragility import rocked
-    >>> [bool(rocked({"max_rotation": 0.003, "status": status})) for status in ("no_uplift", "rocking")]
+    >>> from rockflex.fragility import rocked_runs
+    >>> [bool(rocked_runs({"max_rotation": 0.003, "status": status})) for status in ("no_uplift", "rocking")]
     [False, True]
     """
     return UPLIFT.exceeded(runs) & (runs["max_rotation"] > threshold)
 
 
-ROCKING = LimitState(name="rocking", label="uplift with θ_max > 1e-4 rad", symbol="rocking", exceeded=rocked)
+ROCKING = LimitState(name="rocking", label="uplift with θ_max > 1e-4 rad", symbol="rocking", exceeded=rocked_runs)
 NOMINAL = LimitState(
     name="nominal",
     label="0.7 atan(B/h*_1)",
-    symbol=symbol_of_nominal(),
+    symbol=nominal_rotation_symbol(),
     exceeded=lambda runs: runs["nominal_overturning"],
 )
 OVERTURNING = LimitState(
     name="overturning",
     label="overturning",
     symbol="overturning",
-    exceeded=_overturned,
+    exceeded=_overturned_runs,
     threshold=OVERTURNED,
     bound="|θ| = π/2",
 )
@@ -153,24 +153,24 @@ TENDON_YIELD = LimitState(
     name="tendon_yield",
     label="tendon yield",
     symbol="tendon yield",
-    exceeded=lambda runs: (runs["tendon_utilisation"] >= 1.0) | _overturned(runs),
+    exceeded=lambda runs: (runs["tendon_utilisation"] >= 1.0) | _overturned_runs(runs),
 )
 LIMIT_STATES = Catalogue[LimitState]((UPLIFT, ROCKING, NOMINAL, TENDON_YIELD, OVERTURNING), "limit_states")
 
 
-def limit_label(limit: float | str) -> str:
+def limit_state_label(limit: float | str) -> str:
     """Return the name in text of a limit from a file: a word unchanged, or a rotation in rad.
 
     Examples
     --------
-    >>> from rockflex.fragility import limit_label
-    >>> limit_label(0.02), limit_label("overturning")
+    >>> from rockflex.fragility import limit_state_label
+    >>> limit_state_label(0.02), limit_state_label("overturning")
     ('0.02 rad', 'overturning')
     """
-    return limit if isinstance(limit, str) else beyond(limit).label
+    return limit if isinstance(limit, str) else rotation_limit_state(limit).label
 
 
-def observed_fractions(im: Array, exceeded: Bools, groups: int) -> list[tuple[float, float]]:
+def observed_exceedance_fractions(im: Array, exceeded: Bools, groups: int) -> list[tuple[float, float]]:
     """Return the geometric mean of the measures and the fraction of runs beyond a limit, in groups of neighbours.
 
     Parameters
@@ -185,8 +185,8 @@ def observed_fractions(im: Array, exceeded: Bools, groups: int) -> list[tuple[fl
     Examples
     --------
     >>> import numpy as np
-    >>> from rockflex.fragility import observed_fractions
-    >>> found = observed_fractions(np.array([0.4, 0.1, 0.1, 0.4]), np.array([True, False, False, False]), 2)
+    >>> from rockflex.fragility import observed_exceedance_fractions
+    >>> found = observed_exceedance_fractions(np.array([0.4, 0.1, 0.1, 0.4]), np.array([True, False, False, False]), 2)
     >>> [(round(at, 3), share) for at, share in found]
     [(0.1, 0.0), (0.4, 0.5)]
     """

@@ -12,16 +12,22 @@ from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
 from rockflex._values import Value
-from rockflex.fragility._arguments import checked_confidence, flags, log_at, log_measures
-from rockflex.fragility._hazard import damping_named
+from rockflex.fragility._arguments import boolean_column, checked_confidence, log_measures, log_of_evaluation_points
+from rockflex.fragility._hazard import measure_damping_of_column
 from rockflex.fragility._jackknife import (
     ONE_RECORDING,
-    Recordings,
+    RecordingGroups,
     jackknife_covariance,
-    quantile_of_t,
-    sample_parameters,
+    sampled_fit_parameters,
+    student_t_quantile,
 )
-from rockflex.fragility._regression import Scoring, Standardised, fit_curves, information, standard_error
+from rockflex.fragility._regression import (
+    FirthScoringOptions,
+    StandardisedLogs,
+    fisher_information,
+    fit_logistic_curves,
+    standard_error_of_line,
+)
 
 Method = Literal["maximum likelihood", "Firth"]
 FIRTH_TOLERANCE = 1e-4  # score and step of the penalised fit: the defaults of the package firthmodels
@@ -73,11 +79,11 @@ class UnanimousOutcome:
 
     def probability(self, im: ArrayLike) -> Array:
         """1 or 0 as observed, of the shape of `im`."""
-        return np.full_like(log_at(im), 1.0 if self.outcome else 0.0)
+        return np.full_like(log_of_evaluation_points(im), 1.0 if self.outcome else 0.0)
 
     def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
         """Observed value and its one-sided bound with the given confidence, the same at every `im`."""
-        seen, bound = self.probability(im), np.full_like(log_at(im), self.bound(confidence))
+        seen, bound = self.probability(im), np.full_like(log_of_evaluation_points(im), self.bound(confidence))
         return (bound, seen) if self.outcome else (seen, bound)
 
 
@@ -166,7 +172,7 @@ class LogisticFit(HtmlTable, Value):
         """Probability of the outcome, of the shape of `im`."""
         from scipy.special import expit
 
-        return expit(self.b0 + self.b1 * log_at(im))
+        return expit(self.b0 + self.b1 * log_of_evaluation_points(im))
 
     def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
         """Lower and upper confidence limits of the probability, from the limits of b0 + b1 log IM.
@@ -176,8 +182,10 @@ class LogisticFit(HtmlTable, Value):
         """
         from scipy.special import expit
 
-        x = log_at(im)
-        half = quantile_of_t(checked_confidence(confidence), self.n_groups) * standard_error(x, self.covariance)
+        x = log_of_evaluation_points(im)
+        half = student_t_quantile(checked_confidence(confidence), self.n_groups) * standard_error_of_line(
+            x, self.covariance
+        )
         centre = self.b0 + self.b1 * x
         return expit(centre - half), expit(centre + half)
 
@@ -185,7 +193,7 @@ class LogisticFit(HtmlTable, Value):
         """Probabilities at `im`, shape (m,), for 2048 parameters drawn from the t distribution of the estimate."""
         from scipy.special import expit
 
-        b = sample_parameters((self.b0, self.b1), self.covariance, self.n_groups)
+        b = sampled_fit_parameters((self.b0, self.b1), self.covariance, self.n_groups)
         return expit(b[:, :1] + b[:, 1:] * np.log(im))
 
 
@@ -229,12 +237,14 @@ def fit_logistic(
     'maximum likelihood'
     """
     x = log_measures(im)
-    y = flags("outcome", outcome)
-    return fit_curve(x, y, Recordings.beside(groups, im=x, outcome=y), damping_named(im, damping))[0]
+    y = boolean_column("outcome", outcome)
+    return fit_logistic_curve(
+        x, y, RecordingGroups.beside(groups, im=x, outcome=y), measure_damping_of_column(im, damping)
+    )[0]
 
 
-def fit_curve(
-    x: Array, y: Bools, recordings: Recordings | None, damping: float | None
+def fit_logistic_curve(
+    x: Array, y: Bools, recordings: RecordingGroups | None, damping: float | None
 ) -> tuple[LogisticFit, Array | None]:
     """Fit a curve through logarithms of equal length; the fit, and its parameters without each recording."""
     if y.all() or not y.any():
@@ -243,10 +253,10 @@ def fit_curve(
             f"outcome is {alike.outcome} in all {alike.n} runs, so there is no curve to fit. {alike.note} "
             "Add runs at other measures, or use fit_outcomes, which accepts such a group."
         )
-    scaled = Standardised(x)
+    scaled = StandardisedLogs(x)
     unit = np.ones((1, x.size))
-    scoring = Scoring(FIRTH_TOLERANCE / y.size, FIRTH_TOLERANCE, augmented=True)
-    curve = fit_curves(scaled.x, y, unit, scoring)
+    scoring = FirthScoringOptions(FIRTH_TOLERANCE / y.size, FIRTH_TOLERANCE, augmented=True)
+    curve = fit_logistic_curves(scaled.x, y, unit, scoring)
     if not np.isfinite(curve.parameters).all():
         raise SolverError(
             f"Firth's penalised likelihood did not converge for {y.size} runs with {int(y.sum())} events. "
@@ -254,10 +264,10 @@ def fit_curve(
         )
     count, replicates = 0, None
     if recordings is None:
-        covariance = np.linalg.inv(information(scaled.x, unit, curve.parameters)[0])
+        covariance = np.linalg.inv(fisher_information(scaled.x, unit, curve.parameters)[0])
     else:
         count = int(recordings.held.sum())
-        replicates = recordings.without_each(lambda some: fit_curves(scaled.x, y, some, scoring).parameters)
+        replicates = recordings.without_each(lambda some: fit_logistic_curves(scaled.x, y, some, scoring).parameters)
         covariance = jackknife_covariance(replicates[recordings.held])
         replicates = scaled.back(replicates)
     b0, b1, covariance = scaled.unscaled(curve.parameters[0], covariance)
@@ -265,7 +275,7 @@ def fit_curve(
     method: Method = "Firth" if curve.penalised[0] else "maximum likelihood"
     notes: list[str] = []
     if separated:
-        low, high = _separation_gap(x, y)
+        low, high = _outcome_separation_gap(x, y)
         notes.append(
             f"Separated between im = {low:.4g} and {high:.4g}: maximum likelihood has no finite slope, so "
             "Firth's penalty was used. Median and slope are uncertain by the width of that gap."
@@ -282,12 +292,12 @@ def fit_curve(
     return fit, replicates
 
 
-def _separation_gap(x: Array, y: Bools) -> tuple[float, float]:
+def _outcome_separation_gap(x: Array, y: Bools) -> tuple[float, float]:
     below, above = (~y, y) if x[~y].max() <= x[y].min() else (y, ~y)
     return math.exp(x[below].max()), math.exp(x[above].min())
 
 
-def describe_curve(curve: LogisticFit | UnanimousOutcome) -> str:
+def describe_logistic_curve(curve: LogisticFit | UnanimousOutcome) -> str:
     """Return the median and the dispersion of a curve, or why it has none, as text."""
     if isinstance(curve, UnanimousOutcome):
         return f"in {'all' if curve.outcome else 'none'} of {curve.n} runs"

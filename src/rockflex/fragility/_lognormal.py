@@ -9,19 +9,26 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import finite_matrix, finite_vector, positive
+from rockflex._checks import checked_finite_matrix, checked_finite_vector, checked_positive
 from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
 from rockflex._values import Value
-from rockflex.fragility._arguments import checked_confidence, flags, fractions, log_at, log_column, log_measures
+from rockflex.fragility._arguments import (
+    boolean_column,
+    checked_confidence,
+    checked_probabilities,
+    log_column,
+    log_measures,
+    log_of_evaluation_points,
+)
 from rockflex.fragility._jackknife import (
     ONE_RECORDING,
-    Recordings,
+    RecordingGroups,
     jackknife_covariance,
-    quantile_of_t,
-    sample_parameters,
+    sampled_fit_parameters,
+    student_t_quantile,
 )
-from rockflex.fragility._regression import Standardised, fit_capacity_lines
+from rockflex.fragility._regression import StandardisedLogs, fit_capacity_lines
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,10 +75,10 @@ class LognormalFragility(HtmlTable, Value):
     damping: float | None = None
 
     def __post_init__(self) -> None:
-        median = positive("median", self.median, "the unit of IM")
-        vars(self).update(median=median, beta=positive("beta", self.beta, "natural logarithms"))
+        median = checked_positive("median", self.median, "the unit of IM")
+        vars(self).update(median=median, beta=checked_positive("beta", self.beta, "natural logarithms"))
         if self.covariance is not None:
-            matrix = finite_matrix("covariance", self.covariance, "natural logarithms squared", (2, 2))
+            matrix = checked_finite_matrix("covariance", self.covariance, "natural logarithms squared", (2, 2))
             matrix.setflags(write=False)
             vars(self).update(covariance=matrix)
 
@@ -85,7 +92,7 @@ class LognormalFragility(HtmlTable, Value):
         """Capacity that a fraction `p` stay below, of the shape of `p`."""
         from scipy.special import ndtri
 
-        return self.median * np.exp(self.beta * ndtri(fractions("p", p)))
+        return self.median * np.exp(self.beta * ndtri(checked_probabilities("p", p)))
 
     def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
         """Lower and upper confidence limits of the probability: delta method on ln(IM/median)/beta, then Φ.
@@ -102,7 +109,7 @@ class LognormalFragility(HtmlTable, Value):
         z = self._score(im)
         gradient = np.stack((np.full_like(z, -1.0), -z)) / self.beta
         error = np.sqrt(np.einsum("i...,ij,j...->...", gradient, self._known_covariance, gradient))
-        half = quantile_of_t(checked_confidence(confidence), self.n_groups) * error
+        half = student_t_quantile(checked_confidence(confidence), self.n_groups) * error
         return ndtr(z - half), ndtr(z + half)
 
     @property
@@ -116,27 +123,27 @@ class LognormalFragility(HtmlTable, Value):
         """Probabilities at `im`, shape (m,), for 2048 parameters drawn from the t distribution of the estimate."""
         from scipy.special import ndtr
 
-        away = score_derivatives(self.median, self.beta)
+        away = normal_score_derivatives(self.median, self.beta)
         score = -math.log(self.median) / self.beta, 1.0 / self.beta
-        b = sample_parameters(score, away @ self._known_covariance @ away.T, self.n_groups)
+        b = sampled_fit_parameters(score, away @ self._known_covariance @ away.T, self.n_groups)
         return ndtr(b[:, :1] + b[:, 1:] * np.log(im))
 
     def _score(self, im: ArrayLike) -> Array:
         with np.errstate(over="ignore"):  # a nearly zero dispersion makes a step
-            return (log_at(im) - math.log(self.median)) / self.beta
+            return (log_of_evaluation_points(im) - math.log(self.median)) / self.beta
 
 
-def score_derivatives(median: float, beta: float) -> Array:
+def normal_score_derivatives(median: float, beta: float) -> Array:
     """Derivatives of intercept and slope of the normal score of log(IM) by (ln median, beta)."""
     return np.array([[-1.0 / beta, math.log(median) / beta**2], [0.0, -1.0 / beta**2]])
 
 
-def covariance_of_scores(replicates: Array, median: float, beta: float) -> Array | None:
+def lognormal_fit_covariance(replicates: Array, median: float, beta: float) -> Array | None:
     """Covariance of (ln median, beta) from intercepts and slopes without each recording; None if it is not known."""
     covariance = jackknife_covariance(replicates)
     if not np.isfinite(covariance).all():
         return None
-    back = np.linalg.inv(score_derivatives(median, beta))
+    back = np.linalg.inv(normal_score_derivatives(median, beta))
     return back @ covariance @ back.T
 
 
@@ -180,8 +187,8 @@ def fit_capacities(
     0.73, 0.458
     """
     x = log_column("im", im, "Leave those records out.")
-    above = np.zeros(x.size, dtype=np.bool_) if censored is None else flags("censored", censored)
-    recordings = Recordings.beside(groups, im=x, censored=above)
+    above = np.zeros(x.size, dtype=np.bool_) if censored is None else boolean_column("censored", censored)
+    recordings = RecordingGroups.beside(groups, im=x, censored=above)
     known = x[~above]
     if known.size < 2 or np.ptp(known) == 0.0:
         raise InputError(
@@ -189,22 +196,25 @@ def fit_capacities(
             f"besides {int(above.sum())} censored records. Scale the records further up."
         )
     if above.any():
-        mean, beta = _maximum_likelihood(known, x[above])
+        mean, beta = _censored_lognormal_fit(known, x[above])
         method, covariance = (
             "censored capacities, maximum likelihood",
-            _censored_covariance(known, x[above], mean, beta),
+            _censored_lognormal_covariance(known, x[above], mean, beta),
         )
     else:
         mean, beta, n = float(known.mean()), float(known.std(ddof=1)), known.size
         method, covariance = "capacities, moments", np.diag([beta**2 / n, beta**2 / (2.0 * (n - 1))])
     if recordings is None:
         return LognormalFragility(math.exp(mean), beta, covariance, x.size, method, damping=damping)
-    median, replicates = math.exp(mean), recordings.without_each(lambda some: _score_lines(x, above, some, mean, beta))
-    covariance = covariance_of_scores(replicates, median, beta)
+    median, replicates = (
+        math.exp(mean),
+        recordings.without_each(lambda some: _normal_score_lines(x, above, some, mean, beta)),
+    )
+    covariance = lognormal_fit_covariance(replicates, median, beta)
     return LognormalFragility(median, beta, covariance, x.size, method, recordings.n, damping)
 
 
-def _score_lines(x: Array, above: Bools, weights: Array, mean: float, beta: float) -> Array:
+def _normal_score_lines(x: Array, above: Bools, weights: Array, mean: float, beta: float) -> Array:
     """Intercept and slope of the normal score for each row of weights, by the method of the fit of all records."""
     if above.any():
         shifted = fit_capacity_lines((x - mean) / beta, -above.astype(float), weights, np.array([0.0, 1.0]))
@@ -217,7 +227,7 @@ def _score_lines(x: Array, above: Bools, weights: Array, mean: float, beta: floa
     return np.column_stack((-means * slope, slope))
 
 
-def _maximum_likelihood(known: Array, above: Array) -> tuple[float, float]:
+def _censored_lognormal_fit(known: Array, above: Array) -> tuple[float, float]:
     from scipy.optimize import fmin
     from scipy.stats import CensoredData, norm
 
@@ -232,7 +242,7 @@ def _maximum_likelihood(known: Array, above: Array) -> tuple[float, float]:
     return shift + scale * float(mean), scale * float(beta)
 
 
-def _censored_covariance(known: Array, above: Array, mean: float, beta: float) -> Array:
+def _censored_lognormal_covariance(known: Array, above: Array, mean: float, beta: float) -> Array:
     """Inverse of the observed information of (mean, beta) of a normal sample with right-censored values."""
     from scipy.special import log_ndtr
 
@@ -288,20 +298,20 @@ def fit_stripes(
     0.427, 0.539
     """
     x = log_measures(im_levels, "im_levels")
-    total, events = _counts("n_total", n_total, 1), _counts("n_exceeding", n_exceeding, 0)
-    recordings = Recordings.beside(groups, im_levels=x, n_exceeding=events, n_total=total)
+    total, events = _checked_stripe_counts("n_total", n_total, 1), _checked_stripe_counts("n_exceeding", n_exceeding, 0)
+    recordings = RecordingGroups.beside(groups, im_levels=x, n_exceeding=events, n_total=total)
     if (events > total).any():
         row = int(np.flatnonzero(events > total)[0])
         raise InputError(
             f"n_exceeding must be at most n_total, but stripe {row} has {events[row]:g} of {total[row]:g}. "
             "Give counts, not fractions, and check their order."
         )
-    _check_overlap(x, events, total)
+    _check_stripe_overlap(x, events, total)
 
     from statsmodels.api import GLM, families
     from statsmodels.tools.sm_exceptions import PerfectSeparationWarning
 
-    scaled = Standardised(x)
+    scaled = StandardisedLogs(x)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PerfectSeparationWarning)  # stripes with probabilities close to 0 or 1
         family = families.Binomial(link=families.links.Probit())
@@ -323,15 +333,15 @@ def fit_stripes(
     else:
         kind, both = np.repeat((1.0, -1.0), x.size), np.tile(scaled.x, 2)
         runs = np.concatenate((events, total - events))
-        twice, at = Recordings(np.tile(recordings.codes, 2), recordings.n), np.asarray(result.params)
+        twice, at = RecordingGroups(np.tile(recordings.codes, 2), recordings.n), np.asarray(result.params)
         replicates = twice.without_each(lambda some: fit_capacity_lines(both, kind, some * runs, at))
-        found, count = covariance_of_scores(scaled.back(replicates), median, beta), recordings.n
+        found, count = lognormal_fit_covariance(scaled.back(replicates), median, beta), recordings.n
     method = "binomial counts, maximum likelihood"
     return LognormalFragility(median, beta, found, int(total.sum()), method, count, damping)
 
 
-def _counts(name: str, values: ArrayLike, least: int) -> Array:
-    numbers = finite_vector(name, values, "runs")
+def _checked_stripe_counts(name: str, values: ArrayLike, least: int) -> Array:
+    numbers = checked_finite_vector(name, values, "runs")
     bad = np.flatnonzero((numbers != np.rint(numbers)) | (numbers < least))
     if bad.size:
         raise InputError(
@@ -340,7 +350,7 @@ def _counts(name: str, values: ArrayLike, least: int) -> Array:
     return numbers
 
 
-def _check_overlap(x: Array, events: Array, total: Array) -> None:
+def _check_stripe_overlap(x: Array, events: Array, total: Array) -> None:
     with_events, without = x[events > 0], x[events < total]
     if with_events.size == 0 or without.size == 0:
         word, side = ("No run exceeds", "larger") if with_events.size == 0 else ("All runs exceed", "smaller")

@@ -9,30 +9,30 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import finite_vector, positive
+from rockflex._checks import checked_finite_vector, checked_positive
 from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
 from rockflex._shown import shown
 from rockflex._values import Value
-from rockflex.fragility._arguments import checked_confidence, flags, log_at, log_measures
-from rockflex.fragility._cloud import CloudFit, describe_power_law, fit_line
-from rockflex.fragility._hazard import damping_named
+from rockflex.fragility._arguments import boolean_column, checked_confidence, log_measures, log_of_evaluation_points
+from rockflex.fragility._cloud import CloudFit, describe_power_law, fit_cloud_line
+from rockflex.fragility._hazard import measure_damping_of_column
 from rockflex.fragility._jackknife import (
-    Recordings,
+    RecordingGroups,
     jackknife_covariance,
-    quantile_of_t,
-    sample_limits,
-    sample_parameters,
+    sampled_band_limits,
+    sampled_fit_parameters,
+    student_t_quantile,
 )
 from rockflex.fragility._limit_states import ROCKED
-from rockflex.fragility._logistic import LogisticFit, UnanimousOutcome, describe_curve, fit_curve
+from rockflex.fragility._logistic import LogisticFit, UnanimousOutcome, describe_logistic_curve, fit_logistic_curve
 
 MIN_RUNS = 10  # fewer runs give a note
 _Part: TypeAlias = tuple[Array, Array | None]
 """Covariance of the parameters of a part for independent runs, and its parameters without each recording."""
 
 
-class Note(str):
+class OutcomeNote(str):
     """A warning about the fits, and its `kind`: "runs", or the fit that it concerns, such as "rocking"."""
 
     __slots__ = ("kind",)
@@ -135,7 +135,7 @@ class OutcomeFragility(HtmlTable, Value):
     n_no_rocking: int
     n_rocking: int
     n_overturned: int
-    notes: tuple[Note, ...]
+    notes: tuple[OutcomeNote, ...]
     covariance: Array
     without: Array | None = None
     n_groups: int = 0
@@ -144,13 +144,13 @@ class OutcomeFragility(HtmlTable, Value):
 
     def __repr__(self) -> str:
         notes = f"; see {len(self.notes)} in notes" if self.notes else ""
-        return f"OutcomeFragility({self.counts}; overturning: {describe_curve(self.overturning)}{notes})"
+        return f"OutcomeFragility({self.counts}; overturning: {describe_logistic_curve(self.overturning)}{notes})"
 
     def _shown_as(self) -> Mapping[str, Any]:
         curves = {name: getattr(self, name) for name in ("overturning", "rocking", "initiation")}
         return {
             "runs": self.counts,
-            **{name: None if curve is None else describe_curve(curve) for name, curve in curves.items()},
+            **{name: None if curve is None else describe_logistic_curve(curve) for name, curve in curves.items()},
             "rotation": None if self.rotation is None else describe_power_law(self.rotation, "rad"),
             "threshold": f"{self.threshold:g} rad",
             "notes": " ".join(self.notes) or None,
@@ -166,7 +166,9 @@ class OutcomeFragility(HtmlTable, Value):
         falls = self.overturning.probability(im)
         rocks = np.full_like(falls, np.nan) if self.rocking is None else self.rocking.probability(im)
         stands = 1.0 - falls
-        return OutcomeProbabilities(_weighted(stands, 1.0 - rocks), _weighted(stands, rocks), falls)
+        return OutcomeProbabilities(
+            _weighted_probability(stands, 1.0 - rocks), _weighted_probability(stands, rocks), falls
+        )
 
     def exceedance(self, im: ArrayLike, limit: ArrayLike) -> Array:
         """Probability that the rotation exceeds `limit` (rad) at `im`; the two broadcast.
@@ -183,7 +185,7 @@ class OutcomeFragility(HtmlTable, Value):
         falls = self.overturning.probability(im)
         rocks = np.full_like(falls, np.nan) if self.rocking is None else self.rocking.probability(im)
         beyond = np.full_like(sample_limits, np.nan) if self.rotation is None else self.rotation.exceedance(im, limit)
-        return total_probability(falls, rocks, beyond)
+        return total_exceedance_probability(falls, rocks, beyond)
 
     def curve(self, limit: float) -> "RotationFragility":
         """Fragility curve of a rotation in rad, with its band, for `annual_rate` and the files of risk programs.
@@ -193,11 +195,11 @@ class OutcomeFragility(HtmlTable, Value):
         InputError
             If the limit is below the threshold of rocking or not below `highest_limit`.
         """
-        self._checked(positive("limit", limit, "rad"))
+        self._checked(checked_positive("limit", limit, "rad"))
         return RotationFragility(self, float(limit))
 
     def _checked(self, limit: ArrayLike) -> Array:
-        sample_limits = np.exp(log_at(limit, "limit"))
+        sample_limits = np.exp(log_of_evaluation_points(limit, "limit"))
         if (sample_limits < self.lowest_limit * (1.0 - 1e-12)).any() or (sample_limits >= self.highest_limit).any():
             raise InputError(
                 f"limit must lie in [{self.lowest_limit:.4g}, {self.highest_limit:.4g}) rad, but {shown(limit)} was "
@@ -254,20 +256,20 @@ class RotationFragility(Value):
         """
         from scipy.special import expit, logit
 
-        wanted, x, without = checked_confidence(confidence), np.exp(log_at(im)), self.outcomes.without
+        wanted, x, without = checked_confidence(confidence), np.exp(log_of_evaluation_points(im)), self.outcomes.without
         if without is None:
-            low, high = sample_limits(self.drawn(x.ravel()), wanted)
+            low, high = sampled_band_limits(self.drawn(x.ravel()), wanted)
             return low.reshape(x.shape), high.reshape(x.shape)
         with np.errstate(divide="ignore", invalid="ignore"):  # a probability of 0 or 1
             away = logit(self._at(without, x.ravel())).reshape(-1, *x.shape)
             error = np.sqrt((len(without) - 1.0) * away.var(axis=0))
-            centre, half = logit(self.probability(x)), quantile_of_t(wanted, len(without)) * error
+            centre, half = logit(self.probability(x)), student_t_quantile(wanted, len(without)) * error
             return expit(centre - half), expit(centre + half)
 
     def drawn(self, im: Array) -> Array:
         """Probabilities at `im`, shape (m,), for 2048 parameters drawn from the t distribution of the estimate."""
         fit = self.outcomes
-        return self._at(sample_parameters(_outcome_parameters(fit), fit.covariance, fit.n_groups), im)
+        return self._at(sampled_fit_parameters(_outcome_parameters(fit), fit.covariance, fit.n_groups), im)
 
     def _at(self, parameters: Array, im: Array) -> Array:
         """Probabilities at `im` for each row of parameters."""
@@ -282,7 +284,9 @@ class RotationFragility(Value):
         )
         c1, c2, spread = (parameters[:, place : place + 1] for place in (4, 5, 6))
         known = 1.0 if fit.rotation else np.nan
-        return total_probability(falls, rocks, known * ndtr((c1 + c2 * x - np.log(self.limit)) / np.exp(spread)))
+        return total_exceedance_probability(
+            falls, rocks, known * ndtr((c1 + c2 * x - np.log(self.limit)) / np.exp(spread))
+        )
 
 
 def fit_outcomes(
@@ -340,29 +344,29 @@ def fit_outcomes(
     from scipy.linalg import block_diag
 
     log_measures(im)
-    measures = finite_vector("im", im, "one unit")
-    rotations, falls = finite_vector("rotation", rotation, "rad"), flags("overturned", overturned)
-    lifts = np.ones(falls.size, dtype=bool) if uplifted is None else flags("uplifted", uplifted)
-    recordings = Recordings.beside(groups, im=measures, rotation=rotations, overturned=falls, uplifted=lifts)
-    limit = positive("threshold", threshold, "rad")
-    _check_rotations(rotations, falls, limit)
+    measures = checked_finite_vector("im", im, "one unit")
+    rotations, falls = checked_finite_vector("rotation", rotation, "rad"), boolean_column("overturned", overturned)
+    lifts = np.ones(falls.size, dtype=bool) if uplifted is None else boolean_column("uplifted", uplifted)
+    recordings = RecordingGroups.beside(groups, im=measures, rotation=rotations, overturned=falls, uplifted=lifts)
+    limit = checked_positive("threshold", threshold, "rad")
+    _check_outcome_rotations(rotations, falls, limit)
 
     stands, moves = ~falls, (rotations > limit) & (lifts | falls)
     rocked = stands & moves
     counts = int((~moves).sum()), int(rocked.sum()), int(falls.sum())
     notes = [
-        Note(f"Only {count} of {falls.size} runs {what}: fits of these runs are uncertain.")
+        OutcomeNote(f"Only {count} of {falls.size} runs {what}: fits of these runs are uncertain.")
         for count, what in zip(counts, ("do not rock", "rock without overturning", "overturn"), strict=True)
         if 0 < count < MIN_RUNS
     ]
-    damping = damping_named(im, damping)
-    shared = _PartFits(measures, recordings, damping, notes)
+    damping = measure_damping_of_column(im, damping)
+    shared = _OutcomePartFits(measures, recordings, damping, notes)
     overturning, part = shared.curve("overturning", falls, np.ones_like(falls))
     rocking, other = shared.curve("rocking", moves, stands)
     initiation, _ = shared.curve("initiation", moves, np.ones_like(falls))
     line, last = shared.cloud(rotations, rocked)
     count = 0 if recordings is None else recordings.n
-    without = None if recordings is None else _joined_replicates((part, other, last), count)
+    without = None if recordings is None else _joined_outcome_replicates((part, other, last), count)
     return OutcomeFragility(
         overturning=overturning or UnanimousOutcome(bool(falls[0]), falls.size, count),
         rocking=rocking,
@@ -383,7 +387,7 @@ def fit_outcomes(
     )
 
 
-def _check_rotations(rotations: Array, falls: Bools, threshold: float) -> None:
+def _check_outcome_rotations(rotations: Array, falls: Bools, threshold: float) -> None:
     negative = np.flatnonzero(rotations < 0.0)
     if negative.size:
         raise InputError(
@@ -398,52 +402,52 @@ def _check_rotations(rotations: Array, falls: Bools, threshold: float) -> None:
         )
 
 
-class _PartFits(NamedTuple):
+class _OutcomePartFits(NamedTuple):
     """Fits of the parts of the total probability, with the data that they share."""
 
     im: Array
-    recordings: Recordings | None
+    recordings: RecordingGroups | None
     damping: float | None
-    notes: list[Note]
+    notes: list[OutcomeNote]
 
-    def some(self, chosen: Bools) -> Recordings | None:
+    def some(self, chosen: Bools) -> RecordingGroups | None:
         return None if self.recordings is None else self.recordings.some(chosen)
 
     def curve(self, name: str, happened: Bools, chosen: Bools) -> tuple[LogisticFit | UnanimousOutcome | None, _Part]:
         """The curve of an outcome of some of the runs."""
         outcome, some, none = happened[chosen], self.some(chosen), (np.zeros((2, 2)), None)
         if outcome.size == 0:
-            self.notes.append(Note(f"{name}: all runs overturned, so there is nothing to fit.", name))
+            self.notes.append(OutcomeNote(f"{name}: all runs overturned, so there is nothing to fit.", name))
             return None, none
         if outcome.all() or not outcome.any():
             alike = UnanimousOutcome(bool(outcome[0]), outcome.size, 0 if some is None else int(some.held.sum()))
             self.notes.append(
-                Note(f"{name}: {'all' if alike.outcome else 'none'} of {alike.n} runs. {alike.note}", name)
+                OutcomeNote(f"{name}: {'all' if alike.outcome else 'none'} of {alike.n} runs. {alike.note}", name)
             )
             return alike, none
         try:
-            fit, replicates = fit_curve(log_measures(self.im[chosen]), outcome, some, self.damping)
+            fit, replicates = fit_logistic_curve(log_measures(self.im[chosen]), outcome, some, self.damping)
         except (InputError, SolverError) as error:
-            self.notes.append(Note(f"{name}: {error}", name))
+            self.notes.append(OutcomeNote(f"{name}: {error}", name))
             return None, none
         if fit.note:
-            self.notes.append(Note(f"{name}: {fit.note}", name))
+            self.notes.append(OutcomeNote(f"{name}: {fit.note}", name))
         return fit, (fit.covariance, replicates)
 
     def cloud(self, rotation: Array, rocked: Bools) -> tuple[CloudFit | None, _Part]:
         """The line through the rotations of the runs that rocked."""
         try:
             x, y = log_measures(self.im[rocked]), np.log(rotation[rocked])
-            fit, replicates = fit_line(x, y, self.some(rocked))
+            fit, replicates = fit_cloud_line(x, y, self.some(rocked))
         except InputError as error:
-            self.notes.append(Note(f"rotation: {error}", "rotation"))
+            self.notes.append(OutcomeNote(f"rotation: {error}", "rotation"))
             return None, (np.zeros((3, 3)), None)
         covariance = np.zeros((3, 3))
         covariance[:2, :2], covariance[2, 2] = fit.covariance, 0.5 / (fit.n - 2.0)
         return fit, (covariance, replicates)
 
 
-def _joined_replicates(parts: Sequence[_Part], count: int) -> Array:
+def _joined_outcome_replicates(parts: Sequence[_Part], count: int) -> Array:
     """Parameters of all parts without each recording; zero where there is no curve."""
     zeros = (np.zeros((count, len(covariance))) for covariance, _ in parts)
     return np.column_stack([zero if found is None else found for zero, (_, found) in zip(zeros, parts, strict=True)])
@@ -461,11 +465,11 @@ def _outcome_parameters(fit: OutcomeFragility) -> Array:
     return np.array([*(value for pair in curves for value in pair), *last])
 
 
-def total_probability(falls: Array, rocks: Array, beyond: Array) -> Array:
+def total_exceedance_probability(falls: Array, rocks: Array, beyond: Array) -> Array:
     """P(OV) + P(no OV) P(rocking | no OV) P(θ_max > limit | rocking)."""
-    return falls + _weighted(_weighted(1.0 - falls, rocks), beyond)
+    return falls + _weighted_probability(_weighted_probability(1.0 - falls, rocks), beyond)
 
 
-def _weighted(weight: Array, values: Array) -> Array:
+def _weighted_probability(weight: Array, values: Array) -> Array:
     """The product; zero where the weight is zero, even if the value could not be fitted."""
     return np.where(weight == 0.0, 0.0, weight * values)[()]

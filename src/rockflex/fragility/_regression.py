@@ -16,7 +16,7 @@ RIDGE = 1e-10  # added to the information, for each run; where the likelihood is
 MAX_SCORING_STEP = 5.0  # step of Fisher scoring
 
 
-class Logistic(NamedTuple):
+class LogisticCurves(NamedTuple):
     """Logistic curves through standardised x.
 
     Attributes
@@ -34,7 +34,7 @@ class Logistic(NamedTuple):
     penalised: Bools
 
 
-class Scoring(NamedTuple):
+class FirthScoringOptions(NamedTuple):
     """Steps of the penalised fit, and when it has converged.
 
     Every choice leads to the same maximum. Each caller has its own, so that the digits of its results stay the same.
@@ -54,7 +54,7 @@ class Scoring(NamedTuple):
     augmented: bool = False
 
 
-def fit_curves(x: Array, outcome: Bools, weights: Array, scoring: Scoring) -> Logistic:
+def fit_logistic_curves(x: Array, outcome: Bools, weights: Array, scoring: FirthScoringOptions) -> LogisticCurves:
     """Fit logistic curves by maximum likelihood, or with Firth's penalty where that has no finite slope.
 
     Firth 1993, Biometrika 80(1), 27-38; Heinze & Schemper 2002, Stat. Med. 21(16), 2409-2419.
@@ -70,24 +70,24 @@ def fit_curves(x: Array, outcome: Bools, weights: Array, scoring: Scoring) -> Lo
     scoring
         Of the penalised fits.
     """
-    separated = are_separated(x, outcome, weights)
+    separated = are_outcomes_separated(x, outcome, weights)
     parameters = np.full((weights.shape[0], 2), np.nan)
-    parameters[~separated] = _newton(x, outcome, weights[~separated])
+    parameters[~separated] = _newton_logistic_fit(x, outcome, weights[~separated])
     penalised = np.isnan(parameters[:, 0])
-    parameters[penalised] = _firth(x, outcome, weights[penalised], scoring)
-    return Logistic(parameters, separated, penalised)
+    parameters[penalised] = _firth_logistic_fit(x, outcome, weights[penalised], scoring)
+    return LogisticCurves(parameters, separated, penalised)
 
 
-def are_separated(x: Array, outcome: Bools, weights: Array) -> Bools:
+def are_outcomes_separated(x: Array, outcome: Bools, weights: Array) -> Bools:
     """Whether some value of x separates the outcomes of each row; runs at that value may have either."""
-    low_no, high_no = _range(x, (weights > 0.0) & ~outcome)
-    low_yes, high_yes = _range(x, (weights > 0.0) & outcome)
+    low_no, high_no = _measure_range_of_rows(x, (weights > 0.0) & ~outcome)
+    low_yes, high_yes = _measure_range_of_rows(x, (weights > 0.0) & outcome)
     return (high_no <= low_yes) | (high_yes <= low_no)
 
 
-def information(x: Array, weights: Array, parameters: Array) -> Array:
+def fisher_information(x: Array, weights: Array, parameters: Array) -> Array:
     """Fisher information of the parameters without the penalty, shape (m, 2, 2)."""
-    one, first, second = _Point(x, weights, parameters).moments
+    one, first, second = _LogisticPoint(x, weights, parameters).moments
     return np.moveaxis(np.array([[one, first], [first, second]]), -1, 0)
 
 
@@ -122,8 +122,8 @@ def fit_capacity_lines(x: Array, kind: Array, weights: Array, start: Array) -> A
             ratio = np.exp(-0.5 * z**2 - 0.5 * np.log(2.0 * np.pi) - log_ndtr(side * z))  # φ/Φ
             slope = np.where(known, -z, side * ratio)
             bend = weights * np.where(known, 1.0, ratio * (ratio + side * z))
-            n_known, (one, cross, second) = weights @ known.astype(float), _moments(x, bend)
-            _, step = _step(x, weights * slope, (one, cross, second + n_known / b[:, 1] ** 2), n_known / b[:, 1])
+            n_known, (one, cross, second) = weights @ known.astype(float), _weighted_moments(x, bend)
+            _, step = _newton_step(x, weights * slope, (one, cross, second + n_known / b[:, 1] ** 2), n_known / b[:, 1])
             b = b + step
             first = b if number == 0 else first
             converged = np.abs(step).max(axis=1) <= NEWTON_TOLERANCE * np.abs(start).max()
@@ -132,7 +132,7 @@ def fit_capacity_lines(x: Array, kind: Array, weights: Array, start: Array) -> A
     return np.where(converged[:, None] & np.isfinite(b), b, first)
 
 
-class Lines(NamedTuple):
+class LeastSquaresLines(NamedTuple):
     """Least-squares lines y = intercept + slope x, each field of shape (m,).
 
     `sxx` and `syy` are the weighted sums of squares about the means, `residual` that about the line, `size` the sums
@@ -153,7 +153,7 @@ class Lines(NamedTuple):
         return np.sqrt(self.residual / (self.size - 2.0))
 
 
-def fit_lines(x: Array, y: Array, weights: Array) -> Lines:
+def fit_least_squares_lines(x: Array, y: Array, weights: Array) -> LeastSquaresLines:
     """Fit a line to each row of weights; infinite or NaN where fewer than two different x are left."""
     size = weights.sum(axis=1)
     with np.errstate(all="ignore"):
@@ -162,10 +162,10 @@ def fit_lines(x: Array, y: Array, weights: Array) -> Lines:
         sxx, sxy, syy = ((weights * one * other).sum(axis=1) for one, other in ((dx, dx), (dx, dy), (dy, dy)))
         slope = sxy / sxx
         residual = (weights * (dy - slope[:, None] * dx) ** 2).sum(axis=1)
-        return Lines(mean_y - slope * mean_x, slope, mean_x, size, sxx, syy, residual)
+        return LeastSquaresLines(mean_y - slope * mean_x, slope, mean_x, size, sxx, syy, residual)
 
 
-class _Point:
+class _LogisticPoint:
     """Logistic curves at some parameters: eta, p, and the entries of the Fisher information."""
 
     def __init__(self, x: Array, weights: Array, parameters: Array) -> None:
@@ -174,37 +174,37 @@ class _Point:
         self.eta = parameters[:, :1] + parameters[:, 1:] * x
         self.p = expit(self.eta)
         self.each = weights * self.p * (1.0 - self.p)
-        self.moments = _moments(x, self.each)
+        self.moments = _weighted_moments(x, self.each)
 
 
-def _moments(x: Array, each: Array) -> tuple[Array, Array, Array]:
+def _weighted_moments(x: Array, each: Array) -> tuple[Array, Array, Array]:
     return each.sum(axis=1), each @ x, each @ x**2
 
 
-def _determinant(moments: tuple[Array, Array, Array]) -> Array:
+def _moment_determinant(moments: tuple[Array, Array, Array]) -> Array:
     one, first, second = moments
     return one * second - first**2
 
 
-def _step(
+def _newton_step(
     x: Array, residual: Array, moments: tuple[Array, Array, Array], more: Array | float = 0.0
 ) -> tuple[Array, Array]:
     """Score of the residuals, with `more` added to the component of the slope, and the step of the parameters."""
     one, first, second = moments
     a, b = residual.sum(axis=1), residual @ x + more
     step = np.column_stack((second * a - first * b, one * b - first * a))
-    return np.column_stack((a, b)), step / _determinant(moments)[:, None]
+    return np.column_stack((a, b)), step / _moment_determinant(moments)[:, None]
 
 
-def _newton(x: Array, outcome: Bools, weights: Array) -> Array:
+def _newton_logistic_fit(x: Array, outcome: Bools, weights: Array) -> Array:
     """Maximum likelihood of each row; NaN where Newton's method does not converge."""
     b, converged = np.zeros((weights.shape[0], 2)), np.zeros(weights.shape[0], dtype=np.bool_)
     ridge = RIDGE * weights.sum(axis=1)
     with np.errstate(all="ignore"):
         for _ in range(MAX_NEWTON_STEPS):
-            at = _Point(x, weights, b)
+            at = _LogisticPoint(x, weights, b)
             one, first, second = at.moments
-            _, step = _step(x, weights * (outcome - at.p), (one + ridge, first, second + ridge))
+            _, step = _newton_step(x, weights * (outcome - at.p), (one + ridge, first, second + ridge))
             b += step
             converged = np.abs(step).max(axis=1) <= NEWTON_TOLERANCE
             if (converged | ~np.isfinite(b).all(axis=1)).all():
@@ -212,26 +212,28 @@ def _newton(x: Array, outcome: Bools, weights: Array) -> Array:
     return np.where(converged[:, None] & np.isfinite(b), b, np.nan)
 
 
-def _firth(x: Array, outcome: Bools, weights: Array, scoring: Scoring) -> Array:
+def _firth_logistic_fit(x: Array, outcome: Bools, weights: Array, scoring: FirthScoringOptions) -> Array:
     """Maximum of the penalised likelihood of each row; NaN where Fisher scoring does not converge."""
     b, converged = np.zeros((weights.shape[0], 2)), np.zeros(weights.shape[0], dtype=np.bool_)
     bound = scoring.score * weights.sum(axis=1)
     with np.errstate(all="ignore"):
         for _ in range(MAX_SCORING_STEPS):
-            at = _Point(x, weights, b)
+            at = _LogisticPoint(x, weights, b)
             one, first, second = (moment[:, None] for moment in at.moments)
-            leverage = at.each * (second - 2.0 * first * x + one * x**2) / _determinant(at.moments)[:, None]
+            leverage = at.each * (second - 2.0 * first * x + one * x**2) / _moment_determinant(at.moments)[:, None]
             residual = weights * (outcome - at.p) + leverage * (0.5 - at.p)
-            moments = _moments(x, at.each + leverage * at.p * (1.0 - at.p)) if scoring.augmented else at.moments
-            score, step = _step(x, residual, moments)
+            moments = (
+                _weighted_moments(x, at.each + leverage * at.p * (1.0 - at.p)) if scoring.augmented else at.moments
+            )
+            score, step = _newton_step(x, residual, moments)
             length = np.abs(step).max(axis=1)
             converged = (np.abs(score).max(axis=1) <= bound) & (length <= scoring.step)
             if converged.all():
                 break
             step *= np.minimum(1.0, MAX_SCORING_STEP / length)[:, None]
-            likely = _penalised_likelihood(outcome, weights, at)
+            likely = _firth_penalised_likelihood(outcome, weights, at)
             for _ in range(MAX_HALVINGS):
-                further = _penalised_likelihood(outcome, weights, _Point(x, weights, b + step))
+                further = _firth_penalised_likelihood(outcome, weights, _LogisticPoint(x, weights, b + step))
                 worse = ~(further >= likely - 1e-12 * np.abs(likely))
                 if not worse.any():
                     break
@@ -240,17 +242,17 @@ def _firth(x: Array, outcome: Bools, weights: Array, scoring: Scoring) -> Array:
     return np.where(converged[:, None], b, np.nan)
 
 
-def _penalised_likelihood(outcome: Bools, weights: Array, at: _Point) -> Array:
+def _firth_penalised_likelihood(outcome: Bools, weights: Array, at: _LogisticPoint) -> Array:
     likely = np.where(outcome, -np.logaddexp(0.0, -at.eta), -np.logaddexp(0.0, at.eta))
-    return (weights * likely).sum(axis=1) + 0.5 * np.log(_determinant(at.moments))
+    return (weights * likely).sum(axis=1) + 0.5 * np.log(_moment_determinant(at.moments))
 
 
-def _range(x: Array, held: Bools) -> tuple[Array, Array]:
+def _measure_range_of_rows(x: Array, held: Bools) -> tuple[Array, Array]:
     """Smallest and largest x of the runs in each row; infinite where there is none."""
     return np.where(held, x, np.inf).min(axis=1), np.where(held, x, -np.inf).max(axis=1)
 
 
-class Standardised:
+class StandardisedLogs:
     """Logarithms scaled to mean 0 and standard deviation 1, and back."""
 
     def __init__(self, x: Array) -> None:
@@ -274,7 +276,7 @@ class Standardised:
         return float(a), float(b), self._back @ covariance @ self._back.T
 
 
-def standard_error(x: Array, covariance: Array) -> Array:
+def standard_error_of_line(x: Array, covariance: Array) -> Array:
     """Standard error of a + b x for the covariance of (a, b)."""
     variance = covariance[0, 0] + 2.0 * covariance[0, 1] * x + covariance[1, 1] * x**2
     return np.sqrt(np.maximum(variance, 0.0))  # rounding may leave a small negative variance

@@ -3,10 +3,17 @@
 from rockflex.modal._adequacy import Adequacy, AdequacyTolerance, adequacy
 from rockflex.modal._analysis import FloorModes, ModalProperties, modal_properties
 from rockflex.modal._element_law import Branch, BranchEnd, ElementLaw, law_parameters, slow_path, tension_of
-from rockflex.modal._elements import BaseElement, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator, element_set
+from rockflex.modal._elements import (
+    BaseElement,
+    FrictionDamper,
+    Tendon,
+    ViscousDamper,
+    YieldingDissipator,
+    base_element_tuple,
+)
 from rockflex.modal._ground import Ground, Springs, asce41_bed, winkler_bed
 from rockflex.modal._law_bars import FlagShapedBar, GapBar, MultilinearBar
-from rockflex.modal._participation import MassNormalisedModes, modes_that_take_part, rocking_properties
+from rockflex.modal._participation import MassNormalisedModes, excited_mode_indices, rocking_properties
 from rockflex.modal._pivot import Pivot
 from rockflex.modal._rocking import RockingProperties
 from rockflex.modal._uplifted import PinnedBeam, UpliftedModes, frequency_equation, pinned_beam, uplifted_modes
@@ -36,11 +43,11 @@ __all__ = [
     "YieldingDissipator",
     "adequacy",
     "asce41_bed",
-    "element_set",
+    "base_element_tuple",
+    "excited_mode_indices",
     "frequency_equation",
     "law_parameters",
     "modal_properties",
-    "modes_that_take_part",
     "pinned_beam",
     "rocking_properties",
     "slow_path",

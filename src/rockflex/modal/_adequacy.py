@@ -6,12 +6,12 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import instance, positive
-from rockflex._computable import computable
+from rockflex._checks import checked_instance, checked_positive
 from rockflex._errors import InputError
+from rockflex._overflow import explaining_overflow
 from rockflex._values import Value
 from rockflex.modal._rocking import SUM_TOLERANCE, RockingProperties
-from rockflex.modal._uplifted import lowest_uplifted
+from rockflex.modal._uplifted import lowest_uplifted_frequencies
 
 _SHEAR_NOTE = (
     "The horizontal ground reaction ΣF_x leaves no mass out: the mass of missing modes moves with the base, as it does "
@@ -66,11 +66,13 @@ class AdequacyTolerance:
 
     def __post_init__(self) -> None:
         for each in fields(self):
-            value = positive(each.name, getattr(self, each.name), "fractions (5 % is 0.05)", zero=True, infinite=True)
+            value = checked_positive(
+                each.name, getattr(self, each.name), "fractions (5 % is 0.05)", zero=True, infinite=True
+            )
             vars(self)[each.name] = value
 
 
-def frequency_errors(p: RockingProperties, missing: float) -> tuple[Array, Array]:
+def mode_truncation_errors(p: RockingProperties, missing: float) -> tuple[Array, Array]:
     """Return `Adequacy.frequency_error` (N, 2) and `reference_error` (2,), the larger values of the two pivots.
 
     Parameters
@@ -80,29 +82,29 @@ def frequency_errors(p: RockingProperties, missing: float) -> tuple[Array, Array
     missing : float
         Inertia in kg m² that no available mode represents; zero if no mode is missing.
     """
-    errors = [_pivot_errors(p, missing, pivot.side) for pivot in p.pivots]
+    errors = [_pivot_truncation_errors(p, missing, pivot.side) for pivot in p.pivots]
     largest, reference = (np.maximum.reduce(each) for each in zip(*errors, strict=True))
     return largest, reference
 
 
-def _pivot_errors(p: RockingProperties, missing: float, side: int) -> tuple[Array, Array]:
+def _pivot_truncation_errors(p: RockingProperties, missing: float, side: int) -> tuple[Array, Array]:
     found = np.full((p.n_modes, 2), np.nan)
     for k in range(1, p.n_modes + 1):
-        found[k - 1, :k] = lowest_uplifted(p.truncated(k), 2, side)
+        found[k - 1, :k] = lowest_uplifted_frequencies(p.truncated(k), 2, side)
     reference = np.zeros(2)
     if missing:
-        reference = np.maximum(found[-1] / _lowest_with_missing(p, missing, side) - 1.0, 0.0)
+        reference = np.maximum(found[-1] / _uplifted_with_missing_inertia(p, missing, side) - 1.0, 0.0)
     return np.maximum(found / found[-1] - 1.0, 0.0), reference
 
 
-def _lowest_with_missing(p: RockingProperties, inertia: float, side: int) -> Array:
+def _uplifted_with_missing_inertia(p: RockingProperties, inertia: float, side: int) -> Array:
     """Return the first two uplifted frequencies if the missing `inertia` in kg m² moves with the last mode."""
     # Two modes with the same frequency: one has the inertia of both, and the rotation does not excite the other.
     if p.n_modes == 1:  # the latter is the lowest
         return np.append(p.omega, np.nan)
     height = p.effective_height.copy()
     height[-1] = math.sqrt(height[-1] ** 2 + inertia / p.effective_mass[-1])
-    both = lowest_uplifted(replace(p, effective_height=height), 2, side)
+    both = lowest_uplifted_frequencies(replace(p, effective_height=height), 2, side)
     return np.sort(np.append(both, p.omega[-1]))[:2]
 
 
@@ -168,7 +170,7 @@ class Adequacy(Value):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        vars(self)["reason"] = f"{_for_rotation(self)} {_for_shear(self)}"
+        vars(self)["reason"] = f"{_reason_for_rotation(self)} {_reason_for_shear(self)}"
 
     @property
     def n_modes(self) -> int:
@@ -178,12 +180,12 @@ class Adequacy(Value):
     @property
     def model(self) -> str | None:
         """Label of the smallest simplified model for everything except the base shear, such as "2DOF-S"."""
-        return None if self.enough is None else _label(self.enough)
+        return None if self.enough is None else _adequate_model_label(self.enough)
 
     @property
     def model_for_shear(self) -> str | None:
         """Label of the smallest simplified model for the base shear."""
-        return None if self.enough_for_shear is None else _label(self.enough_for_shear)
+        return None if self.enough_for_shear is None else _adequate_model_label(self.enough_for_shear)
 
     @property
     def frequency_bound(self) -> Array:
@@ -191,7 +193,7 @@ class Adequacy(Value):
         return (1.0 + self.frequency_error) * (1.0 + self.reference_error) - 1.0
 
 
-@computable("The share of each mode")
+@explaining_overflow("The share of each mode")
 def adequacy(
     properties: RockingProperties, tolerance: AdequacyTolerance | None = None, *, base_mass: float | None = None
 ) -> Adequacy:
@@ -242,23 +244,23 @@ def adequacy(
     >>> found.model, found.model_for_shear
     ('3DOF-S', None)
     """
-    p = instance("properties", properties, RockingProperties)
+    p = checked_instance("properties", properties, RockingProperties)
     if p.n_modes == 0:
         raise InputError(
             "properties must have at least one mode, but a rigid structure was given, which needs none.",
             field="properties",
         )
-    limits = AdequacyTolerance() if tolerance is None else instance("tolerance", tolerance, AdequacyTolerance)
+    limits = AdequacyTolerance() if tolerance is None else checked_instance("tolerance", tolerance, AdequacyTolerance)
     rest = p.translational_inertia - float(p.effective_mass @ p.effective_height**2)
     complete = rest <= SUM_TOLERANCE * p.translational_inertia
     base = p.base_mass if base_mass is None else base_mass
-    mass = p.m_tot if base is None else _mass_above(p, base)
+    mass = p.m_tot if base is None else _mass_above_base(p, base)
     moment, shear = p.effective_mass * p.effective_height / p.l0r, p.effective_mass / mass
     others = np.append(np.cumsum(np.abs(moment)[::-1])[-2::-1], 0.0)
     lost = abs(1.0 - float(moment.sum()))
     moment_left = others + (lost if lost > SUM_TOLERANCE else 0.0)
     shear_left = np.maximum(1.0 - np.cumsum(shear), 0.0)
-    error, reference = frequency_errors(p, 0.0 if complete else rest)
+    error, reference = mode_truncation_errors(p, 0.0 if complete else rest)
     bound = (1.0 + error) * (1.0 + reference) - 1.0
     good = (moment_left <= limits.base_moment) & (bound[:, 0] <= limits.first_frequency)
     good[1:] &= bound[1:, 1] <= limits.second_frequency
@@ -271,15 +273,15 @@ def adequacy(
         reference_error=reference,
         mass=mass,
         base_known=base is not None,
-        enough=_first_enough(good),
-        enough_for_shear=_first_enough(shear_left <= limits.base_shear),
+        enough=_first_adequate_mode_count(good),
+        enough_for_shear=_first_adequate_mode_count(shear_left <= limits.base_shear),
         tolerance=limits,
     )
 
 
-def _mass_above(p: RockingProperties, base_mass: float) -> float:
+def _mass_above_base(p: RockingProperties, base_mass: float) -> float:
     modal = float(p.effective_mass.sum())
-    mass = p.m_tot - positive("base_mass", base_mass, "kg", zero=True)
+    mass = p.m_tot - checked_positive("base_mass", base_mass, "kg", zero=True)
     if mass < modal * (1.0 - SUM_TOLERANCE):
         raise InputError(
             f"base_mass must leave the effective mass of the modes, {modal:.6g} kg, but {base_mass:g} kg of m_tot = "
@@ -289,26 +291,26 @@ def _mass_above(p: RockingProperties, base_mass: float) -> float:
     return mass
 
 
-def _first_enough(good: Bools) -> int | None:
+def _first_adequate_mode_count(good: Bools) -> int | None:
     return int(np.argmax(good)) + 1 if good.any() else None
 
 
-def _label(modes: int) -> str:
+def _adequate_model_label(modes: int) -> str:
     return f"{modes + 1}DOF-S"
 
 
-def _for_rotation(a: Adequacy) -> str:
+def _reason_for_rotation(a: Adequacy) -> str:
     if a.enough is None:
         few = "One mode is" if a.n_modes == 1 else f"The {a.n_modes} available modes are"
-        return f"{few} not enough: {_describe_errors(a, a.n_modes)}. Give more modes."
-    taken = _describe_errors(a, a.enough)
+        return f"{few} not enough: {_describe_truncation_errors(a, a.n_modes)}. Give more modes."
+    taken = _describe_truncation_errors(a, a.enough)
     if a.enough == 1:
         return f"2DOF-S is enough: with one mode, {taken}."
-    before = _describe_errors(a, a.enough - 1, short=True)
-    return f"Use {a.model}: with {_modes(a.enough - 1)}, {before}; with {a.enough}, {taken}."
+    before = _describe_truncation_errors(a, a.enough - 1, short=True)
+    return f"Use {a.model}: with {_mode_count_text(a.enough - 1)}, {before}; with {a.enough}, {taken}."
 
 
-def _describe_errors(a: Adequacy, k: int, *, short: bool = False) -> str:
+def _describe_truncation_errors(a: Adequacy, k: int, *, short: bool = False) -> str:
     """Describe the fractions that k modes leave out and their errors; with `short`, only errors above the tolerance."""
     t, bound = a.tolerance, a.frequency_bound[k - 1]
     at_most = "at most " if np.nanmax(a.reference_error) > 5e-4 else ""
@@ -321,31 +323,31 @@ def _describe_errors(a: Adequacy, k: int, *, short: bool = False) -> str:
     if k > 1 and (not short or bound[1] > t.second_frequency):
         second = "the second" if named else "the second uplifted frequency"
         named.append((bound[1], t.second_frequency, f"{second} is {at_most}{{}} too high"))
-    said = [text.format(_percent(value)) + f" (allowed: {_percent(limit)})" for value, limit, text in named]
+    said = [text.format(_percent_text(value)) + f" (allowed: {_percent_text(limit)})" for value, limit, text in named]
     *others, last = said
     return f"{', '.join(others)} and {last}" if others else last
 
 
-def _for_shear(a: Adequacy) -> str:
+def _reason_for_shear(a: Adequacy) -> str:
     of = "the mass above the base" if a.base_known else "the total mass including the base"
-    asked = f"(required: {_percent(1.0 - a.tolerance.base_shear)})"
-    carried = [_percent(1.0 - left) for left in a.base_shear_left]
+    asked = f"(required: {_percent_text(1.0 - a.tolerance.base_shear)})"
+    carried = [_percent_text(1.0 - left) for left in a.base_shear_left]
     if a.enough_for_shear is None:
         remedy = "give more modes" if a.base_known else "give more modes, or the mass of the base"
-        only = f"only {carried[-1]} of {of} participates with {_modes(a.n_modes)} {asked}"
+        only = f"only {carried[-1]} of {of} participates with {_mode_count_text(a.n_modes)} {asked}"
         return f"For the base shear {remedy}: {only}. {_SHEAR_NOTE}"
     if a.enough is not None and a.enough_for_shear <= a.enough:
         return f"This is also enough for the base shear: {carried[a.enough - 1]} of {of} participates {asked}."
-    fewer = f", only {carried[a.enough - 1]} with {_modes(a.enough)}" if a.enough is not None else ""
+    fewer = f", only {carried[a.enough - 1]} with {_mode_count_text(a.enough)}" if a.enough is not None else ""
     return (
         f"For the base shear use {a.model_for_shear}: {carried[a.enough_for_shear - 1]} of {of} participates with "
-        f"{_modes(a.enough_for_shear)}{fewer} {asked}. {_SHEAR_NOTE}"
+        f"{_mode_count_text(a.enough_for_shear)}{fewer} {asked}. {_SHEAR_NOTE}"
     )
 
 
-def _modes(count: int) -> str:
+def _mode_count_text(count: int) -> str:
     return "one mode" if count == 1 else f"{count} modes"
 
 
-def _percent(value: float) -> str:
+def _percent_text(value: float) -> str:
     return f"{100.0 * value:.3g} %" if value >= 1e-3 else "less than 0.1 %"

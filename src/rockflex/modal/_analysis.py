@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import dimensions, finite_matrix, finite_vector, mode_count
-from rockflex._computable import computable
+from rockflex._checks import checked_finite_matrix, checked_finite_vector, checked_mode_count, number_of_dimensions
 from rockflex._errors import InputError
 from rockflex._html import HtmlTable
 from rockflex._matrices import checked_heights, checked_mass, checked_stiffness, mass_times
-from rockflex._values import Value, changed
+from rockflex._overflow import explaining_overflow
+from rockflex._values import Value, with_changed_fields
 
 # A participation below this fraction of the largest possible one is rounding error of the eigenvectors.
 NO_PARTICIPATION = 1e-10
@@ -48,10 +48,10 @@ class FloorModes(Value):
     force: Array
 
     def __init__(self, heights: ArrayLike, displacement: ArrayLike, force: ArrayLike) -> None:
-        h = finite_vector("floors.heights", heights, "m")
-        columns = np.shape(displacement)[1] if dimensions(displacement) == 2 else 1
-        u = finite_matrix("floors.displacement", displacement, "m/m", (h.size, columns))
-        f = finite_matrix("floors.force", force, "N/m", u.shape)
+        h = checked_finite_vector("floors.heights", heights, "m")
+        columns = np.shape(displacement)[1] if number_of_dimensions(displacement) == 2 else 1
+        u = checked_finite_matrix("floors.displacement", displacement, "m/m", (h.size, columns))
+        f = checked_finite_matrix("floors.force", force, "N/m", u.shape)
         u.setflags(write=False)
         f.setflags(write=False)
         vars(self).update(heights=h, displacement=u, force=f)
@@ -69,8 +69,8 @@ class FloorModes(Value):
         InputError
             If the structure has fewer modes than `n_modes`.
         """
-        k = mode_count(n_modes, self.n_modes)
-        return changed(self, displacement=self.displacement[:, :k].copy(), force=self.force[:, :k].copy())
+        k = checked_mode_count(n_modes, self.n_modes)
+        return with_changed_fields(self, displacement=self.displacement[:, :k].copy(), force=self.force[:, :k].copy())
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +140,7 @@ class ModalProperties(HtmlTable, Value):
         InputError
             If the structure has fewer modes than `n_modes`.
         """
-        k = mode_count(n_modes, self.n_modes)
+        k = checked_mode_count(n_modes, self.n_modes)
         return replace(
             self,
             omega=self.omega[:k],
@@ -151,7 +151,7 @@ class ModalProperties(HtmlTable, Value):
         )
 
 
-@computable("The modes of the given mass and stiffness")
+@explaining_overflow("The modes of the given mass and stiffness")
 def modal_properties(
     mass: ArrayLike, stiffness: ArrayLike, heights: ArrayLike, n_modes: SupportsIndex | None = None
 ) -> ModalProperties:
@@ -197,16 +197,16 @@ def modal_properties(
     h = checked_heights(heights)
     m = checked_mass(mass, h.size)
     k = checked_stiffness(stiffness, h.size)
-    n = mode_count(n_modes, h.size)
+    n = checked_mode_count(n_modes, h.size)
 
     omega, shapes = _mass_normalised_modes(m, k)
     omega, shapes = omega[:n], shapes[:, :n]
     moved = mass_times(m, shapes)
     total, inertia = float(mass_times(m, np.ones_like(h)).sum()), float(h @ mass_times(m, h))
-    return participating(omega, moved.sum(axis=0), h @ moved, total, inertia, h, shapes)
+    return modal_properties_of_modes(omega, moved.sum(axis=0), h @ moved, total, inertia, h, shapes)
 
 
-def participating(
+def modal_properties_of_modes(
     omega: Array, shear: Array, moment: Array, mass: float, inertia: float, heights: Array, shapes: Array
 ) -> ModalProperties:
     """Return mass-normalised modes with a top ordinate of 1; arguments as in `MassNormalisedModes`."""

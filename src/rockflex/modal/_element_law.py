@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import finite, instance, real_or_nan
+from rockflex._checks import checked_finite, checked_instance, real_or_nan
 from rockflex._errors import InputError
+from rockflex._overflow import explaining_overflow
 from rockflex._shown import shown
 
 ROUNDING = 1e-9  # relative: by how much forces and energies may differ that must be equal
@@ -34,6 +35,12 @@ class BranchEnd:
         Whether it is reached while δ grows; otherwise while δ falls.
     internal : float
         Factor of the internal variable m.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> rf.BranchEnd("yielding", elongation=0.01, rising=True, internal=1.0).branch
+    'yielding'
     """
 
     branch: str
@@ -64,6 +71,13 @@ class Branch:
         δ - m in m on a branch that yields.
     turns_to : str
         Name of the branch that follows where the elongation turns back on a branch that yields.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> elastic = rf.Branch(2e7, ends=[rf.BranchEnd("yielding", 0.01, rising=True, internal=1.0)])
+    >>> elastic.stiffness
+    20000000.0
     """
 
     stiffness: float = 0.0
@@ -118,8 +132,8 @@ class ElementLaw(ABC):
     >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
     >>> pulse = rf.one_sine_pulse(amplitude=3.0, period=0.8)
     >>> held = rf.Restrained(frame, Bumper(stiffness=50e6, gap=0.005))
-    >>> [round(rf.simulate(each, pulse).max_rotation, 4) for each in (frame, held)]
-    [0.0198, 0.0142]
+    >>> [round(rf.simulate(each, pulse, free_vibration=2.0).max_rotation, 4) for each in (frame, held)]
+    [0.056, 0.0389]
     """
 
     position: float
@@ -134,7 +148,7 @@ class ElementLaw(ABC):
             if own is not None:
                 own(self)
             if "law" not in vars(self):  # checked by a class that this one is derived from
-                vars(self).update(position=finite("position", self.position, "m"), law=checked_law(self))
+                vars(self).update(position=checked_finite("position", self.position, "m"), law=_computed_law(self))
 
         cls.__post_init__ = check  # pyright: ignore[reportAttributeAccessIssue]
 
@@ -193,6 +207,11 @@ class ElementLaw(ABC):
         return max(abs(tension_of(self, state)) for state in states), any(
             self.law[state.branch].yields for state in states
         )
+
+
+def _computed_law(law: ElementLaw) -> Mapping[str, Branch]:
+    with explaining_overflow(f"The forces and energies of {shown(law)}"):
+        return checked_law(law)
 
 
 def first_branch(law: ElementLaw) -> Branch:
@@ -276,10 +295,10 @@ def checked_law(law: ElementLaw) -> Mapping[str, Branch]:
 
 
 def _check_branch(name: str, branch: Any, known: Mapping[str, Branch]) -> None:
-    instance(f"branches[{name!r}]", branch, Branch)
+    checked_instance(f"branches[{name!r}]", branch, Branch)
     numbers = {key: getattr(branch, key) for key in ("stiffness", "force", "internal", "offset")}
     for end in branch.ends:
-        instance(f"an end of branches[{name!r}]", end, BranchEnd)
+        checked_instance(f"an end of branches[{name!r}]", end, BranchEnd)
         numbers |= {f"elongation of the end to {end.branch!r}": end.elongation, "internal of an end": end.internal}
     for key, value in numbers.items():
         if not math.isfinite(real_or_nan(value)):

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from rockflex._checks import finite, instance, positive, real_or_nan
+from rockflex._checks import checked_finite, checked_instance, checked_positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal._element_law import ElementLaw, law_parameters
@@ -60,12 +60,12 @@ class Tendon:
 
     def __post_init__(self) -> None:
         vars(self).update(
-            initial_force=positive("initial_force", self.initial_force, "N", zero=True),
-            stiffness=positive("stiffness", self.stiffness, "N/m", zero=True),
-            position=finite("position", self.position, "m"),
+            initial_force=checked_positive("initial_force", self.initial_force, "N", zero=True),
+            stiffness=checked_positive("stiffness", self.stiffness, "N/m", zero=True),
+            position=checked_finite("position", self.position, "m"),
         )
         if self.yield_force is not None:
-            limit = positive("yield_force", self.yield_force, "N")
+            limit = checked_positive("yield_force", self.yield_force, "N")
             vars(self).update(yield_force=limit)
             if self.initial_force > limit:
                 raise InputError(
@@ -74,7 +74,7 @@ class Tendon:
                     field="initial_force",
                 )
         if self.post_yield_ratio is not None:
-            vars(self).update(post_yield_ratio=checked_ratio(self.post_yield_ratio))
+            vars(self).update(post_yield_ratio=checked_post_yield_ratio(self.post_yield_ratio))
             if self.yield_force is None or self.stiffness == 0.0:
                 raise InputError(
                     "post_yield_ratio needs the yield_force in N of a tendon with stiffness, but "
@@ -88,10 +88,10 @@ class Tendon:
                     field="rupture_elongation",
                 )
             yields_at = (self.yield_force - self.initial_force) / self.stiffness
-            vars(self).update(rupture_elongation=checked_rupture(self.rupture_elongation, yields_at))
+            vars(self).update(rupture_elongation=checked_rupture_elongation(self.rupture_elongation, yields_at))
 
 
-def checked_ratio(value: float) -> float:
+def checked_post_yield_ratio(value: float) -> float:
     """Return a post-yield stiffness ratio.
 
     Raises
@@ -109,7 +109,7 @@ def checked_ratio(value: float) -> float:
     return ratio
 
 
-def checked_rupture(value: float | None, yields_at: float) -> float | None:
+def checked_rupture_elongation(value: float | None, yields_at: float) -> float | None:
     """Return the elongation at rupture in m.
 
     Raises
@@ -119,7 +119,7 @@ def checked_rupture(value: float | None, yields_at: float) -> float | None:
     """
     if value is None:
         return None
-    limit = positive("rupture_elongation", value, "m")
+    limit = checked_positive("rupture_elongation", value, "m")
     if limit <= yields_at:
         raise InputError(
             f"rupture_elongation must be beyond the elongation at yield, {yields_at:.4g} m, but {limit:g} m was given. "
@@ -176,12 +176,12 @@ class YieldingDissipator:
 
     def __post_init__(self) -> None:
         vars(self).update(
-            stiffness=positive("stiffness", self.stiffness, "N/m"),
-            yield_force=positive("yield_force", self.yield_force, "N"),
-            post_yield_ratio=checked_ratio(self.post_yield_ratio),
-            position=finite("position", self.position, "m"),
-            tension_only=instance("tension_only", self.tension_only, bool),
-            rupture_elongation=checked_rupture(self.rupture_elongation, self.yield_force / self.stiffness),
+            stiffness=checked_positive("stiffness", self.stiffness, "N/m"),
+            yield_force=checked_positive("yield_force", self.yield_force, "N"),
+            post_yield_ratio=checked_post_yield_ratio(self.post_yield_ratio),
+            position=checked_finite("position", self.position, "m"),
+            tension_only=checked_instance("tension_only", self.tension_only, bool),
+            rupture_elongation=checked_rupture_elongation(self.rupture_elongation, self.yield_force / self.stiffness),
         )
 
 
@@ -216,8 +216,8 @@ class ViscousDamper:
 
     def __post_init__(self) -> None:
         vars(self).update(
-            coefficient=positive("coefficient", self.coefficient, "N s/m", zero=True),
-            position=finite("position", self.position, "m"),
+            coefficient=checked_positive("coefficient", self.coefficient, "N s/m", zero=True),
+            position=checked_finite("position", self.position, "m"),
         )
 
 
@@ -251,8 +251,8 @@ class FrictionDamper:
 
     def __post_init__(self) -> None:
         vars(self).update(
-            force=positive("force", self.force, "N", zero=True),
-            position=finite("position", self.position, "m"),
+            force=checked_positive("force", self.force, "N", zero=True),
+            position=checked_finite("position", self.position, "m"),
         )
 
 
@@ -260,7 +260,7 @@ BaseElement = Tendon | YieldingDissipator | ViscousDamper | FrictionDamper | Ele
 """Any element between a base and the ground."""
 
 
-def element_set(given: Any) -> tuple[BaseElement, ...]:
+def base_element_tuple(given: Any) -> tuple[BaseElement, ...]:
     """Return one or several elements as a tuple.
 
     Raises
@@ -279,7 +279,7 @@ def element_set(given: Any) -> tuple[BaseElement, ...]:
     return items
 
 
-def locked_force(element: BaseElement) -> float:
+def element_locking_force(element: BaseElement) -> float:
     """Return the largest force in N with which an element can keep a base from closing.
 
     A fuse that has yielded returns to δ = 0 with z = - F_y, so its force there is -(1 - α) F_y. One that cannot push, a
@@ -292,7 +292,7 @@ def locked_force(element: BaseElement) -> float:
     return element.force if isinstance(element, FrictionDamper) else 0.0
 
 
-def pushed_force(element: BaseElement, elongation: float) -> float:
+def element_pushover_force(element: BaseElement, elongation: float) -> float:
     """Return the force in N of an element as built that is stretched slowly by an elongation in m, or shortened."""
     if isinstance(element, ElementLaw):
         return element.slow_force(elongation)
@@ -308,17 +308,17 @@ def pushed_force(element: BaseElement, elongation: float) -> float:
     return pull if pushes else max(pull, 0.0)
 
 
-def mirrored(elements: Sequence[BaseElement]) -> bool:
+def are_elements_symmetric(elements: Sequence[BaseElement]) -> bool:
     """Return whether every off-centre element has a mirror image: the same at the same distance on the other side."""
-    left = sorted(_values(each, -each.position) for each in elements if each.position < 0.0)
-    right = sorted(_values(each, each.position) for each in elements if each.position > 0.0)
+    left = sorted(_element_values(each, -each.position) for each in elements if each.position < 0.0)
+    right = sorted(_element_values(each, each.position) for each in elements if each.position > 0.0)
     return len(left) == len(right) and all(
         one[0] == other[0] and all(math.isclose(a, b, rel_tol=1e-9) for a, b in zip(one[1], other[1], strict=True))
         for one, other in zip(left, right, strict=True)
     )
 
 
-def _values(element: BaseElement, distance: float) -> tuple[str, tuple[float, ...]]:
+def _element_values(element: BaseElement, distance: float) -> tuple[str, tuple[float, ...]]:
     if isinstance(element, Tendon):  # its yield force is only compared with, unless it yields
         yields = element.post_yield_ratio is not None
         beyond = (element.yield_force or 0.0, element.post_yield_ratio or 0.0) if yields else (0.0, 0.0)

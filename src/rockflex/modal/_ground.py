@@ -8,16 +8,16 @@ from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
 from rockflex._checks import (
-    all_positive,
-    dimensions,
-    finite,
-    finite_vector,
+    check_all_positive,
+    checked_finite,
+    checked_finite_vector,
+    checked_in_range,
+    checked_instance,
+    checked_positive,
+    checked_whole_number,
     float_array,
-    in_range,
-    instance,
-    positive,
+    number_of_dimensions,
     real_or_nan,
-    whole_number,
 )
 from rockflex._errors import InputError
 from rockflex._shown import shown
@@ -73,19 +73,19 @@ class Springs(Value):
         damping: ArrayLike = 0.0,
         area: ArrayLike | None = None,
     ) -> None:
-        places = _positions(positions)
-        stiff = _per_spring("stiffness", stiffness, "N/m", places.size)
-        all_positive("stiffness", stiff, "N/m", "A spring without stiffness carries nothing: leave it out.")
-        damped = _per_spring("damping", damping, "N s/m", places.size)
+        places = _checked_spring_positions(positions)
+        stiff = _one_value_per_spring("stiffness", stiffness, "N/m", places.size)
+        check_all_positive("stiffness", stiff, "N/m", "A spring without stiffness carries nothing: leave it out.")
+        damped = _one_value_per_spring("damping", damping, "N s/m", places.size)
         if damped.min() < 0.0:
             first = int(np.argmin(damped))
             raise InputError(
                 f"damping must be zero or positive, but damping[{first}] = {damped[first]:g} N s/m was given.",
                 field="damping",
             )
-        supported = None if area is None else _per_spring("area", area, "m²", places.size)
+        supported = None if area is None else _one_value_per_spring("area", area, "m²", places.size)
         if supported is not None:
-            all_positive("area", supported, "m²")
+            check_all_positive("area", supported, "m²")
         vars(self).update(positions=places, stiffness=stiff, damping=damped, area=supported)
 
     @property
@@ -129,8 +129,8 @@ class Springs(Value):
         InputError
             If a value is outside its range.
         """
-        ratio = positive("heave_damping_ratio", heave_damping_ratio, "fractions of critical damping", zero=True)
-        frequency = math.sqrt(self.total_stiffness / positive("mass", mass, "kg"))
+        ratio = checked_positive("heave_damping_ratio", heave_damping_ratio, "fractions of critical damping", zero=True)
+        frequency = math.sqrt(self.total_stiffness / checked_positive("mass", mass, "kg"))
         return Springs(self.positions, self.stiffness, 2.0 * ratio / frequency * self.stiffness, self.area)
 
 
@@ -182,8 +182,12 @@ class Ground(Value):
                 "Ground needs friction, springs or both: Ground(friction=0.4), for example. Leave the ground out for "
                 "a base on rigid ground that cannot slide."
             )
-        inertia = _base_inertia(None if springs is None else instance("springs", springs, Springs), base_inertia)
-        coefficient = None if friction is None else _friction(friction, None if springs is None else springs.n)
+        inertia = _checked_base_inertia(
+            None if springs is None else checked_instance("springs", springs, Springs), base_inertia
+        )
+        coefficient = (
+            None if friction is None else _checked_ground_friction(friction, None if springs is None else springs.n)
+        )
         vars(self).update(friction=coefficient, springs=springs, base_inertia=inertia)
 
     @property
@@ -197,8 +201,8 @@ class Ground(Value):
         return self.friction is not None and bool(np.isfinite(self.friction).any())
 
 
-def _positions(given: ArrayLike) -> Array:
-    places = finite_vector("positions", given, "m")
+def _checked_spring_positions(given: ArrayLike) -> Array:
+    places = checked_finite_vector("positions", given, "m")
     if not 2 <= places.size <= _MAX_SPRINGS:
         raise InputError(
             f"positions must have 2 to {_MAX_SPRINGS} springs, but {places.size} were given. A base on one spring "
@@ -222,20 +226,20 @@ def _positions(given: ArrayLike) -> Array:
     return places
 
 
-def _per_spring(name: str, given: ArrayLike, unit: str, n: int) -> Array:
+def _one_value_per_spring(name: str, given: ArrayLike, unit: str, n: int) -> Array:
     """Return a read-only array of one finite value for each spring, from one or from `n` numbers."""
-    if dimensions(given) == 0:
-        return _read_only(np.full(n, finite(name, given, unit)))  # pyright: ignore[reportArgumentType]
-    return _checked_count(name, finite_vector(name, given, unit), n)
+    if number_of_dimensions(given) == 0:
+        return _read_only_array(np.full(n, checked_finite(name, given, unit)))  # pyright: ignore[reportArgumentType]
+    return _checked_spring_values(name, checked_finite_vector(name, given, unit), n)
 
 
-def _friction(given: ArrayLike, n: int | None) -> float | Array:
+def _checked_ground_friction(given: ArrayLike, n: int | None) -> float | Array:
     expected = "friction must be a positive Coulomb coefficient, such as 0.4, or infinity for no sliding"
-    if dimensions(given) == 0:
+    if number_of_dimensions(given) == 0:
         value = real_or_nan(given)
         if not value > 0.0:
             raise InputError(f"{expected}, but {shown(given)} was given.", field="friction")
-        return value if n is None else _read_only(np.full(n, value))
+        return value if n is None else _read_only_array(np.full(n, value))
     if n is None:
         raise InputError(
             f"{expected}, but {shown(given)} was given. Several coefficients need springs, one for each.",
@@ -244,10 +248,10 @@ def _friction(given: ArrayLike, n: int | None) -> float | Array:
     values = float_array(given)
     if values is None or values.ndim != 1 or not bool(np.all(values > 0.0)):
         raise InputError(f"{expected}, or one for each spring, but {shown(given)} was given.", field="friction")
-    return _read_only(_checked_count("friction", values, n))
+    return _read_only_array(_checked_spring_values("friction", values, n))
 
 
-def _checked_count(name: str, values: Array, n: int) -> Array:
+def _checked_spring_values(name: str, values: Array, n: int) -> Array:
     if values.size != n:
         raise InputError(
             f"{name} must be one number, or one for each of the {n} springs, but {values.size} were given.", field=name
@@ -255,12 +259,12 @@ def _checked_count(name: str, values: Array, n: int) -> Array:
     return values
 
 
-def _read_only(values: Array) -> Array:
+def _read_only_array(values: Array) -> Array:
     values.setflags(write=False)
     return values
 
 
-def _base_inertia(springs: Springs | None, given: float | None) -> float | None:
+def _checked_base_inertia(springs: Springs | None, given: float | None) -> float | None:
     if springs is None:
         if given is not None:
             raise InputError(
@@ -337,19 +341,21 @@ def winkler_bed(
     >>> round(bed.total_stiffness / (40e6 * 4.0 * 3.0), 6), round(bed.rotational_stiffness / (40e6 * 3.0 * 16.0 / 3), 4)
     (1.0, 0.9994)
     """
-    B = positive("half_width", half_width, "m")
-    across = positive("breadth", breadth, "m")
-    modulus = positive("subgrade_modulus", subgrade_modulus, "N/m³")
-    total = positive("damping", damping, "N s/m", zero=True)
-    ratio = positive("end_ratio", end_ratio, "times the stiffness of the rest")
-    shift = finite("eccentricity", eccentricity, "m")
-    zone = in_range("end_zone", end_zone, 0.0, B, hint="Its unit is m; the two zones must leave a part between them.")
-    count = whole_number("n", n, 3 if zone > 0.0 else 2, _MAX_SPRINGS)
+    B = checked_positive("half_width", half_width, "m")
+    across = checked_positive("breadth", breadth, "m")
+    modulus = checked_positive("subgrade_modulus", subgrade_modulus, "N/m³")
+    total = checked_positive("damping", damping, "N s/m", zero=True)
+    ratio = checked_positive("end_ratio", end_ratio, "times the stiffness of the rest")
+    shift = checked_finite("eccentricity", eccentricity, "m")
+    zone = checked_in_range(
+        "end_zone", end_zone, 0.0, B, hint="Its unit is m; the two zones must leave a part between them."
+    )
+    count = checked_whole_number("n", n, 3 if zone > 0.0 else 2, _MAX_SPRINGS)
     if not abs(shift) < B:
         raise InputError(
             f"eccentricity must be less than half_width {B:g} m, but {shift:g} m was given.", field="eccentricity"
         )
-    edges = _edges(B, zone, count)
+    edges = _spring_strip_edges(B, zone, count)
     middles, widths = (edges[1:] + edges[:-1]) / 2.0, np.diff(edges)
     stiffness = modulus * across * widths * np.where(np.abs(middles) > B - zone, ratio, 1.0)
     return Springs(middles - shift, stiffness, total * stiffness / stiffness.sum(), across * widths)
@@ -407,9 +413,9 @@ def asce41_bed(
     >>> round(bed.total_stiffness / (20e6 / 0.65), 3)  # 6.83 × 1 m + 0.73 × 3 m
     9.02
     """
-    B = positive("half_width", half_width, "m")
-    across = positive("breadth", breadth, "m")
-    modulus = positive("shear_modulus", shear_modulus, "N/m²")
+    B = checked_positive("half_width", half_width, "m")
+    across = checked_positive("breadth", breadth, "m")
+    modulus = checked_positive("shear_modulus", shear_modulus, "N/m²")
     poisson = real_or_nan(poisson_ratio)
     if not 0.0 <= poisson <= 0.5:
         raise InputError(
@@ -434,7 +440,7 @@ def asce41_bed(
     )
 
 
-def _edges(B: float, zone: float, n: int) -> Array:
+def _spring_strip_edges(B: float, zone: float, n: int) -> Array:
     """Return the n + 1 ends of the strips: in each zone they are equal, and about equal everywhere."""
     if zone == 0.0:
         return np.linspace(-B, B, n + 1)

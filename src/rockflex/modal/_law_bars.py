@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import instance, positive, real_or_nan
+from rockflex._checks import checked_instance, checked_positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal._element_law import Branch, BranchEnd, ElementLaw
-from rockflex.modal._elements import checked_ratio
+from rockflex.modal._elements import checked_post_yield_ratio
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class FlagShapedBar(ElementLaw):
     tension_only: bool = False
 
     def __post_init__(self) -> None:
-        ratio = checked_ratio(self.post_yield_ratio)
+        ratio = checked_post_yield_ratio(self.post_yield_ratio)
         depth = real_or_nan(self.flag_depth)
         if not 0.0 < depth <= 1.0 - ratio:
             raise InputError(
@@ -68,11 +68,11 @@ class FlagShapedBar(ElementLaw):
                 field="flag_depth",
             )
         vars(self).update(
-            stiffness=positive("stiffness", self.stiffness, "N/m"),
-            yield_force=positive("yield_force", self.yield_force, "N"),
+            stiffness=checked_positive("stiffness", self.stiffness, "N/m"),
+            yield_force=checked_positive("yield_force", self.yield_force, "N"),
             post_yield_ratio=ratio,
             flag_depth=depth,
-            tension_only=instance("tension_only", self.tension_only, bool),
+            tension_only=checked_instance("tension_only", self.tension_only, bool),
         )
 
     @property
@@ -159,9 +159,9 @@ class GapBar(ElementLaw):
 
     def __post_init__(self) -> None:
         vars(self).update(
-            stiffness=positive("stiffness", self.stiffness, "N/m"),
-            gap=positive("gap", self.gap, "m", zero=True),
-            both_ways=instance("both_ways", self.both_ways, bool),
+            stiffness=checked_positive("stiffness", self.stiffness, "N/m"),
+            gap=checked_positive("gap", self.gap, "m", zero=True),
+            both_ways=checked_instance("both_ways", self.both_ways, bool),
         )
 
     def branches(self) -> Mapping[str, Branch]:
@@ -217,7 +217,7 @@ class MultilinearBar(ElementLaw):
                 f"{shown(self.forces)} N were given. Leave out the point at zero.",
                 field="elongations",
             )
-        vars(self).update(tension_only=instance("tension_only", self.tension_only, bool))
+        vars(self).update(tension_only=checked_instance("tension_only", self.tension_only, bool))
 
     def branches(self) -> Mapping[str, Branch]:
         """Return a branch for each piece."""

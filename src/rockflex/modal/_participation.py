@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array
-from rockflex._checks import damping_ratios, instance, mode_count, positive
-from rockflex._computable import computable
+from rockflex._checks import checked_damping_ratios, checked_instance, checked_mode_count, checked_positive
 from rockflex._errors import InputError
 from rockflex._matrices import checked_heights, checked_mass, mass_times
+from rockflex._overflow import explaining_overflow
 from rockflex._values import Value
-from rockflex.modal._analysis import FloorModes, ModalProperties, participating
+from rockflex.modal._analysis import FloorModes, ModalProperties, modal_properties_of_modes
 from rockflex.modal._rocking import RockingProperties
 
 
@@ -59,14 +59,14 @@ class MassNormalisedModes(Value):
     inertia: float
     rotary: float = 0.0
 
-    @computable("The participation of the modes")
+    @explaining_overflow("The participation of the modes")
     def modal(self) -> ModalProperties:
         """Return the modes, normalised to a top ordinate of 1."""
         above = self.heights > 0.0
         stations, shapes = self.heights[above], self.ordinates[above]
-        return participating(self.omega, self.shear, self.moment, self.mass, self.inertia, stations, shapes)
+        return modal_properties_of_modes(self.omega, self.shear, self.moment, self.mass, self.inertia, stations, shapes)
 
-    @computable("The inertia of the structure with this base")
+    @explaining_overflow("The inertia of the structure with this base")
     def rocking(
         self, base_mass: float, half_width: float, zeta: Array, n_modes: SupportsIndex | None
     ) -> RockingProperties:
@@ -78,7 +78,7 @@ class MassNormalisedModes(Value):
             If the structure has fewer modes than `n_modes`, or one of them contributes only to the base moment.
         """
         modal = self.modal()
-        kept = modes_that_take_part(modal, n_modes)
+        kept = excited_mode_indices(modal, n_modes)
         shear, omega = self.shear[kept], self.omega[kept]
         displacement = self.ordinates[:, kept] * shear
         floors = None
@@ -102,7 +102,7 @@ class MassNormalisedModes(Value):
         )
 
 
-def modes_that_take_part(modal: ModalProperties, n_modes: SupportsIndex | None) -> NDArray[np.intp]:
+def excited_mode_indices(modal: ModalProperties, n_modes: SupportsIndex | None) -> NDArray[np.intp]:
     """Return the indices of the first `n_modes` modes that are excited by the ground or the rotation.
 
     Raises
@@ -111,7 +111,7 @@ def modes_that_take_part(modal: ModalProperties, n_modes: SupportsIndex | None) 
         If there are fewer such modes, or one of them contributes to the base moment but not to the base shear.
     """
     take_part = np.flatnonzero(~np.isnan(modal.effective_height))
-    kept = take_part[: mode_count(n_modes, take_part.size)]
+    kept = take_part[: checked_mode_count(n_modes, take_part.size)]
     rotation_only = kept[np.isinf(modal.effective_height[kept])]
     if rotation_only.size:
         mode = int(rotation_only[0])
@@ -125,7 +125,7 @@ def modes_that_take_part(modal: ModalProperties, n_modes: SupportsIndex | None) 
     return kept
 
 
-@computable("The inertia of the structure with this base")
+@explaining_overflow("The inertia of the structure with this base")
 def rocking_properties(
     modal: ModalProperties,
     mass: ArrayLike,
@@ -185,17 +185,17 @@ def rocking_properties(
     353160
     """
     h = checked_heights(heights)
-    if not np.array_equal(h, instance("modal", modal, ModalProperties).heights):
+    if not np.array_equal(h, checked_instance("modal", modal, ModalProperties).heights):
         raise InputError(
             f"heights must equal the heights of the modal analysis, {modal.heights}, but {h} was given. "
             "Call modal_properties again for other heights.",
             field="heights",
         )
     m = checked_mass(mass, h.size)
-    base = positive("base_mass", base_mass, "kg", zero=True)
-    b = positive("half_width", half_width, "m")
-    zeta = damping_ratios("damping_ratio", damping_ratio, modal.n_modes)
-    kept = modes_that_take_part(modal, n_modes)
+    base = checked_positive("base_mass", base_mass, "kg", zero=True)
+    b = checked_positive("half_width", half_width, "m")
+    zeta = checked_damping_ratios("damping_ratio", damping_ratio, modal.n_modes)
+    kept = excited_mode_indices(modal, n_modes)
 
     m_tot = float(mass_times(m, np.ones_like(h)).sum()) + base
     moved_by_rotation = mass_times(m, h)

@@ -8,10 +8,10 @@ from rockflex._checks import real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.modal._elements import BaseElement, Tendon, initial_force, locked_force
+from rockflex.modal._elements import BaseElement, Tendon, element_locking_force, initial_force
 
 PIVOT_VALUES = ("half_width", "eccentricity", "i_theta", "translational_inertia", "m_tot", "l0r")
-"""Names of the `RockingProperties` that `pivot_of` needs."""
+"""Names of the `RockingProperties` that `build_pivot` needs."""
 
 _OVERTURNING_SHARE = 0.7
 
@@ -103,7 +103,7 @@ class Pivot:
         return self.resisting_moment / locked if locked > 0.0 else math.inf
 
 
-def checked_side(side: int) -> int:
+def checked_pivot_side(side: int) -> int:
     """Return 1 or -1.
 
     Raises
@@ -119,7 +119,7 @@ def checked_side(side: int) -> int:
     return int(side)
 
 
-def pivot_of(
+def build_pivot(
     side: int,
     elements: Sequence[BaseElement],
     *,
@@ -157,18 +157,20 @@ def pivot_of(
         prestress_moment=prestress,
         tendon_stiffness=stiffness,
         axial_stiffness_moment=pull,
-        dissipator_moment=sum((locked_force(each) * abs(arm - towards * each.position) for each in elements), 0.0),
+        dissipator_moment=sum(
+            (element_locking_force(each) * abs(arm - towards * each.position) for each in elements), 0.0
+        ),
         rocking_stiffness=stiffness - l0r * GRAVITY,
         nominal_overturning_rotation=limit,
         uplift_acceleration=(weight + prestress) / l0r,
     )
 
 
-def pivots_of(elements: Sequence[BaseElement], *, alike: bool, **values: float) -> dict[int, Pivot]:
-    """Return both pivots by their sides; if they are alike, they differ only in these. Values as of `pivot_of`."""
-    right = pivot_of(1, elements, alike=alike, **values)
+def build_both_pivots(elements: Sequence[BaseElement], *, alike: bool, **values: float) -> dict[int, Pivot]:
+    """Return both pivots by their sides; if they are alike, they differ only in these. Values as of `build_pivot`."""
+    right = build_pivot(1, elements, alike=alike, **values)
     if not alike:
-        return {1: right, -1: pivot_of(-1, elements, alike=alike, **values)}
+        return {1: right, -1: build_pivot(-1, elements, alike=alike, **values)}
     left = object.__new__(Pivot)
     vars(left).update(vars(right), side=-1)
     return {1: right, -1: left}

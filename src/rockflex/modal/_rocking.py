@@ -11,36 +11,44 @@ from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
 from rockflex._checks import (
-    all_positive,
-    damping_ratios,
-    finite,
-    finite_vector,
-    instance,
-    positive,
-    whole_number,
-    within,
+    check_all_positive,
+    checked_damping_ratios,
+    checked_finite,
+    checked_finite_vector,
+    checked_instance,
+    checked_magnitude,
+    checked_positive,
+    checked_whole_number,
 )
-from rockflex._computable import computable
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._html import HtmlTable
-from rockflex._values import Value, changed
+from rockflex._overflow import explaining_overflow
+from rockflex._values import Value, with_changed_fields
 from rockflex.modal._analysis import FloorModes
-from rockflex.modal._elements import BaseElement, Tendon, closes, element_set, initial_force, mirrored, pushed_force
-from rockflex.modal._pivot import PIVOT_VALUES, Pivot, checked_side, pivot_inertia, pivots_of
+from rockflex.modal._elements import (
+    BaseElement,
+    Tendon,
+    are_elements_symmetric,
+    base_element_tuple,
+    closes,
+    element_pushover_force,
+    initial_force,
+)
+from rockflex.modal._pivot import PIVOT_VALUES, Pivot, build_both_pivots, checked_pivot_side, pivot_inertia
 
 SUM_TOLERANCE = 1e-9  # relative tolerance for rounding of sums that are equal if all modes are kept
 PRINTED_TOLERANCE = 1e-5  # of I_θ: tolerance for values printed to six digits
 
 
-def checked_modes(
+def checked_modal_values(
     omega: ArrayLike, effective_mass: ArrayLike, effective_height: ArrayLike, top_ordinate: ArrayLike
 ) -> dict[str, Array]:
     modes = {
-        "omega": finite_vector("omega", omega, "rad/s"),
-        "effective_mass": finite_vector("effective_mass", effective_mass, "kg"),
-        "effective_height": finite_vector("effective_height", effective_height, "m"),
-        "top_ordinate": finite_vector("top_ordinate", top_ordinate, "m/m"),
+        "omega": checked_finite_vector("omega", omega, "rad/s"),
+        "effective_mass": checked_finite_vector("effective_mass", effective_mass, "kg"),
+        "effective_height": checked_finite_vector("effective_height", effective_height, "m"),
+        "top_ordinate": checked_finite_vector("top_ordinate", top_ordinate, "m/m"),
     }
     omega, effective_mass = modes["omega"], modes["effective_mass"]
     for name, values in modes.items():
@@ -50,7 +58,7 @@ def checked_modes(
                 field=name,
             )
     for name, values, unit in (("omega", omega, "rad/s"), ("effective_mass", effective_mass, "kg")):
-        all_positive(name, values, unit, "Leave out modes that do not participate.")
+        check_all_positive(name, values, unit, "Leave out modes that do not participate.")
     falls = np.flatnonzero(omega[1:] < omega[:-1])
     if falls.size:
         i = int(falls[0])
@@ -62,26 +70,26 @@ def checked_modes(
     return modes
 
 
-def checked_scalars(i_theta: float, l0r: float, m_tot: float, half_width: float) -> dict[str, float]:
+def checked_rocking_scalars(i_theta: float, l0r: float, m_tot: float, half_width: float) -> dict[str, float]:
     return {
-        "i_theta": positive("i_theta", i_theta, "kg m²"),
-        "l0r": positive("l0r", l0r, "kg m"),
-        "m_tot": positive("m_tot", m_tot, "kg"),
-        "half_width": positive("half_width", half_width, "m"),
+        "i_theta": checked_positive("i_theta", i_theta, "kg m²"),
+        "l0r": checked_positive("l0r", l0r, "kg m"),
+        "m_tot": checked_positive("m_tot", m_tot, "kg"),
+        "half_width": checked_positive("half_width", half_width, "m"),
     }
 
 
-def checked_floors(floors: FloorModes | None, n_modes: int) -> FloorModes | None:
-    if floors is not None and instance("floors", floors, FloorModes).n_modes != n_modes:
+def checked_floor_modes(floors: FloorModes | None, n_modes: int) -> FloorModes | None:
+    if floors is not None and checked_instance("floors", floors, FloorModes).n_modes != n_modes:
         raise InputError(
             f"floors must hold the same {n_modes} modes as omega, but it holds {floors.n_modes}.", field="floors"
         )
     return floors
 
 
-@computable("The inertia of the structure on this eccentric base")
+@explaining_overflow("The inertia of the structure on this eccentric base")
 def checked_eccentricity(modes: dict[str, Array], scalars: dict[str, float], inertia: float, given: float) -> float:
-    e, b = finite("eccentricity", given, "m") + 0.0, scalars["half_width"]  # + 0.0 takes the sign from -0.0
+    e, b = checked_finite("eccentricity", given, "m") + 0.0, scalars["half_width"]  # + 0.0 takes the sign from -0.0
     if not abs(e) < b:
         raise InputError(
             f"eccentricity must be smaller than half_width, {b:g} m, to either side, but {e:g} m was given. It is the "
@@ -100,7 +108,7 @@ def checked_eccentricity(modes: dict[str, Array], scalars: dict[str, float], ine
     return e
 
 
-def elements_within(
+def elements_within_base(
     elements: tuple[BaseElement, ...], half_width: float, eccentricity: float
 ) -> tuple[BaseElement, ...]:
     limit = half_width + abs(eccentricity)  # on an eccentric base, outriggers may reach as far on the shorter side
@@ -117,7 +125,7 @@ def elements_within(
 
 def checked_top_height(floors: FloorModes | None, given: float | None) -> float | None:
     if given is not None:
-        return positive("top_height", given, "m")
+        return checked_positive("top_height", given, "m")
     return None if floors is None else float(floors.heights.max())
 
 
@@ -125,7 +133,7 @@ def checked_base_mass(modes: dict[str, Array], m_tot: float, inertia: float, giv
     mass = modes["effective_mass"]
     modal_mass = float(mass.sum())
     if given is not None:
-        base = positive("base_mass", given, "kg", zero=True)
+        base = checked_positive("base_mass", given, "kg", zero=True)
         if m_tot - base < modal_mass - SUM_TOLERANCE * m_tot:
             raise InputError(
                 f"base_mass must leave the effective mass of the modes, {modal_mass:.9g} kg, but {base:.9g} kg of "
@@ -137,8 +145,8 @@ def checked_base_mass(modes: dict[str, Array], m_tot: float, inertia: float, giv
     return max(m_tot - modal_mass, 0.0) if complete else None
 
 
-@computable("The inertia of the modes, from effective_mass and effective_height,")
-def checked_inertia(modes: dict[str, Array], scalars: dict[str, float], given: float | None) -> float:
+@explaining_overflow("The inertia of the modes, from effective_mass and effective_height,")
+def checked_translational_inertia(modes: dict[str, Array], scalars: dict[str, float], given: float | None) -> float:
     mass = modes["effective_mass"]
     modal_mass = float(mass.sum())
     modal_inertia = float(mass @ modes["effective_height"] ** 2)
@@ -160,7 +168,7 @@ def checked_inertia(modes: dict[str, Array], scalars: dict[str, float], given: f
     if given is None:
         inertia = i_theta - m_tot * scalars["half_width"] ** 2
     else:
-        inertia = positive("translational_inertia", given, "kg m²")
+        inertia = checked_positive("translational_inertia", given, "kg m²")
     if not modal_inertia * (1.0 - SUM_TOLERANCE) <= inertia < i_theta:
         raise InputError(
             "translational_inertia must be at least the sum of effective_mass * effective_height**2, "
@@ -273,17 +281,17 @@ class RockingProperties(HtmlTable, Value):
         base_mass: float | None = None,
         eccentricity: float = 0.0,
     ) -> None:
-        modes = checked_modes(omega, effective_mass, effective_height, top_ordinate)
-        scalars = checked_scalars(i_theta, l0r, m_tot, half_width)
-        inertia = checked_inertia(modes, scalars, translational_inertia)
+        modes = checked_modal_values(omega, effective_mass, effective_height, top_ordinate)
+        scalars = checked_rocking_scalars(i_theta, l0r, m_tot, half_width)
+        inertia = checked_translational_inertia(modes, scalars, translational_inertia)
         e = checked_eccentricity(modes, scalars, inertia, eccentricity)
         vars(self).update(
             modes,
             **scalars,
-            zeta=damping_ratios("zeta", zeta, modes["omega"].size),
+            zeta=checked_damping_ratios("zeta", zeta, modes["omega"].size),
             translational_inertia=inertia,
-            floors=checked_floors(floors, modes["omega"].size),
-            elements=elements_within(element_set(elements), scalars["half_width"], e),
+            floors=checked_floor_modes(floors, modes["omega"].size),
+            elements=elements_within_base(base_element_tuple(elements), scalars["half_width"], e),
             top_height=checked_top_height(floors, top_height),
             base_mass=checked_base_mass(modes, scalars["m_tot"], inertia, base_mass),
             eccentricity=e,
@@ -317,13 +325,13 @@ class RockingProperties(HtmlTable, Value):
         InputError
             If `side` is neither.
         """
-        return self._by_side[side if type(side) is int and side in (1, -1) else checked_side(side)]
+        return self._by_side[side if type(side) is int and side in (1, -1) else checked_pivot_side(side)]
 
     @cached_property
     def _by_side(self) -> dict[int, Pivot]:
         values: dict[str, float] = {name: getattr(self, name) for name in PIVOT_VALUES}
         height = float(self.effective_height[0]) if self.n_modes else self.l0r / self.m_tot
-        return pivots_of(self.elements, alike=self.symmetric, height=height, **values)
+        return build_both_pivots(self.elements, alike=self.symmetric, height=height, **values)
 
     @property
     def pivots(self) -> tuple[Pivot, ...]:
@@ -338,7 +346,7 @@ class RockingProperties(HtmlTable, Value):
     @cached_property
     def symmetric(self) -> bool:
         """Whether both pivots are alike: no eccentricity, and every off-centre element has a mirror image."""
-        return self.eccentricity == 0.0 and (not self.elements or mirrored(self.elements))
+        return self.eccentricity == 0.0 and (not self.elements or are_elements_symmetric(self.elements))
 
     @property
     def weight_moment(self) -> float:
@@ -419,11 +427,11 @@ class RockingProperties(HtmlTable, Value):
         >>> round(held.recentring_ratio, 2), round(held.recentring_ratio_at(0.03), 2)
         (3.19, 3.69)
         """
-        turn = positive("rotation", within("rotation", rotation, 0.5 * math.pi, "rad"), "rad")
+        turn = checked_positive("rotation", checked_magnitude("rotation", rotation, 0.5 * math.pi, "rad"), "rad")
         found: list[float] = []
         for pivot in self.pivots:
             arms = [(each, pivot.arm - pivot.side * each.position) for each in self.elements]
-            moments = [(closes(each), pushed_force(each, r * turn) * r) for each, r in arms]
+            moments = [(closes(each), element_pushover_force(each, r * turn) * r) for each, r in arms]
             locked = sum((abs(moment) for helps, moment in moments if not helps), 0.0)
             closing = pivot.weight_moment + sum((moment for helps, moment in moments if helps), 0.0)
             found.append(closing / locked if locked > 0.0 else math.inf)
@@ -437,7 +445,7 @@ class RockingProperties(HtmlTable, Value):
         """
         return min(pivot.nominal_overturning_rotation for pivot in self.pivots)
 
-    @computable("The inertia of the structure on this base")
+    @explaining_overflow("The inertia of the structure on this base")
     def with_half_width(self, half_width: float) -> "RockingProperties":
         """Return the same structure on a base of the same mass and another half-width B in m.
 
@@ -448,7 +456,7 @@ class RockingProperties(HtmlTable, Value):
         InputError
             If the half-width is not positive or not above the eccentricity, or a tendon is outside the base.
         """
-        b = positive("half_width", half_width, "m")
+        b = checked_positive("half_width", half_width, "m")
         rotary = self.i_theta - self.translational_inertia - self.m_tot * self.half_width**2
         # A negative rest is rounding error, which would matter more about a closer pivot.
         about_pivot = self.translational_inertia + max(rotary, 0.0) + self.m_tot * b**2
@@ -464,10 +472,10 @@ class RockingProperties(HtmlTable, Value):
         InputError
             If the structure has fewer modes than `n_modes`.
         """
-        k = whole_number("n_modes", n_modes, 0, self.n_modes)
+        k = checked_whole_number("n_modes", n_modes, 0, self.n_modes)
         if k == self.n_modes:
             return self
-        return changed(
+        return with_changed_fields(
             self,
             omega=self.omega[:k],
             effective_mass=self.effective_mass[:k],

@@ -9,9 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import MOST_MODES, float_array, instance, one_of, positive, whole_number
-from rockflex._computable import computable
+from rockflex._checks import (
+    MOST_MODES,
+    checked_instance,
+    checked_positive,
+    checked_whole_number,
+    float_array,
+    is_one_of,
+)
 from rockflex._errors import InputError
+from rockflex._overflow import explaining_overflow
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.modal._pivot import Pivot
@@ -21,7 +28,7 @@ MAX_FREQUENCY = 1e60  # rad/s, whose fourth power still fits in double precision
 _ROOT_SHIFTS = (1e-13, 1e-11, 1e-9)  # relative shifts from a root: the first that gives a regular matrix is used
 
 
-def uplifted_damping(squares: Array, damping: Array) -> Array:
+def uplifted_damping_ratios(squares: Array, damping: Array) -> Array:
     """Return ζ* (n,) of the vibrations of q'' + C q' + Λ q = 0, without the rotation.
 
     Parameters
@@ -106,7 +113,7 @@ class UpliftedModes(Value):
     growth_shape: Array
 
 
-@computable("The uplifted modes of the given properties")
+@explaining_overflow("The uplifted modes of the given properties")
 def uplifted_modes(
     properties: RockingProperties, n_modes: SupportsIndex | None = None, *, side: int | None = None
 ) -> UpliftedModes:
@@ -151,18 +158,18 @@ def uplifted_modes(
     >>> modes.ratio.round(2)
     array([2.78, 2.39])
     """
-    p = instance("properties", properties, RockingProperties)
+    p = checked_instance("properties", properties, RockingProperties)
     p = p if n_modes is None else p.truncated(n_modes)
     n = p.n_modes
-    pivot = _pivot(p, side)
-    squares, motions = _lowest(p, pivot, n)
+    pivot = _pivot_at_side(p, side)
+    squares, motions = _lowest_uplifted_modes(p, pivot, n)
     omega = np.sqrt(squares[1:])
     modal = motions[1:, 1:]
     largest = modal[np.abs(modal).argmax(axis=0), np.arange(n)] if n else np.ones(0)
     return UpliftedModes(
         omega=omega,
         ratio=omega / p.omega,
-        damping_ratio=uplifted_damping(squares, _modal_damping(p, pivot, motions)),
+        damping_ratio=uplifted_damping_ratios(squares, _uplifted_modal_damping(p, pivot, motions)),
         shapes=motions[:, 1:] / (np.sign(largest) * np.abs(modal).sum(axis=0)),
         growth_rate=math.sqrt(max(-squares[0], 0.0)),
         sway_rate=math.sqrt(max(squares[0], 0.0)),
@@ -170,17 +177,19 @@ def uplifted_modes(
     )
 
 
-@computable("The uplifted frequencies of the given properties")
-def lowest_uplifted(properties: RockingProperties, count: int, side: int | None = None) -> Array:
+@explaining_overflow("The uplifted frequencies of the given properties")
+def lowest_uplifted_frequencies(properties: RockingProperties, count: int, side: int | None = None) -> Array:
     """Return at most the first `count` of `UpliftedModes.omega`, which is faster than computing all."""
-    return np.sqrt(_lowest(properties, _pivot(properties, side), min(count, properties.n_modes))[0][1:])
+    return np.sqrt(
+        _lowest_uplifted_modes(properties, _pivot_at_side(properties, side), min(count, properties.n_modes))[0][1:]
+    )
 
 
-def _pivot(p: RockingProperties, side: int | None) -> Pivot:
+def _pivot_at_side(p: RockingProperties, side: int | None) -> Pivot:
     return p.weaker_pivot if side is None else p.pivot(side)
 
 
-def _lowest(p: RockingProperties, pivot: Pivot, vibrations: int) -> tuple[Array, Array]:
+def _lowest_uplifted_modes(p: RockingProperties, pivot: Pivot, vibrations: int) -> tuple[Array, Array]:
     """Return ω² (v + 1,) and (θ, D) (n + 1, v + 1) of the rotation and the lowest v vibrations."""
     # With D_n √m*_n as coordinates the lower block of the mass matrix is the identity.
     root = np.sqrt(p.effective_mass)
@@ -197,12 +206,12 @@ def _lowest(p: RockingProperties, pivot: Pivot, vibrations: int) -> tuple[Array,
     mass = np.eye(n + 1)
     mass[0, 0], mass[0, 1:], mass[1:, 0] = pivot.i_theta, arm, arm
     kept = slice(vibrations + 1)
-    squares, motions = _polished(stiffness, mass, squares[kept], back @ vectors[:, kept])
+    squares, motions = _polished_uplifted_modes(stiffness, mass, squares[kept], back @ vectors[:, kept])
     motions[1:] /= root[:, None]
     return squares, motions
 
 
-def _modal_damping(p: RockingProperties, pivot: Pivot, motions: Array) -> Array:
+def _uplifted_modal_damping(p: RockingProperties, pivot: Pivot, motions: Array) -> Array:
     """Return the modal damping matrix of Eq. 23 for motions (θ, D) as columns, each scaled to unit modal mass."""
     root = np.sqrt(p.effective_mass)
     arm = root * p.effective_height
@@ -212,7 +221,7 @@ def _modal_damping(p: RockingProperties, pivot: Pivot, motions: Array) -> Array:
     return share.T @ ((2.0 * p.zeta * p.omega)[:, None] * share)
 
 
-def _polished(stiffness: Array, mass: Array, squares: Array, motions: Array) -> tuple[Array, Array]:
+def _polished_uplifted_modes(stiffness: Array, mass: Array, squares: Array, motions: Array) -> tuple[Array, Array]:
     """Restore the digits that small roots lost to rounding of the largest, by one step of inverse iteration each."""
     moved = motions
     for shift in _ROOT_SHIFTS:
@@ -267,7 +276,7 @@ def frequency_equation(properties: RockingProperties, omega: ArrayLike, *, side:
     >>> bool(abs(rf.frequency_equation(props, omega)[0]) < 1e-6 * props.i_theta * omega[0] ** 2)
     True
     """
-    pivot = _pivot(instance("properties", properties, RockingProperties), side)
+    pivot = _pivot_at_side(checked_instance("properties", properties, RockingProperties), side)
     frequencies = float_array(omega)
     if frequencies is None or not (np.abs(frequencies) < MAX_FREQUENCY).all():
         raise InputError(
@@ -341,22 +350,22 @@ def pinned_beam(behaviour: Literal["flexure", "shear"], spring: float = 0.0, n_m
     >>> beam.ratio.round(3)
     array([4.385, 2.268])
     """
-    if not one_of(behaviour, ("flexure", "shear")):
+    if not is_one_of(behaviour, ("flexure", "shear")):
         raise InputError(
             f'behaviour must be "flexure" or "shear", but {shown(behaviour)} was given.', field="behaviour"
         )
-    k = positive("spring", spring, "k_r L/EI (flexure) or k_r/(GA L) (shear)", zero=True)
-    n = whole_number("n_modes", n_modes, 1, MOST_MODES)
+    k = checked_positive("spring", spring, "k_r L/EI (flexure) or k_r/(GA L) (shear)", zero=True)
+    n = checked_whole_number("n_modes", n_modes, 1, MOST_MODES)
     flexure = behaviour == "flexure"
-    clamp, pin = (_clamped_flexure, _pinned_flexure) if flexure else (math.cos, _pinned_shear)
-    pinned, clamped = [0.0], [_bisected(clamp, 0.0, math.pi)]
+    clamp, pin = (_clamped_flexural_beam, _pinned_flexural_beam) if flexure else (math.cos, _pinned_shear_beam)
+    pinned, clamped = [0.0], [_bisected_root(clamp, 0.0, math.pi)]
     for i in range(1, n + 1):
-        pinned.append(_bisected(pin, i * math.pi, (i + 1) * math.pi if flexure else (i + 0.5) * math.pi))
-        clamped.append(_bisected(clamp, i * math.pi, (i + 1) * math.pi))
+        pinned.append(_bisected_root(pin, i * math.pi, (i + 1) * math.pi if flexure else (i + 0.5) * math.pi))
+        clamped.append(_bisected_root(clamp, i * math.pi, (i + 1) * math.pi))
     # The roots with a spring lie between the roots of the pinned and of the clamped beam.
-    spring_of = _flexure_spring if flexure else _shear_spring
+    spring_of = _flexural_beam_on_spring if flexure else _shear_beam_on_spring
     roots = [
-        _bisected(lambda x: spring_of(x, k), low, high) if k else low
+        _bisected_root(lambda x: spring_of(x, k), low, high) if k else low
         for low, high in zip(pinned, clamped, strict=True)
     ]  # fmt: skip
     found = np.array(roots)
@@ -369,27 +378,27 @@ def pinned_beam(behaviour: Literal["flexure", "shear"], spring: float = 0.0, n_m
     )
 
 
-def _clamped_flexure(x: float) -> float:
+def _clamped_flexural_beam(x: float) -> float:
     return math.cos(x) + 1.0 / math.cosh(x)
 
 
-def _pinned_flexure(x: float) -> float:
+def _pinned_flexural_beam(x: float) -> float:
     return math.sin(x) - math.cos(x) * math.tanh(x)
 
 
-def _pinned_shear(x: float) -> float:
+def _pinned_shear_beam(x: float) -> float:
     return math.sin(x) - x * math.cos(x)
 
 
-def _flexure_spring(x: float, k: float) -> float:
-    return k * _clamped_flexure(x) - x * _pinned_flexure(x)
+def _flexural_beam_on_spring(x: float, k: float) -> float:
+    return k * _clamped_flexural_beam(x) - x * _pinned_flexural_beam(x)
 
 
-def _shear_spring(x: float, k: float) -> float:
-    return k * x * math.cos(x) - _pinned_shear(x)
+def _shear_beam_on_spring(x: float, k: float) -> float:
+    return k * x * math.cos(x) - _pinned_shear_beam(x)
 
 
-def _bisected(function: Callable[[float], float], low: float, high: float) -> float:
+def _bisected_root(function: Callable[[float], float], low: float, high: float) -> float:
     """Return the place of the sign change, to the last bit."""
     above = function(high) > 0.0
     while low < (middle := 0.5 * (low + high)) < high:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from rockflex._checks import finite, positive
+from rockflex._checks import checked_finite, checked_positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
 
@@ -49,11 +49,11 @@ class BoucWen:
 
     def __post_init__(self) -> None:
         values = {
-            "yield_displacement": positive("yield_displacement", self.yield_displacement, "m"),
-            "post_yield_ratio": finite("post_yield_ratio", self.post_yield_ratio, ""),
-            "gamma": finite("gamma", self.gamma, ""),
-            "beta": finite("beta", self.beta, ""),
-            "exponent": finite("exponent", self.exponent, ""),
+            "yield_displacement": checked_positive("yield_displacement", self.yield_displacement, "m"),
+            "post_yield_ratio": checked_finite("post_yield_ratio", self.post_yield_ratio, ""),
+            "gamma": checked_finite("gamma", self.gamma, ""),
+            "beta": checked_finite("beta", self.beta, ""),
+            "exponent": checked_finite("exponent", self.exponent, ""),
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)

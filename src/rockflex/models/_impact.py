@@ -11,7 +11,7 @@ from typing import Protocol, runtime_checkable
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite, positive
+from rockflex._checks import checked_finite, checked_positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
@@ -147,14 +147,16 @@ class Restitution:
     loses = "the rest of the rotation's energy"
 
     def __post_init__(self) -> None:
-        e = finite("e", self.e, "")
+        e = checked_finite("e", self.e, "")
         if not 0.0 <= e <= 1.0:
             raise InputError(
                 f"The restitution e must lie from 0 to 1, but {shown(self.e)} was given. It is the ratio of the "
                 "rotation velocities after and before an impact; more than 1 would gain energy."
             )
         object.__setattr__(self, "e", e)
-        object.__setattr__(self, "shortest_excursion", positive("shortest_excursion", self.shortest_excursion, "s"))
+        object.__setattr__(
+            self, "shortest_excursion", checked_positive("shortest_excursion", self.shortest_excursion, "s")
+        )
 
     def after(
         self, properties: RockingProperties, modal_velocity: Array, rotation_velocity: float

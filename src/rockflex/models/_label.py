@@ -7,9 +7,9 @@ from typing import Literal
 
 import numpy as np
 
-from rockflex._checks import one_of, whole_number
+from rockflex._checks import checked_whole_number, is_one_of
 from rockflex._errors import InputError
-from rockflex._shown import counted, shown
+from rockflex._shown import number_with_noun, shown
 from rockflex.modal import FrictionDamper, Ground, RockingProperties
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._ground import check_base, grounded
@@ -75,7 +75,7 @@ class Model:
 
     def __post_init__(self) -> None:
         if self.n_modes is not None:
-            object.__setattr__(self, "n_modes", whole_number("n_modes", self.n_modes, 0))
+            object.__setattr__(self, "n_modes", checked_whole_number("n_modes", self.n_modes, 0))
         meanings = {
             "lifts": "True (the base can lift) or False (it is fixed)",
             "complete": "True (Eqs. 13 and 14) or False (Eq. 23)",
@@ -87,7 +87,7 @@ class Model:
             if not isinstance(value, bool | np.bool_):
                 raise InputError(f"{name} must be {meaning}, but {shown(value)} was given.")
             object.__setattr__(self, name, bool(value))
-        if self.closure is not None and not one_of(self.closure, ("SI", "E")):
+        if self.closure is not None and not is_one_of(self.closure, ("SI", "E")):
             raise InputError(f'closure must be "SI", "E" or None, but {shown(self.closure)} was given.')
         self._check_combination()
 
@@ -156,7 +156,7 @@ class Model:
         if self.n_modes is not None and self.n_modes > properties.n_modes:
             whole = replace(self, n_modes=None).label
             raise InputError(
-                f"Model {self.label} needs {counted(self.n_modes, 'mode')}, but the structure has "
+                f"Model {self.label} needs {number_with_noun(self.n_modes, 'mode')}, but the structure has "
                 f"{properties.n_modes}. Give more modes, or use {whole} for all modes."
             )
         kept = properties if self.n_modes is None else properties.truncated(self.n_modes)

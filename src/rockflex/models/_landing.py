@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._checks import finite, finite_vector
+from rockflex._checks import checked_finite, checked_finite_vector
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
@@ -111,13 +111,13 @@ def velocities_after(
     """Return the velocities after an impact that a law gives, checked; raises `InputError` if it fails."""
     try:
         found, turn = _pair(law.after(properties, velocity.copy(), spin))
-        checked = finite_vector("the modal velocity after an impact", found, "m/s")
+        checked = checked_finite_vector("the modal velocity after an impact", found, "m/s")
         if checked.size != velocity.size:
             raise InputError(
                 f"The modal velocity after an impact must have {velocity.size} values, but {checked.size} were "
                 "returned."
             )
-        return checked, finite("the rotation velocity after an impact", turn, "rad/s")
+        return checked, checked_finite("the rotation velocity after an impact", turn, "rad/s")
     except Exception as error:
         raise InputError(f"The impact law {shown(law)} failed: {error}") from error
 

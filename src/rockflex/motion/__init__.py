@@ -2,14 +2,14 @@
 
 from rockflex.motion._at2 import read_at2
 from rockflex.motion._columns import record_csv
-from rockflex.motion._ground_motion import GroundMotion, check_horizontal, is_vertical
+from rockflex.motion._ground_motion import GroundMotion, check_horizontal_component, is_vertical_component
 from rockflex.motion._measures import (
     MEASURES,
-    Measure,
-    Shaking,
-    intensities,
-    intensity,
+    IntensityMeasure,
+    MeasureInput,
     record_measures,
+    scalable_measure,
+    scalable_measures,
     vertical_measures,
 )
 from rockflex.motion._pulses import (
@@ -21,9 +21,9 @@ from rockflex.motion._pulses import (
     rectangular_pulse,
     ricker_pulse,
 )
-from rockflex.motion._read_suite import OnError, Vertical, folder_files, read_files, read_suite
-from rockflex.motion._readers import read_components, read_motion, read_plain
-from rockflex.motion._record_info import RecordInfo, direction_of
+from rockflex.motion._read_suite import OnError, Vertical, read_components_by_file, read_suite, record_files_in_folder
+from rockflex.motion._readers import read_components, read_motion, read_motion_without_obspy
+from rockflex.motion._record_info import RecordInfo, component_direction
 from rockflex.motion._recordings import (
     Combination,
     RotatedSpectrum,
@@ -35,41 +35,38 @@ from rockflex.motion._recordings import (
 from rockflex.motion._selection import Selection
 from rockflex.motion._spectra import ResponseSpectrum, TargetSpectrum
 from rockflex.motion._suite import Suite, load_suite, suite_names
-from rockflex.motion._survey import RecordSurvey, SurveyEntry, survey_plain, survey_records
+from rockflex.motion._survey import RecordSurvey, SurveyEntry, survey_records, survey_without_obspy
 from rockflex.motion._targets import asce7_site_spectrum, asce7_spectrum, ec8_second_spectrum, ec8_spectrum, read_target
-from rockflex.motion._text import UNITS, acceleration_in
+from rockflex.motion._text import UNITS, acceleration_in_text
 
 __all__ = [
     "MEASURES",
     "UNITS",
     "Combination",
     "GroundMotion",
-    "Measure",
+    "IntensityMeasure",
+    "MeasureInput",
     "OnError",
     "RecordInfo",
     "RecordSurvey",
     "ResponseSpectrum",
     "RotatedSpectrum",
     "Selection",
-    "Shaking",
     "StationRecord",
     "Suite",
     "SurveyEntry",
     "TargetSpectrum",
     "Vertical",
-    "acceleration_in",
+    "acceleration_in_text",
     "asce7_site_spectrum",
     "asce7_spectrum",
-    "check_horizontal",
-    "direction_of",
+    "check_horizontal_component",
+    "component_direction",
     "ec8_second_spectrum",
     "ec8_spectrum",
-    "folder_files",
     "group_stations",
     "half_sine_pulse",
-    "intensities",
-    "intensity",
-    "is_vertical",
+    "is_vertical_component",
     "load_suite",
     "mavroeidis_papageorgiou_pulse",
     "one_cosine_pulse",
@@ -77,19 +74,22 @@ __all__ = [
     "quiet_motion",
     "read_at2",
     "read_components",
-    "read_files",
+    "read_components_by_file",
     "read_motion",
-    "read_plain",
+    "read_motion_without_obspy",
     "read_suite",
     "read_target",
     "record_csv",
+    "record_files_in_folder",
     "record_measures",
     "recording_names",
     "rectangular_pulse",
     "ricker_pulse",
     "rotated_spectrum",
+    "scalable_measure",
+    "scalable_measures",
     "suite_names",
-    "survey_plain",
     "survey_records",
+    "survey_without_obspy",
     "vertical_measures",
 ]

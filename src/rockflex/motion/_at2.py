@@ -6,10 +6,17 @@ from pathlib import Path
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex._files import path_of
+from rockflex._files import checked_file_path
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo, azimuth_of, direction_of
-from rockflex.motion._text import DECIMAL, Unit, build_motion, number, read_lines, wrong_count
+from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction
+from rockflex.motion._text import (
+    DECIMAL,
+    AccelerationUnit,
+    motion_from_samples,
+    parse_decimal,
+    read_text_lines,
+    wrong_sample_count_error,
+)
 
 HEADER_LINES = 12
 _MAX_NPTS_DIGITS = 18  # of NPTS that are read; no file has more samples
@@ -58,12 +65,12 @@ def read_at2(path: str | Path, vertical: str | Path | None = None) -> GroundMoti
     >>> rf.read_at2("DEMO.AT2")
     GroundMotion('DEMO', 4 samples, dt=0.01 s, duration=0.03 s, pga=1.962 m/s²)
     """
-    file = path_of("path", path)
-    motion = parse_at2(file, read_lines(file))
-    return motion if vertical is None else motion.with_vertical(read_at2(path_of("vertical", vertical)))
+    file = checked_file_path("path", path)
+    motion = parse_at2(file, read_text_lines(file))
+    return motion if vertical is None else motion.with_vertical(read_at2(checked_file_path("vertical", vertical)))
 
 
-def find_header(lines: list[str]) -> tuple[int, int, str] | None:
+def find_at2_header(lines: list[str]) -> tuple[int, int, str] | None:
     """Return the number of header lines, NPTS and DT, or None if there is no such header."""
     npts = dt = None
     for i, line in enumerate(lines[:HEADER_LINES]):
@@ -80,7 +87,7 @@ def find_header(lines: list[str]) -> tuple[int, int, str] | None:
 
 def parse_at2(file: Path, lines: list[str]) -> GroundMotion:
     """Build the motion from the lines of an AT2 file."""
-    header = find_header(lines)
+    header = find_at2_header(lines)
     if header is None:
         raise InputError(
             f"{file}: no header line with NPTS and DT among the first {HEADER_LINES} lines, such as "
@@ -93,20 +100,22 @@ def parse_at2(file: Path, lines: list[str]) -> GroundMotion:
             f"{file}: the header states units of {unit[1]}, but an AT2 file contains an acceleration in g. "
             "Use the AT2 file of the record, not VT2 or DT2; save values in m/s² in a plain text file."
         )
-    dt = number(step, file, start)
+    dt = parse_decimal(step, file, start)
     if dt <= 0:
         raise InputError(f"{file}, line {start}: DT must be positive, but it is {step}.")
-    values = _values(file, lines, start)
+    values = _at2_samples(file, lines, start)
     if values.size != npts:
-        raise wrong_count(file, values.size, npts, f"NPTS = {npts}")
+        raise wrong_sample_count_error(file, values.size, npts, f"NPTS = {npts}")
     remedy = (
         "AT2 files are in g by definition: save only the values as a text file and declare their unit, "
         f'read_motion(path, units="m/s2", dt={dt:g}).'
     )
-    return build_motion(file, values, Unit("g"), dt, _info(file, lines[: start - 1]), remedy)
+    return motion_from_samples(
+        file, values, AccelerationUnit("g"), dt, _at2_record_info(file, lines[: start - 1]), remedy
+    )
 
 
-def _values(file: Path, lines: list[str], start: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+def _at2_samples(file: Path, lines: list[str], start: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     try:
         values = np.array([float(token) for line in lines[start:] for token in line.split()])
         if np.isfinite(values).all() and not any("_" in line for line in lines[start:]):
@@ -122,14 +131,14 @@ def _values(file: Path, lines: list[str], start: int) -> np.ndarray[tuple[int], 
             while position < word.end():
                 token = TOKEN.match(line, position)
                 if token is None:
-                    found.append(number(line[position : word.end()], file, i))
+                    found.append(parse_decimal(line[position : word.end()], file, i))
                     break
-                found.append(number(token[0], file, i))
+                found.append(parse_decimal(token[0], file, i))
                 position = token.end()
     return np.array(found)
 
 
-def _info(file: Path, header: list[str]) -> RecordInfo:
+def _at2_record_info(file: Path, header: list[str]) -> RecordInfo:
     number_in_name = re.match(r"RSN(\d+)", file.name, re.IGNORECASE)
     rsn = int(number_in_name[1]) if number_in_name else None
     for line in header:
@@ -146,10 +155,10 @@ def _info(file: Path, header: list[str]) -> RecordInfo:
                 year=year if year > 99 else 1900 + year,
                 station=", ".join(rest[:-1]) or None,
                 component=component or None,
-                direction=direction_of(file, component),
-                azimuth=azimuth_of(component),
+                direction=component_direction(file, component),
+                azimuth=component_azimuth(component),
                 source=line.strip(),
                 rsn=rsn,
                 source_format="AT2",
             )
-    return RecordInfo(source=file.name, rsn=rsn, direction=direction_of(file), source_format="AT2")
+    return RecordInfo(source=file.name, rsn=rsn, direction=component_direction(file), source_format="AT2")

@@ -13,31 +13,31 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._shown import counted, shown
+from rockflex._shown import number_with_noun, shown
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import (
     HORIZONTAL_NAME,
     VERTICAL_NAME,
     RecordInfo,
-    azimuth_of,
-    direction_of,
-    is_horizontal_name,
-    unique_names,
+    component_azimuth,
+    component_direction,
+    is_horizontal_component_name,
+    unique_record_names,
 )
 from rockflex.motion._text import (
     BRACKET,
     DECIMAL,
     SECONDS,
     TIME_LABEL,
-    Table,
-    Unit,
-    acceleration_of,
-    after_brackets,
-    build_motion,
-    is_number,
-    number,
-    optional_number,
-    unit_name,
+    AccelerationUnit,
+    NumericTable,
+    acceleration_unit_name,
+    checked_acceleration_in_si,
+    end_of_last_bracket,
+    is_number_cell,
+    motion_from_samples,
+    parse_decimal,
+    parse_optional_decimal,
 )
 
 PREFIX = r"(?:acc[a-z]*+|a)[\s_.-]++"
@@ -76,34 +76,36 @@ class ColumnRoles:
     vertical: int | None
 
 
-def parse_columns(file: Path, table: Table, units: Unit | None, dt: float | None, name: str) -> list[GroundMotion]:
+def parse_columns(
+    file: Path, table: NumericTable, units: AccelerationUnit | None, dt: float | None, name: str
+) -> list[GroundMotion]:
     """Build the motions from rows of numbers; of several accelerations, each is a motion, the vertical one too."""
     roles = _column_roles(file, table.labels, len(table.rows[0][1]))
     places = [*roles.horizontal, *([] if roles.vertical is None else [roles.vertical])]
-    stated = {k: _stated_unit(file, table, k, units) for k in places}
-    values = {k: _column(file, table, k) for k in places}
-    step = _time_step(file, table, roles.time, dt)
+    stated = {k: _column_unit(file, table, k, units) for k in places}
+    values = {k: _column_samples(file, table, k) for k in places}
+    step = _column_time_step(file, table, roles.time, dt)
     if len(roles.horizontal) == 1:
-        return [_single_motion(file, table, roles, stated, values, step, name)]
-    names = [_component(table.labels[k]) or str(k + 1) for k in places]
+        return [_motion_from_columns(file, table, roles, stated, values, step, name)]
+    names = [_component_in_label(table.labels[k]) or str(k + 1) for k in places]
     motions: list[GroundMotion] = []
-    for k, component, apart in zip(places, names, unique_names(names), strict=True):
+    for k, component, apart in zip(places, names, unique_record_names(names), strict=True):
         info = RecordInfo(
             source=file.name,
             component=component,
             direction="vertical" if k == roles.vertical else "horizontal",
-            azimuth=None if k == roles.vertical else azimuth_of(component),
+            azimuth=None if k == roles.vertical else component_azimuth(component),
             source_format="columns",
         )
-        motions.append(build_motion(file, values[k], stated[k], step, info, REMEDY, f"{name}-{apart}"))
+        motions.append(motion_from_samples(file, values[k], stated[k], step, info, REMEDY, f"{name}-{apart}"))
     return motions
 
 
-def _single_motion(
+def _motion_from_columns(
     file: Path,
-    table: Table,
+    table: NumericTable,
     roles: ColumnRoles,
-    stated: dict[int, Unit],
+    stated: dict[int, AccelerationUnit],
     values: dict[int, Array],
     step: float,
     name: str,
@@ -111,22 +113,26 @@ def _single_motion(
     """Build the motion from the only horizontal column, with the vertical one."""
     column, vertical = roles.horizontal[0], roles.vertical
     alone = bool(table.labels) and VERTICAL_LABEL.match(table.labels[column])
-    info = RecordInfo(source=file.name, direction="vertical" if alone else direction_of(file), source_format="columns")
-    info = stated_record_info(file, table.heads).completed(info)
-    motion = build_motion(file, values[column], stated[column], step, info, REMEDY, name)
+    info = RecordInfo(
+        source=file.name, direction="vertical" if alone else component_direction(file), source_format="columns"
+    )
+    info = record_info_in_csv(file, table.heads).completed(info)
+    motion = motion_from_samples(file, values[column], stated[column], step, info, REMEDY, name)
     if vertical is None:
         return motion
-    return motion.with_vertical(acceleration_of(file, values[vertical], stated[vertical], REMEDY, info.scale))
+    return motion.with_vertical(
+        checked_acceleration_in_si(file, values[vertical], stated[vertical], REMEDY, info.scale)
+    )
 
 
-def _column(file: Path, table: Table, k: int) -> Array:
-    return np.array([number(cells[k], file, line) for line, cells in table.rows])
+def _column_samples(file: Path, table: NumericTable, k: int) -> Array:
+    return np.array([parse_decimal(cells[k], file, line) for line, cells in table.rows])
 
 
-def _component(label: str) -> str:
+def _component_in_label(label: str) -> str:
     """Return the label without the words for acceleration and the unit: the name of the component."""
     return ACCELERATION_LABEL.sub(
-        "", BRACKET.sub("", label[: after_brackets(label)]) + label[after_brackets(label) :], 1
+        "", BRACKET.sub("", label[: end_of_last_bracket(label)]) + label[end_of_last_bracket(label) :], 1
     ).strip(" _-.")
 
 
@@ -139,12 +145,12 @@ def _column_roles(file: Path, labels: list[str], n_columns: int) -> ColumnRoles:
     others = [i for i in range(len(labels)) if i not in (*times, *upwards)]
     along = [i for i in others if ACCELERATION_LABEL.match(labels[i])]
     if not along and beside and (len(labels) > 2 or not {"X", "Y"}.intersection(labels)):  # X and Y may be a curve
-        along, alone = _by_names(labels, others)
+        along, alone = _columns_by_component_name(labels, others)
         upwards = [*upwards, *alone]
     vertical = _vertical_column(file, labels, upwards)
     if len(along) == 1 and (len(times) == 1 or (n_columns == 2 and vertical is not None)):
         return ColumnRoles(times[0] if times else None, (along[0],), vertical)
-    names = {_component(labels[i]) for i in along} - {""}
+    names = {_component_in_label(labels[i]) for i in along} - {""}
     if len(along) > 1 and len(times) <= 1 and len(names) == len(along):
         return ColumnRoles(times[0] if times else None, tuple(along), vertical)
     if n_columns <= 2:
@@ -162,11 +168,15 @@ def _column_roles(file: Path, labels: list[str], n_columns: int) -> ColumnRoles:
     )
 
 
-def _by_names(labels: list[str], others: list[int]) -> tuple[list[int], list[int]]:
+def _columns_by_component_name(labels: list[str], others: list[int]) -> tuple[list[int], list[int]]:
     """Return the horizontal and the vertical columns if the labels only name components: NS (gal), Z (gal)."""
-    upwards = [i for i in others if _component(labels[i]).upper() in ("Z", "V")]
+    upwards = [i for i in others if _component_in_label(labels[i]).upper() in ("Z", "V")]
     along = [i for i in others if i not in upwards]
-    return (along, upwards) if all(is_horizontal_name(_component(labels[i])) for i in along) else ([], [])
+    return (
+        (along, upwards)
+        if all(is_horizontal_component_name(_component_in_label(labels[i])) for i in along)
+        else ([], [])
+    )
 
 
 def _vertical_column(file: Path, labels: list[str], found: list[int]) -> int | None:
@@ -176,28 +186,28 @@ def _vertical_column(file: Path, labels: list[str], found: list[int]) -> int | N
     return found[0] if found else None
 
 
-def _stated_unit(file: Path, table: Table, k: int, units: Unit | None) -> Unit:
+def _column_unit(file: Path, table: NumericTable, k: int, units: AccelerationUnit | None) -> AccelerationUnit:
     """Return the unit stated by the label, a line above it, or the caller; they must agree."""
     label = table.labels[k] if table.labels else ""
-    bracket = BRACKET.search(label, 0, after_brackets(label))
+    bracket = BRACKET.search(label, 0, end_of_last_bracket(label))
     written = bracket[1] if bracket else ""
     where = "column header"
     if not written:
         found = next((each for head in table.heads if (each := STATED_UNIT.search(head[:500]))), None)
         written, where = (found[1] if found else ""), "header"
-    stated = unit_name(written)
+    stated = acceleration_unit_name(written)
     if written and stated is None:
         raise InputError(
             f"{file}: the {where} gives the unit {shown(written)}, which is not known. "
             "Write it as g, m/s2 or cm/s2, and convert the values if necessary."
         )
-    if stated and units and Unit(stated) != units:
+    if stated and units and AccelerationUnit(stated) != units:
         raise InputError(
             f"{file}: the {where} says {stated}, but units={shown(str(units))} was given. Leave units out.",
             field="units",
         )
     if stated:
-        return Unit(stated)
+        return AccelerationUnit(stated)
     if units:
         return units
     raise InputError(
@@ -207,11 +217,11 @@ def _stated_unit(file: Path, table: Table, k: int, units: Unit | None) -> Unit:
     )
 
 
-def _time_step(file: Path, table: Table, column: int | None, dt: float | None) -> float:
+def _column_time_step(file: Path, table: NumericTable, column: int | None, dt: float | None) -> float:
     """Return the time step in s, from the column of times, the caller or the header."""
     if column is None:
         found = next((each for head in table.heads if (each := STATED_STEP.search(head[:500]))), None)
-        stated = None if found is None else number(found[1], file, 1)
+        stated = None if found is None else parse_decimal(found[1], file, 1)
         if stated and stated > 0.0 and dt in (None, stated):
             return stated
         if stated and stated > 0.0:
@@ -225,22 +235,22 @@ def _time_step(file: Path, table: Table, column: int | None, dt: float | None) -
             )
         return dt
     if table.labels:
-        _check_seconds(file, table.labels[column])
-    return _common_step(file, _column(file, table, column), [line for line, _ in table.rows], dt)
+        _check_times_in_seconds(file, table.labels[column])
+    return _common_time_step(file, _column_samples(file, table, column), [line for line, _ in table.rows], dt)
 
 
-def _check_seconds(file: Path, label: str) -> None:
-    bracket = BRACKET.search(label, 0, after_brackets(label))
+def _check_times_in_seconds(file: Path, label: str) -> None:
+    bracket = BRACKET.search(label, 0, end_of_last_bracket(label))
     if bracket and bracket[1].strip().lower() not in SECONDS:
         raise InputError(
             f"{file}: the times are in {shown(bracket[1])}, but seconds are expected. Convert the column to s."
         )
 
 
-def _common_step(file: Path, times: Array, lines: list[int], dt: float | None) -> float:
+def _common_time_step(file: Path, times: Array, lines: list[int], dt: float | None) -> float:
     """Return the common time step in s."""
     if times.size < 3:
-        raise InputError(f"{file} has {counted(times.size, 'sample')}, but a record needs at least 3.")
+        raise InputError(f"{file} has {number_with_noun(times.size, 'sample')}, but a record needs at least 3.")
     steps = np.diff(times)
     if np.any(steps <= 0):
         k = int(np.argmax(steps <= 0))
@@ -271,14 +281,18 @@ def _common_step(file: Path, times: Array, lines: list[int], dt: float | None) -
     return float(f"{(times[-1] - times[0]) / (times.size - 1):.12g}")
 
 
-def is_excel(content: bytes) -> bool:
+def is_excel_workbook(content: bytes) -> bool:
     """Return whether the bytes begin as an Excel workbook, or as another file in the same container (ZIP, OLE)."""
     return content.startswith((ZIP_MAGIC, OLD_EXCEL_MAGIC))
 
 
-def parse_excel(file: Path, content: bytes, units: Unit | None, dt: float | None) -> list[GroundMotion]:
+def parse_excel(file: Path, content: bytes, units: AccelerationUnit | None, dt: float | None) -> list[GroundMotion]:
     """Build the motions from all sheets of a workbook that hold rows of numbers, read as columns of text are."""
-    tables = {name: table for name, cells in sheets_of(file, content).items() if (table := _sheet_table(cells))}
+    tables = {
+        name: table
+        for name, cells in excel_sheet_cells(file, content).items()
+        if (table := _table_in_excel_sheet(cells))
+    }
     if not tables:
         raise InputError(f"{file} holds no numbers: a sheet is expected with columns of time and acceleration.")
     motions: list[GroundMotion] = []
@@ -291,14 +305,14 @@ def parse_excel(file: Path, content: bytes, units: Unit | None, dt: float | None
                 raise
             text = f"Sheet {sheet[:40]!r}: {error}"
             raise InputError(text, field=error.field) from error
-    names = unique_names([motion.name for motion in motions])
+    names = unique_record_names([motion.name for motion in motions])
     return [
         GroundMotion(each.acceleration, each.dt, name, each.metadata, each.vertical)
         for each, name in zip(motions, names, strict=True)
     ]
 
 
-def sheets_of(file: Path, content: bytes) -> dict[str, list[list[str]]]:
+def excel_sheet_cells(file: Path, content: bytes) -> dict[str, list[list[str]]]:
     """Return the cells of every sheet of a workbook as text, by its name.
 
     Raises
@@ -326,27 +340,27 @@ def sheets_of(file: Path, content: bytes) -> dict[str, list[list[str]]]:
         raise InputError(f"{file} is an Excel workbook, which needs openpyxl to be read. {INSTALL}") from error
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            if any(_longest_row(archive.read(part)) > MAX_ROW_BYTES for part in archive.namelist()):
+            if any(_longest_excel_row(archive.read(part)) > MAX_ROW_BYTES for part in archive.namelist()):
                 raise InputError(
                     f"{file} has a row of more than {MAX_ROW_BYTES / 1e6:g} MB. Delete the cells beside the record."
                 )
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about styles and other extensions that do not matter here
             book: Any = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True)
-            return _sheet_cells(file, book)
+            return _cells_of_open_workbook(file, book)
     except InputError:
         raise
     except Exception as error:  # damaged workbooks raise many kinds of errors
         raise InputError(f"{file} cannot be read as an Excel workbook: {str(error)[:200]}.") from error
 
 
-def _longest_row(part: bytes) -> int:
+def _longest_excel_row(part: bytes) -> int:
     """Return the bytes of the longest row in a part of a workbook; 0 if it is no sheet."""
     ends = (each.start() for each in ROW_EDGES.finditer(part)) if b"sheetData" in part else ()
     return max((after - before for before, after in pairwise(chain(ends, [len(part)]))), default=0)
 
 
-def _sheet_cells(file: Path, book: Any) -> dict[str, list[list[str]]]:
+def _cells_of_open_workbook(file: Path, book: Any) -> dict[str, list[list[str]]]:
     """Return the cells of the sheets of an open workbook; sheets whose few cells lie far apart are refused."""
     sheets: dict[str, list[list[str]]] = {}
     count, empty = 0, list[str]()
@@ -356,7 +370,7 @@ def _sheet_cells(file: Path, book: Any) -> dict[str, list[list[str]]]:
         for row in sheet.iter_rows(values_only=True):
             cells = [""] * len(row)
             for k, cell in enumerate(row):
-                cells[k] = _cell_text(cell)
+                cells[k] = _excel_cell_text(cell)
                 count += 1 + len(cells[k]) // 20
                 if count > MAX_CELLS:
                     break
@@ -370,13 +384,13 @@ def _sheet_cells(file: Path, book: Any) -> dict[str, list[list[str]]]:
     return sheets
 
 
-def _cell_text(cell: object) -> str:
+def _excel_cell_text(cell: object) -> str:
     if isinstance(cell, float | int) and not isinstance(cell, bool):
         return repr(float(cell))
     return "" if cell is None else str(cell).strip()
 
 
-def _sheet_table(cells: list[list[str]]) -> Table | None:
+def _table_in_excel_sheet(cells: list[list[str]]) -> NumericTable | None:
     """Return the rows of numbers in a sheet, without columns that are empty; None if there are none."""
     numbered = [(i, row) for i, row in enumerate(cells, 1)]
     begin = next((k for k, (_, row) in enumerate(numbered) if _is_numeric_row(row)), None)
@@ -391,13 +405,13 @@ def _sheet_table(cells: list[list[str]]) -> Table | None:
 
     found = next((kept(row) for row in reversed(heads) if all(kept(row))), [])
     labels = found if any(not DECIMAL.fullmatch(label) for label in found) else []
-    return Table(labels, [(i, kept(row)) for i, row in rows], [" ".join(filter(None, row)) for row in heads])
+    return NumericTable(labels, [(i, kept(row)) for i, row in rows], [" ".join(filter(None, row)) for row in heads])
 
 
 def _is_numeric_row(row: list[str]) -> bool:
     """Return whether a row begins the numbers: its filled cells are all numbers."""
     filled = [cell for cell in row if cell]
-    return bool(filled) and all(map(is_number, filled))
+    return bool(filled) and all(map(is_number_cell, filled))
 
 
 def record_csv(motion: GroundMotion) -> str:
@@ -412,7 +426,7 @@ def record_csv(motion: GroundMotion) -> str:
     return "\n".join([*(heads if known else []), ",".join(columns), *(",".join(map(repr, row)) for row in rows), ""])
 
 
-def stated_record_info(file: Path, heads: list[str]) -> RecordInfo:
+def record_info_in_csv(file: Path, heads: list[str]) -> RecordInfo:
     """Return the metadata in the first lines of a file that `record_csv` wrote; empty for other files.
 
     Raises
@@ -427,7 +441,7 @@ def stated_record_info(file: Path, heads: list[str]) -> RecordInfo:
         if name not in RECORD_FIELDS or not text:
             continue
         kind = RECORD_FIELDS[name]
-        value = text if kind is str else optional_number(text)
+        value = text if kind is str else parse_optional_decimal(text)
         if value is None or value != kind(value):
             raise InputError(f"{file}, line {line}: {name} must be a number, but {shown(text)} was given.")
         found[name] = kind(value)

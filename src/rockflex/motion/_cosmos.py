@@ -13,11 +13,24 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import Direction, RecordInfo, azimuth_of, unique_names
-from rockflex.motion._text import Unit, build_motion, non_negative, number, unit_name
+from rockflex.motion._record_info import Direction, RecordInfo, component_azimuth, unique_record_names
+from rockflex.motion._text import (
+    AccelerationUnit,
+    acceleration_unit_name,
+    motion_from_samples,
+    non_negative_or_none,
+    parse_decimal,
+)
 
 # Table 2 of the format: the units of accelerations.
-UNIT_CODES = {2: Unit("g"), 4: Unit("cm/s2"), 7: Unit("in/s2"), 10: Unit("cm/s2"), 11: Unit("mg"), 12: Unit("mg", 1e-3)}
+UNIT_CODES = {
+    2: AccelerationUnit("g"),
+    4: AccelerationUnit("cm/s2"),
+    7: AccelerationUnit("in/s2"),
+    10: AccelerationUnit("cm/s2"),
+    11: AccelerationUnit("mg"),
+    12: AccelerationUnit("mg", 1e-3),
+}
 COUNTS_CODE = 50
 # Table 9: directions of a sensor that are no azimuth.
 DIRECTIONS: dict[int, tuple[str, Direction | None]] = {
@@ -39,7 +52,7 @@ NUMBER_FORMAT = re.compile(r"Format\s*+=\s*+\(\s*+(\d{0,3}+)[IFEGD](\d{1,3}+)", 
 
 
 @dataclass
-class Channel:
+class CosmosChannel:
     """The headers of a channel, its acceleration, and the line that announces it."""
 
     text: list[str]
@@ -64,7 +77,7 @@ class Channel:
         return self.integer(3) == COUNTS_CODE
 
 
-def unit_of(file: Path, channel: Channel) -> Unit:
+def channel_unit(file: Path, channel: CosmosChannel) -> AccelerationUnit:
     """Return the unit of the samples; a count is converted with the constants of recorder and sensor."""
     code = channel.integer(3)
     if code == COUNTS_CODE:
@@ -74,20 +87,22 @@ def unit_of(file: Path, channel: Channel) -> Unit:
                 f"{file} holds raw counts, and its real header does not state the value of one count (places 22 "
                 "and 42). Download the corrected record (V2)."
             )
-        return Unit("g", step * MICROVOLT / abs(sensitivity) / (non_negative(channel.real(47)) or 1.0))
+        return AccelerationUnit(
+            "g", step * MICROVOLT / abs(sensitivity) / (non_negative_or_none(channel.real(47)) or 1.0)
+        )
     if code in UNIT_CODES:
         return UNIT_CODES[code]
     written = re.search(r"units\s*+=\s*+([^(,]++)", channel.announced)
-    unit = unit_name(written[1]) if written and code is None else None
+    unit = acceleration_unit_name(written[1]) if written and code is None else None
     if unit is None:
         raise InputError(
             f"{file}: the unit of the acceleration is not known: code {code} in place 3 of the integer header, "
             f"{channel.announced.strip()[:80]!r}. Download the corrected record (V2)."
         )
-    return Unit(unit)
+    return AccelerationUnit(unit)
 
 
-def step_of(file: Path, channel: Channel, n_samples: int) -> float:
+def channel_time_step(file: Path, channel: CosmosChannel, n_samples: int) -> float:
     """Return the time step in s."""
     milliseconds, seconds = channel.real(62), channel.real(34)
     dt = seconds if not milliseconds else 1e-3 * milliseconds
@@ -95,7 +110,7 @@ def step_of(file: Path, channel: Channel, n_samples: int) -> float:
         raise InputError(
             f"{file}: no positive time step is stated in place 62 of the real header. Download the record again."
         )
-    length = non_negative(channel.real(63))
+    length = non_negative_or_none(channel.real(63))
     if length and abs(length - n_samples * dt) > max(2.0 * dt, 0.01 * length):
         raise InputError(
             f"{file}: the header states a length of {length:g} s, but {n_samples} samples at steps of {dt:g} s last "
@@ -104,21 +119,21 @@ def step_of(file: Path, channel: Channel, n_samples: int) -> float:
     return float(f"{dt:.12g}")
 
 
-def info_of(file: Path, channel: Channel) -> RecordInfo:
+def channel_record_info(file: Path, channel: CosmosChannel) -> RecordInfo:
     """Return the metadata in the headers."""
-    component, direction, azimuth = _sensor(channel)
+    component, direction, azimuth = _channel_direction(channel)
     lines = [*channel.text, *[""] * 13]
     code = re.search(r"Code:\s*+(\w++)-(\S++)", lines[4])
-    event, year = _event(lines[1])
-    magnitude, scale = _magnitude(channel)
+    event, year = _event_in_cosmos_header(lines[1])
+    magnitude, scale = _channel_magnitude(channel)
     peak = channel.real(64)
-    vs30 = non_negative(channel.real(4))
+    vs30 = non_negative_or_none(channel.real(4))
     return RecordInfo(
         event=event,
         year=year,
         magnitude=magnitude,
         magnitude_type=scale,
-        epicentral_km=non_negative(channel.real(17)),
+        epicentral_km=non_negative_or_none(channel.real(17)),
         vs30=None if not vs30 else 1e3 * vs30 if vs30 < MAX_VS30_KM_S else vs30,
         component=component,
         direction=direction,
@@ -126,16 +141,16 @@ def info_of(file: Path, channel: Channel) -> RecordInfo:
         station=code and code[2],
         network=code and code[1],
         location=lines[8].partition("Location:")[2].strip() or None,
-        start_time=_start_time(channel, lines[7]),
+        start_time=_channel_start_time(channel, lines[7]),
         source=file.name,
         source_format="COSMOS",
         # The peak of raw counts contains their offset.
-        stated_pga=None if not peak or channel.counts else abs(peak) * unit_of(file, channel).si,
+        stated_pga=None if not peak or channel.counts else abs(peak) * channel_unit(file, channel).si,
         processing="mean subtracted" if channel.counts else None,
     )
 
 
-def _sensor(channel: Channel) -> tuple[str | None, Direction | None, float | None]:
+def _channel_direction(channel: CosmosChannel) -> tuple[str | None, Direction | None, float | None]:
     """Return the name, the direction and the azimuth of the component."""
     code = channel.integer(54)
     if code is None:
@@ -145,11 +160,11 @@ def _sensor(channel: Channel) -> tuple[str | None, Direction | None, float | Non
     if code is None:
         return None, None, None
     if 0 <= code <= 360:
-        return f"{code:03d}", "horizontal", azimuth_of(str(code))
+        return f"{code:03d}", "horizontal", component_azimuth(str(code))
     return (*DIRECTIONS.get(code, (str(code), None)), None)
 
 
-def _event(line: str) -> tuple[str | None, int | None]:
+def _event_in_cosmos_header(line: str) -> tuple[str | None, int | None]:
     """Return name and year of the earthquake in the second line of the text."""
     about = re.match(r"\s*+Re?co?rd of\s*+(.*)", line, re.IGNORECASE)
     name, _, date = (about[1] if about else "").partition("Earthquake of")
@@ -158,15 +173,15 @@ def _event(line: str) -> tuple[str | None, int | None]:
     return ", ".join(filter(None, (name.strip(), date.strip()))) or None, year and int(year[0])
 
 
-def _magnitude(channel: Channel) -> tuple[float | None, str | None]:
+def _channel_magnitude(channel: CosmosChannel) -> tuple[float | None, str | None]:
     for place, scale in ((13, "Mw"), (15, "ML"), (14, "Ms"), (16, None)):
-        value = non_negative(channel.real(place))
+        value = non_negative_or_none(channel.real(place))
         if value:
             return value, scale
     return None, None
 
 
-def _start_time(channel: Channel, line: str) -> str | None:
+def _channel_start_time(channel: CosmosChannel, line: str) -> str | None:
     parts = [channel.integer(place) for place in (40, 42, 43, 44, 45)]
     seconds = channel.real(30)
     if None in parts or seconds is None or not 0.0 <= seconds < 61.0:
@@ -186,44 +201,44 @@ def parse_cosmos(file: Path, lines: list[str]) -> list[GroundMotion]:
 
     From raw counts the mean is subtracted.
     """
-    channels = [each for each in _channels(file, lines) if each.values is not None]
+    channels = [each for each in _read_cosmos_channels(file, lines) if each.values is not None]
     if not channels:
         raise InputError(
             f"{file} is a COSMOS file without a series of acceleration. Give the file of the acceleration."
         )
-    infos = [info_of(file, each) for each in channels]
-    names = unique_names([info.component or "channel" for info in infos])
+    infos = [channel_record_info(file, each) for each in channels]
+    names = unique_record_names([info.component or "channel" for info in infos])
     motions: list[GroundMotion] = []
     for channel, info, name in zip(channels, infos, names, strict=True):
         values = np.zeros(0) if channel.values is None else channel.values
         if info.processing is not None and values.size:
             values = values - values.mean()
-        unit, step = unit_of(file, channel), step_of(file, channel, values.size)
+        unit, step = channel_unit(file, channel), channel_time_step(file, channel, values.size)
         whole = file.stem if len(channels) == 1 else f"{file.stem}-{name}"
         remedy = "Check the units in the integer header."
-        motions.append(build_motion(file, values, unit, step, info, remedy, whole))
+        motions.append(motion_from_samples(file, values, unit, step, info, remedy, whole))
     return motions
 
 
-def _channels(file: Path, lines: list[str]) -> list[Channel]:
-    found: list[Channel] = []
+def _read_cosmos_channels(file: Path, lines: list[str]) -> list[CosmosChannel]:
+    found: list[CosmosChannel] = []
     i = 0
     while i < len(lines):
         first = FIRST_LINE.search(lines[i][:500])
         block = BLOCK_LINE.match(lines[i])
         if first:
-            found.append(Channel(lines[i : i + int(first[1])]))
+            found.append(CosmosChannel(lines[i : i + int(first[1])]))
             i += max(1, int(first[1]))
         elif block is None or not found:
             i += 1  # the end of the data of a channel, or a blank line
         elif block[2].lower() == "comment":
             i += 1 + int(block[1])
         else:
-            i = _read_block(file, lines, i, block, found[-1])
+            i = _read_cosmos_block(file, lines, i, block, found[-1])
     return found
 
 
-def _read_block(file: Path, lines: list[str], i: int, block: re.Match[str], channel: Channel) -> int:
+def _read_cosmos_block(file: Path, lines: list[str], i: int, block: re.Match[str], channel: CosmosChannel) -> int:
     """Store the numbers that a line announces, and return the number of the line after them."""
     form = NUMBER_FORMAT.search(lines[i][:500])
     if form is None or not int(form[2]):
@@ -235,25 +250,25 @@ def _read_block(file: Path, lines: list[str], i: int, block: re.Match[str], chan
     end = i + 1 + -(-count // max(columns, 1))
     match block[2].lower():
         case "integer-header":
-            channel.integers = _numbers(file, lines, i + 1, end, count, int(form[2]))
+            channel.integers = _fixed_width_numbers(file, lines, i + 1, end, count, int(form[2]))
         case "real-header":
-            channel.reals = _numbers(file, lines, i + 1, end, count, int(form[2]))
+            channel.reals = _fixed_width_numbers(file, lines, i + 1, end, count, int(form[2]))
         case "acceleration":
-            channel.values = _numbers(file, lines, i + 1, end, count, int(form[2]))
+            channel.values = _fixed_width_numbers(file, lines, i + 1, end, count, int(form[2]))
             channel.announced = lines[i]
         case _:
             pass  # velocity, displacement
     return end
 
 
-def _numbers(file: Path, lines: list[str], begin: int, end: int, count: int, width: int) -> Array:
+def _fixed_width_numbers(file: Path, lines: list[str], begin: int, end: int, count: int, width: int) -> Array:
     """Return numbers in fields of equal width."""
     found: list[float] = []
     for i in range(begin, min(end, len(lines))):
         line = lines[i].rstrip()
         if line.startswith("End-of-data"):
             break
-        found += [number(line[k : k + width].strip(), file, i + 1) for k in range(0, len(line), width)]
+        found += [parse_decimal(line[k : k + width].strip(), file, i + 1) for k in range(0, len(line), width)]
     if len(found) != count:
         raise InputError(
             f"{file}, line {begin}: {count} numbers are announced, but {len(found)} follow. The file is truncated or "

@@ -12,8 +12,16 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo, azimuth_of, direction_of
-from rockflex.motion._text import Unit, build_motion, non_negative, number, optional_number, unit_name, wrong_count
+from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction
+from rockflex.motion._text import (
+    AccelerationUnit,
+    acceleration_unit_name,
+    motion_from_samples,
+    non_negative_or_none,
+    parse_decimal,
+    parse_optional_decimal,
+    wrong_sample_count_error,
+)
 
 ENTRY = re.compile(r"([A-Z][A-Z0-9_/^ -]*+):(.*)")
 FIRST_KEYS = ("EVENT_NAME:", "EVENT_ID:")
@@ -31,8 +39,8 @@ def parse_esm(file: Path, lines: list[str]) -> list[GroundMotion]:
     entries = [ENTRY.fullmatch(line.strip()) for line in lines]
     start = next((i for i, entry in enumerate(entries) if entry is None and lines[i].strip()), len(lines))
     header = {entry[1].strip(): entry[2].strip() for entry in entries[:start] if entry}
-    dt = optional_number(header.get("SAMPLING_INTERVAL_S", ""))
-    n_samples = optional_number(header.get("NDATA", ""))
+    dt = parse_optional_decimal(header.get("SAMPLING_INTERVAL_S", ""))
+    n_samples = parse_optional_decimal(header.get("NDATA", ""))
     if not dt or dt <= 0.0 or n_samples is None:
         raise InputError(
             f"{file}: a positive SAMPLING_INTERVAL_S and NDATA are expected in the header of an ESM file, but they are "
@@ -45,26 +53,32 @@ def parse_esm(file: Path, lines: list[str]) -> list[GroundMotion]:
             f"{file}: an acceleration is expected, but DATA_TYPE is {kind[:40]!r}. Use the file of the acceleration, "
             "whose name contains ACC."
         )
-    unit = unit_name(header.get("UNITS", ""))
+    unit = acceleration_unit_name(header.get("UNITS", ""))
     if unit is None:
         raise InputError(
             f"{file}: UNITS is {header.get('UNITS', '')[:40]!r}, but an acceleration is expected, such as cm/s^2. "
             "Download the processed record."
         )
     values = np.array(
-        [number(line.strip(), file, i) for i, line in enumerate(lines[start:], start + 1) if line.strip()]
+        [parse_decimal(line.strip(), file, i) for i, line in enumerate(lines[start:], start + 1) if line.strip()]
     )
     if values.size != n_samples:
-        raise wrong_count(file, values.size, n_samples, f"NDATA = {n_samples:g}")
-    return [build_motion(file, values, Unit(unit), dt, _info(file, header), "Check UNITS in the header.")]
+        raise wrong_sample_count_error(file, values.size, n_samples, f"NDATA = {n_samples:g}")
+    return [
+        motion_from_samples(
+            file, values, AccelerationUnit(unit), dt, _esm_record_info(file, header), "Check UNITS in the header."
+        )
+    ]
 
 
-def _info(file: Path, header: dict[str, str]) -> RecordInfo:
+def _esm_record_info(file: Path, header: dict[str, str]) -> RecordInfo:
     component = header.get("STREAM") or None
-    moment, local = (non_negative(optional_number(header.get(f"MAGNITUDE_{scale}", ""))) for scale in "WL")
+    moment, local = (
+        non_negative_or_none(parse_optional_decimal(header.get(f"MAGNITUDE_{scale}", ""))) for scale in "WL"
+    )
     year = header.get("EVENT_DATE_YYYYMMDD", "")[:4]
     stamp = START_TIME.match(header.get("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS", ""))
-    peak = optional_number(header.get("PGA_CM/S^2", ""))
+    peak = parse_optional_decimal(header.get("PGA_CM/S^2", ""))
     event = [header.get("EVENT_NAME", ""), header.get("EVENT_ID", "")]
     name = next((each for each in event if each not in ("", "None")), None)
     when = EVENT_TIME.fullmatch(header.get("EVENT_DATE_YYYYMMDD", "") + header.get("EVENT_TIME_HHMMSS", ""))
@@ -74,11 +88,11 @@ def _info(file: Path, header: dict[str, str]) -> RecordInfo:
         year=int(year) if year.isdecimal() and year.isascii() else None,
         magnitude=local if moment is None else moment,
         magnitude_type=None if moment is None and local is None else "ML" if moment is None else "Mw",
-        epicentral_km=non_negative(optional_number(header.get("EPICENTRAL_DISTANCE_KM", ""))),
-        vs30=non_negative(optional_number(header.get("VS30_M/S", ""))) or None,
+        epicentral_km=non_negative_or_none(parse_optional_decimal(header.get("EPICENTRAL_DISTANCE_KM", ""))),
+        vs30=non_negative_or_none(parse_optional_decimal(header.get("VS30_M/S", ""))) or None,
         component=component,
-        direction=direction_of(file, component),
-        azimuth=azimuth_of(component),
+        direction=component_direction(file, component),
+        azimuth=component_azimuth(component),
         station=header.get("STATION_CODE") or None,
         network=header.get("NETWORK") or None,
         location=header.get("LOCATION") or None,

@@ -15,12 +15,12 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo, azimuth_of, direction_of, unique_names
-from rockflex.motion._text import Unit, build_motion, non_negative, number
+from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction, unique_record_names
+from rockflex.motion._text import AccelerationUnit, motion_from_samples, non_negative_or_none, parse_decimal
 
 TEXT_LINES, N_INTEGERS, N_REALS = 16, 40, 60
 COLUMNS, WIDTH = 10, 8
-UNIT = Unit("mm/s2")
+UNIT = AccelerationUnit("mm/s2")
 FIRST_LINE = re.compile(r"\s*+(un)?+corrected accelerogram\b(?:.*_(\d\d)\b)?", re.IGNORECASE)
 SITE_LINE = re.compile(r"\s*+Site\s++(\S++)", re.IGNORECASE)
 COMPONENT_LINE = re.compile(r"\s*+Component\s++(\S.*)", re.IGNORECASE)
@@ -66,9 +66,9 @@ def parse_geonet(file: Path, lines: list[str]) -> list[GroundMotion]:
             found.append(component)
         else:
             i += 1
-    names = unique_names([each.name for each in found])
+    names = unique_record_names([each.name for each in found])
     return [
-        build_motion(
+        motion_from_samples(
             file,
             np.array(each.values),
             UNIT,
@@ -146,7 +146,7 @@ def _numbers(file: Path, lines: list[str], begin: int, count: int, what: str) ->
     found: list[float] = []
     for i in range(begin, begin + _n_lines(count)):
         line = lines[i].rstrip()
-        row = [number(line[k : k + WIDTH].strip(), file, i + 1) for k in range(0, len(line), WIDTH)]
+        row = [parse_decimal(line[k : k + WIDTH].strip(), file, i + 1) for k in range(0, len(line), WIDTH)]
         expected = min(COLUMNS, count - len(found))
         if len(row) != expected:
             raise InputError(
@@ -169,11 +169,11 @@ def _info(file: Path, component: Component) -> RecordInfo:
         year=None if origin is None else origin.year,
         magnitude=None if magnitude is None else component.real(magnitude),
         magnitude_type=None if magnitude is None else MAGNITUDES[magnitude],
-        epicentral_km=None if origin is None else non_negative(float(component.integer(30))),
+        epicentral_km=None if origin is None else non_negative_or_none(float(component.integer(30))),
         component=component.name,
         # A file holds all directions, so its name states none.
-        direction=direction_of(Path(), component.name),
-        azimuth=azimuth_of(component.name),
+        direction=component_direction(Path(), component.name),
+        azimuth=component_azimuth(component.name),
         station=None if site is None else site[1],
         network="NZ",
         location=None if first is None else first[2],

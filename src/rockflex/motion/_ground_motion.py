@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite, finite_vector, instance, positive
+from rockflex._checks import checked_finite, checked_finite_vector, checked_instance, checked_positive
 from rockflex._errors import InputError, RecordWarning
 from rockflex._html import HtmlTable
-from rockflex._shown import listed, shown
+from rockflex._shown import first_texts_shown, shown
 from rockflex._values import Value
 from rockflex.motion import _signal
 from rockflex.motion._record_info import RecordInfo
@@ -22,10 +22,10 @@ from rockflex.motion._spectra import (
     ResponseSpectrum,
     TargetSpectrum,
     comparison_periods,
-    fitting_factor,
-    largest_displacement,
     response_spectrum,
-    scalable_ordinate,
+    scalable_spectral_ordinate,
+    spectral_displacement,
+    spectrum_fitting_factor,
 )
 
 SHOWN_METADATA = ("event", "year", "magnitude", "distance_km", "vs30", "station", "component", "source", "scale")
@@ -92,7 +92,7 @@ class GroundMotion(HtmlTable, Value):
         metadata: RecordInfo | None = None,
         vertical: ArrayLike | None = None,
     ) -> None:
-        samples = finite_vector("acceleration", acceleration, "m/s²")
+        samples = checked_finite_vector("acceleration", acceleration, "m/s²")
         if samples.size < 3:
             raise InputError(
                 f"acceleration must have at least 3 samples, but {samples.size} were given. For a record "
@@ -105,8 +105,8 @@ class GroundMotion(HtmlTable, Value):
                 f"metadata must be a RecordInfo or None, but {type(metadata).__name__} was given. "
                 "Write metadata=RecordInfo(event=..., year=...)."
             )
-        upwards = None if vertical is None else _checked_vertical(vertical, samples.size)
-        step = positive("dt", dt, "s")
+        upwards = None if vertical is None else _checked_vertical_samples(vertical, samples.size)
+        step = checked_positive("dt", dt, "s")
         vars(self).update(acceleration=samples, dt=step, name=name, metadata=metadata, vertical=upwards)
 
     def __repr__(self) -> str:
@@ -141,12 +141,12 @@ class GroundMotion(HtmlTable, Value):
     @property
     def velocity(self) -> Array:
         """Ground velocity at the samples in m/s, shape (n,): the exact integral, starting from rest."""
-        return _signal.velocity(self.acceleration, self.dt)
+        return _signal.velocity_from_acceleration(self.acceleration, self.dt)
 
     @property
     def displacement(self) -> Array:
         """Ground displacement at the samples in m, shape (n,): the exact second integral, starting from rest."""
-        return _signal.displacement(self.acceleration, self.dt)
+        return _signal.displacement_from_acceleration(self.acceleration, self.dt)
 
     @cached_property
     def pga(self) -> float:
@@ -227,7 +227,7 @@ class GroundMotion(HtmlTable, Value):
 
     def sd(self, period: float, damping_ratio: float = 0.05) -> float:
         """Spectral displacement in m at one period (s); see `spectrum`."""
-        return largest_displacement(self.acceleration, self.dt, period, damping_ratio)
+        return spectral_displacement(self.acceleration, self.dt, period, damping_ratio)
 
     def sa(self, period: float, damping_ratio: float = 0.05) -> float:
         """Spectral pseudo-acceleration in m/s² at one period (s); see `spectrum`."""
@@ -249,7 +249,7 @@ class GroundMotion(HtmlTable, Value):
         InputError
             If there is no vertical component.
         """
-        return GroundMotion(_vertical_samples(self), self.dt, self.name, _vertical_info(self.metadata))
+        return GroundMotion(_vertical_samples(self), self.dt, self.name, _vertical_record_info(self.metadata))
 
     def vertical_ratio(self, periods: ArrayLike, damping_ratio: float = 0.05) -> Array:
         """Vertical over horizontal pseudo-acceleration, V/H, at periods (s) as in `spectrum`.
@@ -311,8 +311,8 @@ class GroundMotion(HtmlTable, Value):
                 f"{shown(vertical.name)} has a vertical component of its own. Give one of both: "
                 "with_vertical(other.vertical_motion) or with_vertical(other.without_vertical())."
             )
-        sign, info = _sign_and_info(vertical, self.metadata)
-        along, upwards = _aligned(self, vertical)
+        sign, info = _vertical_sign_and_info(vertical, self.metadata)
+        along, upwards = _aligned_components(self, vertical)
         return GroundMotion(along, self.dt, self.name, info, sign * upwards)
 
     def without_vertical(self) -> "GroundMotion":
@@ -330,9 +330,9 @@ class GroundMotion(HtmlTable, Value):
         InputError
             If `factor` or a scaled sample is not finite.
         """
-        factor = finite("factor", factor, "")
+        factor = checked_finite("factor", factor, "")
         with np.errstate(over="ignore"):
-            return self._changed(lambda samples: samples * factor, metadata=_info_of_scaled(self.metadata, factor))
+            return self._changed(lambda samples: samples * factor, metadata=_scaled_record_info(self.metadata, factor))
 
     def scaled_to(
         self,
@@ -349,19 +349,19 @@ class GroundMotion(HtmlTable, Value):
         `periods`, as in `Suite.select`. `InputError` where neither, or both, are given, or the motion does not move.
         """
         if target is not None and periods is not None and sa is None and period is None and damping_ratio is None:
-            fitted = instance("target", target, TargetSpectrum)
+            fitted = checked_instance("target", target, TargetSpectrum)
             compared = comparison_periods(periods)
             spectrum = self.spectrum(compared, fitted.damping_ratio).sa
-            return self.scaled(fitting_factor(spectrum, fitted.at(compared), self.name))
+            return self.scaled(spectrum_fitting_factor(spectrum, fitted.at(compared), self.name))
         if sa is None or period is None or target is not None or periods is not None:
             raise InputError(
                 "scaled_to needs either a target and periods, or sa and period, with damping_ratio if it is not 0.05: "
                 "motion.scaled_to(target, (0.2, 2.0)) or motion.scaled_to(sa=5.0, period=1.0). A target has its own "
                 "damping ratio."
             )
-        ordinate, at = positive("sa", sa, "m/s²"), positive("period", period, "s", zero=True)
+        ordinate, at = checked_positive("sa", sa, "m/s²"), checked_positive("period", period, "s", zero=True)
         own = self.sa(at, 0.05 if damping_ratio is None else damping_ratio)
-        return self.scaled(ordinate / scalable_ordinate(own, self.name, at))
+        return self.scaled(ordinate / scalable_spectral_ordinate(own, self.name, at))
 
     def refined(self, k: int) -> "GroundMotion":
         """Return the same piecewise linear function with every interval split into `k` equal ones.
@@ -371,7 +371,7 @@ class GroundMotion(HtmlTable, Value):
         InputError
             If `k` is not a whole number of at least 1.
         """
-        return self._changed(lambda samples: _signal.refine(samples, k), k)
+        return self._changed(lambda samples: _signal.refine_samples(samples, k), k)
 
     def resampled(self, dt: float) -> "GroundMotion":
         """Return the same piecewise linear function sampled at the finer step `dt` (s).
@@ -384,7 +384,7 @@ class GroundMotion(HtmlTable, Value):
         InputError
             If the present step is not a whole multiple of `dt`; the error suggests the nearest valid steps.
         """
-        return self.refined(_signal.refinement_of(self.dt, dt))
+        return self.refined(_signal.refinement_factor(self.dt, dt))
 
     def baseline_corrected(self, degree: int = 1) -> "GroundMotion":
         """Return the motion without the polynomial drift of its velocity.
@@ -409,7 +409,7 @@ class GroundMotion(HtmlTable, Value):
         InputError
             If `degree` is negative, not whole, or too high for the number of samples.
         """
-        return self._changed(lambda samples: _signal.baseline_correct(samples, self.dt, degree))
+        return self._changed(lambda samples: _signal.correct_baseline(samples, self.dt, degree))
 
     def band_passed(self, low: float, high: float, order: int = 4) -> "GroundMotion":
         """Return the motion filtered by a Butterworth band-pass, forwards and backwards.
@@ -434,7 +434,7 @@ class GroundMotion(HtmlTable, Value):
             If the corners are not in order below the Nyquist frequency, the order is not a whole positive
             number, or the record is too short for the filter.
         """
-        return self._changed(lambda samples: _signal.band_pass(samples, self.dt, low, high, order))
+        return self._changed(lambda samples: _signal.band_pass_filter(samples, self.dt, low, high, order))
 
     def _changed(
         self, change: Callable[[Array], Array], k: int = 1, metadata: RecordInfo | None = None
@@ -444,7 +444,7 @@ class GroundMotion(HtmlTable, Value):
         return GroundMotion(change(self.acceleration), self.dt / k, self.name, metadata or self.metadata, upwards)
 
 
-def _info_of_scaled(info: RecordInfo | None, factor: float) -> RecordInfo | None:
+def _scaled_record_info(info: RecordInfo | None, factor: float) -> RecordInfo | None:
     """Return the metadata of a motion multiplied by a factor; None if they stay as they are."""
     if factor == 1.0:
         return None
@@ -453,9 +453,9 @@ def _info_of_scaled(info: RecordInfo | None, factor: float) -> RecordInfo | None
     return replace(before, scale=None if scale == 1.0 else scale)
 
 
-def _checked_vertical(vertical: ArrayLike, n_samples: int) -> Array:
+def _checked_vertical_samples(vertical: ArrayLike, n_samples: int) -> Array:
     """Return the vertical samples, as many as the horizontal ones."""
-    samples = finite_vector("vertical", vertical, "m/s²")
+    samples = checked_finite_vector("vertical", vertical, "m/s²")
     if samples.size != n_samples:
         raise InputError(
             f"vertical must have as many samples as acceleration, {n_samples}, but {samples.size} were given. Append "
@@ -475,13 +475,13 @@ def _vertical_samples(motion: GroundMotion) -> Array:
     return motion.vertical
 
 
-def _vertical_info(info: RecordInfo | None) -> RecordInfo:
+def _vertical_record_info(info: RecordInfo | None) -> RecordInfo:
     """Return the metadata of the vertical component as a motion of its own."""
     info = info or RecordInfo()
     return replace(info, component=None, direction="vertical", source=info.vertical_source, vertical_source=None)
 
 
-def _sign_and_info(vertical: GroundMotion, info: RecordInfo | None) -> tuple[int, RecordInfo | None]:
+def _vertical_sign_and_info(vertical: GroundMotion, info: RecordInfo | None) -> tuple[int, RecordInfo | None]:
     """Return the sign that makes a vertical record positive upwards, and the metadata with its source.
 
     Raises
@@ -505,7 +505,7 @@ def _sign_and_info(vertical: GroundMotion, info: RecordInfo | None) -> tuple[int
     return -1 if down else 1, replace(info or RecordInfo(), vertical_source=f"{source}{note}")
 
 
-def _aligned(along: GroundMotion, upwards: GroundMotion) -> tuple[Array, Array]:
+def _aligned_components(along: GroundMotion, upwards: GroundMotion) -> tuple[Array, Array]:
     """Return the samples of both components of a motion, with zeros after the end of the shorter one.
 
     Raises
@@ -534,17 +534,17 @@ def _aligned(along: GroundMotion, upwards: GroundMotion) -> tuple[Array, Array]:
     return first, second
 
 
-def is_vertical(motion: GroundMotion) -> bool:
+def is_vertical_component(motion: GroundMotion) -> bool:
     """Return whether a motion is known to be a vertical component."""
     return motion.metadata is not None and motion.metadata.is_vertical
 
 
-def check_horizontal(*motions: GroundMotion) -> None:
+def check_horizontal_component(*motions: GroundMotion) -> None:
     """Raise an InputError if a vertical component would be applied horizontally."""
-    vertical = [repr(motion.name) for motion in motions if is_vertical(motion)]
+    vertical = [repr(motion.name) for motion in motions if is_vertical_component(motion)]
     if vertical:
         raise InputError(
-            f"A horizontal ground motion is expected, but {listed(vertical, 3)} "
+            f"A horizontal ground motion is expected, but {first_texts_shown(vertical, 3)} "
             f"{'is a vertical component' if len(vertical) == 1 else 'are vertical components'} according to the header "
             "or name of the file. Give a horizontal component. If it is one, declare it: dataclasses.replace(motion, "
             'metadata=RecordInfo(direction="horizontal")), or rename the file.'

@@ -13,7 +13,14 @@ import numpy as np
 from rockflex._errors import InputError
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import AZIMUTHS, Direction, RecordInfo
-from rockflex.motion._text import Unit, build_motion, non_negative, number, optional_number, wrong_count
+from rockflex.motion._text import (
+    AccelerationUnit,
+    motion_from_samples,
+    non_negative_or_none,
+    parse_decimal,
+    parse_optional_decimal,
+    wrong_sample_count_error,
+)
 
 HEADER_LINES = 17  # the last one is "Memo."
 TRIGGER_DELAY = timedelta(seconds=15)  # of the trigger, in the recording time of the header
@@ -35,34 +42,38 @@ def parse_knet(file: Path, lines: list[str]) -> list[GroundMotion]:
 
     The mean of the record is subtracted, as for the peak in the header.
     """
-    header = _header(file, lines)
+    header = _knet_header(file, lines)
     scale = SCALE_FACTOR.search(header["Scale Factor"])
-    if scale is None or not all(optional_number(part) for part in scale.groups()):
+    if scale is None or not all(parse_optional_decimal(part) for part in scale.groups()):
         raise InputError(
             f'{file}: the scale factor is expected as "3920(gal)/6182761", but it is '
             f"{header['Scale Factor'][:40]!r}. Download the record again."
         )
     frequency = re.match(r"[\d.]+", header["Sampling Freq(Hz)"])
-    rate = optional_number(frequency[0]) if frequency else None
-    duration = optional_number(header["Duration Time(s)"])
+    rate = parse_optional_decimal(frequency[0]) if frequency else None
+    duration = parse_optional_decimal(header["Duration Time(s)"])
     if not rate or not duration:
         raise InputError(
             f"{file}: a sampling frequency and a duration are expected in lines 11 and 12, but they are "
             f"{header['Sampling Freq(Hz)'][:40]!r} and {header['Duration Time(s)'][:40]!r}. Download the record again."
         )
     counts = np.array(
-        [number(word, file, i) for i, line in enumerate(lines[HEADER_LINES:], 18) for word in line.split()]
+        [parse_decimal(word, file, i) for i, line in enumerate(lines[HEADER_LINES:], 18) for word in line.split()]
     )
     if not counts.size or abs(counts.size - duration * rate) > rate:
-        raise wrong_count(file, counts.size, duration * rate, f"{duration:g} s at {rate:g} Hz")
+        raise wrong_sample_count_error(file, counts.size, duration * rate, f"{duration:g} s at {rate:g} Hz")
     gal = float(scale[1]) / float(scale[2])
-    info = _info(file, header)
+    info = _knet_record_info(file, header)
     remedy = "Check the scale factor in line 14."
     name = file.stem + file.suffix.replace(".", "-") if COMPONENT_SUFFIX.fullmatch(file.suffix) else file.stem
-    return [build_motion(file, counts - counts.mean(), Unit("cm/s2", gal), 1.0 / rate, info, remedy, name)]
+    return [
+        motion_from_samples(
+            file, counts - counts.mean(), AccelerationUnit("cm/s2", gal), 1.0 / rate, info, remedy, name
+        )
+    ]
 
 
-def _header(file: Path, lines: list[str]) -> dict[str, str]:
+def _knet_header(file: Path, lines: list[str]) -> dict[str, str]:
     """Return the entries of the header by their names, the two names that vary without full stop."""
     found: dict[str, str] = {}
     for line in lines[:HEADER_LINES]:
@@ -78,22 +89,22 @@ def _header(file: Path, lines: list[str]) -> dict[str, str]:
     return found
 
 
-def _info(file: Path, header: dict[str, str]) -> RecordInfo:
+def _knet_record_info(file: Path, header: dict[str, str]) -> RecordInfo:
     direction = header["Dir."].strip().upper()
     component = CHANNELS.get(direction, direction)
     way: Direction | None = {"U-D": "vertical", "N-S": "horizontal", "E-W": "horizontal"}.get(component)  # pyright: ignore[reportAssignmentType]
     location = None
     if direction in CHANNELS:
         location = "borehole" if direction in "123" else "surface"
-    origin = _time(header.get("Origin Time", ""))
-    started = _time(header["Record Time"])
-    peak = optional_number(header.get("Max Acc. (gal)", ""))
+    origin = _knet_start_time(header.get("Origin Time", ""))
+    started = _knet_start_time(header["Record Time"])
+    peak = parse_optional_decimal(header.get("Max Acc. (gal)", ""))
     return RecordInfo(
         event=None if origin is None else f"{origin:%Y-%m-%d %H:%M}",
         year=None if origin is None else origin.year,
-        magnitude=non_negative(optional_number(header.get("Mag.", ""))),
+        magnitude=non_negative_or_none(parse_optional_decimal(header.get("Mag.", ""))),
         magnitude_type="MJMA",
-        epicentral_km=_epicentral(header),
+        epicentral_km=_epicentral_distance(header),
         component=component,
         direction=way,
         azimuth=AZIMUTHS.get(component),
@@ -108,18 +119,20 @@ def _info(file: Path, header: dict[str, str]) -> RecordInfo:
     )
 
 
-def _time(text: str) -> datetime | None:
+def _knet_start_time(text: str) -> datetime | None:
     try:
         return datetime.strptime(text, "%Y/%m/%d %H:%M:%S")
     except ValueError:
         return None
 
 
-def _epicentral(header: dict[str, str]) -> float | None:
+def _epicentral_distance(header: dict[str, str]) -> float | None:
     """Return the distance along the surface of a sphere, in km, to a metre."""
-    degrees = [optional_number(header.get(name, "")) for name in ("Lat.", "Lon.", "Station Lat.", "Station Long.")]
+    degrees = [
+        parse_optional_decimal(header.get(name, "")) for name in ("Lat.", "Lon.", "Station Lat.", "Station Long.")
+    ]
     if None in degrees:
-        degrees[3] = degrees[3] if degrees[3] is not None else optional_number(header.get("Station Lon.", ""))
+        degrees[3] = degrees[3] if degrees[3] is not None else parse_optional_decimal(header.get("Station Lon.", ""))
     places = [math.radians(each) for each in degrees if each is not None]
     if len(places) < 4:
         return None

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
-from rockflex._checks import one_of
+from rockflex._checks import is_one_of
 from rockflex._errors import InputError
 from rockflex._registry import Catalogue
 from rockflex._shown import shown
@@ -16,7 +16,7 @@ MIN_PERIOD = 1e-6  # s
 
 
 @dataclass(frozen=True)
-class Shaking:
+class MeasureInput:
     """The input of an intensity measure: a motion and properties of the structure; unknown properties are NaN.
 
     Attributes
@@ -52,7 +52,7 @@ class Shaking:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Measure:
+class IntensityMeasure:
     """An intensity measure: its names, its unit, and the function that computes it.
 
     Attributes
@@ -66,7 +66,7 @@ class Measure:
     words : str
         Description, such as ``"peak ground velocity"``; empty if the label is clear enough.
     of : callable
-        Computes it from a `Shaking`.
+        Computes it from a `MeasureInput`.
     of_what : {"motion", "vertical", "mode", "base"}
         What it depends on: only the horizontal motion, also the vertical one, also the first mode, or also the base.
         Measures of the vertical motion are NaN without one.
@@ -82,7 +82,7 @@ class Measure:
     label: str
     unit: str
     words: str = ""
-    of: Callable[[Shaking], float]
+    of: Callable[[MeasureInput], float]
     of_what: Literal["motion", "vertical", "mode", "base"] = "motion"
     power: Literal[0, 1, 2] = 1
     short: str = ""
@@ -126,10 +126,10 @@ class Measure:
 
 
 _ALL = (
-    Measure(name="pga", label="PGA", unit="m/s²", words="peak ground acceleration", of=lambda s: s.motion.pga),
-    Measure(name="pgv", label="PGV", unit="m/s", words="peak ground velocity", of=lambda s: s.motion.pgv),
-    Measure(name="pgd", label="PGD", unit="m", words="peak ground displacement", of=lambda s: s.motion.pgd),
-    Measure(
+    IntensityMeasure(name="pga", label="PGA", unit="m/s²", words="peak ground acceleration", of=lambda s: s.motion.pga),
+    IntensityMeasure(name="pgv", label="PGV", unit="m/s", words="peak ground velocity", of=lambda s: s.motion.pgv),
+    IntensityMeasure(name="pgd", label="PGD", unit="m", words="peak ground displacement", of=lambda s: s.motion.pgd),
+    IntensityMeasure(
         name="arias",
         label="Arias intensity",
         unit="m/s",
@@ -139,8 +139,10 @@ _ALL = (
         short="Arias",
         symbol="$I_a$",
     ),
-    Measure(name="cav", label="CAV", unit="m/s", words="cumulative absolute velocity", of=lambda s: s.motion.cav),
-    Measure(
+    IntensityMeasure(
+        name="cav", label="CAV", unit="m/s", words="cumulative absolute velocity", of=lambda s: s.motion.cav
+    ),
+    IntensityMeasure(
         name="d5_95",
         label="D₅₋₉₅",
         unit="s",
@@ -149,7 +151,7 @@ _ALL = (
         power=0,
         symbol="$D_{5–95}$",
     ),
-    Measure(
+    IntensityMeasure(
         name="pva",
         label="PVA",
         unit="m/s²",
@@ -157,7 +159,7 @@ _ALL = (
         of=lambda s: s.motion.pva,
         of_what="vertical",
     ),
-    Measure(
+    IntensityMeasure(
         name="pva_pga",
         label="PVA/PGA",
         unit="",
@@ -165,7 +167,7 @@ _ALL = (
         of_what="vertical",
         power=0,
     ),
-    Measure(
+    IntensityMeasure(
         name="sd_t1",
         label="Sd(T₁, ζ₁)",
         unit="m",
@@ -174,7 +176,7 @@ _ALL = (
         of_what="mode",
         symbol="$S_d(T_1,ζ_1)$",
     ),
-    Measure(
+    IntensityMeasure(
         name="sa_t1",
         label="Sa(T₁, ζ₁)",
         unit="m/s²",
@@ -183,7 +185,7 @@ _ALL = (
         of_what="mode",
         symbol="$S_a(T_1,ζ_1)$",
     ),
-    Measure(
+    IntensityMeasure(
         name="sa_t1_5",
         label="Sa(T₁, 5 %)",
         unit="m/s²",
@@ -192,7 +194,7 @@ _ALL = (
         of_what="mode",
         symbol=r"$S_a(T_1,5\,\%)$",
     ),
-    Measure(
+    IntensityMeasure(
         name="relative_pga",
         label="PGA/(g tan α)",
         unit="",
@@ -200,7 +202,7 @@ _ALL = (
         of_what="base",
         symbol=r"PGA/($g\,\tan α$)",
     ),
-    Measure(
+    IntensityMeasure(
         name="relative_pgv",
         label="p PGV/(g tan α)",
         unit="",
@@ -210,26 +212,26 @@ _ALL = (
     ),
 )
 
-MEASURES = Catalogue[Measure](_ALL, "measures")
+MEASURES = Catalogue[IntensityMeasure](_ALL, "measures")
 """Every measure by its name, in the order of table columns."""
 
 
-def intensities() -> list[Measure]:
+def scalable_measures() -> list[IntensityMeasure]:
     """Return the measures that a motion can be scaled to."""
     return [each for each in MEASURES.values() if each.power]
 
 
-def record_measures() -> list[Measure]:
+def record_measures() -> list[IntensityMeasure]:
     """Return the measures that depend only on the horizontal motion, not on a structure."""
     return [each for each in MEASURES.values() if each.of_what == "motion"]
 
 
-def vertical_measures() -> list[Measure]:
+def vertical_measures() -> list[IntensityMeasure]:
     """Return the measures of the vertical motion; they are NaN without one."""
     return [each for each in MEASURES.values() if each.of_what == "vertical"]
 
 
-def intensity(name: str) -> Measure:
+def scalable_measure(name: str) -> IntensityMeasure:
     """Return the measure of this name that a motion can be scaled to.
 
     Raises
@@ -237,7 +239,7 @@ def intensity(name: str) -> Measure:
     InputError
         If there is no such measure.
     """
-    names = [each.name for each in intensities()]
-    if not one_of(name, names):
+    names = [each.name for each in scalable_measures()]
+    if not is_one_of(name, names):
         raise InputError(f"measure must be one of {', '.join(names)}, but {shown(name)} was given.")
     return MEASURES[name]

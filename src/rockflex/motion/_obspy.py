@@ -10,8 +10,8 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo, azimuth_of, direction_of, unique_names
-from rockflex.motion._text import Unit, build_motion
+from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction, unique_record_names
+from rockflex.motion._text import AccelerationUnit, motion_from_samples
 
 INSTALL = "For MiniSEED, SAC, GSE2 and other formats of seismology, install ObsPy: pip install 'rockflex[obspy]'."
 UNSAFE_FORMATS = ("PICKLE",)  # reading it would run code that the file contains
@@ -24,9 +24,9 @@ class ObsPyError(InputError):
     """ObsPy takes a file for one of its formats, but cannot read it."""
 
 
-def format_of(content: bytes) -> str | None:
+def obspy_format(content: bytes) -> str | None:
     """Return the name that ObsPy has for the format of a file, or None if it knows none or is not installed."""
-    if not is_installed():
+    if not is_obspy_installed():
         return None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # about the age of its dependencies, and about contents
@@ -46,12 +46,12 @@ def format_of(content: bytes) -> str | None:
     return None
 
 
-def is_installed() -> bool:
+def is_obspy_installed() -> bool:
     """Return whether ObsPy can be imported."""
     return find_spec("obspy") is not None
 
 
-def parse_obspy(file: Path, content: bytes, form: str, units: Unit | None) -> list[GroundMotion]:
+def parse_obspy(file: Path, content: bytes, form: str, units: AccelerationUnit | None) -> list[GroundMotion]:
     """Build the motions of all traces of a file; the mean of calibrated recorders is subtracted."""
     try:
         with warnings.catch_warnings():
@@ -63,16 +63,18 @@ def parse_obspy(file: Path, content: bytes, form: str, units: Unit | None) -> li
     except Exception as error:  # damaged files raise many kinds of errors
         raise ObsPyError(f"{file} cannot be read by ObsPy as {form}: {str(error)[:200]}.") from error
     traces = list(stream)
-    names = unique_names([str(trace.stats.channel).strip() or "channel" for trace in traces])
+    names = unique_record_names([str(trace.stats.channel).strip() or "channel" for trace in traces])
     motions: list[GroundMotion] = []
     for trace, name in zip(traces, names, strict=True):
-        motions.append(_motion(file, trace, form, units, file.stem if len(traces) == 1 else f"{file.stem}-{name}"))
+        motions.append(
+            _motion_of_trace(file, trace, form, units, file.stem if len(traces) == 1 else f"{file.stem}-{name}")
+        )
     if not motions:
         raise InputError(f"{file} holds no samples, according to ObsPy ({form}). Download the record again.")
     return motions
 
 
-def _motion(file: Path, trace: Any, form: str, units: Unit | None, name: str) -> GroundMotion:
+def _motion_of_trace(file: Path, trace: Any, form: str, units: AccelerationUnit | None, name: str) -> GroundMotion:
     channel = str(trace.stats.channel).strip().upper()
     if len(channel) == 3 and channel[1] in VELOCITY_CODES:
         raise InputError(
@@ -83,12 +85,12 @@ def _motion(file: Path, trace: Any, form: str, units: Unit | None, name: str) ->
         raise InputError(
             f"{file}: channel {channel} has a gap, but a record without gaps is expected. Cut it at the gap with ObsPy."
         )
-    unit = _unit(file, trace, form, units)
+    unit = _unit_of_trace(file, trace, form, units)
     info = RecordInfo(
         component=channel or None,
         # The numbers of a recorder's channels say nothing about directions.
-        direction=direction_of(file, "" if channel.isdigit() else channel),
-        azimuth=azimuth_of(channel) if len(channel) == 3 else None,
+        direction=component_direction(file, "" if channel.isdigit() else channel),
+        azimuth=component_azimuth(channel) if len(channel) == 3 else None,
         station=str(trace.stats.station).strip() or None,
         network=str(trace.stats.network).strip() or None,
         location=str(trace.stats.location).strip() or None,
@@ -102,13 +104,13 @@ def _motion(file: Path, trace: Any, form: str, units: Unit | None, name: str) ->
     if form in CALIBRATED:
         values = values - values.mean()
     dt = float(f"{float(trace.stats.delta):.12g}")
-    return build_motion(file, values, unit, dt, info, "Check the value of one count.", name)
+    return motion_from_samples(file, values, unit, dt, info, "Check the value of one count.", name)
 
 
-def _unit(file: Path, trace: Any, form: str, units: Unit | None) -> Unit:
+def _unit_of_trace(file: Path, trace: Any, form: str, units: AccelerationUnit | None) -> AccelerationUnit:
     if form in CALIBRATED:
         if units is None:
-            return Unit("m/s2", float(trace.stats.calib))
+            return AccelerationUnit("m/s2", float(trace.stats.calib))
         raise InputError(
             f"{file} states its own calibration ({form}), but units={str(units)!r} was given. Leave units out.",
             field="units",

@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._checks import finite, one_of, positive, real_or_nan
+from rockflex._checks import checked_finite, checked_positive, is_one_of, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.motion._ground_motion import GroundMotion
@@ -72,11 +72,11 @@ def ricker_pulse(
     >>> rf.ricker_pulse(amplitude=3.0, period=1.0, kind="symmetric")
     GroundMotion('Ricker symmetric 3 m/s², T=1 s', 601 samples, dt=0.005 s, duration=3 s, pga=3 m/s²)
     """
-    if not one_of(kind, ("antisymmetric", "symmetric")):
+    if not is_one_of(kind, ("antisymmetric", "symmetric")):
         raise InputError(f'kind must be "antisymmetric" or "symmetric", but {shown(kind)} was given.')
-    positive("period", period, "s")
+    checked_positive("period", period, "s")
     periods = 2.0 if kind == "antisymmetric" else 1.5
-    n, step = intervals("period", periods * period, dt)
+    n, step = pulse_intervals("period", periods * period, dt)
     turns = np.arange(-n, n + 1) * (periods / n)
     if kind == "symmetric":
         u2 = 2 * (np.pi * turns) ** 2
@@ -115,8 +115,8 @@ def one_sine_pulse(amplitude: float, period: float, dt: float = 0.005) -> Ground
     >>> rf.one_sine_pulse(amplitude=3.0, period=1.0)
     GroundMotion('One sine 3 m/s², T=1 s', 201 samples, dt=0.005 s, duration=1 s, pga=3 m/s²)
     """
-    n, step = intervals("period", period, dt)
-    return named_pulse("One sine", amplitude, _sine(n, 1.0), step, f"T={period:g} s")
+    n, step = pulse_intervals("period", period, dt)
+    return named_pulse("One sine", amplitude, _sine_samples(n, 1.0), step, f"T={period:g} s")
 
 
 def one_cosine_pulse(amplitude: float, period: float, dt: float = 0.005) -> GroundMotion:
@@ -150,7 +150,7 @@ def one_cosine_pulse(amplitude: float, period: float, dt: float = 0.005) -> Grou
     >>> rf.one_cosine_pulse(amplitude=3.0, period=1.0)
     GroundMotion('One cosine 3 m/s², T=1 s', 201 samples, dt=0.005 s, duration=1 s, pga=3 m/s²)
     """
-    n, step = intervals("period", period, dt)
+    n, step = pulse_intervals("period", period, dt)
     return named_pulse("One cosine", amplitude, np.cos(2 * np.pi * np.arange(n + 1) / n), step, f"T={period:g} s")
 
 
@@ -182,8 +182,8 @@ def half_sine_pulse(amplitude: float, duration: float, dt: float = 0.005) -> Gro
     >>> rf.half_sine_pulse(amplitude=3.0, duration=0.5)
     GroundMotion('Half sine 3 m/s², t=0.5 s', 101 samples, dt=0.005 s, duration=0.5 s, pga=3 m/s²)
     """
-    n, step = intervals("duration", duration, dt)
-    return named_pulse("Half sine", amplitude, _sine(n, 0.5), step, f"t={duration:g} s")
+    n, step = pulse_intervals("duration", duration, dt)
+    return named_pulse("Half sine", amplitude, _sine_samples(n, 0.5), step, f"t={duration:g} s")
 
 
 def rectangular_pulse(amplitude: float, duration: float, dt: float = 0.005) -> GroundMotion:
@@ -218,7 +218,7 @@ def rectangular_pulse(amplitude: float, duration: float, dt: float = 0.005) -> G
     >>> round(pulse.pgv, 3)
     1.5
     """
-    n, step = intervals("duration", duration, dt)
+    n, step = pulse_intervals("duration", duration, dt)
     return named_pulse("Rectangle", amplitude, np.ones(n + 1), step, f"t={duration:g} s")
 
 
@@ -248,13 +248,13 @@ def quiet_motion(duration: float, dt: float = 0.005) -> GroundMotion:
     >>> rf.quiet_motion(duration=10.0)
     GroundMotion('Quiet t=10 s', 2001 samples, dt=0.005 s, duration=10 s, pga=0 m/s²)
     """
-    n, step = intervals("duration", duration, dt)
+    n, step = pulse_intervals("duration", duration, dt)
     return GroundMotion(np.zeros(n + 1), step, name=f"Quiet t={duration:g} s")
 
 
-def intervals(name: str, length: float, dt: float) -> tuple[int, float]:
+def pulse_intervals(name: str, length: float, dt: float) -> tuple[int, float]:
     """Return the number of intervals of a pulse and the sampling step in s."""
-    length, dt = positive(name, length, "s"), positive("dt", dt, "s")
+    length, dt = checked_positive(name, length, "s"), checked_positive("dt", dt, "s")
     # Two intervals at least: a motion has three samples or more.
     if length / dt > MAX_SAMPLES:
         raise InputError(
@@ -264,7 +264,7 @@ def intervals(name: str, length: float, dt: float) -> tuple[int, float]:
     return n, dt if math.isclose(n * dt, length, rel_tol=1e-9) else length / n
 
 
-def _sine(n: int, turns: float) -> Float:
+def _sine_samples(n: int, turns: float) -> Float:
     shape = np.sin(2 * np.pi * turns * np.arange(n + 1) / n)
     shape[-1] = 0.0
     return shape
@@ -272,7 +272,7 @@ def _sine(n: int, turns: float) -> Float:
 
 def named_pulse(kind: str, amplitude: float, shape: Float, dt: float, detail: str, unit: str = "m/s²") -> GroundMotion:
     """Return the motion of a shape times an amplitude, named after both."""
-    amplitude = finite("amplitude", amplitude, unit)
+    amplitude = checked_finite("amplitude", amplitude, unit)
     with np.errstate(over="ignore"):  # samples that are not finite are rejected later
         samples = amplitude * shape
     return GroundMotion(samples, dt, name=f"{kind} {amplitude:g} {unit}, {detail}")
@@ -321,11 +321,11 @@ def mavroeidis_papageorgiou_pulse(
     >>> round(pulse.pgv, 3)
     1.0
     """
-    positive("period", period, "s")
+    checked_positive("period", period, "s")
     if not 1 < real_or_nan(gamma) < math.inf:
         raise InputError(f"gamma must be finite and above 1, but {shown(gamma)} was given. Usual values are 1 to 3.")
-    finite("nu", nu, "rad")
-    n, step = intervals("period", gamma * period, dt)
+    checked_finite("nu", nu, "rad")
+    n, step = pulse_intervals("period", gamma * period, dt)
     envelope = np.pi * np.linspace(-1, 1, n + 1)
     phase = gamma * envelope + nu
     rate = np.sin(envelope) * np.cos(phase) + gamma * (1 + np.cos(envelope)) * np.sin(phase)

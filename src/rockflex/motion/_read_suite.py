@@ -9,17 +9,17 @@ from typing import Literal, get_args
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._checks import positive
+from rockflex._checks import checked_positive
 from rockflex._errors import InputError, RecordWarning
-from rockflex._files import path_of
-from rockflex._shown import counted, listed, shown
-from rockflex.motion._ground_motion import GroundMotion, is_vertical
-from rockflex.motion._readers import FORMATS, components_in, is_of_a_network, peak_mismatch
+from rockflex._files import checked_file_path
+from rockflex._shown import first_texts_shown, number_with_noun, shown
+from rockflex.motion._ground_motion import GroundMotion, is_vertical_component
+from rockflex.motion._readers import FORMATS, components_in_file, is_of_a_network, stated_peak_mismatch
 from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._record_table import RecordTable, read_table, table_in
-from rockflex.motion._recordings import are_different_components, file_names, pair_vertical
+from rockflex.motion._record_table import RecordTable, read_record_table, record_table_in_content
+from rockflex.motion._recordings import are_different_components, file_names_text, pair_vertical_records
 from rockflex.motion._suite import Suite
-from rockflex.motion._text import Unit, declared_unit, decoded, read_content
+from rockflex.motion._text import AccelerationUnit, declared_acceleration_unit, decoded_text, read_file_bytes
 
 RECORD_SUFFIXES = (
     *(".at2", ".csv", ".dat", ".tsv", ".txt"),
@@ -34,11 +34,11 @@ MIN_COPY_SAMPLES = 50  # samples; fewer may be the same by chance
 COPY_TOLERANCE = 1e-3  # of the peak: two formats of one record round, or take another value of g
 OnError = Literal["raise", "skip"]
 Vertical = Literal["pair"]
-MAX_REPORTED = 10  # files whose errors are reported in full; beyond these only the names are listed
+MAX_REPORTED = 10  # files whose errors are reported in full; beyond these only the names are first_texts_shown
 MAX_MESSAGE_LENGTH = 50_000  # most characters of a message that lists every file
 
 
-def files_of(paths: str | Path | Iterable[str | Path]) -> tuple[str, list[Path]]:
+def record_files(paths: str | Path | Iterable[str | Path]) -> tuple[str, list[Path]]:
     """Return the name of a directory and its record files, or no name and the files given; sorted by name.
 
     Raises
@@ -47,20 +47,20 @@ def files_of(paths: str | Path | Iterable[str | Path]) -> tuple[str, list[Path]]
         If there is no such directory, it holds no record, or something else is given.
     """
     if isinstance(paths, str | Path):
-        folder = path_of("paths", paths)
+        folder = checked_file_path("paths", paths)
         if not folder.is_dir():
             raise InputError(
                 f"{folder} is not a directory. Give a directory or a list of files; use read_motion for a single file."
             )
-        name, files = folder.resolve().name, folder_files(folder)
+        name, files = folder.resolve().name, record_files_in_folder(folder)
     elif isinstance(paths, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
-        name, files = "", [path_of("paths", path) for path in paths]
+        name, files = "", [checked_file_path("paths", path) for path in paths]
     else:
         raise InputError(f"paths must be a directory or a sequence of files, but {type(paths).__name__} was given.")
     return name, sorted(files, key=lambda file: (file.name, str(file)))
 
 
-def folder_files(folder: Path) -> list[Path]:
+def record_files_in_folder(folder: Path) -> list[Path]:
     """Return the record files of a directory, by suffix or by their first lines, sorted by name.
 
     Raises
@@ -68,16 +68,16 @@ def folder_files(folder: Path) -> list[Path]:
     InputError
         If there are none.
     """
-    files = [file for file in folder.iterdir() if file.is_file() and is_record(file)]
+    files = [file for file in folder.iterdir() if file.is_file() and is_record_file(file)]
     if not files:
         raise InputError(
             f"{folder} holds no record: no file ends in {', '.join(RECORD_SUFFIXES)}, or begins as a file in one "
-            f"of the formats {listed([name for name, _, _ in FORMATS])}."
+            f"of the formats {first_texts_shown([name for name, _, _ in FORMATS])}."
         )
     return sorted(files)
 
 
-def is_record(file: Path) -> bool:
+def is_record_file(file: Path) -> bool:
     """Return whether a file is read as a record when its folder is."""
     if file.name.startswith("."):
         return False
@@ -85,7 +85,7 @@ def is_record(file: Path) -> bool:
         return True
     try:
         with file.open("rb") as stream:
-            text = decoded(stream.read(HEAD_BYTES))
+            text = decoded_text(stream.read(HEAD_BYTES))
     except OSError:
         return False
     lines = (text or "").splitlines()
@@ -93,7 +93,7 @@ def is_record(file: Path) -> bool:
 
 
 @dataclass(frozen=True)
-class FileRead:
+class RecordFileContent:
     """The content of a file: motions by paths named after them, or a table about records, or the error."""
 
     file: Path
@@ -103,43 +103,45 @@ class FileRead:
     notes: Mapping[Path, str] = field(default_factory=dict[Path, str])
 
 
-def read_many(
+def read_record_files(
     files: Iterable[Path],
     units: UnitsArgument | None,
     dt: float | None,
     table: str | Path | None = None,
     *,
     use_obspy: bool = True,
-) -> list[FileRead]:
-    """Read files, in their order; files that cannot be read have a fault. `use_obspy` as in `components_in`.
+) -> list[RecordFileContent]:
+    """Read files, in their order; files that cannot be read have a fault. `use_obspy` as in `components_in_file`.
 
     Raises
     ------
     InputError
         If units or dt are not valid, or `table` is no table about records.
     """
-    given = _units_by_name(units)
-    step = None if dt is None else positive("dt", dt, "s")
+    given = _units_by_file_name(units)
+    step = None if dt is None else checked_positive("dt", dt, "s")
     if table is not None:
-        given = given.joined(read_table(path_of("table", table)))
-    found: list[FileRead] = []
+        given = given.joined(read_record_table(checked_file_path("table", table)))
+    found: list[RecordFileContent] = []
     for file in files:
         try:
-            own = table_in(file, read_content(file)) if file.suffix.lower() in TABLE_SUFFIXES else None
-            found.append(FileRead(file, table=own))
+            own = (
+                record_table_in_content(file, read_file_bytes(file)) if file.suffix.lower() in TABLE_SUFFIXES else None
+            )
+            found.append(RecordFileContent(file, table=own))
         except InputError as error:
-            found.append(FileRead(file, fault=error))
+            found.append(RecordFileContent(file, fault=error))
     for each in found:
         if each.table is not None:
             given = given.joined(each.table)
-    common = declared_unit(units) if isinstance(units, str) else None
+    common = declared_acceleration_unit(units) if isinstance(units, str) else None
     return [
-        each if each.table or each.fault else _read_file(each.file, given, common, step, use_obspy=use_obspy)
+        each if each.table or each.fault else _read_record_file(each.file, given, common, step, use_obspy=use_obspy)
         for each in found
     ]
 
 
-def _units_by_name(units: UnitsArgument | None) -> RecordTable:
+def _units_by_file_name(units: UnitsArgument | None) -> RecordTable:
     """Return the units of files that a caller gives by their names."""
     if units is None or isinstance(units, str):
         return RecordTable()
@@ -149,18 +151,20 @@ def _units_by_name(units: UnitsArgument | None) -> RecordTable:
             f"{shown(units)} was given.",
             field="units",
         )
-    return RecordTable(units={str(name).casefold(): declared_unit(unit) for name, unit in units.items()})
+    return RecordTable(units={str(name).casefold(): declared_acceleration_unit(unit) for name, unit in units.items()})
 
 
-def _read_file(file: Path, given: RecordTable, common: Unit | None, dt: float | None, *, use_obspy: bool) -> FileRead:
+def _read_record_file(
+    file: Path, given: RecordTable, common: AccelerationUnit | None, dt: float | None, *, use_obspy: bool
+) -> RecordFileContent:
     own = given.unit_of(file)
     step = given.step_of(file)
     try:
-        found = components_in(
+        found = components_in_file(
             file, own or common, dt if step is None else step, use_obspy=use_obspy, common=own is None and step is None
         )
     except InputError as error:
-        return FileRead(file, fault=error)
+        return RecordFileContent(file, fault=error)
     motions: dict[Path, GroundMotion] = {}
     notes: dict[Path, str] = {}
     for motion in found:
@@ -168,8 +172,8 @@ def _read_file(file: Path, given: RecordTable, common: Unit | None, dt: float | 
         whole = GroundMotion(motion.acceleration, motion.dt, motion.name, info, motion.vertical)
         key = file if motion.name == file.stem else file.parent / (motion.name.replace("/", "_") + file.suffix)
         motions[key] = whole
-        notes[key] = peak_mismatch(whole)[1]
-    return FileRead(file, motions, notes=notes)
+        notes[key] = stated_peak_mismatch(whole)[1]
+    return RecordFileContent(file, motions, notes=notes)
 
 
 @dataclass(frozen=True)
@@ -200,33 +204,35 @@ class ChosenComponents:
     copies: Mapping[Path, Path]
 
 
-def choose_components(found: Sequence[FileRead], *, pair: bool) -> ChosenComponents:
+def choose_components(found: Sequence[RecordFileContent], *, pair: bool) -> ChosenComponents:
     """Take the horizontal components, with the vertical ones if `pair`.
 
     Copies of other components are left out, and boreholes beneath surface records.
     """
     motions = {path: motion for each in found for path, motion in each.motions.items()}
-    copies = _copies(motions, {path: each.file for each in found for path in each.motions})
+    copies = _duplicate_components(motions, {path: each.file for each in found for path in each.motions})
     motions = {path: motion for path, motion in motions.items() if path not in copies}
-    surface = {_site_key(motion) for motion in motions.values() if _location(motion) == "surface"}
-    boreholes = [path for path, each in motions.items() if _location(each) == BOREHOLE and _site_key(each) in surface]
+    surface = {_site_key(motion) for motion in motions.values() if _location_code(motion) == "surface"}
+    boreholes = [
+        path for path, each in motions.items() if _location_code(each) == BOREHOLE and _site_key(each) in surface
+    ]
     motions = {path: motion for path, motion in motions.items() if path not in set(boreholes)}
-    vertical = {path: motion for path, motion in motions.items() if is_vertical(motion)}
+    vertical = {path: motion for path, motion in motions.items() if is_vertical_component(motion)}
     taken = {path: motion for path, motion in motions.items() if path not in vertical}
     if not pair or not taken:
         return ChosenComponents(taken, list(vertical), boreholes, {}, [], copies)
-    both, unpaired, left = pair_vertical(taken, vertical)
+    both, unpaired, left = pair_vertical_records(taken, vertical)
     return ChosenComponents(both, left, boreholes, unpaired, [path for path in vertical if path not in left], copies)
 
 
-def _copies(motions: Mapping[Path, GroundMotion], files: Mapping[Path, Path]) -> dict[Path, Path]:
+def _duplicate_components(motions: Mapping[Path, GroundMotion], files: Mapping[Path, Path]) -> dict[Path, Path]:
     """Return the components that another file holds too, and which of both is kept: the one of which more is known.
 
     Components that their record sequence numbers, azimuths or names tell apart are no copies, whatever their samples.
     """
     found: dict[Path, Path] = {}
     kept: dict[int, list[tuple[float, Path]]] = {}
-    for path in sorted(motions, key=lambda path: _rank(path, motions[path])):
+    for path in sorted(motions, key=lambda path: _duplicate_rank(path, motions[path])):
         motion = motions[path]
         if motion.acceleration.size < MIN_COPY_SAMPLES:
             continue
@@ -235,7 +241,7 @@ def _copies(motions: Mapping[Path, GroundMotion], files: Mapping[Path, Path]) ->
             if (
                 files[path] != files[other]
                 and abs(pga - motion.pga) <= COPY_TOLERANCE * pga
-                and _are_copies(path, motion, other, motions[other])
+                and _are_duplicate_components(path, motion, other, motions[other])
             ):
                 found[path] = other
                 break
@@ -244,14 +250,16 @@ def _copies(motions: Mapping[Path, GroundMotion], files: Mapping[Path, Path]) ->
     return {path: found[path] for path in motions if path in found}
 
 
-def _rank(path: Path, motion: GroundMotion) -> tuple[object, ...]:
+def _duplicate_rank(path: Path, motion: GroundMotion) -> tuple[object, ...]:
     """Return a key by which the first of some copies is the one to keep."""
     known = sum(value is not None for value in vars(motion.metadata or RecordInfo()).values())
     return motion.vertical is None, -known, len(path.name), path.name, str(path)
 
 
-def _are_copies(path: Path, motion: GroundMotion, other: Path, kept: GroundMotion) -> bool:
-    if abs(motion.dt - kept.dt) > COPY_TOLERANCE * kept.dt or is_vertical(motion) != is_vertical(kept):
+def _are_duplicate_components(path: Path, motion: GroundMotion, other: Path, kept: GroundMotion) -> bool:
+    if abs(motion.dt - kept.dt) > COPY_TOLERANCE * kept.dt or is_vertical_component(motion) != is_vertical_component(
+        kept
+    ):
         return False
     if are_different_components(path, motion.metadata, other, kept.metadata):
         return False
@@ -266,7 +274,7 @@ def _equal_samples(one: Array, other: Array) -> bool:
     return peak > 0.0 and bool(np.max(np.abs(one - other)) <= COPY_TOLERANCE * peak)
 
 
-def _location(motion: GroundMotion) -> str | None:
+def _location_code(motion: GroundMotion) -> str | None:
     return None if motion.metadata is None else motion.metadata.location
 
 
@@ -350,12 +358,12 @@ def read_suite(
     >>> rf.read_suite(["a.txt", "b.txt"], units="g", dt=0.01).names
     ('a', 'b')
     """
-    name, files = files_of(paths)
-    found = read_files(files, units, dt, on_error, vertical, table=table)
+    name, files = record_files(paths)
+    found = read_components_by_file(files, units, dt, on_error, vertical, table=table)
     return Suite((motion for motions in found.values() for motion in motions), name)
 
 
-def read_files(
+def read_components_by_file(
     files: Sequence[Path],
     units: UnitsArgument | None,
     dt: float | None,
@@ -370,16 +378,16 @@ def read_files(
     """
     if on_error not in get_args(OnError):
         raise InputError(f'on_error must be "raise" or "skip", but {shown(on_error)} was given.')
-    check_vertical(vertical)
-    found = read_many(files, units, dt, table)
+    check_vertical_option(vertical)
+    found = read_record_files(files, units, dt, table)
     records = [each for each in found if each.table is None]
     if not records and found:
         raise InputError(
-            f"{file_names(files)}: only tables about records were given, but no record. Give the records too."
+            f"{file_names_text(files)}: only tables about records were given, but no record. Give the records too."
         )
     faults = {each.file: each.fault for each in records if each.fault is not None}
     if faults:
-        message = _fault_message({file: str(error) for file, error in faults.items()}, len(records))
+        message = _unreadable_files_message({file: str(error) for file, error in faults.items()}, len(records))
         if on_error == "raise" or len(faults) == len(records):
             message += f" {skip} continues with the other files." if len(faults) < len(records) else ""
             fields = [error.field for error in faults.values()]
@@ -389,8 +397,8 @@ def read_files(
     for note in (f"{path}: {note}." for each in records for path, note in each.notes.items() if note):
         warnings.warn(note, RecordWarning, stacklevel=3)
     result = choose_components(records, pair=vertical is not None)
-    _warn_unpaired(result, on_error, skip)
-    _warn_left_out(result)
+    _warn_of_unpaired_records(result, on_error, skip)
+    _warn_of_left_out_components(result)
     taken: dict[Path, list[GroundMotion]] = {}
     for each in records:
         chosen = [result.taken[path] for path in each.motions if path in result.taken]
@@ -399,7 +407,7 @@ def read_files(
     return taken
 
 
-def check_vertical(vertical: object) -> None:
+def check_vertical_option(vertical: object) -> None:
     """Raise an InputError unless `vertical` is "pair" or None."""
     if vertical not in (None, *get_args(Vertical)):
         raise InputError(
@@ -409,7 +417,7 @@ def check_vertical(vertical: object) -> None:
         )
 
 
-def _warn_left_out(result: ChosenComponents) -> None:
+def _warn_of_left_out_components(result: ChosenComponents) -> None:
     """Warn of components that are left out.
 
     Raises
@@ -418,20 +426,20 @@ def _warn_left_out(result: ChosenComponents) -> None:
         If none is left.
     """
     if result.boreholes:
-        count = counted(len(result.boreholes), "borehole component")
+        count = number_with_noun(len(result.boreholes), "borehole component")
         warnings.warn(
-            f"Left out: {count} beneath records at the surface, {file_names(result.boreholes)}.",
+            f"Left out: {count} beneath records at the surface, {file_names_text(result.boreholes)}.",
             RecordWarning,
             stacklevel=4,
         )
     if result.copies:
-        names = listed([f"{path.name} (of {kept.name})" for path, kept in result.copies.items()])
-        count = counted(len(result.copies), "copy", "copies")
+        names = first_texts_shown([f"{path.name} (of {kept.name})" for path, kept in result.copies.items()])
+        count = number_with_noun(len(result.copies), "copy", "copies")
         warnings.warn(f"Left out: {count} of records in other files, {names}.", RecordWarning, stacklevel=4)
     if not result.vertical:
         return
     names = ", ".join(path.name for path in result.vertical)
-    components = counted(len(result.vertical), "vertical component")
+    components = number_with_noun(len(result.vertical), "vertical component")
     if not result.taken:
         raise InputError(
             f"No horizontal component was given, only {components}: {names}. Give horizontal ones; if a "
@@ -440,7 +448,7 @@ def _warn_left_out(result: ChosenComponents) -> None:
     warnings.warn(f"Left out: {components}, {names}.", RecordWarning, stacklevel=4)
 
 
-def _warn_unpaired(result: ChosenComponents, on_error: OnError, skip: str) -> None:
+def _warn_of_unpaired_records(result: ChosenComponents, on_error: OnError, skip: str) -> None:
     """Warn of records without a vertical component.
 
     Raises
@@ -468,10 +476,12 @@ def _warn_unpaired(result: ChosenComponents, on_error: OnError, skip: str) -> No
     missing = [file for file, reason in without.items() if not reason]
     if missing:
         count = f"{len(missing)} of {len(both)} records"
-        warnings.warn(f"Without a vertical component: {count}, {file_names(missing)}.", RecordWarning, stacklevel=4)
+        warnings.warn(
+            f"Without a vertical component: {count}, {file_names_text(missing)}.", RecordWarning, stacklevel=4
+        )
 
 
-def _fault_message(faults: dict[Path, str], n_files: int) -> str:
+def _unreadable_files_message(faults: dict[Path, str], n_files: int) -> str:
     """List every file that cannot be read, with the errors of the first few."""
     shown, others = list(faults.values())[:MAX_REPORTED], [str(file) for file in list(faults)[MAX_REPORTED:]]
     message = " ".join(shown) if n_files == 1 else f"{len(faults)} of {n_files} files cannot be read. {' '.join(shown)}"

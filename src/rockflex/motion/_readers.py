@@ -5,19 +5,26 @@ from pathlib import Path
 
 import numpy as np
 
-from rockflex._checks import instance, positive
+from rockflex._checks import checked_instance, checked_positive
 from rockflex._errors import InputError, RecordWarning
-from rockflex._files import path_of
+from rockflex._files import checked_file_path
 from rockflex._shown import shown
 from rockflex.motion import _obspy
-from rockflex.motion._at2 import find_header, parse_at2
-from rockflex.motion._columns import is_excel, parse_columns, parse_excel
+from rockflex.motion._at2 import find_at2_header, parse_at2
+from rockflex.motion._columns import is_excel_workbook, parse_columns, parse_excel
 from rockflex.motion._cosmos import is_cosmos, parse_cosmos
 from rockflex.motion._esm import is_esm, parse_esm
 from rockflex.motion._geonet import is_geonet, parse_geonet
-from rockflex.motion._ground_motion import GroundMotion, is_vertical
+from rockflex.motion._ground_motion import GroundMotion, is_vertical_component
 from rockflex.motion._knet import is_knet, parse_knet
-from rockflex.motion._text import Unit, declared_unit, decoded, lines_of, read_content, table_of
+from rockflex.motion._text import (
+    AccelerationUnit,
+    declared_acceleration_unit,
+    decoded_text,
+    parse_numeric_table,
+    read_file_bytes,
+    text_lines,
+)
 
 # Formats that state unit and step, each known by its first lines, whatever the suffix of the file.
 FORMATS = (
@@ -107,17 +114,17 @@ def read_motion(
     >>> rf.read_motion("record.txt", units="g")
     GroundMotion('record', 3 samples, dt=0.01 s, duration=0.02 s, pga=0.981 m/s²)
     """
-    unit, step = _options(units, dt)
+    unit, step = _checked_unit_and_step(units, dt)
     if component is not None:
-        instance("component", component, str)
-    file = path_of("path", path)
-    motion = select_component(file, components_in(file, unit, step), component, vertical=False)
-    _warn_of_peak(file, motion)
+        checked_instance("component", component, str)
+    file = checked_file_path("path", path)
+    motion = select_component(file, components_in_file(file, unit, step), component, vertical=False)
+    _warn_of_stated_peak(file, motion)
     if vertical is None:
         return motion
-    other = path_of("vertical", vertical)
-    upwards = select_component(other, components_in(other, unit, step), None, vertical=True)
-    _warn_of_peak(other, upwards)
+    other = checked_file_path("vertical", vertical)
+    upwards = select_component(other, components_in_file(other, unit, step), None, vertical=True)
+    _warn_of_stated_peak(other, upwards)
     return motion.with_vertical(upwards)
 
 
@@ -155,15 +162,15 @@ def read_components(path: str | Path, units: str | None = None, dt: float | None
     >>> [motion.name for motion in rf.read_components("station.csv")]
     ['station-NS', 'station-EW', 'station-UD']
     """
-    unit, step = _options(units, dt)
-    file = path_of("path", path)
-    found = components_in(file, unit, step)
+    unit, step = _checked_unit_and_step(units, dt)
+    file = checked_file_path("path", path)
+    found = components_in_file(file, unit, step)
     for motion in found:
-        _warn_of_peak(file, motion)
+        _warn_of_stated_peak(file, motion)
     return tuple(found)
 
 
-def read_plain(path: str | Path, units: str | None = None, dt: float | None = None) -> GroundMotion:
+def read_motion_without_obspy(path: str | Path, units: str | None = None, dt: float | None = None) -> GroundMotion:
     """Read a record as `read_motion` does, but without ObsPy, whose readers are not made for files of strangers.
 
     Raises
@@ -171,12 +178,14 @@ def read_plain(path: str | Path, units: str | None = None, dt: float | None = No
     InputError
         As for `read_motion`.
     """
-    file = path_of("path", path)
-    return select_component(file, components_in(file, *_options(units, dt), use_obspy=False), None, vertical=False)
+    file = checked_file_path("path", path)
+    return select_component(
+        file, components_in_file(file, *_checked_unit_and_step(units, dt), use_obspy=False), None, vertical=False
+    )
 
 
-def components_in(
-    file: Path, units: Unit | None, dt: float | None, *, use_obspy: bool = True, common: bool = False
+def components_in_file(
+    file: Path, units: AccelerationUnit | None, dt: float | None, *, use_obspy: bool = True, common: bool = False
 ) -> list[GroundMotion]:
     """Return all components in a file.
 
@@ -196,7 +205,7 @@ def components_in(
     """
     found = _read_components(file, units, dt, use_obspy=use_obspy, common=common)
     for motion in found:
-        difference, text = peak_mismatch(motion)
+        difference, text = stated_peak_mismatch(motion)
         if difference > MAX_PEAK_MISMATCH:
             raise InputError(
                 f"{file}: {text}. A wrong scale or a changed file explains this: download the record again; or correct "
@@ -211,31 +220,31 @@ def is_of_a_network(lines: list[str]) -> bool:
 
 
 def _read_components(
-    file: Path, units: Unit | None, dt: float | None, *, use_obspy: bool, common: bool
+    file: Path, units: AccelerationUnit | None, dt: float | None, *, use_obspy: bool, common: bool
 ) -> list[GroundMotion]:
-    content = read_content(file)
-    if is_excel(content):
+    content = read_file_bytes(file)
+    if is_excel_workbook(content):
         return parse_excel(file, content, units, dt)
-    text = decoded(content)
+    text = decoded_text(content)
     if text is None and use_obspy:
-        form = _obspy.format_of(content)
+        form = _obspy.obspy_format(content)
         if form is not None:
             return _read_with_obspy(file, content, form, units, dt)
-        if not _obspy.is_installed():
+        if not _obspy.is_obspy_installed():
             raise InputError(f"{file} is a binary file, but a record is expected as text or .xlsx. {_obspy.INSTALL}")
-    lines = lines_of(file, content)
+    lines = text_lines(file, content)
     for form, known, parse in FORMATS:
         if known(lines):
             found = parse(file, lines)
             if not common:
-                _check_no_units(file, form, units)
-                _check_step(file, found[0], dt)
+                _check_no_units_given(file, form, units)
+                _check_stated_time_step(file, found[0], dt)
             return found
-    if find_header(lines) is None and file.suffix.lower() != ".at2":
+    if find_at2_header(lines) is None and file.suffix.lower() != ".at2":
         try:
-            return parse_columns(file, table_of(file, lines), units, dt, file.stem)
+            return parse_columns(file, parse_numeric_table(file, lines), units, dt, file.stem)
         except InputError as error:
-            form = _obspy.format_of(content) if use_obspy and error.field is None else None
+            form = _obspy.obspy_format(content) if use_obspy and error.field is None else None
             if form is None:
                 raise
             try:
@@ -243,22 +252,24 @@ def _read_components(
             except _obspy.ObsPyError:
                 raise error from None
     motion = parse_at2(file, lines)
-    if units not in (None, Unit("g")):
+    if units not in (None, AccelerationUnit("g")):
         raise InputError(
             f"{file} is an AT2 file, in g by definition, but units={shown(str(units))} was given. Leave units out.",
             field="units",
         )
-    _check_step(file, motion, dt)
+    _check_stated_time_step(file, motion, dt)
     return [motion]
 
 
-def _read_with_obspy(file: Path, content: bytes, form: str, units: Unit | None, dt: float | None) -> list[GroundMotion]:
+def _read_with_obspy(
+    file: Path, content: bytes, form: str, units: AccelerationUnit | None, dt: float | None
+) -> list[GroundMotion]:
     found = _obspy.parse_obspy(file, content, form, units)
-    _check_step(file, found[0], dt)
+    _check_stated_time_step(file, found[0], dt)
     return found
 
 
-def _check_no_units(file: Path, form: str, units: Unit | None) -> None:
+def _check_no_units_given(file: Path, form: str, units: AccelerationUnit | None) -> None:
     if units is not None:
         raise InputError(
             f"{file} is a file in the {form} format, which states its unit, but units={shown(str(units))} was given. "
@@ -267,22 +278,24 @@ def _check_no_units(file: Path, form: str, units: Unit | None) -> None:
         )
 
 
-def _check_step(file: Path, motion: GroundMotion, dt: float | None) -> None:
+def _check_stated_time_step(file: Path, motion: GroundMotion, dt: float | None) -> None:
     if dt is not None and abs(dt - motion.dt) > 1e-9 * dt:
         raise InputError(f"{file} states DT = {motion.dt:g} s, but dt={shown(dt)} was given. Leave dt out.", field="dt")
 
 
-def _options(units: str | None, dt: float | None) -> tuple[Unit | None, float | None]:
-    return None if units is None else declared_unit(units), None if dt is None else positive("dt", dt, "s")
+def _checked_unit_and_step(units: str | None, dt: float | None) -> tuple[AccelerationUnit | None, float | None]:
+    return None if units is None else declared_acceleration_unit(units), None if dt is None else checked_positive(
+        "dt", dt, "s"
+    )
 
 
-def _warn_of_peak(file: Path, motion: GroundMotion) -> None:
-    _, text = peak_mismatch(motion)
+def _warn_of_stated_peak(file: Path, motion: GroundMotion) -> None:
+    _, text = stated_peak_mismatch(motion)
     if text:
         warnings.warn(f"{file}: {text}.", RecordWarning, stacklevel=3)
 
 
-def peak_mismatch(motion: GroundMotion) -> tuple[float, str]:
+def stated_peak_mismatch(motion: GroundMotion) -> tuple[float, str]:
     """Return by how much the peak of a motion differs from that stated in its header, relative to the larger one.
 
     The text says both peaks, and whether they agree when the mean is subtracted; it is empty if they agree, or none is
@@ -320,7 +333,7 @@ def select_component(file: Path, found: list[GroundMotion], component: str | Non
         If there is no such component, or more than one.
     """
     if component is not None:
-        named = [motion for motion in found if _is_named(motion, component)]
+        named = [motion for motion in found if _is_component_named(motion, component)]
         if len(named) == 1:
             return named[0]
         raise InputError(
@@ -328,7 +341,7 @@ def select_component(file: Path, found: list[GroundMotion], component: str | Non
             f"It holds {_component_names(found)}.",
             field="component",
         )
-    fitting = [motion for motion in found if is_vertical(motion) == vertical] or found
+    fitting = [motion for motion in found if is_vertical_component(motion) == vertical] or found
     if len(fitting) == 1:
         return fitting[0]
     raise InputError(
@@ -338,7 +351,7 @@ def select_component(file: Path, found: list[GroundMotion], component: str | Non
     )
 
 
-def _is_named(motion: GroundMotion, component: str) -> bool:
+def _is_component_named(motion: GroundMotion, component: str) -> bool:
     azimuth = None if motion.metadata is None else motion.metadata.azimuth
     wanted = component.strip().casefold()
     if azimuth is not None and wanted.isdecimal() and wanted.isascii() and len(wanted) <= 3:
@@ -352,4 +365,6 @@ def _component_name(motion: GroundMotion) -> str:
 
 
 def _component_names(found: list[GroundMotion]) -> str:
-    return ", ".join(f"{shown(_component_name(motion))}{' (vertical)' * is_vertical(motion)}" for motion in found)
+    return ", ".join(
+        f"{shown(_component_name(motion))}{' (vertical)' * is_vertical_component(motion)}" for motion in found
+    )

@@ -136,7 +136,7 @@ class RecordInfo:
         return replace(self, **found)
 
 
-def direction_of(file: Path, component: str | None = None) -> Direction | None:
+def component_direction(file: Path, component: str | None = None) -> Direction | None:
     """Return the direction of a component, or None if it is not stated; "down" is vertical, but positive downwards.
 
     A component is vertical if the header calls it UP, DWN, V, UD and the like, or if the file name ends in such a word
@@ -162,7 +162,7 @@ def direction_of(file: Path, component: str | None = None) -> Direction | None:
     return _vertical_direction(stem) if from_peer and JOINED_SUFFIX.fullmatch(stem) else None
 
 
-def azimuth_of(component: str | None) -> float | None:
+def component_azimuth(component: str | None) -> float | None:
     """Return the direction, in degrees clockwise from north, that the name of a component states, or None.
 
     Such names are 90, N38E, NS, and the codes of seismological channels that end in N or E, such as HNE.
@@ -181,18 +181,18 @@ def _vertical_direction(text: str) -> Direction:
     return "down" if DOWN_SUFFIX.fullmatch(text) else "vertical"
 
 
-def station_of_vertical(file: Path) -> str | None:
+def station_of_vertical_file(file: Path) -> str | None:
     """Return the name of a file without the word that makes it vertical, or None if there is no such word."""
     stem = COPY_SUFFIX.sub("", file.stem)
     named = SEPARATED_SUFFIX.fullmatch(stem) or JOINED_SUFFIX.fullmatch(stem)
     return named and named[1].rstrip(SEPARATORS)
 
 
-def is_horizontal_name(component: str) -> bool:
+def is_horizontal_component_name(component: str) -> bool:
     """Return whether a word, such as 090, NS or H1, names a horizontal component."""
     return bool(HORIZONTAL_NAME.fullmatch(component)) or component in ("X", "Y")
 
 
-def unique_names(names: list[str]) -> list[str]:
+def unique_record_names(names: list[str]) -> list[str]:
     """Return the names, with a number added to those that occur more than once."""
     return [name if names.count(name) == 1 else f"{name}-{names[: i + 1].count(name)}" for i, name in enumerate(names)]

@@ -13,11 +13,18 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TypeAlias, TypeVar
 
-from rockflex._checks import positive
+from rockflex._checks import checked_positive
 from rockflex._errors import InputError
-from rockflex.motion._columns import is_excel, sheets_of
+from rockflex.motion._columns import excel_sheet_cells, is_excel_workbook
 from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._text import Unit, declared_unit, decoded, non_negative, optional_number, read_content
+from rockflex.motion._text import (
+    AccelerationUnit,
+    declared_acceleration_unit,
+    decoded_text,
+    non_negative_or_none,
+    parse_optional_decimal,
+    read_file_bytes,
+)
 
 V = TypeVar("V")
 Recording: TypeAlias = tuple[str, str | None, str]  # event, network and station
@@ -61,7 +68,7 @@ class RecordTable:
 
     by_number: Mapping[int, RecordInfo] = field(default_factory=lambda: MappingProxyType({}))
     by_file: Mapping[str, RecordInfo] = field(default_factory=lambda: MappingProxyType({}))
-    units: Mapping[str, Unit] = field(default_factory=lambda: MappingProxyType({}))
+    units: Mapping[str, AccelerationUnit] = field(default_factory=lambda: MappingProxyType({}))
     steps: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     by_recording: Mapping[Recording, RecordInfo] = field(default_factory=lambda: MappingProxyType({}))
 
@@ -81,7 +88,7 @@ class RecordTable:
         if rsn is None and (named := re.match(r"RSN(\d{1,9})(?!\d)", file.name, re.IGNORECASE)):
             rsn = int(named[1])
         found = self.by_file.get(file.name.casefold())
-        if found is None and (recording := _recording(info)):
+        if found is None and (recording := _recording_key(info)):
             found = self.by_recording.get(recording)
         if found is not None:
             info = info.completed(found)
@@ -97,23 +104,23 @@ class RecordTable:
             if key not in present and not any(mark in key for mark in "*?[")
         ]
 
-    def unit_of(self, file: Path) -> Unit | None:
+    def unit_of(self, file: Path) -> AccelerationUnit | None:
         """Return the unit that the tables state for a file."""
-        return _matching(self.units, file)
+        return _entry_for_file(self.units, file)
 
     def step_of(self, file: Path) -> float | None:
         """Return the time step that the tables state for a file, in s."""
-        return _matching(self.steps, file)
+        return _entry_for_file(self.steps, file)
 
 
-def _matching(by_name: Mapping[str, V], file: Path) -> V | None:
+def _entry_for_file(by_name: Mapping[str, V], file: Path) -> V | None:
     name = file.name.casefold()
     if name in by_name:
         return by_name[name]
     return next((value for pattern, value in by_name.items() if fnmatchcase(name, pattern)), None)
 
 
-def read_table(file: Path) -> RecordTable:
+def read_record_table(file: Path) -> RecordTable:
     """Read a table about records from a CSV file or a workbook.
 
     Raises
@@ -121,8 +128,8 @@ def read_table(file: Path) -> RecordTable:
     InputError
         If the file cannot be read, or is no such table.
     """
-    content = read_content(file)
-    found = table_in(file, content)
+    content = read_file_bytes(file)
+    found = record_table_in_content(file, content)
     if found is None:
         raise InputError(
             f"{file} is no table about records: a header line is expected with a column of files or record sequence "
@@ -132,32 +139,37 @@ def read_table(file: Path) -> RecordTable:
     return found
 
 
-def table_in(file: Path, content: bytes) -> RecordTable | None:
+def record_table_in_content(file: Path, content: bytes) -> RecordTable | None:
     """Return the table about records in the bytes of a file, or None if there is none."""
-    if is_excel(content):
-        for rows in sheets_of(file, content).values():
-            found = _table(file, rows)
+    if is_excel_workbook(content):
+        for rows in excel_sheet_cells(file, content).values():
+            found = _record_table_from_rows(file, rows)
             if found is not None:
                 return found
         return None
-    text = decoded(content)
+    text = decoded_text(content)
     if text is None:
         return None
     lines = text.splitlines()
     head = next(
-        (line for line in lines[:MAX_HEADER_LINE] if _columns(_cells(line, _separator(line))) is not None), None
+        (
+            line
+            for line in lines[:MAX_HEADER_LINE]
+            if _record_table_columns(_record_table_cells(line, _record_table_separator(line))) is not None
+        ),
+        None,
     )
     if head is None:
         return None
-    separator = _separator(head)
-    return _table(file, (_cells(line, separator) for line in lines))
+    separator = _record_table_separator(head)
+    return _record_table_from_rows(file, (_record_table_cells(line, separator) for line in lines))
 
 
-def _separator(line: str) -> str:
+def _record_table_separator(line: str) -> str:
     return max(";,\t", key=line.count)
 
 
-def _cells(line: str, separator: str) -> list[str]:
+def _record_table_cells(line: str, separator: str) -> list[str]:
     try:
         row = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
     except csv.Error:
@@ -165,7 +177,7 @@ def _cells(line: str, separator: str) -> list[str]:
     return [cell.strip() for cell in row]
 
 
-def _columns(cells: list[str]) -> dict[int, str] | None:
+def _record_table_columns(cells: list[str]) -> dict[int, str] | None:
     """Return the field that each column gives, by its index; None if the cells are no header of such a table."""
     plain = [re.sub(r"[^a-z0-9]", "", cell.casefold()) for cell in cells]
     found: dict[int, str] = {}
@@ -182,25 +194,25 @@ def _columns(cells: list[str]) -> dict[int, str] | None:
     return found | files | {plain.index(label): label for label in FALLBACK_LABELS.values() if label in plain}
 
 
-def _table(file: Path, rows: Iterable[list[str]]) -> RecordTable | None:
+def _record_table_from_rows(file: Path, rows: Iterable[list[str]]) -> RecordTable | None:
     """Return the table under the first header, down to the first row that is empty."""
     columns: dict[int, str] | None = None
     by_number: dict[int, RecordInfo] = {}
     by_file: dict[str, RecordInfo] = {}
-    units: dict[str, Unit] = {}
+    units: dict[str, AccelerationUnit] = {}
     steps: dict[str, float] = {}
     by_recording: dict[Recording, RecordInfo] = {}
     for line, cells in enumerate(rows, 1):
         if columns is None:
-            columns = _columns(cells) if line <= MAX_HEADER_LINE else None
+            columns = _record_table_columns(cells) if line <= MAX_HEADER_LINE else None
             continue
         if not any(cells):
             break
         stated = {name: cells[k] for k, name in columns.items() if k < len(cells) and cells[k]}
-        info = _info(stated)
+        info = _record_info_of_row(stated)
         if info.rsn is not None:
             by_number.setdefault(info.rsn, info)
-        if recording := _recording(info):
+        if recording := _recording_key(info):
             by_recording.setdefault(recording, info)
         for label, direction in FILE_LABELS.items():
             # Flatfiles give folders too, with either slash; search results write ----- for no file.
@@ -211,28 +223,30 @@ def _table(file: Path, rows: Iterable[list[str]]) -> RecordTable | None:
             by_file.setdefault(name, replace(info, direction=direction, source=whole))  # pyright: ignore[reportArgumentType]
             try:
                 if "units" in stated:
-                    units.setdefault(name, declared_unit(stated["units"]))
+                    units.setdefault(name, declared_acceleration_unit(stated["units"]))
                 if "dt" in stated and "units" in columns.values():
-                    steps.setdefault(name, positive("dt", _number(stated["dt"]) or 0.0, "s"))
+                    steps.setdefault(name, checked_positive("dt", _record_table_number(stated["dt"]) or 0.0, "s"))
             except InputError as error:
                 raise InputError(f"{file}, line {line}: {error}", field=error.field) from error
     return None if columns is None else RecordTable(by_number, by_file, units, steps, by_recording)
 
 
-def _recording(info: RecordInfo) -> Recording | None:
+def _recording_key(info: RecordInfo) -> Recording | None:
     return None if info.event_id is None or info.station is None else (info.event_id, info.network, info.station)
 
 
-def _number(text: str) -> float | None:
-    return optional_number(text.replace(",", "."))
+def _record_table_number(text: str) -> float | None:
+    return parse_optional_decimal(text.replace(",", "."))
 
 
-def _info(stated: Mapping[str, str]) -> RecordInfo:
+def _record_info_of_row(stated: Mapping[str, str]) -> RecordInfo:
     numbers = {
-        name: non_negative(_number(stated.get(name) or stated.get(FALLBACK_LABELS.get(name, ""), "")))
+        name: non_negative_or_none(
+            _record_table_number(stated.get(name) or stated.get(FALLBACK_LABELS.get(name, ""), ""))
+        )
         for name in NUMBER_FIELDS
     }
-    whole = {name: non_negative(_number(stated.get(name, ""))) for name in ("rsn", "year")}
+    whole = {name: non_negative_or_none(_record_table_number(stated.get(name, ""))) for name in ("rsn", "year")}
     # PEER writes underscores for commas.
     words = {
         name: stated[name].replace("_ ", ", ") for name in TEXT_FIELDS if stated.get(name, "-") not in ("-", "-999")

@@ -12,14 +12,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import instance, real_or_nan
+from rockflex._checks import checked_instance, real_or_nan
 from rockflex._errors import InputError
-from rockflex._shown import listed, shown
+from rockflex._shown import first_texts_shown, shown
 from rockflex._values import Value
 from rockflex.engine.oscillator import rotated_peaks
-from rockflex.motion._ground_motion import GroundMotion, is_vertical
-from rockflex.motion._record_info import SEPARATORS, RecordInfo, azimuth_of, is_horizontal_name, station_of_vertical
-from rockflex.motion._spectra import checked_damping, checked_periods
+from rockflex.motion._ground_motion import GroundMotion, is_vertical_component
+from rockflex.motion._record_info import (
+    SEPARATORS,
+    RecordInfo,
+    component_azimuth,
+    is_horizontal_component_name,
+    station_of_vertical_file,
+)
+from rockflex.motion._spectra import checked_spectrum_damping, checked_spectrum_periods
 
 Key: TypeAlias = tuple[str | int | None, ...]
 
@@ -29,7 +35,7 @@ Combination = Literal["component", "geometric mean", "rotd50", "rotd100"]
 GroupKey: TypeAlias = tuple[Hashable, ...] | None
 
 
-def pair_vertical(
+def pair_vertical_records(
     horizontal: Mapping[Path, GroundMotion], vertical: Mapping[Path, GroundMotion]
 ) -> tuple[dict[Path, GroundMotion], dict[Path, str], list[Path]]:
     """Give each horizontal record the vertical one of its station.
@@ -45,12 +51,12 @@ def pair_vertical(
     both: dict[Path, GroundMotion] = {}
     without: dict[Path, str] = {}
     used: set[Path] = set()
-    index = _index(vertical)
+    index = _vertical_records_by_key(vertical)
     for file, motion in horizontal.items():
         both[file] = motion
         if motion.vertical is not None:
             continue
-        found = next((index[key] for key in _possible_keys(file, motion.metadata) if key in index), [])
+        found = next((index[key] for key in _vertical_record_keys(file, motion.metadata) if key in index), [])
         used.update(found)
         if len(found) == 1:
             try:
@@ -58,7 +64,7 @@ def pair_vertical(
             except InputError as error:
                 without[file] = f"{found[0].name}: {error}"
         else:
-            without[file] = f"{file_names(found)} could each belong to it" if found else ""
+            without[file] = f"{file_names_text(found)} could each belong to it" if found else ""
     return both, without, [file for file in vertical if file not in used]
 
 
@@ -67,8 +73,8 @@ def station_names(motions: Sequence[tuple[Path, GroundMotion]]) -> list[str]:
 
     `motions` are the components with paths whose stems are their names; see `group_stations`.
     """
-    known = [_header_name(motion.metadata) for _, motion in motions]
-    stems = [_possible_stems(Path(f"{file}.x"), motion) for file, motion in motions]
+    known = [_recording_name_in_header(motion.metadata) for _, motion in motions]
+    stems = [_possible_station_names(Path(f"{file}.x"), motion) for file, motion in motions]
     counts = Counter(stem.casefold() for options in stems for stem in options)
     first: dict[str, str] = {}
     found: list[str] = []
@@ -85,31 +91,33 @@ def recording_names(names: Sequence[str]) -> list[str]:
     merely numbered, such as GM1 and GM2, do not belong together.
     """
     files = [Path(f"{name}.x") for name in names]
-    words = [{key: word for key, word in _component_words(file).items() if key[1]} for file in files]
+    words = [{key: word for key, word in _component_names_in_file_name(file).items() if key[1]} for file in files]
     members: dict[Key, list[int]] = defaultdict(list)
     for place, each in enumerate(words):
         for key in each:
             members[key].append(place)
     found = list(names)
     for place, each in enumerate(words):
-        pair = next((key for key in each if _are_perpendicular([words[other][key] for other in members[key]])), None)
+        pair = next(
+            (key for key in each if _are_perpendicular_components([words[other][key] for other in members[key]])), None
+        )
         if pair is not None:
             first = members[pair][0]
             found[place] = names[first][: len(names[first]) - len(files[first].stem) + len(str(pair[1]))]
     return found
 
 
-def _are_perpendicular(components: Sequence[str]) -> bool:
+def _are_perpendicular_components(components: Sequence[str]) -> bool:
     """Return whether words name the two horizontal components of a recording."""
-    angles = [azimuth_of(word) for word in components]
+    angles = [component_azimuth(word) for word in components]
     if len(angles) != 2 or angles == [None, None]:
         return len(angles) == 2
     one, other = angles
     return one is not None and other is not None and abs((one - other) % 180.0 - 90.0) <= MAX_SKEW_DEG
 
 
-def _header_name(info: RecordInfo | None) -> str | None:
-    for key in _header_keys(info):
+def _recording_name_in_header(info: RecordInfo | None) -> str | None:
+    for key in _station_header_keys(info):
         if len(key) == 1:
             return f"RSN{key[0]}"
         event, _, station, network, location = key
@@ -117,12 +125,12 @@ def _header_name(info: RecordInfo | None) -> str | None:
     return None
 
 
-def _possible_stems(file: Path, motion: GroundMotion) -> list[str]:
+def _possible_station_names(file: Path, motion: GroundMotion) -> list[str]:
     """Return the names of the station that a name may contain, the most likely first."""
-    upright = station_of_vertical(file)
+    upright = station_of_vertical_file(file)
     if motion.metadata is not None and motion.metadata.is_vertical:
         return [] if upright is None else [upright]
-    return [file.stem[: len(str(key[1]))] for key in _possible_keys(file, None) if key[1]]
+    return [file.stem[: len(str(key[1]))] for key in _vertical_record_keys(file, None) if key[1]]
 
 
 def are_different_components(file: Path, info: RecordInfo | None, other: Path, known: RecordInfo | None) -> bool:
@@ -132,55 +140,57 @@ def are_different_components(file: Path, info: RecordInfo | None, other: Path, k
         values = {getattr(one, fact), getattr(two, fact)} - {None}
         if len(values) > 1:
             return True
-    first, second = _component_words(file), _component_words(other)
+    first, second = _component_names_in_file_name(file), _component_names_in_file_name(other)
     return any(first[station] != second[station] for station in first.keys() & second.keys())
 
 
-def _component_words(file: Path) -> dict[Key, str]:
+def _component_names_in_file_name(file: Path) -> dict[Key, str]:
     """Return the possible names of the component in the name of a file, by the key of the station in the rest of it."""
-    return {key: file.stem[len(str(key[1])) :].lstrip(SEPARATORS).casefold() for key in _possible_keys(file, None)}
+    return {
+        key: file.stem[len(str(key[1])) :].lstrip(SEPARATORS).casefold() for key in _vertical_record_keys(file, None)
+    }
 
 
-def file_names(files: Iterable[Path]) -> str:
+def file_names_text(files: Iterable[Path]) -> str:
     """Return the names of files, of the first ones if they are many."""
-    return listed([file.name for file in files])
+    return first_texts_shown([file.name for file in files])
 
 
-def _index(vertical: Mapping[Path, GroundMotion]) -> dict[Key, list[Path]]:
+def _vertical_records_by_key(vertical: Mapping[Path, GroundMotion]) -> dict[Key, list[Path]]:
     """Return the vertical records by each key that a horizontal record of the same station has."""
     found: dict[Key, list[Path]] = defaultdict(list)
     for file, motion in vertical.items():
-        station = station_of_vertical(file)
+        station = station_of_vertical_file(file)
         if station is not None:
-            found[_name_key(file, station)].append(file)
-        for key in _header_keys(motion.metadata):
+            found[_station_name_key(file, station)].append(file)
+        for key in _station_header_keys(motion.metadata):
             found[key].append(file)
     return dict(found)
 
 
-def _possible_keys(file: Path, info: RecordInfo | None) -> Iterator[Key]:
+def _vertical_record_keys(file: Path, info: RecordInfo | None) -> Iterator[Key]:
     """Yield the keys under which the vertical record of a horizontal one may be, the surest ones first."""
     splits = [(file.stem[:end], file.stem[end:]) for end in reversed(range(len(file.stem)))]
-    possible = [(station, word) for station, word in splits if _is_component(word)]
+    possible = [(station, word) for station, word in splits if _is_horizontal_component(word)]
     # In G1230 the azimuth is 230, although 30 or 0 would also do.
     for station, _ in sorted(
         possible, key=lambda each: not (each[1][0] in SEPARATORS or re.fullmatch(r"\d{3}", each[1]))
     ):
-        yield _name_key(file, station.rstrip(SEPARATORS))
-    yield from _header_keys(info)
+        yield _station_name_key(file, station.rstrip(SEPARATORS))
+    yield from _station_header_keys(info)
 
 
-def _is_component(word: str) -> bool:
+def _is_horizontal_component(word: str) -> bool:
     """Return whether the end of a name is a horizontal component; a small x or y only if it is set apart."""
     name = word.lstrip(SEPARATORS)
-    return is_horizontal_name(name) or (name != word and name in ("x", "y"))
+    return is_horizontal_component_name(name) or (name != word and name in ("x", "y"))
 
 
-def _name_key(file: Path, station: str) -> Key:
+def _station_name_key(file: Path, station: str) -> Key:
     return str(file.parent), station.casefold()
 
 
-def _header_keys(info: RecordInfo | None) -> list[Key]:
+def _station_header_keys(info: RecordInfo | None) -> list[Key]:
     """Return the record sequence number, else event, year and station, if they are known."""
     if info is None:
         return []
@@ -274,13 +284,13 @@ def group_stations(motions: Iterable[GroundMotion]) -> tuple[StationRecord, ...]
     groups: dict[str, list[GroundMotion]] = {}
     for name, each in zip(station_names([(Path(each.name), each) for each in members]), members, strict=True):
         groups.setdefault(name, []).append(each)
-    return tuple(_station(name, group) for name, group in groups.items())
+    return tuple(_station_record(name, group) for name, group in groups.items())
 
 
-def _station(name: str, group: list[GroundMotion]) -> StationRecord:
-    upright = [each for each in group if is_vertical(each)]
+def _station_record(name: str, group: list[GroundMotion]) -> StationRecord:
+    upright = [each for each in group if is_vertical_component(each)]
     upright += [each.vertical_motion for each in group if each.vertical is not None]
-    along = tuple(each for each in group if not is_vertical(each))
+    along = tuple(each for each in group if not is_vertical_component(each))
     return StationRecord(name, along, upright[0] if upright else None)
 
 
@@ -392,14 +402,14 @@ def rotated_spectrum(
     >>> spectrum.rotd50.round(2), spectrum.rotd100.round(2), spectrum.geometric_mean.round(2)
     (array([9.58]), array([13.06]), array([9.61]))
     """
-    one, other = instance("first", first, GroundMotion), instance("second", second, GroundMotion)
+    one, other = checked_instance("first", first, GroundMotion), checked_instance("second", second, GroundMotion)
     if abs(one.dt - other.dt) > 1e-9 * one.dt:
         raise InputError(
             f"first and second need the same time step, but {one.dt:g} s and {other.dt:g} s were given. Resample the "
             f"coarser one, for example with motion.resampled({min(one.dt, other.dt):g})."
         )
-    period = checked_periods(periods)
-    zeta = checked_damping(damping_ratio)
+    period = checked_spectrum_periods(periods)
+    zeta = checked_spectrum_damping(damping_ratio)
     size = max(one.acceleration.size, other.acceleration.size)
     a1, a2 = (np.pad(each.acceleration, (0, size - each.acceleration.size)) for each in (one, other))
     moves, sa = period > 0, np.empty((period.size, ANGLES.size))
@@ -454,9 +464,9 @@ def horizontal_pairs(motions: Iterable[GroundMotion]) -> tuple[list[Recording], 
         The pairs, and the names of the motions that are not one of exactly two with the same time step.
     """
     groups = [station.horizontal for station in group_stations(motions)]
-    pairs = [Recording(group) for group in groups if _is_pair(group)]
-    return pairs, [motion.name for group in groups if not _is_pair(group) for motion in group]
+    pairs = [Recording(group) for group in groups if _is_horizontal_pair(group)]
+    return pairs, [motion.name for group in groups if not _is_horizontal_pair(group) for motion in group]
 
 
-def _is_pair(group: Sequence[GroundMotion]) -> bool:
+def _is_horizontal_pair(group: Sequence[GroundMotion]) -> bool:
     return len(group) == 2 and abs(group[0].dt - group[1].dt) <= 1e-9 * group[0].dt

@@ -11,14 +11,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite_vector, instance, one_of, positive, real_or_nan, whole_number
+from rockflex._checks import (
+    checked_finite_vector,
+    checked_instance,
+    checked_positive,
+    checked_whole_number,
+    is_one_of,
+    real_or_nan,
+)
 from rockflex._errors import InputError, RecordWarning
-from rockflex._html import HtmlTable, span
-from rockflex._shown import counted, few, listed, shown
+from rockflex._html import HtmlTable, value_range_text
+from rockflex._shown import few_texts_shown, first_texts_shown, number_with_noun, shown
 from rockflex._values import Value
-from rockflex.motion._ground_motion import GroundMotion, check_horizontal
+from rockflex.motion._ground_motion import GroundMotion, check_horizontal_component
 from rockflex.motion._recordings import Combination, Recording, horizontal_pairs
-from rockflex.motion._spectra import TargetSpectrum, comparison_periods, fitting_factor
+from rockflex.motion._spectra import TargetSpectrum, comparison_periods, spectrum_fitting_factor
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -52,11 +59,13 @@ class SelectionProblem:
     @property
     def misfits(self) -> Array:
         """Root mean square of ln(spectrum/target) of each record, shape (n_records,)."""
-        return misfit(self.spectra)
+        return log_spectrum_misfit(self.spectra)
 
     def objective(self, total: Array, squares: Array, count: int) -> Array:
         """Return the objective of sets of `count` spectra with the given sums, along the first axis."""
-        return (1.0 - self.record_weight) * misfit(total / count) ** 2 + self.record_weight * squares / count
+        return (1.0 - self.record_weight) * log_spectrum_misfit(
+            total / count
+        ) ** 2 + self.record_weight * squares / count
 
     def objective_of(self, chosen: Sequence[int]) -> float:
         """Return the objective of one set."""
@@ -74,25 +83,25 @@ class SelectionProblem:
         return free
 
 
-def misfit(ratios: Array) -> Array:
+def log_spectrum_misfit(ratios: Array) -> Array:
     """Root mean square of the logarithms along the last axis."""
     return np.sqrt(np.mean(np.log(ratios) ** 2, axis=-1))
 
 
-def best_set(choice: SelectionProblem, n: int) -> list[int]:
+def best_record_set(choice: SelectionProblem, n: int) -> list[int]:
     """Return the best of some sets of `n` records, in order: each is improved by exchanges until none helps.
 
     One set starts from the records with the least misfits; the others grow, each from one of these records, by the
     record that helps the mean most. The list is shorter than `n` where the limits leave too few records.
     """
     seeds = np.argsort(choice.misfits, kind="stable")[:N_STARTS]
-    starts = [_ranked(choice, n), *(_greedy(choice, n, int(seed)) for seed in seeds)]
+    starts = [_ranked_records(choice, n), *(_greedy_record_set(choice, n, int(seed)) for seed in seeds)]
     longest = max(map(len, starts))
-    sets = [_exchanged(choice, start) for start in starts if len(start) == longest]
+    sets = [_record_set_after_exchanges(choice, start) for start in starts if len(start) == longest]
     return sorted(min(sets, key=choice.objective_of))
 
 
-def _ranked(choice: SelectionProblem, n: int) -> list[int]:
+def _ranked_records(choice: SelectionProblem, n: int) -> list[int]:
     chosen: list[int] = []
     for i in np.argsort(choice.misfits, kind="stable"):
         if len(chosen) < n and choice.allowed(chosen)[i]:
@@ -100,7 +109,7 @@ def _ranked(choice: SelectionProblem, n: int) -> list[int]:
     return chosen
 
 
-def _greedy(choice: SelectionProblem, n: int, seed: int) -> list[int]:
+def _greedy_record_set(choice: SelectionProblem, n: int, seed: int) -> list[int]:
     own = choice.misfits**2
     chosen, total, squares = [seed], choice.spectra[seed], own[seed]
     while len(chosen) < n and (free := choice.allowed(chosen)).any():
@@ -111,7 +120,7 @@ def _greedy(choice: SelectionProblem, n: int, seed: int) -> list[int]:
     return chosen
 
 
-def _exchanged(choice: SelectionProblem, chosen: list[int]) -> list[int]:
+def _record_set_after_exchanges(choice: SelectionProblem, chosen: list[int]) -> list[int]:
     """Replace one record at a time, always by the exchange that helps most."""
     own, present = choice.misfits**2, choice.objective_of(chosen)
     while True:
@@ -172,16 +181,16 @@ class Selection(HtmlTable, Value, Generic[S]):
 
     def __repr__(self) -> str:
         return (
-            f"Selection({counted(len(self.names), 'record')}, misfit of the mean {self.misfit:.2g}, "
+            f"Selection({number_with_noun(len(self.names), 'record')}, misfit of the mean {self.misfit:.2g}, "
             f"least mean/target {self.least_ratio:.2g})"
         )
 
     def _shown_as(self) -> Mapping[str, Any]:
         return {
-            "records": f"{len(self.names)}: {few([' + '.join(names) for names in self.names])}",
+            "records": f"{len(self.names)}: {few_texts_shown([' + '.join(names) for names in self.names])}",
             "measure": self.measure,
-            "periods": f"{span(self.periods)} s",
-            "factors": span(self.factors),
+            "periods": f"{value_range_text(self.periods)} s",
+            "factors": value_range_text(self.factors),
             "misfit of the mean": self.misfit,
             "least mean/target": self.least_ratio,
             "mean/target at a period of zero": None if math.isnan(self.zero_period_ratio) else self.zero_period_ratio,
@@ -207,12 +216,12 @@ class Selection(HtmlTable, Value, Generic[S]):
     @property
     def misfits(self) -> Array:
         """Root mean square over the periods of ln(S_a/target) of each record, shape (n,)."""
-        return misfit(self.sa / self.target.at(self.periods))
+        return log_spectrum_misfit(self.sa / self.target.at(self.periods))
 
     @property
     def misfit(self) -> float:
         """Root mean square over the periods of ln(mean/target)."""
-        return float(misfit(self.mean / self.target.at(self.periods)))
+        return float(log_spectrum_misfit(self.mean / self.target.at(self.periods)))
 
     @property
     def least_ratio(self) -> float:
@@ -301,30 +310,32 @@ def select_records(
     motions: Sequence[GroundMotion], target: TargetSpectrum, n: int, periods: ArrayLike, options: SelectionOptions
 ) -> tuple[Array, list[Recording], Array, Array]:
     """Return the periods, the chosen records, unscaled, their factors and their scaled spectra; see `Suite.select`."""
-    fitted = instance("target", target, TargetSpectrum)
+    fitted = checked_instance("target", target, TargetSpectrum)
     examined = comparison_periods(periods)
     aim = fitted.at(examined)
-    if not one_of(options.measure, get_args(Combination)):
+    if not is_one_of(options.measure, get_args(Combination)):
         words = ", ".join(map(repr, get_args(Combination)))
         raise InputError(f"measure must be one of {words}, but {shown(options.measure)} was given.", field="measure")
     low, high = _checked_scale_limits(options.scale_limits)
-    weight = _checked_weight("record_weight", options.record_weight)
+    weight = _checked_selection_weight("record_weight", options.record_weight)
     caps = [
-        (name, None if most is None else whole_number(name, most, 1))
+        (name, None if most is None else checked_whole_number(name, most, 1))
         for name, most in (("per_event", options.per_event), ("per_station", options.per_station))
     ]
-    check_horizontal(*motions)
-    records = _candidates(motions, options.measure)
-    count = whole_number("n", n, 1)
+    check_horizontal_component(*motions)
+    records = _candidate_recordings(motions, options.measure)
+    count = checked_whole_number("n", n, 1)
     if count > len(records):
         kind = "records" if options.measure == "component" else "pairs"
         raise InputError(f"n must be at most {len(records)}, the number of {kind}, but {count} was given.", field="n")
     unscaled = np.stack([record.sa(examined, options.measure, fitted.damping_ratio) for record in records])
-    fitting = [fitting_factor(row, aim, record.names[0]) for row, record in zip(unscaled, records, strict=True)]
+    fitting = [
+        spectrum_fitting_factor(row, aim, record.names[0]) for row, record in zip(unscaled, records, strict=True)
+    ]
     factors = np.clip(fitting, low, high)
     groups = {"per_event": [each.event for each in records], "per_station": [each.station for each in records]}
     limits = tuple((groups[name], most) for name, most in caps if most is not None)
-    found = best_set(SelectionProblem(factors[:, None] * unscaled / aim, weight, limits), count)
+    found = best_record_set(SelectionProblem(factors[:, None] * unscaled / aim, weight, limits), count)
     if len(found) < count:
         given = " and ".join(f"{name}={most}" for name, most in caps if most is not None)
         raise InputError(
@@ -334,11 +345,13 @@ def select_records(
         )
     factors, unscaled = factors[found], unscaled[found]
     if options.least_ratio is not None:
-        factors = _raised_factors(factors, unscaled / aim, positive("least_ratio", options.least_ratio, ""), high)
+        factors = _raised_scale_factors(
+            factors, unscaled / aim, checked_positive("least_ratio", options.least_ratio, ""), high
+        )
     return examined, [records[i] for i in found], factors, factors[:, None] * unscaled
 
 
-def _checked_weight(name: str, given: float) -> float:
+def _checked_selection_weight(name: str, given: float) -> float:
     share = real_or_nan(given)
     if not 0.0 <= share <= 1.0:
         raise InputError(f"{name} must lie in [0, 1], but {shown(given)} was given.", field=name)
@@ -346,7 +359,7 @@ def _checked_weight(name: str, given: float) -> float:
 
 
 def _checked_scale_limits(given: tuple[float, float]) -> tuple[float, float]:
-    limits = finite_vector("scale_limits", given, "")
+    limits = checked_finite_vector("scale_limits", given, "")
     if limits.size != 2 or not 0.0 < limits[0] <= limits[1]:
         raise InputError(
             f"scale_limits must be the smallest and the largest factor, both positive, but {shown(given)} was given.",
@@ -355,7 +368,7 @@ def _checked_scale_limits(given: tuple[float, float]) -> tuple[float, float]:
     return float(limits[0]), float(limits[1])
 
 
-def _raised_factors(factors: Array, ratios: Array, least: float, high: float) -> Array:
+def _raised_scale_factors(factors: Array, ratios: Array, least: float, high: float) -> Array:
     """Return the factors, multiplied by one number of at least 1 with which the mean reaches `least` of the target."""
     more = max(1.0, least / float(np.min((factors[:, None] * ratios).mean(axis=0))))
     if factors.max() * more > high and more > 1.0:
@@ -367,7 +380,7 @@ def _raised_factors(factors: Array, ratios: Array, least: float, high: float) ->
     return factors * more
 
 
-def _candidates(motions: Sequence[GroundMotion], measure: Combination) -> list[Recording]:
+def _candidate_recordings(motions: Sequence[GroundMotion], measure: Combination) -> list[Recording]:
     if measure == "component":
         return [Recording((motion,)) for motion in motions]
     pairs, single = horizontal_pairs(motions)
@@ -378,9 +391,9 @@ def _candidates(motions: Sequence[GroundMotion], measure: Combination) -> list[R
             field="measure",
         )
     if single:
-        count = counted(len(single), "motion that is", "motions that are")
+        count = number_with_noun(len(single), "motion that is", "motions that are")
         warnings.warn(
-            f"Left out: {count} not one of two components with the same time step, {listed(single, 5)}.",
+            f"Left out: {count} not one of two components with the same time step, {first_texts_shown(single, 5)}.",
             RecordWarning,
             stacklevel=4,
         )

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from rockflex._arrays import Array
-from rockflex._checks import positive, real_or_nan, whole_number
+from rockflex._checks import checked_positive, checked_whole_number, real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
@@ -14,20 +14,20 @@ from rockflex._shown import shown
 MAX_REFINEMENT = 10_000  # largest number of new steps per old step
 
 
-def velocity(a: Array, dt: float) -> Array:
+def velocity_from_acceleration(a: Array, dt: float) -> Array:
     """Velocity at the samples, from rest: the trapezoidal rule, exact for a linear acceleration."""
-    return _cumulative(0.5 * dt * (a[:-1] + a[1:]))
+    return _cumulative_sum(0.5 * dt * (a[:-1] + a[1:]))
 
 
-def displacement(a: Array, dt: float) -> Array:
+def displacement_from_acceleration(a: Array, dt: float) -> Array:
     """Displacement at the samples, from rest: Δd = v₀ dt + (2 a₀ + a₁) dt²/6."""
-    v = velocity(a, dt)
-    return _cumulative(dt * v[:-1] + dt**2 / 6 * (2 * a[:-1] + a[1:]))
+    v = velocity_from_acceleration(a, dt)
+    return _cumulative_sum(dt * v[:-1] + dt**2 / 6 * (2 * a[:-1] + a[1:]))
 
 
 def peak_velocity(a: Array, dt: float) -> float:
     """Return the largest |v|; between samples v has an extreme where a crosses zero."""
-    v = velocity(a, dt)
+    v = velocity_from_acceleration(a, dt)
     k = np.flatnonzero(np.sign(a[:-1]) * np.sign(a[1:]) < 0)
     inside = v[k] + 0.5 * dt * a[k] * (a[k] / (a[k] - a[k + 1]))
     return float(np.max(np.abs(np.concatenate((v, inside)))))
@@ -35,7 +35,7 @@ def peak_velocity(a: Array, dt: float) -> float:
 
 def peak_displacement(a: Array, dt: float) -> float:
     """Return the largest |d|; between samples d has an extreme at the zeros of the quadratic v."""
-    v, d = velocity(a, dt), displacement(a, dt)
+    v, d = velocity_from_acceleration(a, dt), displacement_from_acceleration(a, dt)
     # With x = t/dt in [0, 1]: v = c + b x + q x².
     c, b, q = v[:-1], dt * a[:-1], 0.5 * dt * np.diff(a)
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
@@ -49,7 +49,7 @@ def peak_displacement(a: Array, dt: float) -> float:
 
 def arias_intensity(a: Array, dt: float) -> float:
     """Return π/(2g) ∫a² dt over the record (Arias 1970)."""
-    return math.pi / (2 * GRAVITY) * float(np.sum(_energies(a, dt)))
+    return math.pi / (2 * GRAVITY) * float(np.sum(_arias_energies(a, dt)))
 
 
 def cumulative_absolute_velocity(a: Array, dt: float) -> float:
@@ -69,13 +69,13 @@ def significant_duration(a: Array, dt: float, low: float, high: float) -> float:
             f"low and high must be fractions with 0 <= low < high <= 1, but low={shown(low)} and high={shown(high)} "
             "were given. Significant duration D5-95 is low=0.05, high=0.95."
         )
-    energy = _cumulative(_energies(a, dt))
+    energy = _cumulative_sum(_arias_energies(a, dt))
     if energy[-1] == 0:
         return 0.0
-    return _time_of(high * energy[-1], energy, a, dt) - _time_of(low * energy[-1], energy, a, dt)
+    return _time_of_energy(high * energy[-1], energy, a, dt) - _time_of_energy(low * energy[-1], energy, a, dt)
 
 
-def _time_of(target: float, energy: Array, a: Array, dt: float) -> float:
+def _time_of_energy(target: float, energy: Array, a: Array, dt: float) -> float:
     k = int(np.searchsorted(energy, target))
     if k == 0:
         return 0.0
@@ -89,25 +89,25 @@ def _time_of(target: float, energy: Array, a: Array, dt: float) -> float:
     return (k - 1) * dt + min(step, dt)
 
 
-def _energies(a: Array, dt: float) -> Array:
+def _arias_energies(a: Array, dt: float) -> Array:
     left, right = a[:-1], a[1:]
     return dt / 3 * (left**2 + left * right + right**2)
 
 
-def _cumulative(increments: Array) -> Array:
+def _cumulative_sum(increments: Array) -> Array:
     return np.concatenate((np.zeros(1), np.cumsum(increments)))
 
 
-def refine(a: Array, k: int) -> Array:
+def refine_samples(a: Array, k: int) -> Array:
     """Split every interval into `k` collinear ones."""
-    k = whole_number("k", k, 1, MAX_REFINEMENT)
+    k = checked_whole_number("k", k, 1, MAX_REFINEMENT)
     inside = a[:-1, None] + np.diff(a)[:, None] * (np.arange(k) / k)
     return np.append(inside.ravel(), a[-1])
 
 
-def refinement_of(old: float, new: float) -> int:
+def refinement_factor(old: float, new: float) -> int:
     """Return the whole number old/new, or raise an error that suggests valid steps."""
-    positive("dt", new, "s")
+    checked_positive("dt", new, "s")
     ratio = min(old / new, MAX_REFINEMENT)
     k = round(ratio)
     if k >= 1 and abs(ratio - k) <= 1e-9:
@@ -120,9 +120,9 @@ def refinement_of(old: float, new: float) -> int:
     )
 
 
-def baseline_correct(a: Array, dt: float, degree: int) -> Array:
+def correct_baseline(a: Array, dt: float, degree: int) -> Array:
     """Remove the polynomial whose exact integral fits the velocity best (least squares at the samples)."""
-    degree = whole_number("degree", degree, 0)
+    degree = checked_whole_number("degree", degree, 0)
     if degree > a.size - 2:
         raise InputError(
             f"degree must be at most {a.size - 2} for {a.size} samples, but {degree} was given: "
@@ -130,12 +130,12 @@ def baseline_correct(a: Array, dt: float, degree: int) -> Array:
         )
     # Legendre polynomials keep the fit well conditioned; they span the same space as powers of t.
     basis = legendre.legvander(np.linspace(-1, 1, a.size), degree)
-    drift = np.stack([velocity(column, dt) for column in basis.T], axis=1)
-    weights, *_ = np.linalg.lstsq(drift, velocity(a, dt), rcond=None)
+    drift = np.stack([velocity_from_acceleration(column, dt) for column in basis.T], axis=1)
+    weights, *_ = np.linalg.lstsq(drift, velocity_from_acceleration(a, dt), rcond=None)
     return a - basis @ weights
 
 
-def band_pass(a: Array, dt: float, low: float, high: float, order: int) -> Array:
+def band_pass_filter(a: Array, dt: float, low: float, high: float, order: int) -> Array:
     """Butterworth filter run forwards and backwards: no phase shift, twice the order."""
     from scipy.signal import butter, sosfiltfilt
 
@@ -145,7 +145,7 @@ def band_pass(a: Array, dt: float, low: float, high: float, order: int) -> Array
             f"The corner frequencies must satisfy 0 < low < high < {nyquist:g} Hz, the Nyquist frequency "
             f"of dt = {dt:g} s, but low={shown(low)} and high={shown(high)} were given."
         )
-    order = whole_number("order", order, 1, 100)
+    order = checked_whole_number("order", order, 1, 100)
     try:
         sections = butter(order, (low, high), btype="bandpass", output="sos", fs=1 / dt)
     except ValueError as error:

@@ -7,7 +7,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import all_positive, finite_vector, in_range, instance, positive
+from rockflex._checks import (
+    check_all_positive,
+    checked_finite_vector,
+    checked_in_range,
+    checked_instance,
+    checked_positive,
+)
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
@@ -17,7 +23,7 @@ MIN_PERIOD = 1e-6  # s
 N_COMPARED = 50  # periods at which a range is examined
 
 
-def checked_periods(periods: ArrayLike) -> Array:
+def checked_spectrum_periods(periods: ArrayLike) -> Array:
     """Return periods in s, each zero or at least 1e-6 s.
 
     Raises
@@ -25,7 +31,7 @@ def checked_periods(periods: ArrayLike) -> Array:
     InputError
         If one is negative, too short or not finite.
     """
-    period = finite_vector("periods", periods, "s")
+    period = checked_finite_vector("periods", periods, "s")
     bad = np.flatnonzero((period < 0) | ((period > 0) & (period < MIN_PERIOD)))
     if bad.size:
         raise InputError(
@@ -35,9 +41,9 @@ def checked_periods(periods: ArrayLike) -> Array:
     return period
 
 
-def checked_damping(damping_ratio: float) -> float:
+def checked_spectrum_damping(damping_ratio: float) -> float:
     """Return a fraction of critical damping, 0 <= ζ < 1, or raise an InputError."""
-    return in_range("damping_ratio", damping_ratio, 0.0, 1.0, hint="It is a fraction: 5 % is 0.05.")
+    return checked_in_range("damping_ratio", damping_ratio, 0.0, 1.0, hint="It is a fraction: 5 % is 0.05.")
 
 
 def comparison_periods(periods: ArrayLike) -> Array:
@@ -48,7 +54,7 @@ def comparison_periods(periods: ArrayLike) -> Array:
     InputError
         If there is none, the ends are not in order, or one is negative or not finite.
     """
-    given = finite_vector("periods", periods, "s")
+    given = checked_finite_vector("periods", periods, "s")
     if given.size == 2:
         if not 0.0 < given[0] < given[1]:
             raise InputError(
@@ -99,7 +105,7 @@ class ResponseSpectrum(Value):
         return np.divide(2 * np.pi * self.sd, self.period, out=np.zeros_like(self.sd), where=self.period > 0)
 
 
-def largest_displacement(acceleration: Array, dt: float, period: float, damping_ratio: float) -> float:
+def spectral_displacement(acceleration: Array, dt: float, period: float, damping_ratio: float) -> float:
     """Return the spectral displacement in m at one period; see `GroundMotion.spectrum`."""
     if type(period) is type(damping_ratio) is float and MIN_PERIOD <= period < math.inf and 0.0 <= damping_ratio < 1.0:
         # Most are asked one by one, and each takes less than the checks of a whole spectrum.
@@ -109,8 +115,8 @@ def largest_displacement(acceleration: Array, dt: float, period: float, damping_
 
 def response_spectrum(acceleration: Array, dt: float, periods: ArrayLike, damping_ratio: float) -> ResponseSpectrum:
     """Return the response spectrum of a sampled acceleration; see `GroundMotion.spectrum`."""
-    period = checked_periods(periods)
-    zeta = checked_damping(damping_ratio)
+    period = checked_spectrum_periods(periods)
+    zeta = checked_spectrum_damping(damping_ratio)
     moves, found = period > 0, np.zeros((period.size, 2))
     found[moves] = peaks(acceleration, dt, 2 * np.pi / period[moves], zeta)
     sd, sv = found.T.copy()
@@ -161,7 +167,7 @@ class TargetSpectrum(Value):
     name: str = ""
 
     def __init__(self, periods: ArrayLike, sa: ArrayLike, damping_ratio: float = 0.05, name: str = "") -> None:
-        period, ordinates = finite_vector("periods", periods, "s"), finite_vector("sa", sa, "m/s²")
+        period, ordinates = checked_finite_vector("periods", periods, "s"), checked_finite_vector("sa", sa, "m/s²")
         if period.size < 2 or period.size != ordinates.size:
             raise InputError(
                 "periods and sa must have the same length of at least 2, but "
@@ -174,9 +180,9 @@ class TargetSpectrum(Value):
                 "the table by period, and keep each period once.",
                 field="periods",
             )
-        all_positive("sa", ordinates, "m/s²")
-        zeta = checked_damping(damping_ratio)
-        vars(self).update(periods=period, sa=ordinates, damping_ratio=zeta, name=instance("name", name, str))
+        check_all_positive("sa", ordinates, "m/s²")
+        zeta = checked_spectrum_damping(damping_ratio)
+        vars(self).update(periods=period, sa=ordinates, damping_ratio=zeta, name=checked_instance("name", name, str))
 
     def __repr__(self) -> str:
         span = f"{self.periods[0]:g} to {self.periods[-1]:g} s"
@@ -190,7 +196,7 @@ class TargetSpectrum(Value):
         InputError
             If a period is outside the table.
         """
-        period = finite_vector("periods", periods, "s")
+        period = checked_finite_vector("periods", periods, "s")
         outside = (period < self.periods[0]) | (period > self.periods[-1])
         if outside.any():
             raise InputError(
@@ -217,17 +223,17 @@ class TargetSpectrum(Value):
             If the factor is not positive, or an ordinate becomes too large.
         """
         with np.errstate(over="ignore"):
-            ordinates = positive("factor", factor, "") * self.sa
+            ordinates = checked_positive("factor", factor, "") * self.sa
         return TargetSpectrum(self.periods, ordinates, self.damping_ratio, self.name)
 
 
-def fitting_factor(spectrum: Array, target: Array, name: str) -> float:
+def spectrum_fitting_factor(spectrum: Array, target: Array, name: str) -> float:
     """Return the factor with the least mean square of ln(factor · spectrum / target)."""
-    scalable_ordinate(float(spectrum.min()), name, None)
+    scalable_spectral_ordinate(float(spectrum.min()), name, None)
     return float(np.exp(np.mean(np.log(target / spectrum))))
 
 
-def scalable_ordinate(sa: float, name: str, period: float | None) -> float:
+def scalable_spectral_ordinate(sa: float, name: str, period: float | None) -> float:
     """Return a spectral ordinate, or raise an InputError if no factor scales it."""
     if sa <= 0.0 or not np.isfinite(sa):
         where = "" if period is None else f" at a period of {period:g} s"

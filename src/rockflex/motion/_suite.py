@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array
-from rockflex._checks import instance, one_of
+from rockflex._checks import checked_instance, is_one_of
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._html import HtmlTable, span
-from rockflex._shown import counted, few, shown
+from rockflex._html import HtmlTable, value_range_text
+from rockflex._shown import few_texts_shown, number_with_noun, shown
 from rockflex._values import Value
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
@@ -71,7 +71,7 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
                 f"motions must be a sequence of GroundMotion objects, but {type(motions).__name__} was given."
             )
         members = tuple(motions)
-        instance("name", name, str)
+        checked_instance("name", name, str)
         if not members:
             raise InputError("A suite needs at least one motion, but none was given.")
         for motion in members:
@@ -92,7 +92,9 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
         return tuple(motion.name for motion in self.motions)
 
     def __repr__(self) -> str:
-        return f"Suite({self.name!r}, {counted(len(self), 'motion')}: {self.names[0]!r} ... {self.names[-1]!r})"
+        return (
+            f"Suite({self.name!r}, {number_with_noun(len(self), 'motion')}: {self.names[0]!r} ... {self.names[-1]!r})"
+        )
 
     def _shown_as(self) -> Mapping[str, Any]:
         known = [motion.metadata for motion in self if motion.metadata is not None]
@@ -100,11 +102,11 @@ class Suite(HtmlTable, Value, Sequence[GroundMotion]):
         vertical = sum(motion.vertical is not None for motion in self)
         return {
             "name": self.name or None,
-            "motions": f"{len(self)}: {few(self.names)}",
-            "pga": f"{span(motion.pga for motion in self)} m/s²",
-            "pgv": f"{span(motion.pgv for motion in self)} m/s",
-            "duration": f"{span(motion.duration for motion in self)} s",
-            **{name: span(values) for name, values in facts.items() if values and None not in values},
+            "motions": f"{len(self)}: {few_texts_shown(self.names)}",
+            "pga": f"{value_range_text(motion.pga for motion in self)} m/s²",
+            "pgv": f"{value_range_text(motion.pgv for motion in self)} m/s",
+            "duration": f"{value_range_text(motion.duration for motion in self)} s",
+            **{name: value_range_text(values) for name, values in facts.items() if values and None not in values},
             "vertical components": vertical or None,
         }
 
@@ -302,33 +304,33 @@ def load_suite(name: str) -> Suite:
     >>> suite["FF-12-a"]
     GroundMotion('FF-12-a', 11186 samples, dt=0.0025 s, duration=27.9625 s, pga=2.775 m/s²)
     """
-    if not one_of(name, SUITE_NAMES):
+    if not is_one_of(name, SUITE_NAMES):
         near = get_close_matches(shown(name), SUITE_NAMES, n=1)
         hint = f" Did you mean {near[0]!r}?" if near else ""
         names = ", ".join(map(repr, SUITE_NAMES))
         raise InputError(f"No embedded suite is named {shown(name)}. The suites are {names}.{hint}")
-    return _load_cached(name)
+    return _load_suite_cached(name)
 
 
 @cache
-def _load_cached(name: str) -> Suite:
-    return Suite((_embedded_motion(entry, samples) for entry, samples in read_embedded(name)), name)
+def _load_suite_cached(name: str) -> Suite:
+    return Suite((_embedded_motion(entry, samples) for entry, samples in read_embedded_suite(name)), name)
 
 
-def read_embedded(name: str) -> list[tuple[dict[str, Any], Array]]:
+def read_embedded_suite(name: str) -> list[tuple[dict[str, Any], Array]]:
     """Return the metadata and the samples in g, shape (npts,), of the records of a suite, in order."""
     entries: list[dict[str, Any]] = json.loads((DATA / f"{name}.json").read_text("utf-8"))["records"]
     with np.load(DATA / f"{name}.npz") as archive:
-        return [(entry, decode(archive[entry["name"]])) for entry in entries]
+        return [(entry, unpack_decimal_samples(archive[entry["name"]])) for entry in entries]
 
 
-def decode(rows: NDArray[np.uint8]) -> Array:
+def unpack_decimal_samples(rows: NDArray[np.uint8]) -> Array:
     """Return samples from the five byte rows (four of the integers, one of the exponents)."""
     integers = np.ascontiguousarray(rows[:4].T).view("<i4")[:, 0]
     return integers / POWERS_OF_TEN[rows[4]]
 
 
-def encode(samples: Array, digits: int) -> NDArray[np.uint8]:
+def pack_decimal_samples(samples: Array, digits: int) -> NDArray[np.uint8]:
     """Return byte rows from samples that are decimals with at most `digits` (up to 9) significant digits."""
     with np.errstate(divide="ignore"):
         magnitude = np.floor(np.log10(np.abs(samples)))
@@ -336,7 +338,7 @@ def encode(samples: Array, digits: int) -> NDArray[np.uint8]:
     exponents[samples == 0] = 0
     integers = np.rint(samples * POWERS_OF_TEN[exponents]).astype("<i4")
     rows = np.concatenate((integers[:, None].view(np.uint8), exponents[:, None]), axis=1).T.copy()
-    if decode(rows).tobytes() != samples.astype(np.float64).tobytes():
+    if unpack_decimal_samples(rows).tobytes() != samples.astype(np.float64).tobytes():
         raise ValueError(f"The samples are not decimals of {digits} significant digits.")
     return rows
 

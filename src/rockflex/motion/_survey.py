@@ -5,21 +5,21 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockflex._shown import counted
+from rockflex._shown import number_with_noun
 from rockflex._values import Value
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._read_suite import (
     ChosenComponents,
-    FileRead,
+    RecordFileContent,
     Vertical,
-    check_vertical,
+    check_vertical_option,
     choose_components,
-    files_of,
-    is_record,
-    read_many,
+    is_record_file,
+    read_record_files,
+    record_files,
 )
 from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._recordings import StationRecord, file_names, group_stations
+from rockflex.motion._recordings import StationRecord, file_names_text, group_stations
 from rockflex.motion._suite import Suite
 
 if TYPE_CHECKING:
@@ -184,12 +184,14 @@ def survey_records(
     >>> [(entry.file, entry.reason[:21]) for entry in survey.left_out]
     [('ABC-UP.AT2', 'vertical component'), ('notes.txt', 'notes.txt holds no nu')]
     """
-    check_vertical(vertical)
-    name, files = files_of(paths)
-    return _survey(paths, name, read_many(files, units, dt, table), pair=vertical is not None)
+    check_vertical_option(vertical)
+    name, files = record_files(paths)
+    return _survey_of_components(paths, name, read_record_files(files, units, dt, table), pair=vertical is not None)
 
 
-def survey_plain(folder: Path, units: str | None = None, dt: float | None = None) -> tuple[RecordSurvey, RecordSurvey]:
+def survey_without_obspy(
+    folder: Path, units: str | None = None, dt: float | None = None
+) -> tuple[RecordSurvey, RecordSurvey]:
     """Survey a folder as `survey_records` does, but without ObsPy, whose readers are not made for files of strangers.
 
     Returns
@@ -202,19 +204,19 @@ def survey_plain(folder: Path, units: str | None = None, dt: float | None = None
     InputError
         As for `survey_records`.
     """
-    name, files = files_of(folder)
-    found = read_many(files, units, dt, use_obspy=False)
-    return _survey(folder, name, found, pair=False), _survey(folder, name, found, pair=True)
+    name, files = record_files(folder)
+    found = read_record_files(files, units, dt, use_obspy=False)
+    return _survey_of_components(folder, name, found, pair=False), _survey_of_components(folder, name, found, pair=True)
 
 
-def _survey(
-    paths: str | Path | Iterable[str | Path], name: str, found: Sequence[FileRead], *, pair: bool
+def _survey_of_components(
+    paths: str | Path | Iterable[str | Path], name: str, found: Sequence[RecordFileContent], *, pair: bool
 ) -> RecordSurvey:
     result = choose_components(found, pair=pair)
     names = [each.file.name for each in found]
-    entries = [entry for each in found for entry in _entries(each, result, names)]
+    entries = [entry for each in found for entry in _survey_entries(each, result, names)]
     if isinstance(paths, str | Path):
-        others = (file for file in Path(paths).iterdir() if file.is_file() and not is_record(file))
+        others = (file for file in Path(paths).iterdir() if file.is_file() and not is_record_file(file))
         entries += [
             SurveyEntry(file=file.name, taken=False, reason="no record, by suffix and beginning") for file in others
         ]
@@ -227,25 +229,25 @@ def _survey(
     )
 
 
-def _entries(each: FileRead, result: ChosenComponents, names: list[str]) -> list[SurveyEntry]:
+def _survey_entries(each: RecordFileContent, result: ChosenComponents, names: list[str]) -> list[SurveyEntry]:
     if each.table is not None:
         missing = [Path(name) for name in each.table.missing(names)]
-        count = counted(len(missing), "file that is", "files that are")
-        told = f"; it lists {count} not there: {file_names(missing)}" if missing else ""
+        count = number_with_noun(len(missing), "file that is", "files that are")
+        told = f"; it lists {count} not there: {file_names_text(missing)}" if missing else ""
         reason = f"a table about the records{told}"
         return [SurveyEntry(file=each.file.name, taken=False, reason=reason, format="table")]
     if each.fault is not None:
         reason = str(each.fault).replace(str(each.file), each.file.name)
         return [SurveyEntry(file=each.file.name, taken=False, reason=reason)]
-    return [_entry(each, path, motion, result) for path, motion in each.motions.items()]
+    return [_survey_entry(each, path, motion, result) for path, motion in each.motions.items()]
 
 
-def _entry(each: FileRead, path: Path, motion: GroundMotion, result: ChosenComponents) -> SurveyEntry:
+def _survey_entry(each: RecordFileContent, path: Path, motion: GroundMotion, result: ChosenComponents) -> SurveyEntry:
     info = motion.metadata or RecordInfo()
     return SurveyEntry(
         file=each.file.name,
         taken=path in result.taken or path in result.paired,
-        reason=_reason(each, path, result),
+        reason=_survey_reason(each, path, result),
         name=motion.name,
         format=info.source_format,
         station=info.station,
@@ -261,7 +263,7 @@ def _entry(each: FileRead, path: Path, motion: GroundMotion, result: ChosenCompo
     )
 
 
-def _reason(each: FileRead, path: Path, result: ChosenComponents) -> str:
+def _survey_reason(each: RecordFileContent, path: Path, result: ChosenComponents) -> str:
     parts: list[str] = []
     if path in result.copies:
         parts.append(f"a copy of {result.copies[path].name}")

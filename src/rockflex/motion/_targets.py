@@ -5,13 +5,22 @@ from pathlib import Path
 
 import numpy as np
 
-from rockflex._checks import finite_vector, one_of, positive, real_or_nan
+from rockflex._checks import checked_finite_vector, checked_positive, is_one_of, real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._files import path_of
+from rockflex._files import checked_file_path
 from rockflex._shown import shown
-from rockflex.motion._spectra import TargetSpectrum, checked_damping
-from rockflex.motion._text import BRACKET, SECONDS, UNITS, after_brackets, number, read_lines, table_of, unit_name
+from rockflex.motion._spectra import TargetSpectrum, checked_spectrum_damping
+from rockflex.motion._text import (
+    BRACKET,
+    SECONDS,
+    UNITS,
+    acceleration_unit_name,
+    end_of_last_bracket,
+    parse_decimal,
+    parse_numeric_table,
+    read_text_lines,
+)
 
 # EN 1998-1:2004, Tables 3.2 and 3.3 (recommended values): S, T_B, T_C, T_D by type and ground type.
 _EC8 = {
@@ -124,17 +133,17 @@ def ec8_spectrum(
     if real_or_nan(kind) not in _EC8:
         raise InputError(f"kind must be 1 or 2, the type of the spectrum, but {shown(kind)} was given.", field="kind")
     table = _EC8[int(kind)]
-    if not one_of(ground, table):
+    if not is_one_of(ground, table):
         raise InputError(
             f"ground must be one of {', '.join(table)}, the ground type of EN 1998-1, but {shown(ground)} was given. "
             "Ground of type S1 or S2 needs a study of its own, whose spectrum is a table: TargetSpectrum(periods, sa).",
             field="ground",
         )
-    reference = positive("ag", ag, "m/s²")
-    zeta = checked_damping(damping_ratio)
+    reference = checked_positive("ag", ag, "m/s²")
+    zeta = checked_spectrum_damping(damping_ratio)
     eta = _damping_correction(zeta)
     soil, t_b, t_c, t_d = table[ground]
-    zero = positive("importance", importance, "") * reference * soil
+    zero = checked_positive("importance", importance, "") * reference * soil
     top = 2.5 * eta * zero
     sa = [zero, top, top, top * t_c / t_d, top * t_c * t_d / _EC8_END**2]
     name = f"EC8 type {int(kind)}, ground {ground}, {zero / soil / GRAVITY:.3g} g"
@@ -186,7 +195,11 @@ def asce7_spectrum(sds: float, sd1: float, tl: float, *, mce: bool = False) -> T
     >>> (target.at([0.0, 0.12, 0.6, 1.2, 16.0]) / 9.81).round(6)
     array([0.4    , 1.     , 1.     , 0.5    , 0.01875])
     """
-    short, second, long = positive("sds", sds, "m/s²"), positive("sd1", sd1, "m/s²"), positive("tl", tl, "s")
+    short, second, long = (
+        checked_positive("sds", sds, "m/s²"),
+        checked_positive("sd1", sd1, "m/s²"),
+        checked_positive("tl", tl, "s"),
+    )
     if not isinstance(mce, bool):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InputError(f"mce must be True or False, but {shown(mce)} was given.", field="mce")
     corner = second / short
@@ -243,13 +256,13 @@ def asce7_site_spectrum(ss: float, s1: float, site: str, tl: float, *, mce: bool
     >>> (target.at([0.3, 1.0]) / 9.81).round(3)  # 2/3 · 1.2 · 1.5 and 2/3 · 1.4 · 0.6
     array([1.2 , 0.56])
     """
-    if not one_of(site, (*_FA, "default")):
+    if not is_one_of(site, (*_FA, "default")):
         raise InputError(
             f'site must be one of A, B, C, D, E or "default", the site class of ASCE 7-16, but {shown(site)} was given.'
             " Class F needs an analysis of the site.",
             field="site",
         )
-    short, second = positive("ss", ss, "m/s²") / GRAVITY, positive("s1", s1, "m/s²") / GRAVITY
+    short, second = checked_positive("ss", ss, "m/s²") / GRAVITY, checked_positive("s1", s1, "m/s²") / GRAVITY
     if site == "E" and (short >= _E_SHORT or second >= _E_SECOND):
         raise InputError(
             f"site E with S_S = {short:.3g} g and S_1 = {second:.3g} g needs an analysis of the hazard at the site "
@@ -328,9 +341,9 @@ def ec8_second_spectrum(
     >>> target.at([0.0, 0.2, 1.0, 3.0]).round(2)
     array([2.47, 6.17, 2.33, 0.65])
     """
-    alpha, beta = positive("s_alpha", s_alpha, "m/s²"), positive("s_beta", s_beta, "m/s²")
-    of_alpha, of_beta = _amplification(alpha, beta, site, amplification)
-    shape = positive("topography", topography, "")
+    alpha, beta = checked_positive("s_alpha", s_alpha, "m/s²"), checked_positive("s_beta", s_beta, "m/s²")
+    of_alpha, of_beta = _site_amplification(alpha, beta, site, amplification)
+    shape = checked_positive("topography", topography, "")
     plateau, second = shape * of_alpha * alpha, shape * of_beta * beta
     t_c = second / plateau
     t_b = min(max(t_c / _CHI, _T_B[0]), _T_B[1])
@@ -342,7 +355,7 @@ def ec8_second_spectrum(
             "the values and their unit, m/s².",
             field="s_beta",
         )
-    zeta = checked_damping(damping_ratio)
+    zeta = checked_spectrum_damping(damping_ratio)
     eta = _damping_correction(zeta)
     rise = np.geomspace(_T_A, t_b, _N_RISING)
     share = (rise - _T_A) / (t_b - _T_A)
@@ -354,7 +367,7 @@ def ec8_second_spectrum(
     return TargetSpectrum(periods, np.concatenate(([plateau / _F_A], rising, falling)), zeta, name)
 
 
-def _amplification(alpha: float, beta: float, site: str, given: tuple[float, float] | None) -> tuple[float, float]:
+def _site_amplification(alpha: float, beta: float, site: str, given: tuple[float, float] | None) -> tuple[float, float]:
     if given is not None:
         if site != "A":
             raise InputError(
@@ -362,14 +375,14 @@ def _amplification(alpha: float, beta: float, site: str, given: tuple[float, flo
                 "default factors of a site category.",
                 field="amplification",
             )
-        factors = finite_vector("amplification", given, "")
+        factors = checked_finite_vector("amplification", given, "")
         if factors.size != 2 or factors.min() <= 0.0:
             raise InputError(
                 f"amplification must be the two positive factors F_α and F_β, but {shown(given)} was given.",
                 field="amplification",
             )
         return float(factors[0]), float(factors[1])
-    if not one_of(site, _EC8_2024_SITES):
+    if not is_one_of(site, _EC8_2024_SITES):
         raise InputError(
             f"site must be one of {', '.join(_EC8_2024_SITES)}, a site category of EN 1998-1-1:2024, but {shown(site)} "
             "was given. For E and F, and with a measured shear wave velocity, give amplification=(F_α, F_β).",
@@ -420,20 +433,22 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
     >>> rf.read_target("site.csv")
     TargetSpectrum('site', 0 to 2 s, up to 7.357 m/s², ζ = 0.05)
     """
-    if units is not None and not one_of(units, UNITS):
+    if units is not None and not is_one_of(units, UNITS):
         raise InputError(
             f"units must be one of {', '.join(map(repr, UNITS))}, but {shown(units)} was given.", field="units"
         )
-    file = path_of("path", path)
-    table = table_of(file, read_lines(file), "a target spectrum is expected as two columns, period and S_a")
+    file = checked_file_path("path", path)
+    table = parse_numeric_table(
+        file, read_text_lines(file), "a target spectrum is expected as two columns, period and S_a"
+    )
     line, cells = table.rows[0]
     if len(cells) != 2:
         raise InputError(
             f"{file}, line {line}: a target spectrum has two columns, the period in s and the pseudo-acceleration, "
             f"but {len(cells)} were found. Keep these."
         )
-    values = np.array([[number(cell, file, line) for cell in cells] for line, cells in table.rows])
-    unit = UNITS[_unit(file, next((head for head in reversed(table.heads) if head), ""), units)]
+    values = np.array([[parse_decimal(cell, file, line) for cell in cells] for line, cells in table.rows])
+    unit = UNITS[_target_spectrum_unit(file, next((head for head in reversed(table.heads) if head), ""), units)]
     try:
         return TargetSpectrum(values[:, 0], values[:, 1] * unit, damping_ratio, file.stem)
     except InputError as error:
@@ -442,11 +457,11 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
         raise InputError(f"{file}: {error}", field=error.field) from error
 
 
-def _unit(file: Path, head: str, units: str | None) -> str:
+def _target_spectrum_unit(file: Path, head: str, units: str | None) -> str:
     """Return the unit in the last brackets of the header, or `units`; both must agree."""
-    found = BRACKET.findall(head[: after_brackets(head)])
+    found = BRACKET.findall(head[: end_of_last_bracket(head)])
     written = found[-1] if found and found[-1].strip().lower() not in SECONDS else ""  # unit of the periods
-    stated = unit_name(written)
+    stated = acceleration_unit_name(written)
     if written and stated is None:
         raise InputError(
             f"{file}: the header gives the unit {shown(written)}, which is not known. Write it as one of "

@@ -10,8 +10,8 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._files import check_regular
-from rockflex._shown import counted, shown
+from rockflex._files import check_regular_file
+from rockflex._shown import number_with_noun, shown
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo
 
@@ -32,7 +32,7 @@ EXPECTED_RECORD = "a record is expected as AT2, CSV or columns of text"
 
 
 @dataclass(frozen=True)
-class Unit:
+class AccelerationUnit:
     """A unit of acceleration, or a multiple of one, such as one count of a recorder.
 
     Parameters
@@ -55,7 +55,7 @@ class Unit:
         return self.factor * UNITS[self.name]
 
 
-def unit_name(text: str) -> str | None:
+def acceleration_unit_name(text: str) -> str | None:
     """Return the key of `UNITS` for a unit as headers write it, such as cm/sec^2 or gal; None if it is none."""
     plain = re.sub(r"[\s^*·.]", "", text.lower().replace("²", "2").replace("−", "-"))
     if plain in ("g", "mg"):
@@ -68,14 +68,14 @@ def unit_name(text: str) -> str | None:
     return "in/s2" if plain.startswith("in") else f"{found[1] or ''}m/s2"
 
 
-def acceleration_in(text: str) -> float | None:
+def acceleration_in_text(text: str) -> float | None:
     """Return an acceleration in m/s² that is written with its unit, such as 0.25g or 2.45 m/s2; None without one."""
     found = FACTOR.fullmatch(text) if len(text) < MAX_UNIT_LENGTH else None
-    name = found and unit_name(found[2])
+    name = found and acceleration_unit_name(found[2])
     return None if not found or name is None else float(found[1]) * UNITS[name]
 
 
-def declared_unit(units: object) -> Unit:
+def declared_acceleration_unit(units: object) -> AccelerationUnit:
     """Return the unit that a caller names, with a number before it for a multiple, such as "2.4e-4 cm/s2".
 
     Raises
@@ -85,10 +85,10 @@ def declared_unit(units: object) -> Unit:
     """
     if isinstance(units, str) and len(units) < MAX_UNIT_LENGTH:
         found = FACTOR.fullmatch(units)
-        name = unit_name(found[2] if found else units)
+        name = acceleration_unit_name(found[2] if found else units)
         factor = float(found[1]) if found else 1.0
         if name is not None and np.isfinite(factor) and factor > 0.0:
-            return Unit(name, factor)
+            return AccelerationUnit(name, factor)
     raise InputError(
         f"units must be one of {', '.join(map(repr, UNITS))}, but {shown(units)} was given. If the file holds counts, "
         'write the value of one count: units="2.4e-4 cm/s2".',
@@ -96,12 +96,12 @@ def declared_unit(units: object) -> Unit:
     )
 
 
-def read_content(path: str | Path) -> bytes:
+def read_file_bytes(path: str | Path) -> bytes:
     """Return the bytes of a file, or raise an error that explains why it cannot be read."""
     file = Path(path)
     if file.is_dir():
         raise InputError(f"{file} is a directory. Read all its records with read_suite({shown(str(file))}).")
-    check_regular(file)
+    check_regular_file(file)
     try:
         return file.read_bytes()
     except FileNotFoundError as error:
@@ -110,12 +110,12 @@ def read_content(path: str | Path) -> bytes:
         raise InputError(f"{file} cannot be read: {error.strerror}.") from error
 
 
-def read_lines(path: str | Path) -> list[str]:
+def read_text_lines(path: str | Path) -> list[str]:
     """Return the lines of a text file, or raise an error that explains why it cannot be read."""
-    return lines_of(Path(path), read_content(path))
+    return text_lines(Path(path), read_file_bytes(path))
 
 
-def lines_of(file: Path, content: bytes) -> list[str]:
+def text_lines(file: Path, content: bytes) -> list[str]:
     """Return the lines in the bytes of a text file.
 
     Raises
@@ -123,7 +123,7 @@ def lines_of(file: Path, content: bytes) -> list[str]:
     InputError
         If it is binary or empty.
     """
-    text = decoded(content)
+    text = decoded_text(content)
     if text is None:
         raise InputError(f"{file} is a binary file; a record is expected as text (AT2, CSV or columns).")
     if not text.strip():
@@ -131,7 +131,7 @@ def lines_of(file: Path, content: bytes) -> list[str]:
     return re.split("\r\n|\r|\n", text)
 
 
-def decoded(data: bytes) -> str | None:
+def decoded_text(data: bytes) -> str | None:
     """Return the text in the bytes of a file, or None if they are no text."""
     wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
     # Latin-1 accepts every byte, so it comes last; old headers use it.
@@ -145,7 +145,7 @@ def decoded(data: bytes) -> str | None:
     return None
 
 
-def number(token: str, file: str | Path, line: int) -> float:
+def parse_decimal(token: str, file: str | Path, line: int) -> float:
     """Return a decimal number (also with a Fortran D exponent), or raise an error that names the line."""
     if DECIMAL.fullmatch(token):
         value = float(re.sub("[Dd]", "E", token))
@@ -155,7 +155,7 @@ def number(token: str, file: str | Path, line: int) -> float:
     raise InputError(f"{file}, line {line}: expected a finite number, but found {token[:40]!r}.{hint}")
 
 
-def optional_number(text: str) -> float | None:
+def parse_optional_decimal(text: str) -> float | None:
     """Return the number in a field of a header, or None if there is none."""
     if not DECIMAL.fullmatch(text.strip()):
         return None
@@ -163,30 +163,32 @@ def optional_number(text: str) -> float | None:
     return value if np.isfinite(value) else None
 
 
-def non_negative(value: float | None) -> float | None:
+def non_negative_or_none(value: float | None) -> float | None:
     """Return a value that a header or table gives; -999 and other negative numbers stand for an unknown one."""
     return None if value is None or not value >= 0.0 else value
 
 
-def wrong_count(file: Path, n_found: int, n_stated: float, stated: str) -> InputError:
+def wrong_sample_count_error(file: Path, n_found: int, n_stated: float, stated: str) -> InputError:
     """Return the error of a file with fewer or more values than its header states."""
     fault = "is truncated" if n_found < n_stated else "contains too many values"
-    found = counted(n_found, "value follows", "values follow")
+    found = number_with_noun(n_found, "value follows", "values follow")
     return InputError(f"{file} {fault}: its header says {stated}, but {found}. Download the record again.")
 
 
-def build_motion(
-    file: Path, values: Array, unit: Unit, dt: float, info: RecordInfo, remedy: str, name: str | None = None
+def motion_from_samples(
+    file: Path, values: Array, unit: AccelerationUnit, dt: float, info: RecordInfo, remedy: str, name: str | None = None
 ) -> GroundMotion:
     """Build a motion named after its file."""
-    acceleration = acceleration_of(file, values, unit, remedy, info.scale)
+    acceleration = checked_acceleration_in_si(file, values, unit, remedy, info.scale)
     try:
         return GroundMotion(acceleration, dt, name=file.stem if name is None else name, metadata=info)
     except InputError as error:
         raise InputError(f"{file}: {error}") from error
 
 
-def acceleration_of(file: Path, values: Array, unit: Unit, remedy: str, scale: float | None = None) -> Array:
+def checked_acceleration_in_si(
+    file: Path, values: Array, unit: AccelerationUnit, remedy: str, scale: float | None = None
+) -> Array:
     """Convert to m/s² and reject amplitudes that indicate a wrong unit, unless a factor on the record explains them."""
     with np.errstate(over="ignore"):
         acceleration = values * unit.si
@@ -203,7 +205,7 @@ def acceleration_of(file: Path, values: Array, unit: Unit, remedy: str, scale: f
 
 
 @dataclass
-class Table:
+class NumericTable:
     """Rows of cells, each with its line, under labels; and the lines before them."""
 
     labels: list[str]  # empty if there are none
@@ -211,7 +213,7 @@ class Table:
     heads: list[str]
 
 
-def table_of(file: Path, lines: list[str], expected: str = EXPECTED_RECORD) -> Table:
+def parse_numeric_table(file: Path, lines: list[str], expected: str = EXPECTED_RECORD) -> NumericTable:
     """Return the rows of numbers in the lines of a text file.
 
     Cells are separated by semicolons, commas, tabs or blanks; ``#``, ``%`` and ``!`` begin comments. A comma is a
@@ -223,14 +225,14 @@ def table_of(file: Path, lines: list[str], expected: str = EXPECTED_RECORD) -> T
     body: list[tuple[int, str]] = []
     for i, line in enumerate(lines, 1):
         content = re.split("[#%!]", line, maxsplit=1)[0].strip()
-        if not body and (not content or not is_number(re.split(r"[;,\s]", content, maxsplit=1)[0] or content)):
+        if not body and (not content or not is_number_cell(re.split(r"[;,\s]", content, maxsplit=1)[0] or content)):
             heads.append(line.strip().lstrip("#%! \t"))
             plain.append((i, content))
         elif content:
             body.append((i, content))
     if not body:
         raise InputError(f"{file} holds no numbers: {expected}.")
-    separator, commas = _separator(body)
+    separator, commas = _cell_separator(body)
     rows: list[tuple[int, list[str]]] = []
     for i, content in body:
         cells = [cell.strip() for cell in content.split(separator)]
@@ -240,11 +242,11 @@ def table_of(file: Path, lines: list[str], expected: str = EXPECTED_RECORD) -> T
             raise InputError(
                 f"{file}, line {i}: expected {len(rows[0][1])} columns as in line {rows[0][0]}, but found {len(cells)}."
             )
-        rows.append((i, [_with_point(file, i, cell) for cell in cells] if commas else cells))
-    return Table(_found_labels(file, heads, plain, separator, len(rows[0][1])), rows, heads)
+        rows.append((i, [_with_decimal_point(file, i, cell) for cell in cells] if commas else cells))
+    return NumericTable(_column_labels(file, heads, plain, separator, len(rows[0][1])), rows, heads)
 
 
-def _separator(body: list[tuple[int, str]]) -> tuple[str | None, bool]:
+def _cell_separator(body: list[tuple[int, str]]) -> tuple[str | None, bool]:
     """Return the character between cells (None for blanks), and whether decimals are marked by commas."""
     first = body[0][1]
     if ";" in first:
@@ -252,16 +254,16 @@ def _separator(body: list[tuple[int, str]]) -> tuple[str | None, bool]:
     if "," not in first:
         # A column of decimals may begin with whole numbers: 0, 0,01, 0,02.
         some = next((content for _, content in body if "," in content), None)
-        return None, some is not None and all(_is_decimal(word) for word in some.split())
+        return None, some is not None and all(_is_decimal_number(word) for word in some.split())
     words = first.split()
-    if len(words) > 1 and all(map(_is_decimal, words)):
+    if len(words) > 1 and all(map(_is_decimal_number, words)):
         return None, True
     if len(words) == 1 and _is_single_column(body):
         return None, True
     return ",", False
 
 
-def _is_decimal(word: str) -> bool:
+def _is_decimal_number(word: str) -> bool:
     return bool(COMMA.fullmatch(word) or DECIMAL.fullmatch(word))
 
 
@@ -274,9 +276,9 @@ def _is_single_column(body: list[tuple[int, str]]) -> bool:
     return not all(later > earlier for earlier, later in pairwise(times))
 
 
-def _with_point(file: Path, line: int, cell: str) -> str:
+def _with_decimal_point(file: Path, line: int, cell: str) -> str:
     if "," in cell and not COMMA.fullmatch(cell):
-        number(cell, file, line)
+        parse_decimal(cell, file, line)
     if "." in cell:
         raise InputError(
             f"{file}, line {line}: {cell[:40]!r} has a decimal point, but other numbers have decimal commas. Write all "
@@ -285,29 +287,29 @@ def _with_point(file: Path, line: int, cell: str) -> str:
     return cell.replace(",", ".")
 
 
-def _found_labels(
+def _column_labels(
     file: Path, heads: list[str], plain: list[tuple[int, str]], separator: str | None, n_columns: int
 ) -> list[str]:
     """Return the labels in the last header line that has as many as there are columns."""
     for i, content in plain:
-        cells = _labels(content, separator)
+        cells = _header_labels(content, separator)
         # A row of numbers with a typing error is not a header, and must not be skipped.
         if len(cells) == n_columns and any(re.match(r"[+-]?\.?\d", cell) for cell in cells):
-            wrong = next((cell for cell in cells if not is_number(cell) and not COMMA.fullmatch(cell)), None)
+            wrong = next((cell for cell in cells if not is_number_cell(cell) and not COMMA.fullmatch(cell)), None)
             if wrong is not None and not TIME_LABEL.match(wrong):
-                number(wrong, file, i)
+                parse_decimal(wrong, file, i)
     for head in reversed(heads):
         apart = [cell.strip().strip('"') for cell in head.split("\t")] if separator is None and "\t" in head else []
-        labels = apart if len(apart) == n_columns else _labels(head, separator)
+        labels = apart if len(apart) == n_columns else _header_labels(head, separator)
         if len(labels) == n_columns and any(re.search("[a-zA-Z]", label) for label in labels):
             return labels
     return []
 
 
-def _labels(head: str, separator: str | None) -> list[str]:
+def _header_labels(head: str, separator: str | None) -> list[str]:
     if separator is None:
         # There may be a blank between a label and its unit in brackets, and inside the unit.
-        end = after_brackets(head)
+        end = end_of_last_bracket(head)
         head = BRACKET.sub(lambda unit: unit[0].replace(" ", ""), head[:end]) + head[end:]
         head = re.sub(r"(?<!\s)\s++(?=[(\[])", "", head)
         return re.split(r"[;,\s]\s*", head)
@@ -315,11 +317,11 @@ def _labels(head: str, separator: str | None) -> list[str]:
     return cells[:-1] if cells[-1] == "" else cells
 
 
-def after_brackets(text: str) -> int:
+def end_of_last_bracket(text: str) -> int:
     """Return the end of the last closing bracket, so that no regular expression searches beyond it in vain."""
     return max(text.rfind(")"), text.rfind("]")) + 1
 
 
-def is_number(token: str) -> bool:
+def is_number_cell(token: str) -> bool:
     """Return whether a cell is a number, or a word for none such as nan."""
     return bool(DECIMAL.fullmatch(token)) or token.lower() in ("nan", "inf", "-inf")

@@ -11,13 +11,16 @@ from rockflex.plot._modes import plot_frequency_equation, plot_frequency_ratios,
 from rockflex.plot._moment_rotation import plot_moment_rotation, plot_moment_rotation_laws
 from rockflex.plot._motion import plot_motion, plot_selection
 from rockflex.plot._rocking_spectra import plot_overturning_spectrum, plot_rocking_spectrum
-from rockflex.plot._run_sheet import record_strip, run_sheet
-from rockflex.plot._style import save_figure, svg_of
+from rockflex.plot._run_sheet import draw_record_strip, draw_run_sheet
+from rockflex.plot._style import figure_as_svg, save_figure
 from rockflex.plot._tower import plot_tower
 from rockflex.plot.animation import animate
 
 __all__ = [
     "animate",
+    "draw_record_strip",
+    "draw_run_sheet",
+    "figure_as_svg",
     "plot_clouds",
     "plot_design",
     "plot_design_search",
@@ -41,8 +44,5 @@ __all__ = [
     "plot_stripes",
     "plot_tower",
     "plot_yielding",
-    "record_strip",
-    "run_sheet",
     "save_figure",
-    "svg_of",
 ]

@@ -8,20 +8,20 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rockflex._arrays import Array
-from rockflex._cases import cases
+from rockflex._cases import runs_by_case
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.fragility import NOMINAL, OVERTURNING, ROCKED, CloudFit, fit_each_cloud, rocked
+from rockflex.fragility import NOMINAL, OVERTURNING, ROCKED, CloudFit, fit_each_cloud, rocked_runs
 from rockflex.plot._study_tables import (
-    check_columns,
-    label_plainly,
-    legend_handles,
-    measure_name,
-    names_in,
+    check_table_columns,
+    label_log_axis_plainly,
+    measure_axis_name,
+    model_legend_handles,
+    model_lines_and_symbols,
+    names_in_column,
     structure_panels,
-    styles_of,
 )
-from rockflex.plot._style import BLACK, LineStyle, Size, font_size, legend_above, styled
+from rockflex.plot._style import BLACK, LineStyle, Size, add_legend_above, scaled_font_size, with_figure_style
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,7 +36,7 @@ _ROW = 0.056  # of the panel, from row to row of the numbers in it
 _CROSSES = 0.038  # and of the crosses
 
 
-class _Cloud(NamedTuple):
+class _PlottedCloud(NamedTuple):
     """The solved runs of one structure and model, and the line through those that rocked without overturning."""
 
     structure: str
@@ -107,50 +107,54 @@ def plot_clouds(
         raise InputError(f"quantity must be one of {', '.join(_QUANTITIES)}, but {shown(quantity)} was given.")
     import pandas as pd
 
-    check_columns(runs, ("structure", "model", "status", measure), "what run_cloud returned")
-    clouds = _clouds(runs, quantity, measure, threshold, nominal=nominal)
-    styles = styles_of(names_in(cloud.model for cloud in clouds))
-    names = names_in(cloud.structure for cloud in clouds)
+    check_table_columns(runs, ("structure", "model", "status", measure), "what run_cloud returned")
+    clouds = _plotted_clouds(runs, quantity, measure, threshold, nominal=nominal)
+    styles = model_lines_and_symbols(names_in_column(cloud.model for cloud in clouds))
+    names = names_in_column(cloud.structure for cloud in clouds)
     rocked, fallen = pd.concat([cloud.rocked for cloud in clouds]), pd.concat([cloud.fallen for cloud in clouds])
-    with styled(size=size):
-        figure, panels = structure_panels(names, 2, 2.45, measure_name(measure), _QUANTITIES[quantity])
+    with with_figure_style(size=size):
+        figure, panels = structure_panels(names, 2, 2.45, measure_axis_name(measure), _QUANTITIES[quantity])
         panels[0].set(xscale="log", yscale="log")
         for axes in panels:
-            label_plainly(axes.xaxis)
-        _set_limits(panels[0], rocked, pd.concat([rocked, fallen]), quantity, measure, len(styles))
+            label_log_axis_plainly(axes.xaxis)
+        _set_cloud_limits(panels[0], rocked, pd.concat([rocked, fallen]), quantity, measure, len(styles))
         for axes, name in zip(panels, names, strict=True):
             rows: list[tuple[str, str]] = []
             for cloud in (cloud for cloud in clouds if cloud.structure == name):
                 style, marker = styles[cloud.model]
-                _draw(axes, cloud, quantity, measure, style, marker)
-                _mark_fallen(axes, cloud.fallen[measure].to_numpy(dtype=float), style, list(styles).index(cloud.model))
-                rows.append((_numbers(cloud), style.color))
-            _write(axes, rows)
-        handles = legend_handles(styles)
+                _draw_cloud(axes, cloud, quantity, measure, style, marker)
+                _mark_overturned_runs(
+                    axes, cloud.fallen[measure].to_numpy(dtype=float), style, list(styles).index(cloud.model)
+                )
+                rows.append((_cloud_numbers_text(cloud), style.color))
+            _write_cloud_numbers(axes, rows)
+        handles = model_legend_handles(styles)
         if len(fallen):
             handles.append(Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.0, label="overturned"))
-        legend_above(figure, handles)
+        add_legend_above(figure, handles)
     return figure
 
 
-def _clouds(runs: "pd.DataFrame", quantity: str, measure: str, threshold: float, *, nominal: bool) -> list[_Cloud]:
+def _plotted_clouds(
+    runs: "pd.DataFrame", quantity: str, measure: str, threshold: float, *, nominal: bool
+) -> list[_PlottedCloud]:
     """Clouds of all structures and models, in the order of the table."""
     fits, _ = fit_each_cloud(runs, measure, threshold=threshold, nominal=nominal)
     fit_of = {(fit.structure, fit.model): fit for fit in fits}
-    _check_solved(runs[runs["status"].notna()], measure)
-    clouds: list[_Cloud] = []
-    for structure, model, group in cases(runs):
+    _check_solved_runs(runs[runs["status"].notna()], measure)
+    clouds: list[_PlottedCloud] = []
+    for structure, model, group in runs_by_case(runs):
         solved = group[group["status"].notna()]
         fell = (NOMINAL if nominal else OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
-        rocks = ~fell & rocked(solved, threshold).to_numpy(dtype=bool)
+        rocks = ~fell & rocked_runs(solved, threshold).to_numpy(dtype=bool)
         fit = fit_of.get((structure, model))
         line = fit and (fit.outcomes.rotation if quantity == "max_rotation" else getattr(fit, quantity[4:]))
         failed = len(group) - len(solved)
-        clouds.append(_Cloud(structure, model, solved[rocks], solved[fell], failed, line, fit is not None))
+        clouds.append(_PlottedCloud(structure, model, solved[rocks], solved[fell], failed, line, fit is not None))
     return clouds
 
 
-def _check_solved(solved: "pd.DataFrame", measure: str) -> None:
+def _check_solved_runs(solved: "pd.DataFrame", measure: str) -> None:
     if not len(solved):
         raise InputError("No run was solved. See the column error of the table.")
     bad = ~(solved[measure].to_numpy(dtype=float) > 0.0)
@@ -161,7 +165,7 @@ def _check_solved(solved: "pd.DataFrame", measure: str) -> None:
         )
 
 
-def _set_limits(
+def _set_cloud_limits(
     axes: Axes, rocked: "pd.DataFrame", seen: "pd.DataFrame", quantity: str, measure: str, n_models: int
 ) -> None:
     """Leave room for all points, a row of crosses per model above them, and the numbers below."""
@@ -177,7 +181,7 @@ def _set_limits(
     axes.set_xlim(left / margin, right * margin)
 
 
-def _draw(axes: Axes, cloud: _Cloud, quantity: str, measure: str, style: LineStyle, marker: str) -> None:
+def _draw_cloud(axes: Axes, cloud: _PlottedCloud, quantity: str, measure: str, style: LineStyle, marker: str) -> None:
     im = cloud.rocked[measure].to_numpy(dtype=float)
     axes.plot(
         im, cloud.rocked[quantity].to_numpy(dtype=float), marker, color=style.color, markersize=2.4,
@@ -191,7 +195,7 @@ def _draw(axes: Axes, cloud: _Cloud, quantity: str, measure: str, style: LineSty
         )  # fmt: skip
 
 
-def _mark_fallen(axes: Axes, im: Array, style: LineStyle, rank: int) -> None:
+def _mark_overturned_runs(axes: Axes, im: Array, style: LineStyle, rank: int) -> None:
     """Crosses of the runs that overturned, in the model's own row at the top."""
     axes.plot(
         im, np.full(im.size, 0.97 - _CROSSES * rank), "x", color=style.color, markersize=2.6, markeredgewidth=0.6,
@@ -199,7 +203,7 @@ def _mark_fallen(axes: Axes, im: Array, style: LineStyle, rank: int) -> None:
     )  # fmt: skip
 
 
-def _numbers(cloud: _Cloud) -> str:
+def _cloud_numbers_text(cloud: _PlottedCloud) -> str:
     line = cloud.line
     three = "     –     –     –" if line is None else f"{line.c1:6.2f}{line.c2:6.2f}{line.dispersion:6.2f}"
     remarks = [f"{cloud.n_failed} failed"] * bool(cloud.n_failed) + ["no fit"] * (not cloud.fitted)
@@ -207,13 +211,13 @@ def _numbers(cloud: _Cloud) -> str:
     return f"{cloud.model[:9]:>9}{three}{len(cloud.rocked):5d}{len(cloud.fallen):4d}{remark}".replace("-0.00", " 0.00")
 
 
-def _write(axes: Axes, rows: list[tuple[str, str]]) -> None:
+def _write_cloud_numbers(axes: Axes, rows: list[tuple[str, str]]) -> None:
     """Write the numbers of all models, the first on top, in the lower right corner."""
     header = f"{'':9}{'c₁':>6}{'c₂':>6}{'σ':>6}{'n':>5}{'OV':>4}"
     width = max(len(text) for text, _ in rows)  # remarks stand behind, and move no column
     for place, (text, color) in enumerate(reversed([(header, BLACK), *rows])):
         axes.text(
             0.985, 0.025 + _ROW * place, text.ljust(width), transform=axes.transAxes, color=color,
-            fontsize=font_size(_TINY), ha="right", family="DejaVu Sans Mono",
+            fontsize=scaled_font_size(_TINY), ha="right", family="DejaVu Sans Mono",
             bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.6, "pad": 0.5},
         )  # fmt: skip

@@ -9,12 +9,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockflex._checks import instance, one_of
+from rockflex._checks import checked_instance, is_one_of
 from rockflex._errors import InputError
-from rockflex._numbers import prefixed, short
+from rockflex._number_format import short_number, unit_with_prefix
 from rockflex._shown import shown
-from rockflex.fragility import OVERTURNED, OVERTURNING, beyond, symbol_of_nominal
-from rockflex.plot._study_tables import MARKERS, check_columns, legend_handles, names_in, structure_panels
+from rockflex.fragility import OVERTURNED, OVERTURNING, nominal_rotation_symbol, rotation_limit_state
+from rockflex.plot._study_tables import (
+    MARKERS,
+    check_table_columns,
+    model_legend_handles,
+    names_in_column,
+    structure_panels,
+)
 from rockflex.plot._style import (
     BLACK,
     BLUE,
@@ -26,14 +32,14 @@ from rockflex.plot._style import (
     THEMES,
     LineStyle,
     Size,
-    is_narrow,
-    legend_above,
-    literal,
+    add_legend_above,
+    is_narrow_figure,
+    literal_text,
     new_figure,
-    recoloured,
-    styled,
+    recoloured_line_styles,
+    with_figure_style,
 )
-from rockflex.study.design import BestDesign, Interpolated, margins_of, trade_off
+from rockflex.study.design import BestDesign, InterpolatedMargins, requirement_margins, trade_off
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -62,7 +68,7 @@ _FINE = 81  # points along each side of a plane
 _MARK = 4.0
 
 
-class _Value(NamedTuple):
+class _PlottedDesignValue(NamedTuple):
     """The column plotted, its name on the axis, and whether that axis is logarithmic."""
 
     column: str
@@ -114,30 +120,34 @@ def plot_design(
     ('half width $B$ [m]', 'P($θ_{\\mathrm{max}}>0.005\\ \\mathrm{rad}$)')
     """
     value = "rate" if "rate" in getattr(table, "columns", ()) else "probability"
-    check_columns(table, (*_NEEDED, value), _SOURCE)
-    tendons, models = names_in(table["tendon"]), names_in(table["model"])
+    check_table_columns(table, (*_NEEDED, value), _SOURCE)
+    tendons, models = names_in_column(table["tendon"]), names_in_column(table["model"])
     if len(tendons) > len(MARKERS):
         raise InputError(f"{len(tendons)} tendons were given, but there are {len(MARKERS)} symbols. Plot some of them.")
     found = None if target is None else _smallest_widths(table, target)
     styles: dict[str, tuple[LineStyle, str]] = dict(
-        zip(tendons, zip(recoloured(_STYLES), MARKERS, strict=False), strict=False)
+        zip(tendons, zip(recoloured_line_styles(_STYLES), MARKERS, strict=False), strict=False)
     )
-    drawn = _Value(value, _value_name(table, value), value == "rate" if logarithmic is None else logarithmic)
-    with styled(size=size):
+    drawn = _PlottedDesignValue(
+        value, _design_value_name(table, value), value == "rate" if logarithmic is None else logarithmic
+    )
+    with with_figure_style(size=size):
         figure, panels = structure_panels(models, 2, 2.9, "half width $B$ [m]", drawn.name)
         for axes, model in zip(panels, models, strict=True):
             for tendon, (style, marker) in styles.items():
-                _draw(axes, _of(table, model, tendon), drawn, style, marker, tendon)
+                _draw_design_curve(axes, _design_rows(table, model, tendon), drawn, style, marker, tendon)
             if found is not None and target is not None:
                 axes.axhline(target, color=BLUE, linewidth=0.8, dashes=(5, 3), label="_target")
-                _draw_smallest_widths(axes, _of(found, model), styles, target)
-        _limits(panels, table, drawn, target)
+                _draw_smallest_widths(axes, _design_rows(found, model), styles, target)
+        _set_design_limits(panels, table, drawn, target)
         for axes in panels:
-            _slenderness(axes, table)
-        handles = legend_handles({literal(tendon): style for tendon, style in styles.items()})
+            _draw_slenderness_axis(axes, table)
+        handles = model_legend_handles({literal_text(tendon): style for tendon, style in styles.items()})
         if target is not None:
-            handles.append(Line2D([], [], color=BLUE, linewidth=0.8, dashes=(5, 3), label=f"target {short(target)}"))
-        legend_above(figure, handles)
+            handles.append(
+                Line2D([], [], color=BLUE, linewidth=0.8, dashes=(5, 3), label=f"target {short_number(target)}")
+            )
+        add_legend_above(figure, handles)
     return figure
 
 
@@ -147,12 +157,12 @@ def _smallest_widths(table: "pd.DataFrame", target: float) -> "pd.DataFrame":
     return smallest_width(table, target)
 
 
-def _of(table: "pd.DataFrame", model: str, tendon: str | None = None) -> "pd.DataFrame":
+def _design_rows(table: "pd.DataFrame", model: str, tendon: str | None = None) -> "pd.DataFrame":
     rows = table[table["model"].astype(str) == model]
     return rows if tendon is None else rows[rows["tendon"].astype(str) == tendon].sort_values("half_width")
 
 
-def _value_name(table: "pd.DataFrame", value: str) -> str:
+def _design_value_name(table: "pd.DataFrame", value: str) -> str:
     """Name of the values on the axis: one limit in rad, one multiple of 0.7 atan(B/h*_1), or overturning."""
     limits, nominal = table["limit"].to_numpy(float), 0.7 * np.arctan(1.0 / table["aspect_ratio"].to_numpy(float))
     known = np.isfinite(limits)
@@ -160,16 +170,18 @@ def _value_name(table: "pd.DataFrame", value: str) -> str:
     if known.any():
         first, multiple = limits[known][0], (limits / nominal)[known]
         if np.allclose(limits[known], first, rtol=1e-9):
-            event = (OVERTURNING if first == OVERTURNED else beyond(first)).symbol
+            event = (OVERTURNING if first == OVERTURNED else rotation_limit_state(first)).symbol
         elif np.allclose(multiple, multiple[0], rtol=1e-9):
-            event = symbol_of_nominal(multiple[0])
+            event = nominal_rotation_symbol(multiple[0])
         else:
             raise InputError("The designs have limits of several kinds. Plot the table of one limit.")
     event = f"${event}$" if ">" in event else event
     return f"annual rate of {event}" if value == "rate" else f"P({event})"
 
 
-def _draw(axes: Axes, rows: "pd.DataFrame", drawn: _Value, style: LineStyle, marker: str, name: str) -> None:
+def _draw_design_curve(
+    axes: Axes, rows: "pd.DataFrame", drawn: _PlottedDesignValue, style: LineStyle, marker: str, name: str
+) -> None:
     b, y, low, high = (rows[column].to_numpy(float) for column in ("half_width", drawn.column, "low", "high"))
     shown = np.isfinite(y) & ((y > 0.0) | (not drawn.logarithmic))
     axes.plot(
@@ -208,7 +220,9 @@ def _draw_smallest_widths(
         )  # fmt: skip
 
 
-def _limits(panels: list[Axes], table: "pd.DataFrame", drawn: _Value, target: float | None) -> None:
+def _set_design_limits(
+    panels: list[Axes], table: "pd.DataFrame", drawn: _PlottedDesignValue, target: float | None
+) -> None:
     b = table["half_width"].to_numpy(float)
     margin = 0.04 * float(np.ptp(b)) or 0.1 * float(b[0])
     panels[0].set_xlim(max(float(b.min()) - margin, 0.5 * float(b.min())), float(b.max()) + margin)
@@ -224,7 +238,7 @@ def _limits(panels: list[Axes], table: "pd.DataFrame", drawn: _Value, target: fl
         panels[0].set_ylim(-0.03 * top, 1.05 * top)
 
 
-def _slenderness(axes: Axes, table: "pd.DataFrame") -> None:
+def _draw_slenderness_axis(axes: Axes, table: "pd.DataFrame") -> None:
     """Draw the axis of h*_1/B at the top."""
     height = float((table["half_width"] * table["aspect_ratio"]).iloc[0])
     if not height > 0.0:
@@ -245,7 +259,7 @@ def _slenderness(axes: Axes, table: "pd.DataFrame") -> None:
     top.minorticks_off()
 
 
-class _Scale:
+class _DesignVariableAxis:
     """The column of a variable as it is plotted, and the name of its axis."""
 
     def __init__(self, variable: str, designs: "pd.DataFrame") -> None:
@@ -254,7 +268,7 @@ class _Scale:
         if not designs[self.column].to_numpy(float).any():  # factors on forces of zero
             self.column, words, unit = variable, variable.replace("_", " "), ""
         forces = unit == "N"
-        self.divisor, self.unit = prefixed(float(designs[self.column].max()), unit) if forces else (1.0, unit)
+        self.divisor, self.unit = unit_with_prefix(float(designs[self.column].max()), unit) if forces else (1.0, unit)
         self.name = f"{words} [{self.unit}]" if unit else words
 
     def of(self, table: "pd.DataFrame") -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
@@ -306,62 +320,62 @@ def plot_design_search(
     >>> [axes.get_xlabel() for axes in figure.axes]
     ['half width $B$ [m]', 'half width $B$ [m]']
     """
-    instance("found", found, BestDesign)
-    if not one_of(theme, THEMES):
+    checked_instance("found", found, BestDesign)
+    if not is_one_of(theme, THEMES):
         raise InputError(f'theme must be "light" or "dark", but {shown(theme)} was given.')
-    between = Interpolated.of(found)
+    between = InterpolatedMargins.of(found)
     varied = [*between.given]
     labels = [each.label for each in found.requirements]
     if len(labels) > len(_SEARCH_STYLES):
         raise InputError(f"{len(labels)} requirements were given, but there are {len(_STYLES)} looks for their lines.")
-    styles = dict(zip(labels, recoloured(_SEARCH_STYLES), strict=False))
-    with styled(theme, size=size):
+    styles = dict(zip(labels, recoloured_line_styles(_SEARCH_STYLES), strict=False))
+    with with_figure_style(theme, size=size):
         count = min(len(varied), 2)
-        figure = new_figure(7.2 if count > 1 else 4.2, 0.9 + 3.0 * count if is_narrow() else 3.9)
-        panels: list[Axes] = list(np.atleast_1d(figure.subplots(*((count, 1) if is_narrow() else (1, count)))))
-        _draw_costs(panels[0], found, varied[0], styles)
+        figure = new_figure(7.2 if count > 1 else 4.2, 0.9 + 3.0 * count if is_narrow_figure() else 3.9)
+        panels: list[Axes] = list(np.atleast_1d(figure.subplots(*((count, 1) if is_narrow_figure() else (1, count)))))
+        _draw_design_costs(panels[0], found, varied[0], styles)
         if len(varied) > 1:
-            _draw_plane(panels[1], found, between, (varied[-2], varied[-1]), styles)
+            _draw_design_plane(panels[1], found, between, (varied[-2], varied[-1]), styles)
         for axes in panels:
-            axes.tick_params(colors=_text_color(), grid_color=mpl.rcParams["grid.color"])
+            axes.tick_params(colors=_design_text_color(), grid_color=mpl.rcParams["grid.color"])
         handles = [
-            Line2D([], [], color=style.color, linestyle=style.dashes, label=literal(label))  # pyright: ignore[reportArgumentType]
+            Line2D([], [], color=style.color, linestyle=style.dashes, label=literal_text(label))  # pyright: ignore[reportArgumentType]
             for label, style in styles.items()
         ]
-        for name, face in (("run, meets all targets", _text_color()), ("run, does not", "none")):
+        for name, face in (("run, meets all targets", _design_text_color()), ("run, does not", "none")):
             handles.append(
                 Line2D(
-                    [], [], color="none", marker="o", markersize=_MARK, markeredgecolor=_text_color(),
+                    [], [], color="none", marker="o", markersize=_MARK, markeredgecolor=_design_text_color(),
                     markerfacecolor=face, label=name,
                 )
             )  # fmt: skip
-        legend_above(figure, handles, title=_best_text(found), max_columns=1 if is_narrow() else 2)
+        add_legend_above(figure, handles, title=_best_design_text(found), max_columns=1 if is_narrow_figure() else 2)
     return figure
 
 
-def _text_color() -> str:
+def _design_text_color() -> str:
     return str(mpl.rcParams["text.color"])
 
 
-def _best_text(found: BestDesign) -> str:
+def _best_design_text(found: BestDesign) -> str:
     if found.best is None:
         return "No design meets all targets"
     best = found.designs.iloc[found.best]
-    words = [f"B = {short(best['half_width'])} m"]
+    words = [f"B = {short_number(best['half_width'])} m"]
     for column, symbol in (("prestress", "$ΣF_0$"), ("dissipator_force", "$ΣF_y$")):
         if best[column] > 0.0:
-            divisor, unit = prefixed(float(best[column]), "N")
-            words.append(f"{symbol} = {short(best[column] / divisor)} {unit}")
-    return f"Cheapest: {', '.join(words)}; {literal(found.governs)} governs"
+            divisor, unit = unit_with_prefix(float(best[column]), "N")
+            words.append(f"{symbol} = {short_number(best[column] / divisor)} {unit}")
+    return f"Cheapest: {', '.join(words)}; {literal_text(found.governs)} governs"
 
 
-def _draw_costs(axes: Axes, found: BestDesign, variable: str, styles: dict[str, LineStyle]) -> None:
-    scale = _Scale(variable, found.designs)
+def _draw_design_costs(axes: Axes, found: BestDesign, variable: str, styles: dict[str, LineStyle]) -> None:
+    scale = _DesignVariableAxis(variable, found.designs)
     curve = trade_off(found, variable)
     for label, style in styles.items():
         cost = np.where(curve["governs"] == label, curve["cost"].to_numpy(float), np.nan)
         axes.plot(scale.of(curve), cost, color=style.color, linestyle=style.dashes, linewidth=1.6, label=label)
-    _draw_runs(axes, scale.of(found.designs), found.designs["cost"].to_numpy(float), found)
+    _draw_tried_designs(axes, scale.of(found.designs), found.designs["cost"].to_numpy(float), found)
     if found.best is not None:
         bands = {str(row["quantity"]): np.array([row["low"], row["high"]]) for row in found.interval.to_dict("records")}
         across = bands.get(scale.column, np.full(2, np.nan)) / scale.divisor
@@ -369,27 +383,27 @@ def _draw_costs(axes: Axes, found: BestDesign, variable: str, styles: dict[str, 
             float(values[found.best]) for values in (scale.of(found.designs), found.designs["cost"].to_numpy(float))
         )
         for ends in ((across, [y, y]), ([x, x], bands["cost"])):
-            axes.plot(*ends, color=_text_color(), linewidth=2.0, alpha=0.6, label="_band", solid_capstyle="butt")
-        _mark_best(axes, x, y)
+            axes.plot(*ends, color=_design_text_color(), linewidth=2.0, alpha=0.6, label="_band", solid_capstyle="butt")
+        _mark_best_design(axes, x, y)
     axes.set(xlabel=scale.name, ylabel="cost")
 
 
-def _draw_plane(
-    axes: Axes, found: BestDesign, between: Interpolated, names: tuple[str, str], styles: dict[str, LineStyle]
+def _draw_design_plane(
+    axes: Axes, found: BestDesign, between: InterpolatedMargins, names: tuple[str, str], styles: dict[str, LineStyle]
 ) -> None:
     """Draw the limits over two variables; the others have their values in the best design, or in the nearest to it."""
     designs = found.designs
-    place = found.best if found.best is not None else _nearest(found)
+    place = found.best if found.best is not None else _nearest_design(found)
     values = {name: np.array([float(designs[name].iloc[place])]) for name in between.given}
     for name in names:
         values[name] = np.linspace(between.given[name][0], between.given[name][-1], _FINE)
     table = between.designs(values)
-    across, up = (_Scale(name, designs) for name in names)
+    across, up = (_DesignVariableAxis(name, designs) for name in names)
     shape = _FINE, _FINE
     x, y = (scale.of(table).reshape(shape) for scale in (across, up))
     margins = between.at(table)
     worst = margins.max(axis=1).reshape(shape)
-    axes.contourf(x, y, worst, levels=[0.0, np.inf], colors=[_text_color()], alpha=0.12)
+    axes.contourf(x, y, worst, levels=[0.0, np.inf], colors=[_design_text_color()], alpha=0.12)
     for column, (_, style) in enumerate(styles.items()):
         each = margins[:, column].reshape(shape)
         if each.min() < 0.0 < each.max():
@@ -397,38 +411,40 @@ def _draw_plane(
     cost = np.asarray(found.cost.of(table["half_width"], table["prestress"], table["dissipator_force"]), dtype=float)
     if cost.max() > cost.min():
         lines = axes.contour(
-            x, y, cost.reshape(shape), levels=6, colors=[_text_color()], linewidths=0.6, linestyles="dotted"
+            x, y, cost.reshape(shape), levels=6, colors=[_design_text_color()], linewidths=0.6, linestyles="dotted"
         )
-        axes.clabel(lines, fontsize=SMALL, fmt=short)
+        axes.clabel(lines, fontsize=SMALL, fmt=short_number)
     others = [name for name in between.given if name not in names]
     near = np.all([np.isclose(designs[name], values[name][0]) for name in others], axis=0) if others else slice(None)
     there = designs[near] if others else designs
-    _draw_runs(axes, across.of(there), up.of(there), found, there["meets"].to_numpy(bool))
+    _draw_tried_designs(axes, across.of(there), up.of(there), found, there["meets"].to_numpy(bool))
     if found.best is not None:
-        _mark_best(axes, float(across.of(designs)[place]), float(up.of(designs)[place]))
-    fixed = [_Scale(name, designs) for name in others]
-    words = [f"{s.name.rpartition(' [')[0] or s.name} = {short(float(s.of(designs)[place]))} {s.unit}" for s in fixed]
+        _mark_best_design(axes, float(across.of(designs)[place]), float(up.of(designs)[place]))
+    fixed = [_DesignVariableAxis(name, designs) for name in others]
+    words = [
+        f"{s.name.rpartition(' [')[0] or s.name} = {short_number(float(s.of(designs)[place]))} {s.unit}" for s in fixed
+    ]
     axes.set(xlabel=across.name, ylabel=up.name, title=", ".join(words))
 
 
-def _nearest(found: BestDesign) -> int:
+def _nearest_design(found: BestDesign) -> int:
     labels = [each.label for each in found.requirements]
-    margins = margins_of(found.designs[labels].to_numpy(float), found.requirements)
+    margins = requirement_margins(found.designs[labels].to_numpy(float), found.requirements)
     return int(np.nan_to_num(margins, nan=np.inf).max(axis=1).argmin())
 
 
-def _draw_runs(axes: Axes, x: object, y: object, found: BestDesign, meets: object = None) -> None:
+def _draw_tried_designs(axes: Axes, x: object, y: object, found: BestDesign, meets: object = None) -> None:
     met = found.designs["meets"].to_numpy(bool) if meets is None else np.asarray(meets, dtype=bool)
-    for which, face in ((~met, "none"), (met, _text_color())):
+    for which, face in ((~met, "none"), (met, _design_text_color())):
         if not which.any():  # an empty line that is not clipped spoils the layout
             continue
         axes.plot(
             np.asarray(x)[which], np.asarray(y)[which], "o", markersize=_MARK, markerfacecolor=face,
-            markeredgecolor=_text_color(), markeredgewidth=0.6, alpha=0.75, label="_runs", clip_on=False,
+            markeredgecolor=_design_text_color(), markeredgewidth=0.6, alpha=0.75, label="_runs", clip_on=False,
         )  # fmt: skip
 
 
-def _mark_best(axes: Axes, x: float, y: float) -> None:
+def _mark_best_design(axes: Axes, x: float, y: float) -> None:
     axes.plot(
         [x], [y], "o", markersize=11.0, markerfacecolor="none", markeredgecolor=RED, markeredgewidth=1.8,
         label="_best", zorder=4.0, clip_on=False,

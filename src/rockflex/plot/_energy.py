@@ -4,9 +4,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
-from rockflex._numbers import prefixed
+from rockflex._number_format import unit_with_prefix
 from rockflex.modal import Tendon
-from rockflex.plot._curves import curves_of
+from rockflex.plot._response_curves import response_curves
 from rockflex.plot._style import (
     BLACK,
     BLUE,
@@ -18,10 +18,10 @@ from rockflex.plot._style import (
     SKY,
     YELLOW,
     Size,
-    legend_beside,
-    literal,
+    add_legend_beside,
+    literal_text,
     new_figure,
-    styled,
+    with_figure_style,
 )
 from rockflex.response import History, Response
 
@@ -66,18 +66,20 @@ def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('time [s]', 'energy [kJ]')
     """
-    (curve,) = curves_of([response])
+    (curve,) = response_curves([response])
     history = curve.history
     ledger, drawn = history.energy, curve.before_fall
     released = -min(float(ledger.element_strain[drawn].min()), 0.0)  # at t = 0, and given back later
     settled = -min(float(ledger.gravity[drawn].min()), 0.0)  # below the level of the unloaded springs
-    layers = [(label, color, values[drawn]) for label, color, values in _layers(curve.history, released, settled)]
+    layers = [
+        (label, color, values[drawn]) for label, color, values in _energy_layers(curve.history, released, settled)
+    ]
     layers = [layer for layer in layers if np.any(layer[2] != 0.0)]
     start = float(ledger.stored[0]) + released + settled
     supply = ledger.input[drawn] + start
-    factor, unit = prefixed(float(np.max(np.abs(supply))), "J")
+    factor, unit = unit_with_prefix(float(np.max(np.abs(supply))), "J")
     time = history.time[drawn]
-    with styled(size=size):
+    with with_figure_style(size=size):
         figure = new_figure(6.3, 3.4)
         axes = figure.subplots()
         if layers:
@@ -90,14 +92,14 @@ def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
             axes.axvline(time[-1], color=BLUE, linestyle=":", label="overturning")
         axes.set_xlim(float(history.time[0]), float(history.time[-1]))
         axes.set(ylim=(0.0, 1.06 * float(np.max(supply)) / factor or 1.0), xlabel="time [s]", ylabel=f"energy [{unit}]")
-        title = f"{curve.label} under {literal(curve.response.motion)}, closing error {ledger.closing_error:.1e}"
+        title = f"{curve.label} under {literal_text(curve.response.motion)}, closing error {ledger.closing_error:.1e}"
         axes.set_title(title)
         handles, _ = axes.get_legend_handles_labels()
-        legend_beside(figure, handles[::-1])
+        add_legend_beside(figure, handles[::-1])
     return figure
 
 
-def _layers(history: History, released: float, settled: float) -> list[tuple[str, str, Array]]:
+def _energy_layers(history: History, released: float, settled: float) -> list[tuple[str, str, Array]]:
     """Return label, colour and values from the bottom: dissipated energy, which never falls, below stored energy."""
     ledger, elements = history.energy, history.model.properties.elements
     only_tendons = all(isinstance(each, Tendon) for each in elements)

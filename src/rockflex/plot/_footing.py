@@ -6,10 +6,10 @@ from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._numbers import prefixed
+from rockflex._number_format import unit_with_prefix
 from rockflex.modal import RockingProperties, Springs
-from rockflex.plot._curves import curves_of, title_of
-from rockflex.plot._style import BLACK, BLUE, GRAY, RED, Size, label_panel, literal, new_figure, styled
+from rockflex.plot._response_curves import response_curves, response_figure_title
+from rockflex.plot._style import BLACK, BLUE, GRAY, RED, Size, label_panel, literal_text, new_figure, with_figure_style
 from rockflex.response import History, Response
 
 MAX_LINES = 4  # springs whose forces are drawn as lines; more springs as a map
@@ -54,7 +54,7 @@ def plot_footing(response: Response, *, title: str | None = None, size: Size | N
     >>> [axes.get_ylabel() for axes in figure.axes]
     ['rise of edges [mm]', 'x [m]', 'in contact [%]', 'pressure [MPa]']
     """
-    (curve,) = curves = curves_of(response)
+    (curve,) = curves = response_curves(response)
     history = curve.history
     springs = history.model.springs
     if springs is None:
@@ -62,18 +62,20 @@ def plot_footing(response: Response, *, title: str | None = None, size: Size | N
             "The base of this response is not on springs. Simulate it with "
             "ground=Ground(springs=..., base_inertia=...), or use plot_history."
         )
-    with styled(size=size):
+    with with_figure_style(size=size):
         figure = new_figure(6.3, 5.4)
         edges, soil, contact = figure.subplots(3, 1, sharex=True, height_ratios=(1.0, 1.3, 0.7))
-        _draw_edges(edges, history)
-        _draw_soil(figure, soil, history, springs)
-        _draw_contact(contact, history, springs)
+        _draw_base_edges(edges, history)
+        _draw_soil_pressure(figure, soil, history, springs)
+        _draw_base_contact(contact, history, springs)
         for axes, mark in zip((edges, soil, contact), "ABC", strict=True):
             label_panel(axes, mark)
         contact.set_xlabel("time [s]")
         contact.set_xlim(float(history.time[0]), float(history.time[-1]))
         figure.align_ylabels([edges, soil, contact])
-        edges.set_title(literal(curve.label) + (f" under {given}" if (given := title_of(curves, title)) else ""))
+        edges.set_title(
+            literal_text(curve.label) + (f" under {given}" if (given := response_figure_title(curves, title)) else "")
+        )
     return figure
 
 
@@ -85,7 +87,7 @@ def tributary_shares(springs: Springs, p: RockingProperties) -> Array:
     return np.diff(ends) / (2.0 * p.half_width)
 
 
-def _draw_edges(axes: Axes, history: History) -> None:
+def _draw_base_edges(axes: Axes, history: History) -> None:
     for values, name, color in zip(1e3 * history.edge_uplift.T, ("left", "right"), (BLUE, RED), strict=True):
         axes.plot(history.time, values, color=color, linewidth=0.9, label=f"{name} edge")
     axes.axhline(0.0, color=GRAY, linewidth=0.7)
@@ -95,10 +97,10 @@ def _draw_edges(axes: Axes, history: History) -> None:
     axes.set_ylim(low, high + 0.25 * (high - low))  # room for the legend
 
 
-def _draw_soil(figure: Figure, axes: Axes, history: History, springs: Springs) -> None:
+def _draw_soil_pressure(figure: Figure, axes: Axes, history: History, springs: Springs) -> None:
     area = springs.area
     name, pushes = ("force", history.spring_force) if area is None else ("pressure", history.soil_pressure)
-    factor, unit = prefixed(float(pushes.max()), "N" if area is None else "Pa")
+    factor, unit = unit_with_prefix(float(pushes.max()), "N" if area is None else "Pa")
     places = springs.positions
     if places.size <= MAX_LINES:
         for place, force, color in zip(places, pushes.T / factor, _COLORS, strict=False):
@@ -116,7 +118,7 @@ def _draw_soil(figure: Figure, axes: Axes, history: History, springs: Springs) -
     figure.colorbar(mesh, ax=axes, label=f"{name} [{unit}]", pad=0.01)
 
 
-def _draw_contact(axes: Axes, history: History, springs: Springs) -> None:
+def _draw_base_contact(axes: Axes, history: History, springs: Springs) -> None:
     contact_share = (history.spring_force > 0.0) @ tributary_shares(springs, history.model.properties)
     axes.fill_between(history.time, 100.0 * contact_share, color=GRAY, alpha=0.5, linewidth=0.0)
     axes.plot(history.time, 100.0 * contact_share, color=BLACK, linewidth=0.7)

@@ -10,11 +10,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from rockflex._arrays import Array, Bools
-from rockflex._cases import rows_of
-from rockflex._checks import whole_number
+from rockflex._cases import runs_of_case
+from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError, SolverError
-from rockflex._numbers import short
-from rockflex._shown import counted
+from rockflex._number_format import short_number
+from rockflex._shown import number_with_noun
 from rockflex.fragility import (
     CloudFits,
     LogisticFit,
@@ -22,17 +22,17 @@ from rockflex.fragility import (
     fit_capacities,
     fit_clouds,
     fit_stripes,
-    observed_fractions,
-    recordings_of,
-    rocked,
+    observed_exceedance_fractions,
+    recordings_of_runs,
+    rocked_runs,
 )
 from rockflex.plot._study_tables import (
-    check_columns,
-    legend_handles,
-    measure_name,
-    names_in,
+    check_table_columns,
+    measure_axis_name,
+    model_legend_handles,
+    model_lines_and_symbols,
+    names_in_column,
     structure_panels,
-    styles_of,
 )
 from rockflex.plot._style import (
     BLACK,
@@ -43,13 +43,13 @@ from rockflex.plot._style import (
     SMALL,
     LineStyle,
     Size,
-    font_size,
-    is_narrow,
+    add_legend_above,
+    is_narrow_figure,
     label_panel,
-    legend_above,
-    literal,
+    literal_text,
     new_figure,
-    styled,
+    scaled_font_size,
+    with_figure_style,
 )
 
 if TYPE_CHECKING:
@@ -121,41 +121,43 @@ def plot_fragility(
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('PGA [m/s²]', '$P(\\mathrm{uplift},\\ θ_{\\mathrm{max}}>10^{-4}\\ \\mathrm{rad})$')
     """
-    groups = whole_number("bins", bins, 0)
-    fits, runs = _fits(clouds, measure, groups)
-    styles = styles_of(names_in(fit.model for fit in fits))
-    names = names_in(fit.structure for fit in fits)
-    limit = _outcomes_limit(fits, runs, whole=overturning or groups > 0)
+    groups = checked_whole_number("bins", bins, 0)
+    fits, runs = _fits_of_clouds(clouds, measure, groups)
+    styles = model_lines_and_symbols(names_in_column(fit.model for fit in fits))
+    names = names_in_column(fit.structure for fit in fits)
+    limit = _outcome_axis_limit(fits, runs, whole=overturning or groups > 0)
     ends = [fit.outcomes.measured[0] for fit in fits if fit.outcomes.measured is not None]
     lowest = min(ends, default=None)
-    with styled(size=size):
-        event = rf"\mathrm{{uplift}},\ θ_{{\mathrm{{max}}}}>{_power(fits[0].outcomes.threshold)}"
+    with with_figure_style(size=size):
+        event = rf"\mathrm{{uplift}},\ θ_{{\mathrm{{max}}}}>{_threshold_text(fits[0].outcomes.threshold)}"
         y = "probability" if overturning else f"$P({event})$"
-        figure, panels = structure_panels(names, 3, 2.1, measure_name(fits[0].measure), y)
+        figure, panels = structure_panels(names, 3, 2.1, measure_axis_name(fits[0].measure), y)
         for axes, name in zip(panels, names, strict=True):
             for fit in (fit for fit in fits if fit.structure == name):
                 style, marker = styles[fit.model]
-                _draw_outcomes(axes, fit, style, limit, confidence, overturning=overturning)
+                _draw_outcome_curves(axes, fit, style, limit, confidence, overturning=overturning)
                 if runs is not None and groups:
-                    _mark_observed(axes, rows_of(runs, fit.structure, fit.model), fit, marker, style.color, groups)
+                    _mark_observed_fractions(
+                        axes, runs_of_case(runs, fit.structure, fit.model), fit, marker, style.color, groups
+                    )
             if lowest is not None:
                 axes.axvspan(0.0, lowest, color=SHADE, linewidth=0.0, label="_no runs")
             failed = sum(fit.n_failed for fit in fits if fit.structure == name)
             if failed:
                 axes.text(0.97, 0.05, f"{failed} failed", transform=axes.transAxes, ha="right", fontsize=SMALL)
         panels[0].set(xlim=(0.0, limit), ylim=(-0.03, 1.03))
-        handles: list[Line2D | Patch] = [*legend_handles(styles, symbols=False)]
+        handles: list[Line2D | Patch] = [*model_legend_handles(styles, symbols=False)]
         if groups:
             handles.append(Line2D([], [], color=GRAY, marker="o", linestyle="", markersize=3.0, label="observed"))
         if overturning:
             handles.append(Line2D([], [], color=GRAY, linewidth=0.6, label="overturning"))
         if lowest is not None:
             handles.append(Patch(color=SHADE, linewidth=0.0, label="no runs"))
-        legend_above(figure, handles)
+        add_legend_above(figure, handles)
     return figure
 
 
-def _fits(
+def _fits_of_clouds(
     clouds: "pd.DataFrame | Sequence[CloudFits]", measure: str | None, groups: int
 ) -> "tuple[list[CloudFits], pd.DataFrame | None]":
     """The fits, and the solved runs if they are known."""
@@ -169,7 +171,7 @@ def _fits(
     fits = [fit for fit in given if isinstance(fit, CloudFits)]
     if not fits or len(fits) < len(given):
         raise InputError("clouds must be the table of a cloud study, or at least one fit of it from fit_clouds.")
-    measures = names_in(fit.measure for fit in fits)
+    measures = names_in_column(fit.measure for fit in fits)
     if len(measures) > 1 or (measure is not None and measures != [measure]):
         wanted = "one measure" if measure is None else repr(measure)
         raise InputError(
@@ -180,7 +182,7 @@ def _fits(
     return fits, None
 
 
-def _outcomes_limit(fits: list[CloudFits], runs: "pd.DataFrame | None", *, whole: bool) -> float:
+def _outcome_axis_limit(fits: list[CloudFits], runs: "pd.DataFrame | None", *, whole: bool) -> float:
     """End of the axis: where the curves of rocking approach 1, or the strongest motion if overturning is shown."""
     ends: list[float] = []
     for fit in fits:
@@ -195,7 +197,7 @@ def _outcomes_limit(fits: list[CloudFits], runs: "pd.DataFrame | None", *, whole
     return strongest if whole else min(max(ends, default=strongest), strongest)
 
 
-def _draw_outcomes(
+def _draw_outcome_curves(
     axes: Axes, fit: CloudFits, style: LineStyle, limit: float, confidence: float | None, *, overturning: bool
 ) -> None:
     im = np.linspace(limit / _POINTS, limit, _POINTS)
@@ -209,17 +211,19 @@ def _draw_outcomes(
         axes.plot(im, curve.probability(im), color=style.color, linestyle=style.dashes, linewidth=width, label=label)
 
 
-def _mark_observed(axes: Axes, runs: "pd.DataFrame", fit: CloudFits, marker: str, color: str, groups: int) -> None:
+def _mark_observed_fractions(
+    axes: Axes, runs: "pd.DataFrame", fit: CloudFits, marker: str, color: str, groups: int
+) -> None:
     """Fraction of rocking runs in groups of neighbouring intensities, at their geometric mean."""
-    rocks = rocked(runs, fit.outcomes.threshold).to_numpy(dtype=bool)
-    font_size = observed_fractions(runs[fit.measure].to_numpy(dtype=float), rocks, groups)
+    rocks = rocked_runs(runs, fit.outcomes.threshold).to_numpy(dtype=bool)
+    font_size = observed_exceedance_fractions(runs[fit.measure].to_numpy(dtype=float), rocks, groups)
     axes.plot(
         [at for at, _ in font_size], [fraction for _, fraction in font_size],
         marker, color=color, markersize=3.0, markerfacecolor="none", markeredgewidth=0.7, label="_observed",
     )  # fmt: skip
 
 
-def _power(threshold: float) -> str:
+def _threshold_text(threshold: float) -> str:
     """The threshold as mathematics."""
     digits, exponent = f"{threshold:.3e}".split("e")
     digits = f"{float(digits):g}"
@@ -247,7 +251,7 @@ def plot_stripes(
         The table of a stripe study.
     limit
         ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"tendon_yield"``, ``"uplift"``, a
-        rotation in rad, or a limit state such as ``rockflex.fragility.residual_beyond(0.005)``.
+        rotation in rad, or a limit state such as ``rockflex.fragility.residual_rotation_limit_state(0.005)``.
     measure
         Name of the measure of the levels, such as ``"pgv"``, for the axis; it is not in the table.
     confidence
@@ -281,19 +285,19 @@ def plot_stripes(
     ('PGV [m/s]', 'P(overturning)')
     """
     needed = ("structure", "model", "level", "status", "max_rotation", "nominal_overturning")
-    check_columns(runs, needed, "the table of a stripe study")
-    from rockflex.study.stripes import stripe_counts, stripe_limit
+    check_table_columns(runs, needed, "the table of a stripe study")
+    from rockflex.study.stripes import stripe_counts, stripe_limit_state
 
     counts = stripe_counts(runs, limit)
     if not len(counts):
         raise InputError("No run was solved. See the column error of the table.")
-    styles = styles_of(names_in(runs["model"]))
-    names = names_in(runs["structure"])
+    styles = model_lines_and_symbols(names_in_column(runs["model"]))
+    names = names_in_column(runs["structure"])
     end = 1.1 * float(counts["level"].max())
-    with styled(size=size):
-        event = stripe_limit(limit).symbol
+    with with_figure_style(size=size):
+        event = stripe_limit_state(limit).symbol
         y = f"$P({event})$" if ">" in event else f"P({event})"
-        figure, panels = structure_panels(names, 3, 2.1, measure_name(measure), y)
+        figure, panels = structure_panels(names, 3, 2.1, measure_axis_name(measure), y)
         for axes, name in zip(panels, names, strict=True):
             notes: list[tuple[str, str]] = []
             for model, (style, marker) in styles.items():
@@ -302,7 +306,7 @@ def plot_stripes(
                     text = _draw_stripes(
                         axes,
                         stripes,
-                        _fit_of_stripes(rows_of(runs, name, model), limit),
+                        _fit_of_stripes(runs_of_case(runs, name, model), limit),
                         model,
                         style,
                         marker,
@@ -313,11 +317,11 @@ def plot_stripes(
             axes.axvspan(0.0, float(counts["level"].min()), color=SHADE, linewidth=0.0, label="_no runs")
             for place, (text, color) in enumerate(reversed(notes)):
                 axes.text(
-                    0.97, 0.04 + 0.075 * place, text, transform=axes.transAxes, ha="right", fontsize=font_size(6.5),
-                    color=color,
+                    0.97, 0.04 + 0.075 * place, text, transform=axes.transAxes, ha="right",
+                    fontsize=scaled_font_size(6.5), color=color,
                 )  # fmt: skip
         panels[0].set(xlim=(0.0, end), ylim=(-0.03, 1.03))
-        legend_above(figure, legend_handles(styles))
+        add_legend_above(figure, model_legend_handles(styles))
     return figure
 
 
@@ -347,17 +351,17 @@ def _draw_stripes(
 
 
 def _fit_of_stripes(runs: "pd.DataFrame", limit: "StripeLimit") -> LognormalFragility | None:
-    from rockflex.study.stripes import stripe_limit
+    from rockflex.study.stripes import stripe_limit_state
 
     solved = runs[runs["status"].notna()]
-    exceeded = stripe_limit(limit).exceeded(solved).astype(bool)
+    exceeded = stripe_limit_state(limit).exceeded(solved).astype(bool)
     try:
-        return fit_stripes(solved["level"], exceeded, np.ones(len(solved)), recordings_of(solved))
+        return fit_stripes(solved["level"], exceeded, np.ones(len(solved)), recordings_of_runs(solved))
     except (InputError, SolverError):
         return None
 
 
-class _Capacities(NamedTuple):
+class _RecordCapacities(NamedTuple):
     """Capacities of the records of one structure and model, which of them are only bounds, and the fitted curve."""
 
     reached: Array
@@ -411,54 +415,54 @@ def plot_ida(
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('PGA [m/s²]', '$θ_{\\mathrm{max}}$ [rad]')
     """
-    check_columns(runs, (*_NEEDED, measure), _SOURCE)
+    check_table_columns(runs, (*_NEEDED, measure), _SOURCE)
     from rockflex.study.incremental import incremental_capacities
 
     capacities = incremental_capacities(runs, measure)
-    groups = [(name, model) for name in names_in(runs["structure"]) for model in names_in(runs["model"])]
-    groups = [group for group in groups if len(rows_of(runs, *group))]
+    groups = [(name, model) for name in names_in_column(runs["structure"]) for model in names_in_column(runs["model"])]
+    groups = [group for group in groups if len(runs_of_case(runs, *group))]
     if len(groups) > _MAX_ROWS:
         raise InputError(
             f"{len(groups)} structures and models are too many for one figure; {_MAX_ROWS} fit. Plot fewer at a time."
         )
-    with styled(size=size):
-        across = 1 if is_narrow() else 2
+    with with_figure_style(size=size):
+        across = 1 if is_narrow_figure() else 2
         figure = new_figure(6.3, 0.9 + 2.1 * len(groups) * 2 // across)
         grid = figure.subplots(2 * len(groups) // across, across, sharex=True, squeeze=False).reshape(-1, 2)
         for row, (structure, model) in enumerate(groups):
             left, right = grid[row]
-            found = _capacities(rows_of(capacities, structure, model))
-            failed = _draw_curves(left, rows_of(runs, structure, model), measure)
-            _draw_capacities(right, found, confidence, failed)
-            left.set(title=literal(f"{structure}, {model}"), ylabel=r"$θ_{\mathrm{max}}$ [rad]")
+            found = _record_capacities(runs_of_case(capacities, structure, model))
+            failed = _draw_ida_curves(left, runs_of_case(runs, structure, model), measure)
+            _draw_ida_capacities(right, found, confidence, failed)
+            left.set(title=literal_text(f"{structure}, {model}"), ylabel=r"$θ_{\mathrm{max}}$ [rad]")
             right.set_ylabel("P(overturning)")
             label_panel(left, chr(ord("A") + 2 * row))
             label_panel(right, chr(ord("B") + 2 * row))
-        grid[0, 0].set_xlim(0.0, _ida_limit(runs, capacities, measure))
+        grid[0, 0].set_xlim(0.0, _ida_axis_limit(runs, capacities, measure))
         for axes in grid[-1, -across:]:
-            axes.set_xlabel(measure_name(measure))
-        legend_above(figure, _ida_handles(), columnspacing=1.2, handlelength=1.6)
+            axes.set_xlabel(measure_axis_name(measure))
+        add_legend_above(figure, _ida_legend_handles(), columnspacing=1.2, handlelength=1.6)
     return figure
 
 
-def _capacities(rows: "pd.DataFrame") -> _Capacities:
+def _record_capacities(rows: "pd.DataFrame") -> _RecordCapacities:
     known = rows[rows["capacity"].notna()]
     values, censored = known["capacity"].to_numpy(dtype=float), known["censored"].to_numpy(dtype=bool)
     try:
         fit = fit_capacities(values, censored, known["group"])
     except InputError:
         fit = None
-    return _Capacities(values, censored, int((known["resurrections"] > 0).sum()), fit)
+    return _RecordCapacities(values, censored, int((known["resurrections"] > 0).sum()), fit)
 
 
-def _ida_limit(runs: "pd.DataFrame", capacities: "pd.DataFrame", measure: str) -> float:
+def _ida_axis_limit(runs: "pd.DataFrame", capacities: "pd.DataFrame", measure: str) -> float:
     """End of the axis: a little beyond the last capacity and the last run that did not overturn."""
     stood = runs[runs["overturned"].notna() & ~runs["overturned"].fillna(True).astype(bool)]
     ends = [float(values.max()) for values in (stood[measure], capacities["capacity"]) if values.notna().any()]
     return 1.05 * max(ends, default=1.0)
 
 
-def _draw_curves(axes: Axes, runs: "pd.DataFrame", measure: str) -> int:
+def _draw_ida_curves(axes: Axes, runs: "pd.DataFrame", measure: str) -> int:
     """Draw one curve per record; return how many runs failed."""
     top = 0.0
     for _, ladder in runs.groupby("motion", observed=True, sort=False):
@@ -488,14 +492,14 @@ def _draw_curves(axes: Axes, runs: "pd.DataFrame", measure: str) -> int:
     return int(runs["overturned"].isna().sum())
 
 
-def _draw_capacities(axes: Axes, found: _Capacities, confidence: float | None, failed: int) -> None:
+def _draw_ida_capacities(axes: Axes, found: _RecordCapacities, confidence: float | None, failed: int) -> None:
     """Draw steps of the observed fraction, the lognormal curve, and the numbers."""
     axes.set_ylim(-0.03, 1.03)
-    lines = [counted(found.reached.size, "record")]
+    lines = [number_with_noun(found.reached.size, "record")]
     if found.censored.any():
         lines[0] += f", {int(found.censored.sum())} never overturned"
     if (~found.censored).any():
-        at, fraction = _observed(found)
+        at, fraction = _observed_capacity_fractions(found)
         axes.step(np.append(0.0, at), np.append(0.0, fraction), where="post", color=BLACK, linewidth=0.9, label="_ecdf")
     if found.fit is not None:
         end = float(found.reached.max()) * 1.3
@@ -503,17 +507,17 @@ def _draw_capacities(axes: Axes, found: _Capacities, confidence: float | None, f
         axes.plot(im, found.fit.probability(im), color=RED, linestyle="--", linewidth=1.1, label="_fit")
         if confidence is not None and found.fit.covariance is not None:
             axes.fill_between(im, *found.fit.band(im, confidence), color=RED, alpha=0.13, linewidth=0.0, label="_band")
-        lines.append(f"median {short(found.fit.median)}, β = {found.fit.beta:.2f}")
+        lines.append(f"median {short_number(found.fit.median)}, β = {found.fit.beta:.2f}")
     lines.append(f"{found.resurrected} with resurrections")
     if failed:
-        lines.append(f"{counted(failed, 'run')} failed")
+        lines.append(f"{number_with_noun(failed, 'run')} failed")
     axes.text(
         0.97, 0.05, "\n".join(lines), transform=axes.transAxes, ha="right", fontsize=SMALL, linespacing=1.3,
         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 1.0},
     )  # fmt: skip
 
 
-def _observed(found: _Capacities) -> tuple[Array, Array]:
+def _observed_capacity_fractions(found: _RecordCapacities) -> tuple[Array, Array]:
     """Capacities and the fraction of records up to each; records that never overturned are censored."""
     from scipy.stats import CensoredData, ecdf
 
@@ -522,7 +526,7 @@ def _observed(found: _Capacities) -> tuple[Array, Array]:
     return np.asarray(estimate.quantiles), np.asarray(estimate.probabilities)
 
 
-def _ida_handles() -> list[Line2D]:
+def _ida_legend_handles() -> list[Line2D]:
     return [
         Line2D([], [], color=GRAY, linewidth=0.7, label="record"),
         Line2D([], [], color=RED, marker="x", linestyle="", markersize=3.5, label="first overturning"),

@@ -13,21 +13,27 @@ from matplotlib.patches import Patch
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._numbers import prefixed, short
+from rockflex._number_format import short_number, unit_with_prefix
 from rockflex._shown import shown
-from rockflex.plot._curves import Curve, curves_of, rotation_limit, time_limits, title_of
+from rockflex.plot._response_curves import (
+    ResponseCurve,
+    response_curves,
+    response_figure_title,
+    rotation_axis_limit,
+    time_axis_limits,
+)
 from rockflex.plot._style import (
     BLACK,
     GRAY,
     SHADE,
     Size,
-    font_size,
-    is_narrow,
+    add_legend_above,
+    is_narrow_figure,
     label_panel,
-    legend_above,
     new_figure,
-    notes_beside,
-    styled,
+    scaled_font_size,
+    with_figure_style,
+    write_notes_beside,
 )
 from rockflex.response import History, Response
 
@@ -37,7 +43,7 @@ _POINTS = 2000  # across the panel, more than it has dots
 
 
 @dataclass(frozen=True)
-class Quantity:
+class PanelQuantity:
     """The quantity of a panel."""
 
     symbol: str
@@ -48,20 +54,22 @@ class Quantity:
 
 
 _QUANTITIES = (
-    Quantity("θ", "rotation", "rad", False, lambda h: h.rotation),
-    Quantity(r"$u_{\mathrm{top}}$, relative", "top_displacement", "m", False, lambda h: h.top_displacement),
-    Quantity(r"$u_{\mathrm{top}}$, total", "total_top_displacement", "m", False, lambda h: h.total_top_displacement),
-    Quantity(r"$M_b$", "base_moment", "N m", True, lambda h: h.base_moment),
-    Quantity(r"$V_b$", "base_shear", "N", True, lambda h: h.base_shear),
-    Quantity(r"$ΣF_x$", "horizontal_reaction", "N", True, lambda h: h.horizontal_reaction),
-    Quantity("slip", "slip", "m", False, lambda h: h.slip),
-    Quantity("rise of edges", "edge_uplift", "m", False, lambda h: h.edge_uplift),
+    PanelQuantity("θ", "rotation", "rad", False, lambda h: h.rotation),
+    PanelQuantity(r"$u_{\mathrm{top}}$, relative", "top_displacement", "m", False, lambda h: h.top_displacement),
+    PanelQuantity(
+        r"$u_{\mathrm{top}}$, total", "total_top_displacement", "m", False, lambda h: h.total_top_displacement
+    ),
+    PanelQuantity(r"$M_b$", "base_moment", "N m", True, lambda h: h.base_moment),
+    PanelQuantity(r"$V_b$", "base_shear", "N", True, lambda h: h.base_shear),
+    PanelQuantity(r"$ΣF_x$", "horizontal_reaction", "N", True, lambda h: h.horizontal_reaction),
+    PanelQuantity("slip", "slip", "m", False, lambda h: h.slip),
+    PanelQuantity("rise of edges", "edge_uplift", "m", False, lambda h: h.edge_uplift),
 )
 _OPTIONAL = ("horizontal_reaction", "slip", "edge_uplift")  # or shown where the ground makes them matter
 PANELS = tuple(quantity.name for quantity in _QUANTITIES)
 
 
-def default_panels(curves: list[Curve]) -> list[str]:
+def default_history_panels(curves: list[ResponseCurve]) -> list[str]:
     """All but ΣF_x; total displacement if the height of the top is known, slip and edges if a base slides or heaves."""
     known = all(curve.history.model.properties.top_height is not None for curve in curves)
     usual = [name for name in PANELS if name not in _OPTIONAL and (known or name != "total_top_displacement")]
@@ -73,7 +81,7 @@ def default_panels(curves: list[Curve]) -> list[str]:
     return usual + [name for name, happens in moves.items() if happens]
 
 
-def quantities_of(panels: Sequence[str]) -> list[Quantity]:
+def panel_quantities(panels: Sequence[str]) -> list[PanelQuantity]:
     """Quantities by name.
 
     Raises
@@ -89,28 +97,30 @@ def quantities_of(panels: Sequence[str]) -> list[Quantity]:
     return [next(quantity for quantity in _QUANTITIES if quantity.name == name) for name in names]
 
 
-def axis_scale(quantity: Quantity, curves: list[Curve]) -> tuple[float, str, float]:
+def quantity_axis_scale(quantity: PanelQuantity, curves: list[ResponseCurve]) -> tuple[float, str, float]:
     """Divisor, unit and largest magnitude of an axis, with some room."""
-    largest = max(_largest(curve, quantity) for curve in curves)
+    largest = max(_largest_on_history_axis(curve, quantity) for curve in curves)
     if quantity.name == "rotation":
-        largest = rotation_limit(curves)
-    factor, unit = prefixed(largest, quantity.unit) if quantity.prefixed else (1.0, quantity.unit)
+        largest = rotation_axis_limit(curves)
+    factor, unit = unit_with_prefix(largest, quantity.unit) if quantity.prefixed else (1.0, quantity.unit)
     return factor, unit, _MARGIN * largest / factor if largest > 0.0 else 1e-3
 
 
-def draw_panel(axes: Axes, quantity: Quantity, curves: list[Curve], mark: str) -> list[Artist]:
+def draw_history_panel(axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve], mark: str) -> list[Artist]:
     """Fill one panel over time and list the peaks beside it; return a line for each curve."""
-    lines, peaks = draw_curves(axes, quantity, curves)
+    lines, peaks = draw_history_curves(axes, quantity, curves)
     label_panel(axes, mark)
     notes = [(text, curve.style.color) for text, curve in zip(peaks, curves, strict=True)]
-    notes_beside(axes, [("peaks", "#404040"), *notes], 10.0)
+    write_notes_beside(axes, [("peaks", "#404040"), *notes], 10.0)
     return lines
 
 
-def draw_curves(axes: Axes, quantity: Quantity, curves: list[Curve]) -> tuple[list[Artist], list[str]]:
+def draw_history_curves(
+    axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve]
+) -> tuple[list[Artist], list[str]]:
     """Fill one panel over time; return a line for each curve, and its peak in words."""
-    factor, unit, limit = axis_scale(quantity, curves)
-    low = -limit if quantity.name != "edge_uplift" else -_MARGIN * _settlement(curves, limit)
+    factor, unit, limit = quantity_axis_scale(quantity, curves)
+    low = -limit if quantity.name != "edge_uplift" else -_MARGIN * _largest_edge_settlement(curves, limit)
     axes.set(ylim=(low, limit), ylabel=f"{quantity.symbol} [{unit}]")
     lines: list[Artist] = []
     peaks: list[str] = []
@@ -126,31 +136,39 @@ def draw_curves(axes: Axes, quantity: Quantity, curves: list[Curve]) -> tuple[li
         if curve.overturned:
             axes.axvline(curve.response.end_time, color=style.color, linestyle=":", linewidth=0.8, zorder=1.5)
         if curve.falls and quantity.name == "rotation":
-            _mark_fall(axes, curve, limit)
+            _mark_overturning(axes, curve, limit)
         peaks.append(_mark_peak(axes, quantity, curve, factor))
     return lines, peaks
 
 
-def add_legend(
+def add_response_legend(
     figure: Figure,
-    curves: list[Curve],
+    curves: list[ResponseCurve],
     handles: Sequence[Artist],
     names: Sequence[str],
     title: str | None,
     **options: Any,
 ) -> None:
     """Add the legend of responses above a figure, under its title."""
-    legend_above(figure, handles, names, title=title_of(curves, title), handlelength=2.6, columnspacing=1.4, **options)
+    add_legend_above(
+        figure,
+        handles,
+        names,
+        title=response_figure_title(curves, title),
+        handlelength=2.6,
+        columnspacing=1.4,
+        **options,
+    )
 
 
-def _largest(curve: Curve, quantity: Quantity) -> float:
+def _largest_on_history_axis(curve: ResponseCurve, quantity: PanelQuantity) -> float:
     """Largest magnitude on the axis."""
     if not curve.falls:
         return float(getattr(curve.response, f"max_{quantity.name}"))
     return float(np.max(np.abs(quantity.of(curve.history)[curve.before_fall])))
 
 
-def _mark_peak(axes: Axes, quantity: Quantity, curve: Curve, factor: float) -> str:
+def _mark_peak(axes: Axes, quantity: PanelQuantity, curve: ResponseCurve, factor: float) -> str:
     """Circle the true peak, which may be between two nodes of the curve; return its text."""
     if curve.overturned and quantity.name == "rotation":
         return f"overturned, {curve.response.end_time:.2f} s"
@@ -162,10 +180,10 @@ def _mark_peak(axes: Axes, quantity: Quantity, curve: Curve, factor: float) -> s
         [when], [side * peak], "o", color=curve.style.color, markersize=3.5, markerfacecolor="white",
         markeredgewidth=0.9, zorder=3.0,
     )  # fmt: skip
-    return f"{short(peak)} at {when:.2f} s"
+    return f"{short_number(peak)} at {when:.2f} s"
 
 
-def _peak_time_and_sign(quantity: Quantity, curve: Curve) -> tuple[float, float]:
+def _peak_time_and_sign(quantity: PanelQuantity, curve: ResponseCurve) -> tuple[float, float]:
     """Return the time and the sign of a peak."""
     time, values = curve.history.time, quantity.of(curve.history)
     if quantity.name == "edge_uplift":
@@ -177,12 +195,12 @@ def _peak_time_and_sign(quantity: Quantity, curve: Curve) -> tuple[float, float]
     return when, float(np.sign(np.interp(when, time, values)))
 
 
-def _settlement(curves: list[Curve], limit: float) -> float:
+def _largest_edge_settlement(curves: list[ResponseCurve], limit: float) -> float:
     """Return how far the edges sink in m, for the lower end of an axis that reaches up to `limit`."""
     return max(*(curve.response.max_edge_settlement for curve in curves), 0.05 * limit)
 
 
-def _mark_fall(axes: Axes, curve: Curve, limit: float) -> None:
+def _mark_overturning(axes: Axes, curve: ResponseCurve, limit: float) -> None:
     """Draw a triangle where the rotation finally leaves the panel."""
     rotation, time = curve.history.rotation, curve.history.time
     inside = np.flatnonzero(np.abs(rotation) <= limit)
@@ -253,23 +271,23 @@ def plot_history(
     >>> len(figure.axes), figure.axes[1].get_xlabel()
     (2, 'time [s]')
     """
-    curves = curves_of(responses, labels)
-    quantities = quantities_of(default_panels(curves) if panels is None else panels)
+    curves = response_curves(responses, labels)
+    quantities = panel_quantities(default_history_panels(curves) if panels is None else panels)
     handles: list[Artist] = []
-    with styled(size=size):
+    with with_figure_style(size=size):
         figure = new_figure(6.3, len(quantities) * max(1.45, 0.155 * (len(curves) + 2)) + 0.8)
         grid: list[Axes] = list(figure.subplots(len(quantities), 1, sharex=True, squeeze=False).flat)
         for axes, quantity, mark in zip(grid, quantities, ascii_uppercase, strict=False):
-            handles = draw_panel(axes, quantity, curves, mark)
+            handles = draw_history_panel(axes, quantity, curves, mark)
         uplifts = shade_uplifts(grid, curves)
-        grid[-1].set(xlabel="time [s]", xlim=time_limits(curves))
+        grid[-1].set(xlabel="time [s]", xlim=time_axis_limits(curves))
         figure.align_ylabels()
         names = [curve.label for curve in curves]
-        add_legend(figure, curves, [*handles, *uplifts.values()], [*names, *uplifts], title)
+        add_response_legend(figure, curves, [*handles, *uplifts.values()], [*names, *uplifts], title)
     return figure
 
 
-def shade_uplifts(panels: list[Axes], curves: list[Curve]) -> dict[str, Artist]:
+def shade_uplifts(panels: list[Axes], curves: list[ResponseCurve]) -> dict[str, Artist]:
     """Shade the uplifts of the most detailed model; return the entry of the legend that names it, if there are any."""
     rocking = [curve for curve in curves if curve.uplifts.size]
     if not rocking:
@@ -278,7 +296,7 @@ def shade_uplifts(panels: list[Axes], curves: list[Curve]) -> dict[str, Artist]:
         return {}
     main = max(rocking, key=lambda curve: curve.history.model.properties.n_modes)
     for axes in panels:
-        _draw_spans(axes, main, 0.0, 1.0, SHADE, 0.5)
+        _draw_uplift_spans(axes, main, 0.0, 1.0, SHADE, 0.5)
     name = f"uplifted: {main.label}" if len(curves) > 1 else "uplifted"
     entry: dict[str, Artist] = {name: Patch(facecolor=SHADE, edgecolor=GRAY, linewidth=0.4)}
     if len(rocking) == 1:
@@ -287,11 +305,13 @@ def shade_uplifts(panels: list[Axes], curves: list[Curve]) -> dict[str, Artist]:
     foot = _BAR * (len(rocking) + 1)
     panels[0].set_ylim(low - (high - low) * foot / (1.0 - foot), high)
     for row, curve in enumerate(reversed(rocking)):
-        _draw_spans(panels[0], curve, _BAR * (row + 0.35), 0.7 * _BAR, curve.style.color, 2.6)
+        _draw_uplift_spans(panels[0], curve, _BAR * (row + 0.35), 0.7 * _BAR, curve.style.color, 2.6)
     return entry
 
 
-def _draw_spans(axes: Axes, curve: Curve, bottom: float, height: float, color: str, order: float) -> None:
+def _draw_uplift_spans(
+    axes: Axes, curve: ResponseCurve, bottom: float, height: float, color: str, order: float
+) -> None:
     """Draw a bar over every phase of rocking; bottom and height are fractions of the panel."""
     spans = [(float(start), float(end - start)) for start, end in curve.uplifts]
     axes.broken_barh(
@@ -351,46 +371,46 @@ def plot_spread(
     >>> len(figure.axes), figure.axes[0].get_xlabel()
     (1, 'time [s]')
     """
-    curves = curves_of(responses, labels)
+    curves = response_curves(responses, labels)
     if len(varied) != len(curves) or not all(len(group) for group in varied):
         raise InputError(
             f"varied must hold {len(curves)} groups, one per response, each of at least one response, but groups of "
             f"{[len(group) for group in varied]} were given."
         )
-    groups = [[_single_curve(response) for response in group] for group in varied]
-    quantities = quantities_of(panels)
+    groups = [[_single_response_curve(response) for response in group] for group in varied]
+    quantities = panel_quantities(panels)
     everything = [*curves, *(curve for group in groups for curve in group)]
     times = np.linspace(0.0, max(float(curve.history.time[-1]) for curve in curves), _POINTS)
-    with styled(size=size):
-        shape = (len(quantities) * len(curves), 1) if is_narrow() else (len(curves), len(quantities))
+    with with_figure_style(size=size):
+        shape = (len(quantities) * len(curves), 1) if is_narrow_figure() else (len(curves), len(quantities))
         figure = new_figure(0.8 + 3.2 * len(quantities), 0.9 + 1.35 * shape[0])
         # A narrow figure has one column: all panels of the first quantity, then of the next.
         grid = figure.subplots(*shape, sharex=True, squeeze=False).reshape(len(curves), -1, order="F")
         for column, quantity in enumerate(quantities):
-            factor, unit, limit = axis_scale(quantity, everything)
+            factor, unit, limit = quantity_axis_scale(quantity, everything)
             for row, (curve, group) in enumerate(zip(curves, groups, strict=True)):
                 axes: Axes = grid[row, column]
-                low, high = _band(quantity, [curve, *group], times)
+                low, high = _spread_of_histories(quantity, [curve, *group], times)
                 axes.fill_between(times, low / factor, high / factor, color=SHADE, edgecolor=GRAY, linewidth=0.4)
                 drawn = curve.before_fall
                 values = quantity.of(curve.history)[drawn] / factor
                 axes.plot(curve.history.time[drawn], values, color=BLACK, linewidth=0.8, label=curve.label)
                 axes.set(ylim=(-limit, limit), xlim=(0.0, float(times[-1])), ylabel=f"{quantity.symbol} [{unit}]")
-                axes.set_title(curve.label, fontsize=font_size(8.0), loc="left", pad=3.0)
-            if column + 1 == len(quantities) or not is_narrow():
+                axes.set_title(curve.label, fontsize=scaled_font_size(8.0), loc="left", pad=3.0)
+            if column + 1 == len(quantities) or not is_narrow_figure():
                 grid[-1, column].set_xlabel("time [s]")
         figure.align_ylabels()
         handles = [grid[0, 0].get_lines()[0], Patch(facecolor=SHADE, edgecolor=GRAY, linewidth=0.4)]
         names = ["nominal", "from the least to the largest of what was varied"]
-        legend_above(figure, handles, names, title=title_of(curves, title))
+        add_legend_above(figure, handles, names, title=response_figure_title(curves, title))
     return figure
 
 
-def _single_curve(response: Response) -> Curve:
-    return curves_of(response)[0]
+def _single_response_curve(response: Response) -> ResponseCurve:
+    return response_curves(response)[0]
 
 
-def _band(quantity: Quantity, curves: list[Curve], times: Array) -> tuple[Array, Array]:
+def _spread_of_histories(quantity: PanelQuantity, curves: list[ResponseCurve], times: Array) -> tuple[Array, Array]:
     """Smallest and largest value at each time, among the runs that have not ended."""
     rows = np.full((len(curves), times.size), np.nan)
     for row, curve in zip(rows, curves, strict=True):

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._numbers import prefixed, short
+from rockflex._number_format import short_number, unit_with_prefix
 from rockflex.modal import (
     BaseElement,
     ElementLaw,
@@ -24,8 +24,14 @@ from rockflex.modal import (
     ViscousDamper,
     YieldingDissipator,
 )
-from rockflex.plot._curves import Curve, curves_of, title_of
-from rockflex.plot._history import add_legend, axis_scale, draw_panel, quantities_of, shade_uplifts
+from rockflex.plot._history import (
+    add_response_legend,
+    draw_history_panel,
+    panel_quantities,
+    quantity_axis_scale,
+    shade_uplifts,
+)
+from rockflex.plot._response_curves import ResponseCurve, response_curves, response_figure_title
 from rockflex.plot._style import (
     BLACK,
     BLUE,
@@ -36,12 +42,12 @@ from rockflex.plot._style import (
     RED,
     SKY,
     Size,
-    is_narrow,
+    add_legend_above,
+    is_narrow_figure,
     label_panel,
-    legend_above,
-    literal,
+    literal_text,
     new_figure,
-    styled,
+    with_figure_style,
 )
 from rockflex.response import (
     History,
@@ -134,14 +140,14 @@ def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> B
             f"result must be a Response or a MomentRotation, but {type(given).__name__} was given. Give what simulate "
             "or moment_rotation returned."
         )
-    (curve,) = curves = curves_of(result)
+    (curve,) = curves = response_curves(result)
     if not curve.lifts:
         raise InputError(
             "The base of this response cannot lift, so it has no loops. Give the response of a model that rocks, such "
             'as "2DOF-S".'
         )
     history, until_fall = curve.history, curve.before_fall
-    title, elements = title_of(curves, None), history.model.properties.elements
+    title, elements = response_figure_title(curves, None), history.model.properties.elements
     resistance = resistance_on_springs(history)
     if resistance is not None:
         return BaseLoops(
@@ -156,7 +162,7 @@ def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> B
             edges=history.edge_uplift[until_fall],
         )
     rocking = np.flatnonzero(history.side[until_fall] != 0.0)
-    weight, parts = resistance_of(history)
+    weight, parts = resisting_moments(history)
     return BaseLoops(
         title=title,
         elements=elements,
@@ -168,7 +174,7 @@ def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> B
     )
 
 
-def resistance_of(history: History) -> tuple[Array, Array]:
+def resisting_moments(history: History) -> tuple[Array, Array]:
     """Return the resisting moments of the weight (n,) and of the elements (n, E) in N m; zero in contact."""
     p, side = history.model.properties, history.side.astype(np.int64)
     heavier = 1.0 + history.vertical_ground_acceleration / GRAVITY
@@ -179,19 +185,19 @@ def resistance_of(history: History) -> tuple[Array, Array]:
     return heavier * weight, element_resistance(p, side, history.element_force)
 
 
-def is_path_independent(properties: RockingProperties) -> bool:
+def is_moment_path_independent(properties: RockingProperties) -> bool:
     """Whether the resisting moment depends on the rotation alone: all elements stay elastic."""
     return all(
-        not any(branch.yields for branch in each.law.values())
-        if isinstance(each, ElementLaw)
-        else isinstance(each, Tendon) and each.post_yield_ratio is None
-        for each in properties.elements
+        not any(branch.yields for branch in one_for_each.law.values())
+        if isinstance(one_for_each, ElementLaw)
+        else isinstance(one_for_each, Tendon) and one_for_each.post_yield_ratio is None
+        for one_for_each in properties.elements
     )
 
 
-def name_of(element: BaseElement, number: int) -> str:
+def element_name(element: BaseElement, number: int) -> str:
     """Name of an element in a figure, with its number, counted from 1, and its position."""
-    return f"{number} {_element_name(element)}, x = {short(element.position)} m"
+    return f"{number} {_element_name(element)}, x = {short_number(element.position)} m"
 
 
 def plot_loops(
@@ -241,32 +247,34 @@ def plot_loops(
     ['M [MN m]', 'F [kN]', 'F [kN]']
     """
     loops = base_loops(result)
-    drawn = [] if loops.edges is None else [_draw_edges]
-    drawn += [partial(_draw_element, place=place) for place in range(len(loops.elements))]
+    drawn = [] if loops.edges is None else [_draw_edge_loops]
+    drawn += [partial(_draw_element_loop, place=place) for place in range(len(loops.elements))]
     count = len(drawn)
-    with styled(size=size):
-        rows = count if is_narrow() else max(math.ceil(count / _PER_ROW), 1)
-        beside = 0 if is_narrow() else math.ceil(count / rows)
-        figure = new_figure(4.2 + 2.2 * beside, max(3.6, (3.3 if is_narrow() else 0.7) + 2.3 * rows))
+    with with_figure_style(size=size):
+        rows = count if is_narrow_figure() else max(math.ceil(count / _PER_ROW), 1)
+        beside = 0 if is_narrow_figure() else math.ceil(count / rows)
+        figure = new_figure(4.2 + 2.2 * beside, max(3.6, (3.3 if is_narrow_figure() else 0.7) + 2.3 * rows))
         figure.get_layout_engine().set(w_pad=0.07)  # pyright: ignore
-        if is_narrow():
+        if is_narrow_figure():
             grid = figure.add_gridspec(1 + rows, 1, height_ratios=(1.4, *[1.0] * rows))
             base = figure.add_subplot(grid[0, 0])
         else:
             grid = figure.add_gridspec(rows, 1 + beside, width_ratios=(1.7, *[1.0] * beside))
             base = figure.add_subplot(grid[:, 0])
-        _draw_base(base, loops)
+        _draw_base_loop(base, loops)
         for place, draw in enumerate(drawn):
-            row, column = (1 + place, 0) if is_narrow() else (place // beside, 1 + place % beside)
+            row, column = (1 + place, 0) if is_narrow_figure() else (place // beside, 1 + place % beside)
             draw(figure.add_subplot(grid[row, column]), loops)
         lines = base.get_lines()
-        legend_above(figure, lines, title=literal(title) if title is not None else loops.title, handlelength=2.0)
+        add_legend_above(
+            figure, lines, title=literal_text(title) if title is not None else loops.title, handlelength=2.0
+        )
     return figure
 
 
-def _draw_base(axes: Axes, loops: BaseLoops) -> None:
+def _draw_base_loop(axes: Axes, loops: BaseLoops) -> None:
     moment = loops.moment
-    factor, unit = prefixed(max(map(abs, (*moment, 0.0))), "N m")
+    factor, unit = unit_with_prefix(max(map(abs, (*moment, 0.0))), "N m")
     axes.plot(loops.rotation, moment / factor, color=BLACK, linewidth=1.4, label="total", zorder=3.0)
     if loops.elements or loops.springs is not None:
         axes.plot(loops.rotation, loops.weight / factor, color=GRAY, linewidth=0.9, label="weight")
@@ -274,14 +282,14 @@ def _draw_base(axes: Axes, loops: BaseLoops) -> None:
         axes.plot(loops.rotation, loops.springs / factor, color=BLUE, linewidth=0.9, label="springs")
     for place, element in enumerate(loops.elements):
         axes.plot(
-            loops.rotation, loops.parts[:, place] / factor, color=_color(place), linewidth=0.9,
-            label=name_of(element, place + 1),
+            loops.rotation, loops.parts[:, place] / factor, color=_element_color(place), linewidth=0.9,
+            label=element_name(element, place + 1),
         )  # fmt: skip
     axes.set(xlabel="θ [rad]", ylabel=f"M [{unit}]")
     axes.locator_params(axis="x", nbins=6)
 
 
-def _draw_edges(axes: Axes, loops: BaseLoops) -> None:
+def _draw_edge_loops(axes: Axes, loops: BaseLoops) -> None:
     edges = cast("Array", loops.edges)
     axes.axhline(0.0, color=GRAY, linewidth=0.6, label="_level")
     for edge, style, name in zip(edges.T, ("-", (0, (4, 2))), ("left", "right"), strict=True):
@@ -291,15 +299,15 @@ def _draw_edges(axes: Axes, loops: BaseLoops) -> None:
     axes.legend(handlelength=2.0)
 
 
-def _draw_element(axes: Axes, loops: BaseLoops, place: int) -> None:
+def _draw_element_loop(axes: Axes, loops: BaseLoops, place: int) -> None:
     force = loops.force[:, place]
-    factor, unit = prefixed(max(map(abs, (*force, 0.0))), "N")
-    axes.plot(loops.elongation[:, place], force / factor, color=_color(place), linewidth=1.1)
-    axes.set(title=name_of(loops.elements[place], place + 1), xlabel="δ [m]", ylabel=f"F [{unit}]")
+    factor, unit = unit_with_prefix(max(map(abs, (*force, 0.0))), "N")
+    axes.plot(loops.elongation[:, place], force / factor, color=_element_color(place), linewidth=1.1)
+    axes.set(title=element_name(loops.elements[place], place + 1), xlabel="δ [m]", ylabel=f"F [{unit}]")
     axes.locator_params(axis="x", nbins=4)
 
 
-def _color(place: int) -> str:
+def _element_color(place: int) -> str:
     return _COLORS[place % len(_COLORS)]
 
 
@@ -349,11 +357,11 @@ def plot_hysteresis(
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('$u_{\\mathrm{top}}$, relative [m]', '$V_b$ [kN]')
     """
-    curves = curves_of(responses, labels)
-    with styled(size=size):
+    curves = response_curves(responses, labels)
+    with with_figure_style(size=size):
         figure = new_figure(4.2, 3.6)
         lines = _draw_hysteresis(figure.subplots(), curves)
-        add_legend(figure, curves, lines, [curve.label for curve in curves], title)
+        add_response_legend(figure, curves, lines, [curve.label for curve in curves], title)
     return figure
 
 
@@ -403,34 +411,36 @@ def plot_yielding(
     >>> len(figure.axes), figure.axes[-1].get_xlabel()
     (3, '$u_{\\mathrm{top}}$, relative [m]')
     """
-    curves = curves_of(responses, labels)
-    with styled(size=size):
+    curves = response_curves(responses, labels)
+    with with_figure_style(size=size):
         tall = max(1.45, 0.155 * (len(curves) + 2))
-        figure = new_figure(8.6, (2.0 * tall if not is_narrow() else 2.0 * tall + 2.6) + 0.9)
-        if is_narrow():
+        figure = new_figure(8.6, (2.0 * tall if not is_narrow_figure() else 2.0 * tall + 2.6) + 0.9)
+        if is_narrow_figure():
             grid = figure.add_gridspec(3, 1, height_ratios=(tall, tall, 2.6))
         else:
             grid = figure.add_gridspec(2, 2, width_ratios=(1.55, 1.0))
         top = figure.add_subplot(grid[0, 0])
         histories: list[Axes] = [top, figure.add_subplot(grid[1, 0], sharex=top)]
-        for axes, quantity, mark in zip(histories, quantities_of(("rotation", "top_displacement")), "AB", strict=True):
-            draw_panel(axes, quantity, curves, mark)
+        for axes, quantity, mark in zip(
+            histories, panel_quantities(("rotation", "top_displacement")), "AB", strict=True
+        ):
+            draw_history_panel(axes, quantity, curves, mark)
         shade_uplifts(histories, curves)
         top.tick_params(labelbottom=False)
         histories[1].set(xlabel="time [s]", xlim=(0.0, max(float(curve.history.time[-1]) for curve in curves)))
-        loops = figure.add_subplot(grid[2, 0] if is_narrow() else grid[:, 1])
+        loops = figure.add_subplot(grid[2, 0] if is_narrow_figure() else grid[:, 1])
         lines = _draw_hysteresis(loops, curves)
         label_panel(loops, "C")
         figure.align_ylabels(histories)
-        add_legend(figure, curves, lines, [curve.label for curve in curves], title)
+        add_response_legend(figure, curves, lines, [curve.label for curve in curves], title)
     return figure
 
 
-def _draw_hysteresis(axes: Axes, curves: list[Curve]) -> list[Artist]:
+def _draw_hysteresis(axes: Axes, curves: list[ResponseCurve]) -> list[Artist]:
     """Fill a panel with V_b over u_top; return a line for each curve."""
-    displacement, force = quantities_of(("top_displacement", "base_shear"))
-    _, across, right = axis_scale(displacement, curves)
-    factor, unit, high = axis_scale(force, curves)
+    displacement, force = panel_quantities(("top_displacement", "base_shear"))
+    _, across, right = quantity_axis_scale(displacement, curves)
+    factor, unit, high = quantity_axis_scale(force, curves)
     axes.set(xlim=(-right, right), ylim=(-high, high))
     axes.locator_params(axis="x", nbins=5)
     axes.set(xlabel=f"{displacement.symbol} [{across}]", ylabel=f"{force.symbol} [{unit}]")

@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rockflex._arrays import Array
-from rockflex._checks import positive, whole_number
+from rockflex._checks import checked_positive, checked_whole_number
 from rockflex._errors import InputError
-from rockflex._numbers import short
+from rockflex._number_format import short_number
 from rockflex._shown import shown
 from rockflex.modal import (
     ModalProperties,
@@ -24,23 +24,23 @@ from rockflex.modal import (
     frequency_equation,
     uplifted_modes,
 )
-from rockflex.plot._study_tables import label_plainly, model_styles
+from rockflex.plot._study_tables import label_log_axis_plainly, model_line_styles
 from rockflex.plot._style import (
     BLUE,
     GRAY,
     SMALL,
     LineStyle,
     Size,
-    font_size,
-    is_narrow,
+    add_legend_above,
+    is_narrow_figure,
     label_panel,
-    legend_above,
-    literal,
+    literal_text,
     new_figure,
-    notes_beside,
-    styled,
+    scaled_font_size,
+    with_figure_style,
+    write_notes_beside,
 )
-from rockflex.study import RockingStructure, properties_of
+from rockflex.study import RockingStructure, rocking_properties_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -98,20 +98,20 @@ def plot_mode_shapes(
     >>> len(figure.axes), figure.axes[0].get_ylabel()
     (2, 'height [m]')
     """
-    modes = _modes_of(structure_or_modal)
+    modes = _modal_properties_of_source(structure_or_modal)
     # Γ_n φ_n sums to 1 at every height over all modes, and only over all of them.
     complete = np.allclose(modes.shapes @ modes.participation, 1.0, rtol=0.0, atol=1e-6)
     total = float(modes.effective_mass.sum()) if complete else None
     shown = modes if n_modes is None else modes.truncated(n_modes)
-    with styled(size=size):
-        per_row = min(shown.n_modes, _PER_NARROW_ROW if is_narrow() else _PER_ROW)
+    with with_figure_style(size=size):
+        per_row = min(shown.n_modes, _PER_NARROW_ROW if is_narrow_figure() else _PER_ROW)
         rows = math.ceil(shown.n_modes / per_row)
         figure = new_figure(max(1.26 * per_row, 2.6), 3.4 * rows)
         grid = figure.subplots(rows, per_row, sharey=True, squeeze=False)
         panels: list[Axes] = list(grid.flat)
         for n, axes in enumerate(panels):
             if n < shown.n_modes:
-                _draw_shape(axes, shown, n, total)
+                _draw_mode_shape(axes, shown, n, total)
             else:
                 axes.set_axis_off()
         for row in grid:
@@ -120,7 +120,7 @@ def plot_mode_shapes(
     return figure
 
 
-def _modes_of(source: _HasModes | ModalProperties) -> ModalProperties:
+def _modal_properties_of_source(source: _HasModes | ModalProperties) -> ModalProperties:
     if isinstance(source, ModalProperties):
         return source
     if not hasattr(source, "modal"):
@@ -131,34 +131,34 @@ def _modes_of(source: _HasModes | ModalProperties) -> ModalProperties:
     return source.modal()
 
 
-def _draw_shape(axes: Axes, modes: ModalProperties, n: int, total: float | None) -> None:
+def _draw_mode_shape(axes: Axes, modes: ModalProperties, n: int, total: float | None) -> None:
     ordinates = np.concatenate(([0.0], modes.participation[n] * modes.shapes[:, n]))
     heights = np.concatenate(([0.0], modes.heights))
     axes.axvline(0.0, color=GRAY, linewidth=0.8)
     few = heights.size <= 40
     axes.plot(ordinates, heights, color=BLUE, linewidth=1.4, marker="o" if few else "", markersize=3.0)
     largest = float(np.max(np.abs(ordinates))) or 1.0
-    tick = _rounded_down(largest)
+    tick = _rounded_down_to_first_digit(largest)
     axes.set_xlim(-1.25 * largest, 1.25 * largest)
     axes.set_xticks([-tick, 0.0, tick], [f"−{tick:g}", "0", f"{tick:g}"])
     axes.set_ylim(0.0, 1.04 * float(heights[-1]))
-    axes.set_title(_describe(modes, n, total), fontsize=font_size(8.0))
+    axes.set_title(_mode_description(modes, n, total), fontsize=scaled_font_size(8.0))
 
 
-def _rounded_down(value: float) -> float:
+def _rounded_down_to_first_digit(value: float) -> float:
     """First digit of a positive number."""
     power = math.floor(math.log10(value))
     return float(f"{math.floor(value / 10.0**power)}e{power}")
 
 
-def _describe(modes: ModalProperties, n: int, total: float | None) -> str:
+def _mode_description(modes: ModalProperties, n: int, total: float | None) -> str:
     mass, height = float(modes.effective_mass[n]), float(modes.effective_height[n])
     if total is None:
-        share = rf"$m^*_{{{n + 1}}}$ = {short(mass)} kg"
+        share = rf"$m^*_{{{n + 1}}}$ = {short_number(mass)} kg"
     else:
-        share = rf"$m^*_{{{n + 1}}}/Σm$ = {short(100.0 * mass / total)} %"
-    arm = f"{short(height)} m" if math.isfinite(height) else "none"
-    return f"$T_{{{n + 1}}}$ = {short(float(modes.period[n]))} s\n{share}\n" rf"$h^*_{{{n + 1}}}$ = {arm}"
+        share = rf"$m^*_{{{n + 1}}}/Σm$ = {short_number(100.0 * mass / total)} %"
+    arm = f"{short_number(height)} m" if math.isfinite(height) else "none"
+    return f"$T_{{{n + 1}}}$ = {short_number(float(modes.period[n]))} s\n{share}\n" rf"$h^*_{{{n + 1}}}$ = {arm}"
 
 
 def plot_frequency_equation(
@@ -215,15 +215,15 @@ def plot_frequency_equation(
         raise InputError(
             "There is nothing to plot. Give at least one structure, and one number of modes (None for all)."
         )
-    end = None if highest is None else positive("highest", highest, "ω/ω_1")
-    models = {name: _models_of(each, n_modes, side) for name, each in named.items()}
-    styles = model_styles(label for each in models.values() for label in each)
-    with styled(size=size):
+    end = None if highest is None else checked_positive("highest", highest, "ω/ω_1")
+    models = {name: _truncated_models(each, n_modes, side) for name, each in named.items()}
+    styles = model_line_styles(label for each in models.values() for label in each)
+    with with_figure_style(size=size):
         figure = new_figure(6.3, 0.5 + 2.4 * len(named))
         panels: list[Axes] = list(figure.subplots(len(named), 1, squeeze=False).flat)
         for axes, (name, each), mark in zip(panels, models.items(), ascii_uppercase, strict=False):
-            _draw_equation(axes, each, styles, end, side)
-            axes.set_title(literal(name))
+            _draw_frequency_equation(axes, each, styles, end, side)
+            axes.set_title(literal_text(name))
             label_panel(axes, mark)
         panels[-1].set_xlabel(r"$ω/ω_1$")
         handles = [
@@ -231,26 +231,26 @@ def plot_frequency_equation(
             for label, style in styles.items()
         ]
         handles.append(Line2D([], [], color=GRAY, linestyle=":", linewidth=0.9, label=r"$ω_n/ω_1$, fixed base"))
-        legend_above(figure, handles, handlelength=2.8)
+        add_legend_above(figure, handles, handlelength=2.8)
     return figure
 
 
-def _models_of(
+def _truncated_models(
     structure: "RockingStructure | RockingProperties", n_modes: Sequence[SupportsIndex | None], side: int | None
 ) -> dict[str, tuple[RockingProperties, UpliftedModes]]:
     """Truncated properties and uplifted modes by the models' labels."""
-    full = properties_of(structure)
+    full = rocking_properties_of(structure)
     if full.n_modes == 0:
         raise InputError("A structure without modes has no frequency equation to plot. Give one with modes.")
     found: dict[str, tuple[RockingProperties, UpliftedModes]] = {}
     for each in n_modes:
-        count = full.n_modes if each is None else whole_number("n_modes", each, 1, full.n_modes)
+        count = full.n_modes if each is None else checked_whole_number("n_modes", each, 1, full.n_modes)
         truncated = full.truncated(count)
         found["MDOF-S" if each is None else f"{count + 1}DOF-S"] = (truncated, uplifted_modes(truncated, side=side))
     return found
 
 
-def _draw_equation(
+def _draw_frequency_equation(
     axes: Axes,
     models: dict[str, tuple[RockingProperties, UpliftedModes]],
     styles: dict[str, LineStyle],
@@ -268,7 +268,7 @@ def _draw_equation(
     notes = [(r"zeros, $ω^*_n/ω_1$", "#404040")]
     for label, (p, modes) in models.items():
         style = styles[label]
-        omega = _between_poles(p.omega, end * first)
+        omega = _frequencies_between_poles(p.omega, end * first)
         inertia = p.weaker_pivot.i_theta if side is None else p.pivot(side).i_theta
         ordinate = frequency_equation(p, omega, side=side) / (inertia * first**2)
         ordinates.append(np.abs(ordinate[np.isfinite(ordinate)]))
@@ -284,10 +284,10 @@ def _draw_equation(
         notes += [(label, style.color), *((f"   {root:.3f}", style.color) for root in roots[:_NAMED_ROOTS])]
     limit = float(np.percentile(np.concatenate(ordinates), _SHARE))
     axes.set(ylim=(-limit, limit), xlim=(0.0, end), ylabel=r"frequency equation / $I_θ\,ω_1^2$")
-    notes_beside(axes, notes, 10.5)
+    write_notes_beside(axes, notes, 10.5)
 
 
-def _between_poles(poles: Array, end: float) -> Array:
+def _frequencies_between_poles(poles: Array, end: float) -> Array:
     """Frequencies up to `end`, dense beside each pole and with the poles themselves, where the equation is NaN."""
     inside = np.concatenate([[0.0], poles[poles < end], [end]])
     share = 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, _POINTS)))
@@ -346,37 +346,39 @@ def plot_frequency_ratios(
     """
     named: Mapping[str, pd.DataFrame] = tables if isinstance(tables, Mapping) else {"": tables}
     bounds = limits if isinstance(limits, Mapping) else {} if limits is None else dict.fromkeys(named, limits)
-    shown = [whole_number("modes", mode, 1) for mode in modes]
-    _check_ratios(named, bounds, shown)
-    styles = model_styles(str(model) for table in named.values() for model in table["model"])
+    shown = [checked_whole_number("modes", mode, 1) for mode in modes]
+    _check_frequency_ratios(named, bounds, shown)
+    styles = model_line_styles(str(model) for table in named.values() for model in table["model"])
     dashes = dict(zip(named, _DASHES, strict=False))
-    with styled(size=size):
-        rows = len(shown) if is_narrow() else 1
+    with with_figure_style(size=size):
+        rows = len(shown) if is_narrow_figure() else 1
         figure = new_figure(0.6 + 2.95 * len(shown) + 0.5 * (len(shown) == 1), 0.9 + 2.6 * rows)
         panels: list[Axes] = list(figure.subplots(rows, len(shown) // rows, squeeze=False).flat)
         for axes, mode, mark_of_panel in zip(panels, shown, ascii_uppercase, strict=False):
-            top = max(_draw_ratios(axes, table, mode, styles, dashes[name]) for name, table in named.items())
+            top = max(_draw_frequency_ratios(axes, table, mode, styles, dashes[name]) for name, table in named.items())
             for name, beam in bounds.items():
                 value = float(beam.ratio[mode - 1])
-                _draw_limit(axes, value, dashes[name])
+                _draw_pinned_beam_limit(axes, value, dashes[name])
                 top = max(top, value)
             if mark is not None:
                 axes.axvline(mark, color=GRAY, linewidth=1.2, zorder=1.5, label="_mark")
             axes.set_xscale("log")
             axes.margins(x=0.0)
-            if is_narrow():
-                label_plainly(axes.xaxis)
+            if is_narrow_figure():
+                label_log_axis_plainly(axes.xaxis)
             axes.set(
                 ylim=(1.0 - (_MARGIN - 1.0) * (top - 1.0), 1.0 + _MARGIN * (top - 1.0) + 1e-6), xlabel=r"$h^*_1/B$"
             )
             axes.set_ylabel(rf"$ω^*_{{{mode}}}/ω_{{{mode}}}$")
             label_panel(axes, mark_of_panel)
-        handles = _ratio_handles(styles, dashes, bool(bounds), mark)
-        legend_above(figure, handles, max_columns=3)
+        handles = _frequency_ratio_handles(styles, dashes, bool(bounds), mark)
+        add_legend_above(figure, handles, max_columns=3)
     return figure
 
 
-def _draw_ratios(axes: Axes, table: "pd.DataFrame", mode: int, styles: dict[str, LineStyle], dashes: Dashes) -> float:
+def _draw_frequency_ratios(
+    axes: Axes, table: "pd.DataFrame", mode: int, styles: dict[str, LineStyle], dashes: Dashes
+) -> float:
     """Draw one curve per model that has the mode; return the largest ordinate."""
     top = 1.0
     for model, style in styles.items():
@@ -391,7 +393,7 @@ def _draw_ratios(axes: Axes, table: "pd.DataFrame", mode: int, styles: dict[str,
     return top
 
 
-def _draw_limit(axes: Axes, value: float, dashes: Dashes) -> None:
+def _draw_pinned_beam_limit(axes: Axes, value: float, dashes: Dashes) -> None:
     axes.axhline(value, color=BLUE, linestyle=dashes, linewidth=0.8, zorder=1.6, label="_limit")
     axes.annotate(
         f"{value:.3f}", (0.02, value), xytext=(0, 2), xycoords=("axes fraction", "data"), textcoords="offset points",
@@ -399,13 +401,13 @@ def _draw_limit(axes: Axes, value: float, dashes: Dashes) -> None:
     )  # fmt: skip
 
 
-def _ratio_handles(
+def _frequency_ratio_handles(
     styles: dict[str, LineStyle], dashes: Mapping[str, Dashes], bounded: bool, mark: float | None
 ) -> list[Line2D]:
     handles = [Line2D([], [], color=style.color, linewidth=style.width, label=model) for model, style in styles.items()]
     if list(dashes) != [""]:
         handles += [
-            Line2D([], [], color="#606060", linestyle=dash, label=literal(name))  # pyright: ignore[reportArgumentType]
+            Line2D([], [], color="#606060", linestyle=dash, label=literal_text(name))  # pyright: ignore[reportArgumentType]
             for name, dash in dashes.items()
         ]
     if bounded:
@@ -415,7 +417,9 @@ def _ratio_handles(
     return handles
 
 
-def _check_ratios(named: "Mapping[str, pd.DataFrame]", bounds: Mapping[str, PinnedBeam], modes: list[int]) -> None:
+def _check_frequency_ratios(
+    named: "Mapping[str, pd.DataFrame]", bounds: Mapping[str, PinnedBeam], modes: list[int]
+) -> None:
     if not modes:
         raise InputError("modes is empty. Give at least one mode, counted from 1.")
     if not 1 <= len(named) <= len(_DASHES):

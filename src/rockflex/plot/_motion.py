@@ -10,9 +10,9 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._numbers import short
-from rockflex._shown import counted
-from rockflex.motion import MEASURES, GroundMotion, Selection, Shaking
+from rockflex._number_format import short_number
+from rockflex._shown import number_with_noun
+from rockflex.motion import MEASURES, GroundMotion, MeasureInput, Selection
 from rockflex.plot._style import (
     BLACK,
     BLUE,
@@ -21,12 +21,12 @@ from rockflex.plot._style import (
     RED,
     SHADE,
     Size,
-    font_size,
-    is_narrow,
-    legend_above,
-    literal,
+    add_legend_above,
+    is_narrow_figure,
+    literal_text,
     new_figure,
-    styled,
+    scaled_font_size,
+    with_figure_style,
 )
 
 _PERIODS = np.geomspace(0.02, 10.0, 240)
@@ -80,17 +80,23 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
     spectrum = motion.spectrum(_PERIODS, _DAMPING)
     first = motion.significant_duration(0.0, 0.05)
     histories = [
-        ("a", "m/s²", motion.acceleration, f"{_measure_text('pga', motion)} ({short(motion.pga / GRAVITY)} g)"),
+        ("a", "m/s²", motion.acceleration, f"{_measure_text('pga', motion)} ({short_number(motion.pga / GRAVITY)} g)"),
         ("v", "m/s", motion.velocity, _measure_text("pgv", motion)),
         ("d", "m", motion.displacement, _measure_text("pgd", motion)),
     ]
     if motion.vertical is not None:
         histories.insert(
-            1, ("a_v", "m/s²", motion.vertical, f"{_measure_text('pva', motion)} ({short(motion.pva / GRAVITY)} g)")
+            1,
+            (
+                "a_v",
+                "m/s²",
+                motion.vertical,
+                f"{_measure_text('pva', motion)} ({short_number(motion.pva / GRAVITY)} g)",
+            ),
         )
-    with styled(size=size):
-        figure = new_figure(7.2, 1.0 + 1.2 * len(histories) + 2.4 * is_narrow())
-        if is_narrow():
+    with with_figure_style(size=size):
+        figure = new_figure(7.2, 1.0 + 1.2 * len(histories) + 2.4 * is_narrow_figure())
+        if is_narrow_figure():
             stacked: list[Any] = [[name] for name in (*(symbol for symbol, *_ in histories), "spectrum")]
             panels = figure.subplot_mosaic(stacked, height_ratios=(*[1.0] * len(histories), 1.7))
         else:
@@ -101,7 +107,7 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
             axes.plot(motion.time, values, color=BLACK, linewidth=0.7)
             limit = 1.1 * float(np.max(np.abs(values))) or 1.0
             axes.set(ylim=(-limit, limit), xlim=(0.0, motion.duration), ylabel=f"${symbol}$ [{unit}]")
-            axes.set_title(peak, loc="right", fontsize=font_size(8.0))
+            axes.set_title(peak, loc="right", fontsize=scaled_font_size(8.0))
         for symbol, *_ in histories[:-1]:
             panels[symbol].sharex(panels["d"])
             panels[symbol].tick_params(labelbottom=False)
@@ -112,21 +118,21 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
         if motion.vertical is not None:
             upwards = motion.vertical_motion.spectrum(_PERIODS, _DAMPING)
             axes.plot(upwards.period, upwards.sa, color=ORANGE, linewidth=1.2, linestyle="--", label="vertical")
-            axes.legend(loc="upper right", fontsize=font_size(8.0))
+            axes.legend(loc="upper right", fontsize=scaled_font_size(8.0))
             largest = max(largest, float(upwards.sa.max()))
         axes.set(xscale="log", xlim=(_PERIODS[0], _PERIODS[-1]), ylim=(0.0, 1.08 * largest or 1.0))
         axes.xaxis.set_major_formatter("{x:g}")
         axes.set(xlabel="$T$ [s]", ylabel="$S_a$ [m/s²]")
         measures = f"{_measure_text('arias', motion)}, {_measure_text('d5_95', motion)} (shaded)"
-        axes.set_title(f"{measures}\nspectrum for ζ = {100.0 * _DAMPING:g} %", fontsize=font_size(8.0))
-        figure.suptitle(literal(motion.name) or "ground motion", fontsize="medium")
+        axes.set_title(f"{measures}\nspectrum for ζ = {100.0 * _DAMPING:g} %", fontsize=scaled_font_size(8.0))
+        figure.suptitle(literal_text(motion.name) or "ground motion", fontsize="medium")
     return figure
 
 
 def _measure_text(name: str, motion: GroundMotion) -> str:
     """Symbol, value and unit of a measure."""
     measure = MEASURES[name]
-    return f"{measure.sign} = {short(measure.of(Shaking(motion)))} {measure.unit}"
+    return f"{measure.sign} = {short_number(measure.of(MeasureInput(motion)))} {measure.unit}"
 
 
 def plot_selection(selection: Selection[Any], *, size: Size | None = None) -> Figure:
@@ -167,17 +173,17 @@ def plot_selection(selection: Selection[Any], *, size: Size | None = None) -> Fi
             f"selection must be a Selection, but {type(selection).__name__} was given. Make one: suite.select(...)."
         )
     target = selection.target
-    low, high = _ends(selection.periods)
+    low, high = _period_range_ends(selection.periods)
     periods = np.geomspace(low / _BEYOND, high * _BEYOND, _N_PERIODS)
     known = periods[(periods >= target.periods[0]) & (periods <= target.periods[-1])]
     rows = selection.at(periods)
-    with styled(size=size):
+    with with_figure_style(size=size):
         figure = new_figure(5.4, 4.6)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
         for axes in (upper, lower):
             axes.axvspan(low, high, color=SHADE, zorder=0.5)
-        _draw_spectra(upper, selection, periods, rows)
-        upper.plot(known, target.at(known), color=RED, linewidth=1.6, label=literal(target.name) or "target")
+        _draw_selected_spectra(upper, selection, periods, rows)
+        upper.plot(known, target.at(known), color=RED, linewidth=1.6, label=literal_text(target.name) or "target")
         within = np.isin(periods, known)
         lower.plot(known, rows.mean(axis=0)[within] / target.at(known), color=BLUE, linewidth=1.4)
         lower.axhline(1.0, color=RED, linewidth=0.9)
@@ -193,11 +199,11 @@ def plot_selection(selection: Selection[Any], *, size: Size | None = None) -> Fi
             axis.set_minor_formatter(NullFormatter())
         handles, labels = upper.get_legend_handles_labels()
         title = f"ζ = {100.0 * target.damping_ratio:g} %, {low:.3g} to {high:.3g} s"
-        legend_above(figure, handles, labels, title=title, max_columns=2)
+        add_legend_above(figure, handles, labels, title=title, max_columns=2)
     return figure
 
 
-def _ends(periods: Array) -> tuple[float, float]:
+def _period_range_ends(periods: Array) -> tuple[float, float]:
     """First and last positive period; a single one is widened so that its range can be seen."""
     positive = periods[periods > 0.0]
     if not positive.size:
@@ -206,11 +212,11 @@ def _ends(periods: Array) -> tuple[float, float]:
     return (low, high) if low < high else (low / 1.02, high * 1.02)
 
 
-def _draw_spectra(axes: Axes, selection: Selection[Any], periods: Array, rows: Array) -> None:
+def _draw_selected_spectra(axes: Axes, selection: Selection[Any], periods: Array, rows: Array) -> None:
     count = len(rows)
     if count > 1:
         for k, row in enumerate(rows):
-            label = counted(count, "record") if k == 0 else f"_{k}"
+            label = number_with_noun(count, "record") if k == 0 else f"_{k}"
             axes.plot(periods, row, color=GRAY, linewidth=0.6, alpha=0.7, label=label)
         median, spread = np.exp(np.log(rows).mean(axis=0)), np.log(rows).std(axis=0, ddof=1)
         band = median * np.exp(-spread), median * np.exp(spread)

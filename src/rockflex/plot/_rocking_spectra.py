@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from rockflex._errors import InputError
-from rockflex.plot._study_tables import check_columns
+from rockflex.plot._study_tables import check_table_columns
 from rockflex.plot._style import (
     BLACK,
     BLUE,
@@ -19,11 +19,11 @@ from rockflex.plot._style import (
     RED,
     LineStyle,
     Size,
-    legend_beside,
-    literal,
+    add_legend_beside,
+    literal_text,
     new_figure,
-    recoloured,
-    styled,
+    recoloured_line_styles,
+    with_figure_style,
 )
 
 if TYPE_CHECKING:
@@ -68,17 +68,19 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "", size: Size 
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('$2π/p$ [s]', '$θ_{\\mathrm{max}}/α$')
     """
-    check_columns(table, ("slenderness", "period", "relative_rotation", "overturned"), "what rocking_spectrum returned")
+    check_table_columns(
+        table, ("slenderness", "period", "relative_rotation", "overturned"), "what rocking_spectrum returned"
+    )
     groups = list(table.groupby("slenderness"))
-    _check_count(len(groups), "slendernesses")
+    _check_number_of_spectra(len(groups), "slendernesses")
     fell = table["overturned"].fillna(False).astype(bool)
     standing = [float(value) for value in table["relative_rotation"][~fell] if np.isfinite(value)]
     share = 1.0 - _CROSSES * (len(groups) + 1)
     limit = (1.05 * max(standing, default=0.0) or 1.0) / share
-    with styled(size=size):
+    with with_figure_style(size=size):
         figure = new_figure(6.3, 3.6)
         axes = figure.subplots()
-        for rank, ((slenderness, rows), style) in enumerate(zip(groups, recoloured(_STYLES), strict=False)):
+        for rank, ((slenderness, rows), style) in enumerate(zip(groups, recoloured_line_styles(_STYLES), strict=False)):
             block = rows.sort_values("period")
             over = block["overturned"].fillna(False).to_numpy(dtype=bool)
             values = np.where(over, np.nan, block["relative_rotation"].to_numpy(dtype=float))
@@ -90,10 +92,10 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "", size: Size 
                 block["period"][over], np.full(over.sum(), 1.0 - _CROSSES * (rank + 1)), "x", color=style.color,
                 markersize=3.5, transform=axes.get_xaxis_transform(), label="_overturned",
             )  # fmt: skip
-        axes.set(ylim=(0.0, limit), xlabel=r"$2π/p$ [s]", ylabel=r"$θ_{\mathrm{max}}/α$", title=literal(title))
+        axes.set(ylim=(0.0, limit), xlabel=r"$2π/p$ [s]", ylabel=r"$θ_{\mathrm{max}}/α$", title=literal_text(title))
         cross = Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.5, label="overturned")
         handles, _ = axes.get_legend_handles_labels()
-        legend_beside(figure, [*handles, cross])
+        add_legend_beside(figure, [*handles, cross])
     return figure
 
 
@@ -139,16 +141,18 @@ def plot_overturning_spectrum(
     named: Mapping[str, pd.DataFrame] = tables if isinstance(tables, Mapping) else {"": tables}
     if not named:
         raise InputError("There is no table to plot. Give at least one from overturning_spectrum.")
-    _check_count(len(named), "tables")
+    _check_number_of_spectra(len(named), "tables")
     for table in named.values():
-        check_columns(table, ("frequency_ratio", "lowest", "highest_standing"), "what overturning_spectrum returned")
-    with styled(size=size):
+        check_table_columns(
+            table, ("frequency_ratio", "lowest", "highest_standing"), "what overturning_spectrum returned"
+        )
+    with with_figure_style(size=size):
         figure = new_figure(6.3, 3.6)
         axes = figure.subplots()
         finite = [v for table in named.values() for v in table["lowest"] if np.isfinite(v)]
         top = [v for table in named.values() for v in table["highest_standing"] if np.isfinite(v)]
         limit = 1.1 * max([*finite, *top, 1.0])
-        for (name, table), style in zip(named.items(), recoloured(_STYLES), strict=False):
+        for (name, table), style in zip(named.items(), recoloured_line_styles(_STYLES), strict=False):
             rows = table.sort_values("frequency_ratio")
             ratio, low = rows["frequency_ratio"].to_numpy(dtype=float), rows["lowest"].to_numpy(dtype=float)
             high = np.minimum(rows["highest_standing"].to_numpy(dtype=float), limit)
@@ -157,18 +161,18 @@ def plot_overturning_spectrum(
                 ratio, low, high, where=both, facecolor="none", edgecolor=style.color, hatch="////", linewidth=0.0,
                 alpha=0.5,
             )  # fmt: skip
-            axes.plot(ratio, low, color=style.color, linestyle=style.dashes, label=literal(name) or "lowest")
+            axes.plot(ratio, low, color=style.color, linestyle=style.dashes, label=literal_text(name) or "lowest")
         axes.axhline(1.0, color=GRAY, linewidth=0.8, label="uplift")
         axes.set_xlim(left=0.0)
-        axes.set(ylim=(0.0, limit), xlabel=r"$ω_g/p$", ylabel=r"$a_p/(g\,α)$", title=literal(title))
+        axes.set(ylim=(0.0, limit), xlabel=r"$ω_g/p$", ylabel=r"$a_p/(g\,α)$", title=literal_text(title))
         handles, _ = axes.get_legend_handles_labels()
         if axes.collections and any(len(area.get_paths()) for area in axes.collections):
             handles.append(Patch(facecolor="none", edgecolor=GRAY, hatch="////", linewidth=0.0, label="either"))
-        legend_beside(figure, handles)
+        add_legend_beside(figure, handles)
     return figure
 
 
-def _check_count(given: int, what: str) -> None:
+def _check_number_of_spectra(given: int, what: str) -> None:
     if given > len(_STYLES):
         raise InputError(
             f"{given} {what} are too many to distinguish in one figure; at most {len(_STYLES)} can be shown."

@@ -9,11 +9,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
-from rockflex._numbers import prefixed
-from rockflex.plot._curves import Curve, curves_of, rotation_limit, time_limits
-from rockflex.plot._history import add_legend, axis_scale, draw_curves, quantities_of, shade_uplifts
-from rockflex.plot._moment_rotation import largest_moment, resistance_line, whole_line
-from rockflex.plot._style import BLACK, SMALL, font_size, new_figure, styled
+from rockflex._number_format import unit_with_prefix
+from rockflex.plot._history import (
+    add_response_legend,
+    draw_history_curves,
+    panel_quantities,
+    quantity_axis_scale,
+    shade_uplifts,
+)
+from rockflex.plot._moment_rotation import largest_base_moment_on_axes, resisting_moment_line, static_line_rotation
+from rockflex.plot._response_curves import ResponseCurve, response_curves, rotation_axis_limit, time_axis_limits
+from rockflex.plot._style import BLACK, SMALL, new_figure, scaled_font_size, with_figure_style
 from rockflex.response import Response
 
 _MM = 1.0 / 25.4  # inches
@@ -23,7 +29,7 @@ _MIN_PANELS = 3  # panels in any case
 _MAX_LAW_POINTS = 500  # points of a line that is a path, not a law
 
 
-def run_sheet(
+def draw_run_sheet(
     responses: Response | Iterable[Response], labels: Sequence[str] | None = None, *, width: float, height: float
 ) -> Figure:
     """Draw the histories of models that ran under one record, one panel per quantity, and their loops beside them.
@@ -37,11 +43,11 @@ def run_sheet(
     InputError
         If there are no responses or too many, or one has no history.
     """
-    curves = curves_of(responses, labels)
+    curves = response_curves(responses, labels)
     lifting = [curve for curve in curves if curve.lifts]
     loops = [curve for curve in lifting if curve.history.model.properties.n_modes]
-    quantities = quantities_of(_panels(curves, height))
-    with styled():
+    quantities = panel_quantities(_run_sheet_panels(curves, height))
+    with with_figure_style():
         figure = new_figure(width * _MM, height * _MM)
         figure.get_layout_engine().set(h_pad=0.01, w_pad=0.02, hspace=0.02, wspace=0.02)  # pyright: ignore
         grid = figure.add_gridspec(len(quantities), 2 if loops else 1, width_ratios=(1.9, 1.0) if loops else None)
@@ -49,26 +55,28 @@ def run_sheet(
         handles: list[Artist] = []
         for row, (quantity, mark) in enumerate(zip(quantities, ascii_uppercase, strict=False)):
             axes = figure.add_subplot(grid[row, 0], sharex=panels[0] if panels else None)
-            handles, _ = draw_curves(axes, quantity, curves)
-            _label_inside(axes, mark)
-            axes.set_ylabel(_short_label(axes.get_ylabel(), height / len(quantities)), fontsize=font_size(8.0))
+            handles, _ = draw_history_curves(axes, quantity, curves)
+            _label_inside_panel(axes, mark)
+            axes.set_ylabel(
+                _short_axis_label(axes.get_ylabel(), height / len(quantities)), fontsize=scaled_font_size(8.0)
+            )
             axes.tick_params(labelbottom=row == len(quantities) - 1)
             axes.locator_params(axis="y", nbins=5)
             panels.append(axes)
         uplifts = shade_uplifts(panels, curves)
-        panels[-1].set(xlabel="time [s]", xlim=time_limits(curves))
+        panels[-1].set(xlabel="time [s]", xlim=time_axis_limits(curves))
         figure.align_ylabels(panels)
         if loops:
-            _draw_loops(figure.add_subplot(grid[:, 1]), loops, ascii_uppercase[len(quantities)])
+            _draw_moment_rotation_loops(figure.add_subplot(grid[:, 1]), loops, ascii_uppercase[len(quantities)])
         entries = [*handles, *uplifts.values()], [*(curve.label for curve in curves), *uplifts]
-        add_legend(figure, curves, *entries, "", borderpad=0.1, borderaxespad=0.1)
+        add_response_legend(figure, curves, *entries, "", borderpad=0.1, borderaxespad=0.1)
     return figure
 
 
-def record_strip(time: Array, acceleration: Array, *, width: float, height: float) -> Figure:
+def draw_record_strip(time: Array, acceleration: Array, *, width: float, height: float) -> Figure:
     """Draw a ground acceleration in m/s² over the time in s, `width` by `height` mm."""
     largest = float(np.max(np.abs(acceleration))) or 1.0
-    with styled():
+    with with_figure_style():
         figure = new_figure(width * _MM, height * _MM)
         figure.get_layout_engine().set(h_pad=0.01, w_pad=0.02)  # pyright: ignore
         axes = figure.add_subplot()
@@ -81,7 +89,7 @@ def record_strip(time: Array, acceleration: Array, *, width: float, height: floa
     return figure
 
 
-def _panels(curves: list[Curve], height: float) -> list[str]:
+def _run_sheet_panels(curves: list[ResponseCurve], height: float) -> list[str]:
     """Names of the quantities that matter for these models."""
     models = [curve.history.model for curve in curves]
     known = all(model.properties.top_height is not None for model in models)
@@ -101,34 +109,37 @@ def _panels(curves: list[Curve], height: float) -> list[str]:
     return names
 
 
-def _short_label(label: str, room: float) -> str:
+def _short_axis_label(label: str, room: float) -> str:
     """Return the label of an axis, without its qualifier where the panel is lower than `room` mm."""
     return label if room > _MIN_PANEL_MM else label.replace(", total", "").replace(", relative", "")
 
 
-def _draw_loops(axes: Axes, curves: list[Curve], mark: str) -> None:
+def _draw_moment_rotation_loops(axes: Axes, curves: list[ResponseCurve], mark: str) -> None:
     """Draw base moment over rotation, and the static resisting moment."""
-    rotation = _MARGIN * (rotation_limit(curves) or max(map(whole_line, curves)))
-    (moment,) = quantities_of(["base_moment"])
-    largest = max(largest_moment(curves[0]), axis_scale(moment, curves)[2] * axis_scale(moment, curves)[0] / _MARGIN)
-    factor, unit = prefixed(largest, "N m")
+    rotation = _MARGIN * (rotation_axis_limit(curves) or max(map(static_line_rotation, curves)))
+    (moment,) = panel_quantities(["base_moment"])
+    largest = max(
+        largest_base_moment_on_axes(curves[0]),
+        quantity_axis_scale(moment, curves)[2] * quantity_axis_scale(moment, curves)[0] / _MARGIN,
+    )
+    factor, unit = unit_with_prefix(largest, "N m")
     for curve in curves:
         until_fall = curve.before_fall
         axes.plot(
             curve.history.rotation[until_fall], curve.history.base_moment[until_fall] / factor, color=curve.style.color,
             linestyle=curve.style.dashes, linewidth=0.8 * curve.style.width, zorder=curve.order,
         )  # fmt: skip
-    line = resistance_line(curves[0], rotation, factor)
+    line = resisting_moment_line(curves[0], rotation, factor)
     line.set(linewidth=0.9 if len(line.get_xdata()) < _MAX_LAW_POINTS else 0.5, zorder=1.8)  # pyright: ignore[reportArgumentType]
     axes.add_line(line)
     limit = _MARGIN * largest / factor
     axes.set(xlim=(-rotation, rotation), ylim=(-limit, limit), xlabel="θ [rad]", ylabel=f"$M_b$ [{unit}]")
     axes.locator_params(axis="x", nbins=4)
     axes.set_title(f"$M_b$ over θ; blue: resisting moment\nof {curves[0].label}", fontsize=SMALL, loc="right")
-    _label_inside(axes, mark)
+    _label_inside_panel(axes, mark)
 
 
-def _label_inside(axes: Axes, mark: str) -> None:
+def _label_inside_panel(axes: Axes, mark: str) -> None:
     axes.annotate(
         mark, (0.0, 1.0), xytext=(4, -3), xycoords="axes fraction", textcoords="offset points", weight="bold", va="top",
         zorder=6.0,

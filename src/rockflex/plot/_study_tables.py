@@ -11,9 +11,19 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rockflex._errors import InputError
-from rockflex._numbers import short
+from rockflex._number_format import short_number
 from rockflex.motion import MEASURES
-from rockflex.plot._style import BLACK, GREEN, LINE_STYLES, RED, LineStyle, is_narrow, literal, new_figure, recoloured
+from rockflex.plot._style import (
+    BLACK,
+    GREEN,
+    LINE_STYLES,
+    RED,
+    LineStyle,
+    is_narrow_figure,
+    literal_text,
+    new_figure,
+    recoloured_line_styles,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -24,7 +34,7 @@ MARKERS = ("o", "^", "s", "D", "v", "P", "X", "<", ">", "h", "p", "*", "d", "8",
 _MAX_PANELS = 12  # panels in one figure
 
 
-def model_styles(models: Iterable[str]) -> dict[str, LineStyle]:
+def model_line_styles(models: Iterable[str]) -> dict[str, LineStyle]:
     """Give each model its own line style, in order of appearance; fewer modes are drawn over more.
 
     Raises
@@ -37,10 +47,10 @@ def model_styles(models: Iterable[str]) -> dict[str, LineStyle]:
     if len(others) > len(LINE_STYLES):
         raise InputError(f"{len(names)} models are too many to distinguish in one figure. Plot fewer at a time.")
     styles = _OWN | dict(zip(others, LINE_STYLES, strict=False))
-    return dict(zip(names, recoloured(styles[name] for name in names), strict=True))
+    return dict(zip(names, recoloured_line_styles(styles[name] for name in names), strict=True))
 
 
-def check_columns(table: object, columns: Iterable[str], source: str) -> None:
+def check_table_columns(table: object, columns: Iterable[str], source: str) -> None:
     """Raise an InputError unless a table has rows and these columns; `source` names the function that returns one."""
     lacking = [name for name in columns if name not in getattr(table, "columns", ())]
     if lacking or not len(table):  # pyright: ignore[reportArgumentType]
@@ -48,34 +58,34 @@ def check_columns(table: object, columns: Iterable[str], source: str) -> None:
         raise InputError(f"The table {lacks}. Give {source}.")
 
 
-def measure_name(measure: str) -> str:
+def measure_axis_name(measure: str) -> str:
     """Name of an axis: an intensity measure with its unit, or the name of another column."""
-    return MEASURES[measure].axis if measure in MEASURES else literal(measure)
+    return MEASURES[measure].axis if measure in MEASURES else literal_text(measure)
 
 
-def names_in(column: "pd.Series[Any] | Iterable[object]") -> list[str]:
+def names_in_column(column: "pd.Series[Any] | Iterable[object]") -> list[str]:
     """Different names in a column, in order of appearance."""
     return list(dict.fromkeys(str(name) for name in column))
 
 
-def styles_of(models: Sequence[str]) -> dict[str, tuple[LineStyle, str]]:
+def model_lines_and_symbols(models: Sequence[str]) -> dict[str, tuple[LineStyle, str]]:
     """Give each model its own line and symbol."""
-    styles = model_styles(models)
+    styles = model_line_styles(models)
     return {model: (style, marker) for (model, style), marker in zip(styles.items(), MARKERS, strict=False)}
 
 
-def label_plainly(axis: Axis) -> None:
+def label_log_axis_plainly(axis: Axis) -> None:
     """Label a logarithmic axis of a few decades at 1, 2 and 5, without exponents."""
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axis.set_major_formatter(FuncFormatter(_plain))
+    axis.set_major_formatter(FuncFormatter(_plain_tick_label))
     axis.set_minor_formatter(NullFormatter())
 
 
-def _plain(value: float, _: object) -> str:
-    return short(value)
+def _plain_tick_label(value: float, _: object) -> str:
+    return short_number(value)
 
 
-def legend_handles(styles: dict[str, tuple[LineStyle, str]], *, symbols: bool = True) -> list[Line2D]:
+def model_legend_handles(styles: dict[str, tuple[LineStyle, str]], *, symbols: bool = True) -> list[Line2D]:
     """Entries of a legend, one per model, with its line and its symbol."""
     return [
         Line2D(
@@ -98,7 +108,7 @@ def structure_panels(names: Sequence[str], across: int, height: float, x: str, y
         raise InputError(
             f"{len(names)} structures are too many for one figure; {_MAX_PANELS} fit. Plot fewer at a time."
         )
-    columns = 1 if is_narrow() else min(across, len(names))
+    columns = 1 if is_narrow_figure() else min(across, len(names))
     rows = math.ceil(len(names) / columns)
     figure = new_figure(4.2 if columns == 1 else 6.3, 0.6 + height * rows)
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
@@ -106,7 +116,7 @@ def structure_panels(names: Sequence[str], across: int, height: float, x: str, y
     for spare in panels[len(names) :]:
         spare.remove()
     for place, (axes, name) in enumerate(zip(panels, names, strict=False)):
-        axes.set_title(literal(name))
+        axes.set_title(literal_text(name))
         if place + columns >= len(names):
             axes.set_xlabel(x)
             axes.tick_params(labelbottom=True)

@@ -22,7 +22,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from rockflex._errors import InputError
-from rockflex._files import path_of, write_whole
+from rockflex._files import checked_file_path, write_file_atomically
 from rockflex._shown import shown
 
 # Okabe & Ito's palette, which colour-blind readers can tell apart.
@@ -110,7 +110,7 @@ _DRAWN: ContextVar[list[Figure] | None] = ContextVar("drawn", default=None)
 
 
 @contextmanager
-def styled(theme: str = "light", size: Size | None = None) -> Generator[None, None, None]:
+def with_figure_style(theme: str = "light", size: Size | None = None) -> Generator[None, None, None]:
     """Apply the style while a figure is drawn; matplotlib's settings are global, so one thread at a time.
 
     Raises
@@ -118,14 +118,15 @@ def styled(theme: str = "light", size: Size | None = None) -> Generator[None, No
     InputError
         If the size is neither a name nor a width and a height in inches.
     """
-    inches = _inches(size)
+    inches = _figure_size_in_inches(size)
     with _LOCK:
-        font = rcParams["font.size"] if _set_by_caller("font.size") else _default_font(inches)
+        font = rcParams["font.size"] if _is_style_set_by_caller("font.size") else _default_font_size(inches)
         lines, marks = (
-            rcParams[name] if _set_by_caller(name) else None for name in ("lines.linewidth", "lines.markersize")
+            rcParams[name] if _is_style_set_by_caller(name) else None
+            for name in ("lines.linewidth", "lines.markersize")
         )
         settings: dict[Any, Any] = {
-            name: value for name, value in THEMES[theme].items() if name in _SAVED or not _set_by_caller(name)
+            name: value for name, value in THEMES[theme].items() if name in _SAVED or not _is_style_set_by_caller(name)
         }
         settings |= {name: settings[name] * font / _FONT for name in _FONT_SIZES if name in settings}
         settings["lines.linewidth"] = _STYLE["lines.linewidth"]  # _rescale applies the settings of the caller
@@ -138,23 +139,23 @@ def styled(theme: str = "light", size: Size | None = None) -> Generator[None, No
                 _SIZE.reset(tokens[0])
                 _DRAWN.reset(tokens[1])
             for figure in figures:
-                _rescale(figure, lines, marks)
-                if theme == "light" and _brightness(rcParams["axes.facecolor"]) < _DARK_BRIGHTNESS:
-                    _invert(figure)
+                _rescale_lines(figure, lines, marks)
+                if theme == "light" and _color_brightness(rcParams["axes.facecolor"]) < _DARK_BRIGHTNESS:
+                    _invert_figure_colors(figure)
                 if inches is not None or font != _FONT:
-                    _wrap(figure)
+                    _wrap_figure_texts(figure)
 
 
-def _set_by_caller(name: Any) -> bool:
+def _is_style_set_by_caller(name: Any) -> bool:
     """Whether the caller has set one of matplotlib's settings."""
     return bool(rcParams[name] != rcParamsDefault[name])
 
 
-def _default_font(inches: tuple[float, float | None] | None) -> float:
+def _default_font_size(inches: tuple[float, float | None] | None) -> float:
     return _FONT if inches is None or inches[0] >= _NARROW else _COLUMN_FONT
 
 
-def _inches(size: Size | None) -> tuple[float, float | None] | None:
+def _figure_size_in_inches(size: Size | None) -> tuple[float, float | None] | None:
     """Width and height asked for; the height is None where the figure chooses it."""
     if size is None:
         return None
@@ -174,7 +175,7 @@ def _inches(size: Size | None) -> tuple[float, float | None] | None:
     )
 
 
-def literal(text: str) -> str:
+def literal_text(text: str) -> str:
     """Escape names so that they are not read as mathematics."""
     return text.replace("$", r"\$")
 
@@ -195,7 +196,7 @@ class NotebookFigure(Figure):
 
     def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
         content = io.BytesIO()
-        with styled():
+        with with_figure_style():
             self.savefig(content, format="png", dpi=PIXEL_RATIO * NOTEBOOK_DPI)
         width, height = (round(NOTEBOOK_DPI * inches) for inches in self.get_size_inches())
         return content.getvalue(), {"width": width, "height": height}
@@ -217,20 +218,20 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
-def is_narrow() -> bool:
+def is_narrow_figure() -> bool:
     """Whether the caller has asked for a figure so narrow that panels must be stacked."""
     asked = _SIZE.get()
     return asked is not None and asked[0] < _NARROW
 
 
-def font_size(size: float) -> float:
+def scaled_font_size(size: float) -> float:
     """Size of letters in points that is `size` in a figure with letters of 9 points."""
     return size * rcParams["font.size"] / _FONT
 
 
-def recoloured(styles: Iterable[LineStyle]) -> list[LineStyle]:
+def recoloured_line_styles(styles: Iterable[LineStyle]) -> list[LineStyle]:
     """Line styles in the colours of the caller's own cycle (``axes.prop_cycle``), if there is one."""
-    cycle = rcParams["axes.prop_cycle"].by_key().get("color") if _set_by_caller("axes.prop_cycle") else None
+    cycle = rcParams["axes.prop_cycle"].by_key().get("color") if _is_style_set_by_caller("axes.prop_cycle") else None
     if not cycle:
         return list(styles)
     return [replace(style, color=color) for style, color in zip(styles, itertools.cycle(cycle), strict=False)]
@@ -243,7 +244,7 @@ def label_panel(axes: Axes, text: str) -> None:
     )
 
 
-def legend_above(
+def add_legend_above(
     figure: Figure,
     handles: Sequence[Artist],
     labels: Sequence[str] | None = None,
@@ -263,15 +264,15 @@ def legend_above(
         legend.remove()
 
 
-def legend_beside(figure: Figure, handles: Sequence[Artist]) -> None:
+def add_legend_beside(figure: Figure, handles: Sequence[Artist]) -> None:
     """Add the legend of a figure to the right of its panels, or above them in a narrow one."""
-    if is_narrow():
-        legend_above(figure, handles)
+    if is_narrow_figure():
+        add_legend_above(figure, handles)
     else:
         figure.legend(handles=handles, loc="outside right upper")
 
 
-def notes_beside(axes: Axes, notes: list[tuple[str, str]], step: float) -> None:
+def write_notes_beside(axes: Axes, notes: list[tuple[str, str]], step: float) -> None:
     """Write lines of text in their colours to the right of a panel, `step` points apart."""
     for row, (text, color) in enumerate(notes):
         axes.annotate(
@@ -280,24 +281,24 @@ def notes_beside(axes: Axes, notes: list[tuple[str, str]], step: float) -> None:
         )  # fmt: skip
 
 
-def _rescale(figure: Figure, width: float | None, mark: float | None) -> None:
+def _rescale_lines(figure: Figure, width: float | None, mark: float | None) -> None:
     """Scale line widths and marker sizes by the ratio of the caller's settings to the settings here."""
-    for line in (line for part in (*figure.axes, *_legends(figure)) for line in part.get_lines()):
+    for line in (line for part in (*figure.axes, *_legends_of_figure(figure)) for line in part.get_lines()):
         if width is not None:
             line.set_linewidth(line.get_linewidth() * width / _STYLE["lines.linewidth"])
         if mark is not None:
             line.set_markersize(line.get_markersize() * mark / rcParamsDefault["lines.markersize"])
 
 
-def _legends(figure: Figure) -> list[Any]:
+def _legends_of_figure(figure: Figure) -> list[Any]:
     return [*figure.legends, *filter(None, (axes.get_legend() for axes in figure.axes))]
 
 
-def _brightness(color: Any) -> float:
+def _color_brightness(color: Any) -> float:
     return sum(to_rgb(color)) / 3.0
 
 
-def _invert(figure: Figure) -> None:
+def _invert_figure_colors(figure: Figure) -> None:
     """Turn black ink into the colour of the caller's text, and white and shades into dark ones."""
     ink, ground = rcParams["text.color"], rcParams["axes.facecolor"]
     turned = {BLACK: ink, "#404040": ink, "#303030": ink, "#ffffff": ground, SHADE: "#2b333c"}
@@ -314,7 +315,7 @@ def _invert(figure: Figure) -> None:
                 getattr(artist, f"set_{name}")(new)
 
 
-def _wrap(figure: Figure) -> None:
+def _wrap_figure_texts(figure: Figure) -> None:
     """Break titles and labels into lines that fit."""
     for _ in range(2):  # lines of a title take some of the height from the axes
         figure.draw_without_rendering()
@@ -322,25 +323,25 @@ def _wrap(figure: Figure) -> None:
         for axes in figure.axes:
             left, right = axes.bbox.x0, axes.bbox.x1
             middle = min(left + right, 2.0 * figure.bbox.width - left - right) - _EDGE  # to the nearer edge, twice
-            _break(axes.title, middle)
-            _break(axes.xaxis.label, middle)
-            _break(axes._left_title, across - left)  # pyright: ignore
-            _break(axes._right_title, right - _EDGE)  # pyright: ignore
-            _break(axes.yaxis.label, axes.bbox.height, turned=True)
+            _break_text(axes.title, middle)
+            _break_text(axes.xaxis.label, middle)
+            _break_text(axes._left_title, across - left)  # pyright: ignore
+            _break_text(axes._right_title, right - _EDGE)  # pyright: ignore
+            _break_text(axes.yaxis.label, axes.bbox.height, turned=True)
         for each in (figure._suptitle, figure._supxlabel, *(key.get_title() for key in figure.legends)):  # pyright: ignore
-            _break(each, across)
+            _break_text(each, across)
         for key in figure.legends:
             widest = max((text.get_window_extent().width for text in key.get_texts()), default=0.0)
             for text in key.get_texts():
-                _break(text, widest - max(key.get_window_extent().width - across, 0.0))
-        _break(figure._supylabel, up, turned=True)  # pyright: ignore
+                _break_text(text, widest - max(key.get_window_extent().width - across, 0.0))
+        _break_text(figure._supylabel, up, turned=True)  # pyright: ignore
 
 
 _EDGE = 4.0  # dots that stay free at the edge of a figure
 _WORDS = re.compile(r"(?:\$[^$]*\$|[^\s$])+")  # with mathematics in one piece
 
 
-def _break(text: Text | None, room: float, *, turned: bool = False) -> None:
+def _break_text(text: Text | None, room: float, *, turned: bool = False) -> None:
     """Break a text between its words, so that it is no longer than `room` dots."""
     if text is None:
         return
@@ -397,23 +398,23 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     >>> rf.save_figure(rf.plot_motion(rf.ricker_pulse(4.0, 0.6)), folder / "pulse.svg").name
     'pulse.svg'
     """
-    target = path_of("path", path)
+    target = checked_file_path("path", path)
     suffix = target.suffix.lower()
     if suffix not in _UNDATED:
         raise InputError(
             f"A figure can be saved as .png, .pdf or .svg, but the path {shown(str(path))} ends in "
             f"{shown(target.suffix)}. Change the suffix."
         )
-    return write_whole(target, _content(figure, suffix))
+    return write_file_atomically(target, _figure_file_content(figure, suffix))
 
 
-def svg_of(figure: Figure) -> str:
+def figure_as_svg(figure: Figure) -> str:
     """Return a figure as the text of an SVG file."""
-    return _content(figure, ".svg").decode()
+    return _figure_file_content(figure, ".svg").decode()
 
 
-def _content(figure: Figure, suffix: str) -> bytes:
+def _figure_file_content(figure: Figure, suffix: str) -> bytes:
     content = io.BytesIO()
-    with styled():
+    with with_figure_style():
         figure.savefig(content, format=suffix[1:], dpi=_DPI, metadata=_UNDATED[suffix])
     return content.getvalue()

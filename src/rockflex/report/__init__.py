@@ -4,19 +4,24 @@ A run is one page of HTML, for an appendix; a publication is a page of HTML, the
 numbers.
 """
 
-from rockflex.report._document import Check, Document, Number, Remark, Result
-from rockflex.report._write import to_csv, to_html, to_markdown, write_document
+from rockflex.report._document import ConstructionCheck, PublicationReport, PublishedNumber, Remark, ReproducedResult
+from rockflex.report._publication_files import (
+    report_numbers_to_csv,
+    report_to_html,
+    report_to_markdown,
+    write_publication_report,
+)
 from rockflex.report.run import write_report
 
 __all__ = [
-    "Check",
-    "Document",
-    "Number",
+    "ConstructionCheck",
+    "PublicationReport",
+    "PublishedNumber",
     "Remark",
-    "Result",
-    "to_csv",
-    "to_html",
-    "to_markdown",
-    "write_document",
+    "ReproducedResult",
+    "report_numbers_to_csv",
+    "report_to_html",
+    "report_to_markdown",
+    "write_publication_report",
     "write_report",
 ]

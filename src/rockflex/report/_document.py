@@ -9,7 +9,7 @@ from typing import Any
 
 
 @dataclass(frozen=True)
-class Line:
+class PublishedLine:
     """A value or a statement of a publication, and our value; texts are plain.
 
     Attributes
@@ -42,7 +42,7 @@ class Line:
     @property
     def ours_as_text(self) -> str:
         """Our value, rounded to `digits`."""
-        return as_text(self.ours, self.digits)
+        return decimal_text(self.ours, self.digits)
 
     @property
     def remarks(self) -> str:
@@ -51,7 +51,7 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Number(Line):
+class PublishedNumber(PublishedLine):
     """A number of a publication and ours.
 
     Attributes
@@ -76,17 +76,17 @@ class Number(Line):
         text = f"{self.difference:+.{self.digits}f}"
         if float(text) == 0.0:
             return "0"
-        return (text if self.relative is None else f"{text} ({_percent(self.relative)})").replace("-", "−")
+        return (text if self.relative is None else f"{text} ({_percent_text(self.relative)})").replace("-", "−")
 
 
 @dataclass(frozen=True)
-class Check(Line):
+class ConstructionCheck(PublishedLine):
     """A condition that must hold by construction, and is not counted."""
 
     holds: bool
 
 
-def as_text(value: float, digits: int) -> str:
+def decimal_text(value: float, digits: int) -> str:
     """Write a value with a number of decimals, or with an exponent if they are too few."""
     if not math.isfinite(value):
         return "∞" if value > 0.0 else "−∞" if value < 0.0 else "none"
@@ -95,7 +95,7 @@ def as_text(value: float, digits: int) -> str:
     return f"{value:.{digits}f}".replace("-", "−")
 
 
-def _percent(relative: float) -> str:
+def _percent_text(relative: float) -> str:
     """Write a ratio in per cent, with its sign."""
     found = 100.0 * relative
     return f"{found:+.0f} %" if abs(found) >= 10.0 else f"{found:+.2g} %"
@@ -127,7 +127,7 @@ class Remark:
 
 
 @dataclass(frozen=True, eq=False)
-class Result:
+class ReproducedResult:
     """A reproduced table or figure.
 
     Attributes
@@ -148,10 +148,10 @@ class Result:
 
     name: str
     title: str
-    numbers: Sequence[Number] = ()
+    numbers: Sequence[PublishedNumber] = ()
     figures: Mapping[str, Callable[[], Any]] = field(default_factory=dict[str, Callable[[], Any]])
     note: str = ""
-    checks: Sequence[Check] = ()
+    checks: Sequence[ConstructionCheck] = ()
     remarking: Sequence[Callable[[], Remark]] = ()
 
     def __post_init__(self) -> None:
@@ -170,7 +170,7 @@ class Result:
 
 
 @dataclass(frozen=True, eq=False)
-class Document:
+class PublicationReport:
     """A report on a publication.
 
     Attributes
@@ -190,8 +190,8 @@ class Document:
 
     Examples
     --------
-    >>> from rockflex.report import Document
-    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> from rockflex.report import PublicationReport
+    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
     >>> document.counts
     {'met': 0}
     """
@@ -202,7 +202,7 @@ class Document:
     versions: Mapping[str, str]
     verdicts: Mapping[str, str]
     remarks: Mapping[str, str]
-    sections: Sequence[Result]
+    sections: Sequence[ReproducedResult]
 
     @property
     def counts(self) -> dict[str, int]:

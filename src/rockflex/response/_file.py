@@ -13,7 +13,7 @@ import numpy as np
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._files import check_regular, write_whole
+from rockflex._files import check_regular_file, write_file_atomically
 from rockflex._registry import registered
 from rockflex._shown import shown
 from rockflex.modal import (
@@ -129,12 +129,12 @@ def save(
     arrays["response"] = np.array(json.dumps(scalars))
     content = io.BytesIO()
     np.savez_compressed(content, **arrays)
-    return write_whole(path, content.getvalue())
+    return write_file_atomically(path, content.getvalue())
 
 
 def load(path: Path, kinds: dict[str, type]) -> Kept:
     """Read a response written by `save`, with peaks of these names and types."""
-    check_regular(path)
+    check_regular_file(path)
     if not path.exists():
         raise InputError(f"No saved response at {path}. Give the path that Response.save returned.")
     try:

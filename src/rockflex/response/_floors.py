@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite_vector, positive, whole_number
+from rockflex._checks import checked_finite_vector, checked_positive, checked_whole_number
 from rockflex._errors import InputError, MissingQuantityError
 from rockflex._values import Value
 from rockflex.modal import FloorModes
@@ -51,10 +51,12 @@ class FloorPeaks(Value):
         total_floor_displacement: ArrayLike,
     ) -> None:
         peaks = {
-            "story_drift": finite_vector("story_drift", story_drift, "m"),
-            "story_shear": finite_vector("story_shear", story_shear, "N"),
-            "floor_acceleration": finite_vector("floor_acceleration", floor_acceleration, "m/s²"),
-            "total_floor_displacement": finite_vector("total_floor_displacement", total_floor_displacement, "m"),
+            "story_drift": checked_finite_vector("story_drift", story_drift, "m"),
+            "story_shear": checked_finite_vector("story_shear", story_shear, "N"),
+            "floor_acceleration": checked_finite_vector("floor_acceleration", floor_acceleration, "m/s²"),
+            "total_floor_displacement": checked_finite_vector(
+                "total_floor_displacement", total_floor_displacement, "m"
+            ),
         }
         sizes = [values.size for values in peaks.values()]
         if len(set(sizes)) > 1:
@@ -106,10 +108,10 @@ def floor_motion(
             "The properties of the structure include no floors, so there is no floor motion. Simulate a Frame or a "
             "LumpedStructure, or give RockingProperties their floors."
         )
-    number = whole_number("floor", floor, 1, floors.heights.size)
+    number = checked_whole_number("floor", floor, 1, floors.heights.size)
     omega, known = model.properties.omega, states[:, TIME]
     shortest = 2.0 * math.pi / float(omega.max()) if omega.size else math.inf
-    step = min(MAX_FLOOR_STEP, shortest / STEPS_PER_PERIOD) if dt is None else positive("dt", dt, "s")
+    step = min(MAX_FLOOR_STEP, shortest / STEPS_PER_PERIOD) if dt is None else checked_positive("dt", dt, "s")
     span = float(known[-1] - known[0])
     times = even_instants(span / max(math.ceil(span / step - 1e-9), 2), known)
     samples = floor_accelerations(model, floors, states_at(model, states, times))[:, number - 1]

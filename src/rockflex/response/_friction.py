@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex._checks import positive, real_or_nan
+from rockflex._checks import checked_positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.models import (
@@ -87,7 +87,7 @@ class Friction:
         InputError
             If the window is negative or not finite, or the model is too fast for the sampling.
         """
-        window = positive("window", window, "s", zero=True)
+        window = checked_positive("window", window, "s", zero=True)
         if not self._stretches.size:
             return float(self.demand.max())
         start = self._after(window)

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import finite_rows
+from rockflex._checks import checked_finite_rows
 from rockflex._errors import MissingQuantityError
-from rockflex._shown import counted
+from rockflex._shown import number_with_noun
 from rockflex._values import Value
 from rockflex.modal import Springs, Tendon
 from rockflex.models import (
@@ -81,12 +81,14 @@ class History(Value):
 
     def __post_init__(self) -> None:
         columns = HEADER + self.model.layout.size
-        object.__setattr__(self, "states", finite_rows("states", self.states, "SI units", columns))
+        object.__setattr__(self, "states", checked_finite_rows("states", self.states, "SI units", columns))
 
     def __repr__(self) -> str:
         duration = self.time[-1] - self.time[0]
         states, uplifts = self.time.size, self.uplift_times.size
-        return f"History({self.model.label}, {states} states over {duration:g} s, {counted(uplifts, 'uplift')})"
+        return (
+            f"History({self.model.label}, {states} states over {duration:g} s, {number_with_noun(uplifts, 'uplift')})"
+        )
 
     def at(self, times: ArrayLike) -> "SampledHistory":
         """Return the motion at any instants within the history, with all quantities at these instants.

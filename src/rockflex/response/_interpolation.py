@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array
-from rockflex._checks import finite_vector, positive
+from rockflex._checks import checked_finite_vector, checked_positive
 from rockflex._errors import InputError, MissingQuantityError
 from rockflex._shown import shown
 from rockflex.models import (
@@ -88,7 +88,7 @@ def instants(times: ArrayLike, known: Array) -> Array:
         If there is none, or one is not finite or outside the history.
     """
     given = np.atleast_1d(np.asarray(times)) if np.isscalar(times) else times
-    wanted = finite_vector("times", given, "s")
+    wanted = checked_finite_vector("times", given, "s")
     outside = np.flatnonzero((wanted < known[0]) | (wanted > known[-1]))
     if outside.size or not wanted.size:
         what = f"times[{outside[0]}] = {wanted[outside[0]]:g} s" if outside.size else "no time"
@@ -108,7 +108,7 @@ def even_instants(dt: float, known: Array) -> Array:
     InputError
         If `dt` is not a positive number, or gives more than 10 million instants.
     """
-    step, begin, end = positive("dt", dt, "s"), float(known[0]), float(known[-1])
+    step, begin, end = checked_positive("dt", dt, "s"), float(known[0]), float(known[-1])
     if (end - begin) / step > MAX_INSTANTS:
         raise InputError(
             f"dt = {shown(dt)} s gives {(end - begin) / step:.3g} instants over {end - begin:g} s, above the limit of "

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._constants import GRAVITY
-from rockflex._shown import counted
+from rockflex._shown import number_with_noun
 from rockflex._values import Value
 from rockflex.modal import BaseElement, RockingProperties, Springs
 from rockflex.response._history import History, pressure_of
@@ -118,7 +118,7 @@ class MomentRotation(StaticPath):
     def __repr__(self) -> str:
         largest, peak = (float(np.max(np.abs(values))) for values in (self.rotation, self.moment))
         return (
-            f"MomentRotation({self.rotation.size} points, {counted(len(self.elements), 'element')}, "
+            f"MomentRotation({self.rotation.size} points, {number_with_noun(len(self.elements), 'element')}, "
             f"|θ| up to {largest:.4g} rad, |M| up to {peak:.4g} N m, {self.dissipated_energy[-1]:.4g} J dissipated)"
         )
 
@@ -253,8 +253,8 @@ class MomentRotationOnSprings(StaticPath):
     def __repr__(self) -> str:
         largest, peak = (float(np.max(np.abs(values))) for values in (self.rotation, self.moment))
         return (
-            f"MomentRotationOnSprings({self.rotation.size} points, {counted(self.springs.n, 'spring')}, "
-            f"{counted(len(self.elements), 'element')}, |θ| up to {largest:.4g} rad, |M| up to {peak:.4g} N m)"
+            f"MomentRotationOnSprings({self.rotation.size} points, {number_with_noun(self.springs.n, 'spring')}, "
+            f"{number_with_noun(len(self.elements), 'element')}, |θ| up to {largest:.4g} rad, |M| up to {peak:.4g} N m)"
         )
 
     @cached_property

@@ -7,9 +7,9 @@ from typing import Any, Generic, Self, TypeVar, overload
 
 from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError, MissingQuantityError
-from rockflex._files import path_of
+from rockflex._files import checked_file_path
 from rockflex._html import HtmlTable
-from rockflex._shown import counted
+from rockflex._shown import number_with_noun
 from rockflex._values import Value
 from rockflex.motion import GroundMotion
 from rockflex.response._energy import EnergyLedger
@@ -292,7 +292,7 @@ class Response(HtmlTable, Value):
     def __repr__(self) -> str:
         return (
             f"Response({self.model} under {self.motion!r}: {self.status}, θ_max={self.max_rotation:.4g} rad, "
-            f"u_top,max={self.max_top_displacement:.4g} m, {counted(self.n_impacts, 'impact')})"
+            f"u_top,max={self.max_top_displacement:.4g} m, {number_with_noun(self.n_impacts, 'impact')})"
         )
 
     def _shown_as(self) -> dict[str, Any]:
@@ -328,7 +328,7 @@ class Response(HtmlTable, Value):
             If the path has another suffix, such as ``.parquet``.
         """
         of_elements = {name: getattr(self, name) for name in ELEMENT_PEAKS}
-        return save(path_of("path", path), self.peaks(), of_elements, self.floors, self.history)
+        return save(checked_file_path("path", path), self.peaks(), of_elements, self.floors, self.history)
 
     @classmethod
     def load(cls, path: str | Path) -> "Response":
@@ -343,7 +343,7 @@ class Response(HtmlTable, Value):
         InputError
             If the file is missing or is not a saved response.
         """
-        peaks, floors, history = load(path_of("path", path), KINDS)
+        peaks, floors, history = load(checked_file_path("path", path), KINDS)
         return Response(**peaks, floors=floors, history=history)
 
 

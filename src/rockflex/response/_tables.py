@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._checks import one_of
+from rockflex._checks import is_one_of
 from rockflex._errors import InputError
 from rockflex._shown import shown
 
@@ -153,7 +153,7 @@ def ground_columns(history: History) -> dict[str, Array]:
 def check_quantities(names: Any) -> None:
     """Raise an InputError unless these are names of quantities at the states of a history, each once."""
     listed = isinstance(names, list | tuple)
-    wrong = [name for name in names if not one_of(name, QUANTITIES)] if listed else [names]
+    wrong = [name for name in names if not is_one_of(name, QUANTITIES)] if listed else [names]
     if wrong or len(set(names)) < len(names):
         what = f"{shown(wrong[0])} was" if wrong else f"{shown(list(names))} were"
         near = get_close_matches(str(wrong[0]), QUANTITIES, 1) if wrong and listed else []

@@ -4,8 +4,8 @@ from contextlib import AbstractContextManager
 from enum import IntEnum
 
 from rockflex._arrays import Array
-from rockflex._computable import computable
 from rockflex._errors import InputError, SolverError
+from rockflex._overflow import explaining_overflow
 from rockflex._shown import shown
 from rockflex.models import RockingModel
 from rockflex.solve._work import Task
@@ -84,7 +84,7 @@ def _in_state(model: RockingModel, what: str, mend: str, state: Array) -> Solver
 
 def preparing(model: RockingModel) -> AbstractContextManager[None]:
     """Report arithmetic failures during the preparation of an engine in terms of the parameters of the model."""
-    return computable(lambda: _described(model))
+    return explaining_overflow(lambda: _described(model))
 
 
 def _described(model: RockingModel) -> str:

@@ -7,15 +7,29 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._checks import MOST_MODES, damping_ratios, instance, one_of, positive, whole_number
-from rockflex._computable import computable
+from rockflex._checks import (
+    MOST_MODES,
+    checked_damping_ratios,
+    checked_instance,
+    checked_positive,
+    checked_whole_number,
+    is_one_of,
+)
 from rockflex._errors import InputError
+from rockflex._overflow import explaining_overflow
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes
 from rockflex.structure._beam_modes import RitzShapes, cosine_shapes, ritz_modes
-from rockflex.structure._beam_sections import Along, LumpedMasses, Profile, Sections, on_beam, profile
-from rockflex.structure._cross_section import Section, checked_section, section_value
+from rockflex.structure._beam_sections import (
+    Along,
+    BeamProfile,
+    BeamSections,
+    LumpedMasses,
+    beam_profile,
+    lumped_masses_on_beam,
+)
+from rockflex.structure._cross_section import Section, checked_section, value_from_section
 from rockflex.structure._structure import AssembledStructure, ModalStructure
 
 _N_ELEMENTS = 1000
@@ -100,36 +114,38 @@ class Beam(AssembledStructure, Value):
     n_modes: int = 5
     n_elements: int | None = None
     shapes: RitzShapes | None = None
-    sections: Sections = field(init=False, repr=False)
+    sections: BeamSections = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        height = positive("height", self.height, "m")
+        height = checked_positive("height", self.height, "m")
         if not isinstance(self.rotary_in_modes, bool | np.bool_):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise InputError(
                 f"rotary_in_modes must be True or False, but {shown(self.rotary_in_modes)} was given.",
                 field="rotary_in_modes",
             )
-        n_modes = whole_number("n_modes", self.n_modes, 1, MOST_MODES)
+        n_modes = checked_whole_number("n_modes", self.n_modes, 1, MOST_MODES)
         section = checked_section(self.section)
-        mass, stiffness = (section_value(section, name, getattr(self, name)) for name in ("mass", "bending_stiffness"))
+        mass, stiffness = (
+            value_from_section(section, name, getattr(self, name)) for name in ("mass", "bending_stiffness")
+        )
         vars(self).update(
             height=height,
-            half_width=positive("half_width", self.half_width, "m"),
-            base_mass=positive("base_mass", self.base_mass, "kg", zero=True),
+            half_width=checked_positive("half_width", self.half_width, "m"),
+            base_mass=checked_positive("base_mass", self.base_mass, "kg", zero=True),
             n_modes=n_modes,
-            damping_ratio=damping_ratios("damping_ratio", self.damping_ratio, n_modes),
-            sections=Sections(
+            damping_ratio=checked_damping_ratios("damping_ratio", self.damping_ratio, n_modes),
+            sections=BeamSections(
                 height,
-                profile("mass", mass, height, "kg/m"),
-                profile("bending_stiffness", stiffness, height, "N m²"),
+                beam_profile("mass", mass, height, "kg/m"),
+                beam_profile("bending_stiffness", stiffness, height, "N m²"),
                 _optional_profile("shear_stiffness", self.shear_stiffness, height, "N"),
                 _optional_profile("rotary_inertia", self.rotary_inertia, height, "kg m", zero=True),
-                on_beam(self.lumped_masses, height),
+                lumped_masses_on_beam(self.lumped_masses, height),
                 bool(self.rotary_in_modes),
             ),
         )
         for name in ("mass", "bending_stiffness", "shear_stiffness", "rotary_inertia"):
-            along: Profile | None = getattr(self.sections, name)
+            along: BeamProfile | None = getattr(self.sections, name)
             vars(self)[name] = None if along is None else along.given
         self._check_method()
 
@@ -141,7 +157,7 @@ class Beam(AssembledStructure, Value):
 
     @cached_property
     def _modes(self) -> MassNormalisedModes:
-        with computable(f"The modes of a beam with {self.sections}"):
+        with explaining_overflow(f"The modes of a beam with {self.sections}"):
             if self.method == "fe":
                 from rockflex.structure._finite_elements import finite_element_modes
 
@@ -156,7 +172,7 @@ class Beam(AssembledStructure, Value):
         return max(_N_ELEMENTS, self.n_modes) if self.n_elements is None else self.n_elements
 
     def _check_method(self) -> None:
-        if not one_of(self.method, ("fe", "ritz")):
+        if not is_one_of(self.method, ("fe", "ritz")):
             raise InputError(f'method must be "fe" or "ritz", but {shown(self.method)} was given.', field="method")
         lacking = {"fe": {"shapes": "ritz"}, "ritz": {"n_elements": "fe", "shear_stiffness": "fe"}}
         for name, other in lacking[self.method].items():
@@ -166,9 +182,11 @@ class Beam(AssembledStructure, Value):
                     field=name,
                 )
         if self.n_elements is not None:
-            vars(self).update(n_elements=whole_number("n_elements", self.n_elements, self.n_modes, _MAX_ELEMENTS))
+            vars(self).update(
+                n_elements=checked_whole_number("n_elements", self.n_elements, self.n_modes, _MAX_ELEMENTS)
+            )
         if self.shapes is not None:
-            found = instance("shapes", self.shapes, RitzShapes).check(self.height)
+            found = checked_instance("shapes", self.shapes, RitzShapes).check(self.height)
             if found < self.n_modes:
                 raise InputError(
                     f"shapes must contain at least n_modes = {self.n_modes} shapes, but it contains {found}.",
@@ -178,5 +196,5 @@ class Beam(AssembledStructure, Value):
 
 def _optional_profile(
     name: str, given: Along | None, height: float, unit: str, *, zero: bool = False
-) -> Profile | None:
-    return None if given is None else profile(name, given, height, unit, zero=zero)
+) -> BeamProfile | None:
+    return None if given is None else beam_profile(name, given, height, unit, zero=zero)

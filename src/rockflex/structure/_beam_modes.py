@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import MOST_MODES, positive, whole_number
-from rockflex._computable import computable
+from rockflex._checks import MOST_MODES, checked_positive, checked_whole_number
 from rockflex._errors import InputError
+from rockflex._overflow import explaining_overflow
 from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes
-from rockflex.structure._beam_sections import Sections
+from rockflex.structure._beam_sections import BeamSections
 
 N_STATIONS = 21
 """Number of stations of a structure with distributed mass, including base and top."""
@@ -24,7 +24,7 @@ _SHAPE_TOLERANCE = 1e-6  # of the largest ordinate
 _MIN_EIGENVALUE = 1e-13  # smallest eigenvalue of the mass matrix of shapes of unit mass
 
 
-def mesh_nodes(height: float, n_elements: int, *others: Array) -> Array:
+def beam_mesh_nodes(height: float, n_elements: int, *others: Array) -> Array:
     """Return the nodes in m of `n_elements` equal elements from 0 to `height`, divided at the other heights too."""
     nodes = np.unique(np.concatenate([np.linspace(0.0, height, n_elements + 1), *others]))
     nodes = nodes[(nodes >= 0.0) & (nodes <= height)]
@@ -41,7 +41,7 @@ def gauss_points(nodes: Array, n_points: int) -> tuple[Array, Array]:
     return nodes[:-1, None] + 0.5 * length * (1.0 + x), 0.5 * length * w
 
 
-def forces_at_stations(stations: Array, z: Array, forces: Array, moments: Array) -> Array:
+def beam_forces_at_stations(stations: Array, z: Array, forces: Array, moments: Array) -> Array:
     """Return forces at the stations (S, n) statically equivalent to forces and moments (P, n) at heights z (P,).
 
     A force is distributed to the two adjacent stations like the reactions of a simply supported beam, and a moment
@@ -186,14 +186,14 @@ def cosine_shapes(height: float, n_shapes: int) -> RitzShapes:
     >>> beam.modal().period.round(3)
     array([0.357])
     """
-    h = positive("height", height, "m")
-    numbers = np.arange(1, whole_number("n_shapes", n_shapes, 1, MOST_MODES) + 1, dtype=np.float64)
-    with computable(f"The shapes of a structure {h:g} m high"):
+    h = checked_positive("height", height, "m")
+    numbers = np.arange(1, checked_whole_number("n_shapes", n_shapes, 1, MOST_MODES) + 1, dtype=np.float64)
+    with explaining_overflow(f"The shapes of a structure {h:g} m high"):
         rates = (2.0 * numbers - 1.0) * math.pi / (2.0 * h)
     return RitzShapes(CosineShapes(rates), CosineSlopes(rates), CosineCurvatures(rates))
 
 
-def ritz_modes(beam: Sections, shapes: RitzShapes, n_modes: int) -> MassNormalisedModes:
+def ritz_modes(beam: BeamSections, shapes: RitzShapes, n_modes: int) -> MassNormalisedModes:
     """Return the first Rayleigh-Ritz modes of the beam, integrated by Gauss quadrature.
 
     Raises
@@ -205,7 +205,7 @@ def ritz_modes(beam: Sections, shapes: RitzShapes, n_modes: int) -> MassNormalis
 
     stations = np.linspace(0.0, beam.height, N_STATIONS)
     lumped = beam.lumped
-    points, weights = gauss_points(mesh_nodes(beam.height, _N_PANELS, beam.kinks), _N_POINTS)
+    points, weights = gauss_points(beam_mesh_nodes(beam.height, _N_PANELS, beam.kinks), _N_POINTS)
     z, w = points.ravel(), weights.ravel()
     value, slope, curvature = shapes.at(z)
     stiffness = curvature.T @ ((w * beam.bending_stiffness.at(z))[:, None] * curvature)
@@ -217,7 +217,7 @@ def ritz_modes(beam: Sections, shapes: RitzShapes, n_modes: int) -> MassNormalis
     rotary = np.concatenate([w * beam.rotary_at(z), lumped.rotary])
     in_modes = rotary if beam.rotary_in_modes else np.zeros_like(rotary)
     mass = value.T @ (masses[:, None] * value) + slope.T @ (in_modes[:, None] * slope)
-    _check_independent(mass)
+    _check_independent_shapes(mass)
     squares, vectors = eigh(stiffness, mass)
     vectors = vectors[:, :n_modes]
     phi, turn = value @ vectors, slope @ vectors
@@ -228,7 +228,7 @@ def ritz_modes(beam: Sections, shapes: RitzShapes, n_modes: int) -> MassNormalis
         moment=z_all @ forces + moments.sum(axis=0),
         heights=stations,
         ordinates=shapes.at(stations)[0] @ vectors,
-        forces=forces_at_stations(stations, z_all, forces, moments),
+        forces=beam_forces_at_stations(stations, z_all, forces, moments),
         mass=float(masses.sum()),
         first_moment=float(masses @ z_all),
         inertia=float(masses @ z_all**2 + in_modes.sum()),
@@ -236,7 +236,7 @@ def ritz_modes(beam: Sections, shapes: RitzShapes, n_modes: int) -> MassNormalis
     )
 
 
-def _check_independent(mass: Array) -> None:
+def _check_independent_shapes(mass: Array) -> None:
     size = np.sqrt(np.diag(mass))
     smallest = float(np.linalg.eigvalsh(mass / np.outer(size, size))[0]) if size.all() else 0.0
     if smallest < _MIN_EIGENVALUE:

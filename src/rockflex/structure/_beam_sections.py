@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite_vector, positive
+from rockflex._checks import checked_finite_vector, checked_positive
 from rockflex._errors import InputError
-from rockflex._shown import counted
+from rockflex._shown import number_with_noun
 from rockflex._values import Value
 
 Along: TypeAlias = float | Callable[[Array], ArrayLike] | tuple[ArrayLike, ArrayLike]
@@ -21,7 +21,7 @@ _HEIGHT_TOLERANCE = 1e-9  # of the height: tolerance for printed digits in the l
 
 
 @dataclass(frozen=True)
-class Constant:
+class ConstantProfile:
     """The same value at every height."""
 
     value: float
@@ -31,7 +31,7 @@ class Constant:
 
 
 @dataclass(frozen=True, eq=False)
-class Interpolated(Value):
+class InterpolatedProfile(Value):
     """A table of values (n,) at heights (n,) in m, linear between its rows."""
 
     heights: Array
@@ -42,7 +42,7 @@ class Interpolated(Value):
 
 
 @dataclass(frozen=True, eq=False)
-class Profile(Value):
+class BeamProfile(Value):
     """Values along the height, checked whenever they are evaluated.
 
     Attributes
@@ -66,9 +66,9 @@ class Profile(Value):
     @property
     def given(self) -> Along:
         """The number, the function, or the table (as read-only arrays) that was given."""
-        if isinstance(self.function, Constant):
+        if isinstance(self.function, ConstantProfile):
             return self.function.value
-        if isinstance(self.function, Interpolated):
+        if isinstance(self.function, InterpolatedProfile):
             return self.function.heights, self.function.values
         return self.function
 
@@ -103,7 +103,7 @@ class Profile(Value):
         return values.reshape(z.shape)
 
 
-def profile(name: str, given: Along, height: float, unit: str, *, zero: bool = False) -> Profile:
+def beam_profile(name: str, given: Along, height: float, unit: str, *, zero: bool = False) -> BeamProfile:
     """Return the given property as a profile from the base to `height`.
 
     Raises
@@ -112,24 +112,27 @@ def profile(name: str, given: Along, height: float, unit: str, *, zero: bool = F
         If a table does not extend from the base to the top, its heights decrease, or a value is not positive.
     """
     if callable(given):
-        result = Profile(name, unit, given, np.zeros(0), zero)
+        result = BeamProfile(name, unit, given, np.zeros(0), zero)
     elif isinstance(given, tuple):
-        result = _table_profile(name, given, height, unit, zero)
+        result = _interpolated_profile(name, given, height, unit, zero)
     else:
-        constant = positive(name, given, unit, zero=zero)
-        result = Profile(name, unit, Constant(constant), np.zeros(0), zero)
+        constant = checked_positive(name, given, unit, zero=zero)
+        result = BeamProfile(name, unit, ConstantProfile(constant), np.zeros(0), zero)
     result.at(np.linspace(0.0, height, _N_CHECKED))
     return result
 
 
-def _table_profile(name: str, given: tuple[ArrayLike, ArrayLike], height: float, unit: str, zero: bool) -> Profile:
+def _interpolated_profile(
+    name: str, given: tuple[ArrayLike, ArrayLike], height: float, unit: str, zero: bool
+) -> BeamProfile:
     if len(given) != 2:  # pyright: ignore[reportUnnecessaryComparison]
         raise InputError(
-            f"{name} must be a table (heights, values), but {counted(len(given), 'column was', 'columns were')} given.",
+            f"{name} must be a table (heights, values), but "
+            f"{number_with_noun(len(given), 'column was', 'columns were')} given.",
             field=name,
         )
-    z = finite_vector(f"{name}, heights", given[0], "m", field=name)
-    values = finite_vector(f"{name}, values", given[1], unit, field=name)
+    z = checked_finite_vector(f"{name}, heights", given[0], "m", field=name)
+    values = checked_finite_vector(f"{name}, values", given[1], unit, field=name)
     if z.size != values.size or z.size < 2:
         raise InputError(
             f"{name} must contain one value for each height of its table, and at least two rows, but {z.size} heights "
@@ -158,7 +161,7 @@ def _table_profile(name: str, given: tuple[ArrayLike, ArrayLike], height: float,
             f"{name} must be {kind}, but its table contains {values[i]:g} {unit} at {z[i]:g} m.", field=name
         )
     inside = z[(z > 0.0) & (z < height)]
-    return Profile(name, unit, Interpolated(z, values), np.unique(inside), zero)
+    return BeamProfile(name, unit, InterpolatedProfile(z, values), np.unique(inside), zero)
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -196,10 +199,10 @@ class LumpedMasses(Value):
     rotary: Array
 
     def __init__(self, heights: ArrayLike, masses: ArrayLike, rotary: ArrayLike | None = None) -> None:
-        z = finite_vector("lumped_masses.heights", heights, "m", field="lumped_masses")
-        m = finite_vector("lumped_masses.masses", masses, "kg", field="lumped_masses")
+        z = checked_finite_vector("lumped_masses.heights", heights, "m", field="lumped_masses")
+        m = checked_finite_vector("lumped_masses.masses", masses, "kg", field="lumped_masses")
         j = np.zeros(z.size) if rotary is None else rotary
-        j = finite_vector("lumped_masses.rotary", j, "kg m²", field="lumped_masses")
+        j = checked_finite_vector("lumped_masses.rotary", j, "kg m²", field="lumped_masses")
         if not z.size == m.size == j.size:
             raise InputError(
                 f"lumped_masses must contain one mass and one rotary inertia for each of its {z.size} heights, but "
@@ -222,7 +225,7 @@ class LumpedMasses(Value):
 
 
 @dataclass(frozen=True, eq=False)
-class Sections(Value):
+class BeamSections(Value):
     """Profiles and lumped masses of a beam.
 
     Attributes
@@ -240,10 +243,10 @@ class Sections(Value):
     """
 
     height: float
-    mass: Profile
-    bending_stiffness: Profile
-    shear_stiffness: Profile | None
-    rotary_inertia: Profile | None
+    mass: BeamProfile
+    bending_stiffness: BeamProfile
+    shear_stiffness: BeamProfile | None
+    rotary_inertia: BeamProfile | None
     lumped: LumpedMasses
     rotary_in_modes: bool
 
@@ -262,7 +265,7 @@ class Sections(Value):
         return np.zeros_like(z) if self.rotary_inertia is None else self.rotary_inertia.at(z)
 
 
-def on_beam(given: LumpedMasses | None, height: float) -> LumpedMasses:
+def lumped_masses_on_beam(given: LumpedMasses | None, height: float) -> LumpedMasses:
     """Return the lumped masses of a beam; None stands for no masses.
 
     Raises

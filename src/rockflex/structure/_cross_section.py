@@ -5,9 +5,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Self
 
-from rockflex._checks import finite, positive
-from rockflex._computable import computable
+from rockflex._checks import checked_finite, checked_positive
 from rockflex._errors import InputError
+from rockflex._overflow import explaining_overflow
 from rockflex._shown import shown
 from rockflex._values import Value
 
@@ -64,15 +64,15 @@ class Section(Value):
 
     def __post_init__(self) -> None:
         values = {
-            "area": positive("area", self.area, "m²"),
-            "second_moment": positive("second_moment", self.second_moment, "m⁴"),
-            "elastic_modulus": positive("elastic_modulus", self.elastic_modulus, "N/m²"),
-            "density": positive("density", self.density, "kg/m³"),
-            "stiffness_factor": _checked_factor(self.stiffness_factor),
+            "area": checked_positive("area", self.area, "m²"),
+            "second_moment": checked_positive("second_moment", self.second_moment, "m⁴"),
+            "elastic_modulus": checked_positive("elastic_modulus", self.elastic_modulus, "N/m²"),
+            "density": checked_positive("density", self.density, "kg/m³"),
+            "stiffness_factor": _checked_stiffness_factor(self.stiffness_factor),
         }
         vars(self).update(values)
         given = self.density * self.second_moment if self.rotary_inertia is None else self.rotary_inertia
-        vars(self).update(rotary_inertia=positive("rotary_inertia", given, "kg m"))
+        vars(self).update(rotary_inertia=checked_positive("rotary_inertia", given, "kg m"))
         for name, value in (("bending_stiffness", self.bending_stiffness), ("mass_per_length", self.mass_per_length)):
             if not (math.isfinite(value) and value > 0.0):
                 raise InputError(f"The {name} of the section must be positive and finite, but it is {value:g}.")
@@ -88,7 +88,7 @@ class Section(Value):
         return self.density * self.area
 
     @classmethod
-    @computable("The second moment of the section")
+    @explaining_overflow("The second moment of the section")
     def rectangle(
         cls, width: float, depth: float, *, elastic_modulus: float, density: float, stiffness_factor: float = 1.0
     ) -> Self:
@@ -101,11 +101,11 @@ class Section(Value):
         >>> round(wall.area, 6), round(wall.second_moment, 6)
         (1.2, 1.6)
         """
-        b, d = positive("width", width, "m"), positive("depth", depth, "m")
+        b, d = checked_positive("width", width, "m"), checked_positive("depth", depth, "m")
         return cls(b * d, b * d**3 / 12.0, elastic_modulus, density, stiffness_factor)
 
     @classmethod
-    @computable("The second moment of the section")
+    @explaining_overflow("The second moment of the section")
     def box(
         cls,
         width: float,
@@ -130,14 +130,18 @@ class Section(Value):
         >>> round(box.area, 6), round(box.second_moment, 6)
         (5.0, 2.416667)
         """
-        b, d, t = positive("width", width, "m"), positive("depth", depth, "m"), positive("wall", wall, "m")
-        _check_hollow(t, min(b, d), "a rectangle")
+        b, d, t = (
+            checked_positive("width", width, "m"),
+            checked_positive("depth", depth, "m"),
+            checked_positive("wall", wall, "m"),
+        )
+        _check_hollow_section(t, min(b, d), "a rectangle")
         inner_b, inner_d = b - 2.0 * t, d - 2.0 * t
         area = 2.0 * t * (b + inner_d)
         return cls(area, (b * d**3 - inner_b * inner_d**3) / 12.0, elastic_modulus, density, stiffness_factor)
 
     @classmethod
-    @computable("The second moment of the section")
+    @explaining_overflow("The second moment of the section")
     def circle(cls, diameter: float, *, elastic_modulus: float, density: float, stiffness_factor: float = 1.0) -> Self:
         """Return a solid circle: diameter in m.
 
@@ -148,11 +152,11 @@ class Section(Value):
         >>> round(column.area, 6), round(column.second_moment, 6)
         (3.141593, 0.785398)
         """
-        d = positive("diameter", diameter, "m")
+        d = checked_positive("diameter", diameter, "m")
         return cls(math.pi * d**2 / 4.0, math.pi * d**4 / 64.0, elastic_modulus, density, stiffness_factor)
 
     @classmethod
-    @computable("The second moment of the section")
+    @explaining_overflow("The second moment of the section")
     def tube(
         cls, diameter: float, wall: float, *, elastic_modulus: float, density: float, stiffness_factor: float = 1.0
     ) -> Self:
@@ -170,13 +174,13 @@ class Section(Value):
         >>> round(tube.area, 6), round(tube.second_moment, 6)
         (0.124407, 0.060972)
         """
-        d, t = positive("diameter", diameter, "m"), positive("wall", wall, "m")
-        _check_hollow(t, d, "a circle")
+        d, t = checked_positive("diameter", diameter, "m"), checked_positive("wall", wall, "m")
+        _check_hollow_section(t, d, "a circle")
         inner, area = d - 2.0 * t, math.pi * t * (d - t)
         return cls(area, area * (d**2 + inner**2) / 16.0, elastic_modulus, density, stiffness_factor)
 
     @classmethod
-    @computable("The second moment of the section")
+    @explaining_overflow("The second moment of the section")
     def composite(cls, parts: Iterable[tuple["Section", float]], *, stiffness_factor: float = 1.0) -> Self:
         """Return several sections that bend as one: plane sections stay plane, and none slips on another.
 
@@ -204,7 +208,7 @@ class Section(Value):
         >>> print(f"{filled.bending_stiffness:.4g} N m², {filled.mass_per_length:.4g} kg/m")
         2.804e+09 N m², 2293 kg/m
         """
-        found = _checked_parts(parts)
+        found = _checked_composite_parts(parts)
         first = found[0][0].elastic_modulus
         ratios = [each.stiffness_factor * each.elastic_modulus / first for each, _ in found]
         areas = [ratio * each.area for ratio, (each, _) in zip(ratios, found, strict=True)]
@@ -219,7 +223,7 @@ class Section(Value):
         return cls(area, second, first, mass / area, stiffness_factor, rotary)
 
 
-def section_value(section: Section | None, name: str, given: Any, absent: float | None = None) -> Any:
+def value_from_section(section: Section | None, name: str, given: Any, absent: float | None = None) -> Any:
     """Return the `given` quantity, or the value of the section where it is None or `absent`.
 
     Raises
@@ -257,8 +261,8 @@ def checked_section(given: Any) -> Section | None:
     return given
 
 
-def _checked_factor(given: float) -> float:
-    factor = positive("stiffness_factor", given, "fractions of the uncracked stiffness")
+def _checked_stiffness_factor(given: float) -> float:
+    factor = checked_positive("stiffness_factor", given, "fractions of the uncracked stiffness")
     if factor > 1.0:
         raise InputError(
             f"stiffness_factor must be at most 1, but {factor:g} was given. Half the uncracked stiffness is 0.5.",
@@ -267,7 +271,7 @@ def _checked_factor(given: float) -> float:
     return factor
 
 
-def _check_hollow(wall: float, least: float, what: str) -> None:
+def _check_hollow_section(wall: float, least: float, what: str) -> None:
     if not 2.0 * wall < least:
         raise InputError(
             f"wall must be less than half of {least:g} m, but {wall:g} m was given. Without a hollow it is {what}.",
@@ -275,7 +279,7 @@ def _check_hollow(wall: float, least: float, what: str) -> None:
         )
 
 
-def _checked_parts(given: Any) -> list[tuple[Section, float]]:
+def _checked_composite_parts(given: Any) -> list[tuple[Section, float]]:
     try:
         pairs = [(section, offset) for section, offset in given]
     except (TypeError, ValueError) as error:
@@ -291,4 +295,4 @@ def _checked_parts(given: Any) -> list[tuple[Section, float]]:
                 f"parts must be a list of sections and offsets, but {shown(section)} stands in place of a section.",
                 field="parts",
             )
-    return [(section, finite("parts: the offset", offset, "m")) for section, offset in pairs]
+    return [(section, checked_finite("parts: the offset", offset, "m")) for section, offset in pairs]

@@ -9,8 +9,8 @@ from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator
 
 from rockflex._arrays import Array
 from rockflex.modal import MassNormalisedModes
-from rockflex.structure._beam_modes import N_STATIONS, forces_at_stations, gauss_points, mesh_nodes
-from rockflex.structure._beam_sections import Sections
+from rockflex.structure._beam_modes import N_STATIONS, beam_forces_at_stations, beam_mesh_nodes, gauss_points
+from rockflex.structure._beam_sections import BeamSections
 
 _MAX_RESIDUAL = 1e-6
 _MAX_SQUARES_RATIO = 1e6  # of ω² in one search: rounding in the lowest mode then leaves ten digits of the highest
@@ -20,7 +20,7 @@ _ELEMENT_POINTS = 4  # exact for cubic shapes with linearly varying mass and sti
 _MAX_MASS_RATIO = 1e40  # times the mass of the beam: for a heavier body, rounding decides whether the modes are found
 
 
-def lowest_modes(root: csc_array, mass: csc_array, height: float, n_modes: int) -> tuple[Array, Array]:
+def lowest_beam_modes(root: csc_array, mass: csc_array, height: float, n_modes: int) -> tuple[Array, Array]:
     """Return ω (n,) and mass-normalised shapes (F, n) of the lowest modes, from the stiffness A^T A and the mass.
 
     `root` is A (F, F); the degrees of freedom are alternating deflections and rotations, from the base up.
@@ -46,7 +46,7 @@ def lowest_modes(root: csc_array, mass: csc_array, height: float, n_modes: int) 
     stiffness = csc_array(root.T @ root)
     vectors = np.empty((mass.shape[0], 0))
     while vectors.shape[1] < n_modes:
-        further = _further_modes(vectors, stiffness, mass, flexibility, n_modes - vectors.shape[1])
+        further = _further_beam_modes(vectors, stiffness, mass, flexibility, n_modes - vectors.shape[1])
         vectors = np.column_stack([vectors, further])
     omega = np.linalg.norm(root @ vectors, axis=0)
     order = np.argsort(omega)
@@ -59,7 +59,7 @@ def lowest_modes(root: csc_array, mass: csc_array, height: float, n_modes: int) 
     return omega * (stiff / math.sqrt(heavy)), unit @ vectors / math.sqrt(heavy)
 
 
-def _further_modes(
+def _further_beam_modes(
     known: Array, stiffness: csc_array, mass: csc_array, flexibility: Callable[[Array], Array], wanted: int
 ) -> Array:
     """Return the lowest modes other than the known ones: as many as wanted, or only the first if they lie far apart.
@@ -99,7 +99,7 @@ def _further_modes(
     return kept / np.sqrt(np.einsum("in,in->n", kept, np.asarray(mass @ kept)))
 
 
-def finite_element_modes(beam: Sections, n_elements: int, n_modes: int) -> MassNormalisedModes:
+def finite_element_modes(beam: BeamSections, n_elements: int, n_modes: int) -> MassNormalisedModes:
     """Return the first modes of the beam by two-node elements with consistent mass.
 
     The elements are cubic (Hermite). With shear stiffness they are Timoshenko elements with cubic deflection and
@@ -117,17 +117,17 @@ def finite_element_modes(beam: Sections, n_elements: int, n_modes: int) -> MassN
     """
     stations = np.linspace(0.0, beam.height, N_STATIONS)
     lumped = beam.lumped
-    nodes = mesh_nodes(beam.height, n_elements, stations, beam.kinks, lumped.heights)
-    elements, masses, rotary = _elements(beam, nodes)
-    _check_bodies(beam, float(masses[:, ::2, ::2].sum()))
-    root = _assembled_rows(elements, nodes.size)[:, 2:]
+    nodes = beam_mesh_nodes(beam.height, n_elements, stations, beam.kinks, lumped.heights)
+    elements, masses, rotary = _beam_element_matrices(beam, nodes)
+    _check_lumped_masses(beam, float(masses[:, ::2, ::2].sum()))
+    root = _assembled_beam_factor(elements, nodes.size)[:, 2:]
     at = np.abs(nodes[:, None] - lumped.heights).argmin(axis=0)
     point = np.zeros(2 * nodes.size)
     np.add.at(point, 2 * at, lumped.masses)
     if beam.rotary_in_modes:
         np.add.at(point, 2 * at + 1, lumped.rotary)
-    mass = csc_array(_assembled(masses, nodes.size) + diags_array(point))
-    omega, vectors = lowest_modes(root, csc_array(mass[2:, 2:]), beam.height, n_modes)
+    mass = csc_array(_assembled_beam_mass(masses, nodes.size) + diags_array(point))
+    omega, vectors = lowest_beam_modes(root, csc_array(mass[2:, 2:]), beam.height, n_modes)
 
     full = np.vstack([np.zeros((2, n_modes)), vectors])
     moved = mass @ full
@@ -142,7 +142,7 @@ def finite_element_modes(beam: Sections, n_elements: int, n_modes: int) -> MassN
         moment=rotation @ moved,
         heights=stations,
         ordinates=full[2 * np.searchsorted(nodes, stations - 1e-8 * beam.height)],
-        forces=forces_at_stations(stations, nodes, forces, moments),
+        forces=beam_forces_at_stations(stations, nodes, forces, moments),
         mass=float(translation @ (mass @ translation)),
         first_moment=float(translation @ turned),
         inertia=float(rotation @ turned),
@@ -150,7 +150,7 @@ def finite_element_modes(beam: Sections, n_elements: int, n_modes: int) -> MassN
     )
 
 
-def _check_bodies(beam: Sections, mass: float) -> None:
+def _check_lumped_masses(beam: BeamSections, mass: float) -> None:
     lumped = beam.lumped
     heaviest = float(lumped.masses.max(initial=0.0))
     if beam.rotary_in_modes:
@@ -161,7 +161,7 @@ def _check_bodies(beam: Sections, mass: float) -> None:
         )
 
 
-def _elements(beam: Sections, nodes: Array) -> tuple[Array, Array, float]:
+def _beam_element_matrices(beam: BeamSections, nodes: Array) -> tuple[Array, Array, float]:
     """Return the stiffness factors (E, 2, 4), the mass matrices (E, 4, 4), and the integral of the rotary inertia."""
     z, w = gauss_points(nodes, _ELEMENT_POINTS)
     length = np.diff(nodes)
@@ -208,14 +208,14 @@ def _elements(beam: Sections, nodes: Array) -> tuple[Array, Array, float]:
     return roots, masses, float((w * rotary).sum())
 
 
-def _assembled_rows(elements: Array, n_nodes: int) -> csc_array:
+def _assembled_beam_factor(elements: Array, n_nodes: int) -> csc_array:
     rows = np.arange(2 * len(elements)).reshape(-1, 2, 1) + np.zeros((1, 1, 4), dtype=int)
     columns = 2 * np.arange(len(elements))[:, None, None] + np.arange(4)[None, None, :] + np.zeros((1, 2, 1), dtype=int)
     where = (rows.ravel(), columns.ravel())
     return csc_array(coo_array((elements.ravel(), where), shape=(2 * len(elements), 2 * n_nodes)))
 
 
-def _assembled(elements: Array, n_nodes: int) -> csc_array:
+def _assembled_beam_mass(elements: Array, n_nodes: int) -> csc_array:
     freedoms = 2 * np.arange(len(elements))[:, None] + np.arange(4)
     rows = np.repeat(freedoms, 4, axis=1).ravel()
     columns = np.tile(freedoms, (1, 4)).ravel()

@@ -11,22 +11,22 @@ from numpy.typing import ArrayLike
 from rockflex._arrays import Array
 from rockflex._checks import (
     MOST_STORIES,
-    all_positive,
-    damping_ratios,
-    dimensions,
-    finite_vector,
+    check_all_positive,
+    checked_damping_ratios,
+    checked_finite_vector,
+    checked_in_range,
+    checked_mode_count,
+    checked_positive,
+    checked_whole_number,
     float_array,
-    in_range,
-    mode_count,
-    positive,
+    number_of_dimensions,
     real_or_nan,
-    whole_number,
 )
-from rockflex._computable import computable
 from rockflex._errors import InputError
 from rockflex._matrices import checked_heights, checked_mass, checked_stiffness
+from rockflex._overflow import explaining_overflow
 from rockflex._shown import shown
-from rockflex._values import Value, changed
+from rockflex._values import Value, with_changed_fields
 from rockflex.modal import ModalProperties, RockingProperties, modal_properties, rocking_properties
 from rockflex.structure._structure import AssembledStructure
 
@@ -98,9 +98,9 @@ class LumpedStructure(Value):
             masses=checked_mass(masses, h.size, field="masses"),
             stiffness=checked_stiffness(stiffness, h.size),
             heights=h,
-            base_mass=positive("base_mass", base_mass, "kg", zero=True),
-            half_width=positive("half_width", half_width, "m"),
-            damping_ratio=damping_ratios("damping_ratio", damping_ratio, h.size),
+            base_mass=checked_positive("base_mass", base_mass, "kg", zero=True),
+            half_width=checked_positive("half_width", half_width, "m"),
+            damping_ratio=checked_damping_ratios("damping_ratio", damping_ratio, h.size),
         )
 
     @property
@@ -217,20 +217,20 @@ class FishBone(AssembledStructure, Value):
         half_width: float,
         damping_ratio: ArrayLike,
     ) -> None:
-        lengths = finite_vector("story_heights", story_heights, "m")
+        lengths = checked_finite_vector("story_heights", story_heights, "m")
         n = lengths.size
-        all_positive("story_heights", lengths, "m")
+        check_all_positive("story_heights", lengths, "m")
         if n == 0:
             raise InputError(
                 "story_heights must contain at least one height in m, but none was given.", field="story_heights"
             )
         vars(self).update(
             story_heights=lengths,
-            masses=_per_story("masses", masses, n, "kg"),
-            column_stiffness=_per_story("column_stiffness", column_stiffness, n, "N m²"),
-            beam_stiffness=_beam_stiffnesses(beam_stiffness, n),
-            base_mass=positive("base_mass", base_mass, "kg", zero=True),
-            half_width=positive("half_width", half_width, "m"),
+            masses=_one_value_per_story("masses", masses, n, "kg"),
+            column_stiffness=_one_value_per_story("column_stiffness", column_stiffness, n, "N m²"),
+            beam_stiffness=_checked_beam_stiffnesses(beam_stiffness, n),
+            base_mass=checked_positive("base_mass", base_mass, "kg", zero=True),
+            half_width=checked_positive("half_width", half_width, "m"),
             damping_ratio=damping_ratio,
         )
         vars(self).update(damping_ratio=self.lumped.damping_ratio)
@@ -245,7 +245,7 @@ class FishBone(AssembledStructure, Value):
         """The assembled structure: floor masses, condensed stiffness, floor heights."""
         return LumpedStructure(
             self.masses,
-            condensed_stiffness(self.story_heights, self.column_stiffness, self.beam_stiffness),
+            condensed_lateral_stiffness(self.story_heights, self.column_stiffness, self.beam_stiffness),
             np.cumsum(self.story_heights),
             base_mass=self.base_mass,
             half_width=self.half_width,
@@ -258,8 +258,8 @@ class FishBone(AssembledStructure, Value):
         return self.lumped
 
 
-@computable("The stiffness of a frame with these story heights, column and beam stiffnesses")
-def condensed_stiffness(story_heights: Array, column_stiffness: Array, beam_stiffness: Array) -> Array:
+@explaining_overflow("The stiffness of a frame with these story heights, column and beam stiffnesses")
+def condensed_lateral_stiffness(story_heights: Array, column_stiffness: Array, beam_stiffness: Array) -> Array:
     """Return the condensed lateral stiffness of the floors in N/m, shape (N, N); arguments as in `FishBone`."""
     n = story_heights.size
     sway, coupling, bending = (np.zeros((n + 1, n + 1)) for _ in range(3))
@@ -275,21 +275,21 @@ def condensed_stiffness(story_heights: Array, column_stiffness: Array, beam_stif
     return 0.5 * (stiffness + stiffness.T)
 
 
-def _per_story(name: str, values: ArrayLike, n: int, unit: str) -> Array:
-    if dimensions(values) == 0:
-        filled = np.full(n, positive(name, values, unit))  # pyright: ignore[reportArgumentType]
+def _one_value_per_story(name: str, values: ArrayLike, n: int, unit: str) -> Array:
+    if number_of_dimensions(values) == 0:
+        filled = np.full(n, checked_positive(name, values, unit))  # pyright: ignore[reportArgumentType]
         filled.setflags(write=False)
         return filled
-    array = finite_vector(name, values, unit)
+    array = checked_finite_vector(name, values, unit)
     if array.size != n:
         raise InputError(
             f"{name} must be one number, or one for each of the {n} stories, but {array.size} were given.", field=name
         )
-    all_positive(name, array, unit)
+    check_all_positive(name, array, unit)
     return array
 
 
-def _beam_stiffnesses(values: ArrayLike, n: int) -> Array:
+def _checked_beam_stiffnesses(values: ArrayLike, n: int) -> Array:
     given = float_array(values)
     array = np.full(n, np.nan) if given is None else given
     if array.ndim == 0:
@@ -368,14 +368,14 @@ class Frame(AssembledStructure):
 
     def __post_init__(self) -> None:
         vars(self).update(
-            n_stories=whole_number("n_stories", self.n_stories, 1, MOST_STORIES),
-            story_height=positive("story_height", self.story_height, "m"),
-            story_mass=positive("story_mass", self.story_mass, "kg"),
-            base_mass=positive("base_mass", self.base_mass, "kg", zero=True),
+            n_stories=checked_whole_number("n_stories", self.n_stories, 1, MOST_STORIES),
+            story_height=checked_positive("story_height", self.story_height, "m"),
+            story_mass=checked_positive("story_mass", self.story_mass, "kg"),
+            base_mass=checked_positive("base_mass", self.base_mass, "kg", zero=True),
             stiffness_ratio=_checked_stiffness_ratio(self.stiffness_ratio),
-            period=positive("period", self.period, "s"),
-            aspect_ratio=positive("aspect_ratio", self.aspect_ratio, "m of h*_1 a m of B"),
-            damping_ratio=in_range(
+            period=checked_positive("period", self.period, "s"),
+            aspect_ratio=checked_positive("aspect_ratio", self.aspect_ratio, "m of h*_1 a m of B"),
+            damping_ratio=checked_in_range(
                 "damping_ratio",
                 self.damping_ratio,
                 0.0,
@@ -400,10 +400,10 @@ class Frame(AssembledStructure):
         """The assembled structure: floor masses, condensed stiffness, floor heights."""
         unit_stiffness, unit_modes = _unit_frame(self.n_stories, self.stiffness_ratio)
         given = f"story_mass = {self.story_mass:g} kg and period = {self.period:g} s"
-        with computable(f"The stiffness of a frame with {given}"):
+        with explaining_overflow(f"The stiffness of a frame with {given}"):
             column_stiffness = self.story_mass * (2.0 * math.pi / (self.period * float(unit_modes.omega[0]))) ** 2
             stiffness = column_stiffness * unit_stiffness
-        with computable(f"The heights of {self.n_stories} stories of {self.story_height:g} m"):
+        with explaining_overflow(f"The heights of {self.n_stories} stories of {self.story_height:g} m"):
             heights = self.story_height * np.arange(1.0, self.n_stories + 1.0)
         return LumpedStructure(
             np.full(self.n_stories, self.story_mass),
@@ -430,7 +430,7 @@ class Frame(AssembledStructure):
             If `n_modes` is not from 1 to the number that the structure has.
         """
         whole = self._rocking
-        return whole if n_modes is None else whole.truncated(mode_count(n_modes, whole.n_modes))
+        return whole if n_modes is None else whole.truncated(checked_mode_count(n_modes, whole.n_modes))
 
     @cached_property
     def _rocking(self) -> RockingProperties:
@@ -440,7 +440,7 @@ class Frame(AssembledStructure):
         ):
             return self.lumped.rocking()  # raises an error about the overflow
         _, unit_modes = _unit_frame(self.n_stories, self.stiffness_ratio)
-        unit, m, length = _unit_rocking(self.n_stories, self.stiffness_ratio), self.story_mass, self.story_height
+        unit, m, length = _unit_frame_rocking(self.n_stories, self.stiffness_ratio), self.story_mass, self.story_height
         rate = 2.0 * math.pi / (self.period * float(unit_modes.omega[0]))
         mass, height = m * unit.effective_mass, length * unit.effective_height
         n, m_tot = self.n_stories, self.n_stories * m + self.base_mass
@@ -448,7 +448,7 @@ class Frame(AssembledStructure):
         floors = unit.floors
         assert floors is not None
         heights = length * floors.heights
-        return changed(
+        return with_changed_fields(
             unit,
             omega=rate * unit.omega,
             effective_mass=mass,
@@ -459,24 +459,24 @@ class Frame(AssembledStructure):
             half_width=self.half_width,
             zeta=np.full(unit.n_modes, self.damping_ratio),
             translational_inertia=max(inertia, float(mass @ height**2)),
-            floors=changed(floors, heights=heights, force=(m * rate**2) * floors.force),
+            floors=with_changed_fields(floors, heights=heights, force=(m * rate**2) * floors.force),
             top_height=float(heights[-1]),
             base_mass=self.base_mass,
         )
 
 
 @lru_cache(maxsize=128)
-@computable("The modes of the frame with this stiffness_ratio", field="stiffness_ratio")
+@explaining_overflow("The modes of the frame with this stiffness_ratio", field="stiffness_ratio")
 def _unit_frame(n_stories: int, stiffness_ratio: float) -> tuple[Array, ModalProperties]:
     """Return the condensed stiffness in units of 2 EI_c/L_c³, and the modes for unit masses and stories."""
     one = np.ones(n_stories)
-    stiffness = condensed_stiffness(one, one, 12.0 * stiffness_ratio * one)
+    stiffness = condensed_lateral_stiffness(one, one, 12.0 * stiffness_ratio * one)
     stiffness.setflags(write=False)
     return stiffness, modal_properties(one, stiffness, np.cumsum(one))
 
 
 @lru_cache(maxsize=128)
-def _unit_rocking(n_stories: int, stiffness_ratio: float) -> RockingProperties:
+def _unit_frame_rocking(n_stories: int, stiffness_ratio: float) -> RockingProperties:
     """Return the parameters for unit masses and stories, on a base of unit half-width without mass."""
     _, modes = _unit_frame(n_stories, stiffness_ratio)
     return rocking_properties(modes, np.ones(n_stories), modes.heights, 0.0, 1.0, 0.0)

@@ -11,19 +11,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._checks import (
-    damping_ratios,
-    dimensions,
-    finite_matrix,
-    finite_vector,
+    checked_damping_ratios,
+    checked_finite_matrix,
+    checked_finite_vector,
+    checked_positive,
+    checked_whole_number,
     float_array,
-    positive,
-    whole_number,
+    number_of_dimensions,
 )
-from rockflex._computable import computable
 from rockflex._errors import InputError
-from rockflex._files import check_regular, path_of
+from rockflex._files import check_regular_file, checked_file_path
 from rockflex._matrices import checked_mass, checked_stiffness
-from rockflex.modal import MassNormalisedModes, modes_that_take_part
+from rockflex._overflow import explaining_overflow
+from rockflex.modal import MassNormalisedModes, excited_mode_indices
 from rockflex.structure._structure import ModalStructure
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ def read_matrix_market(path: Path) -> "coo_array":
     return coo_array((value, (i, j)), shape=(rows, columns))
 
 
-def numbers(name: str, given: NumbersOrPath) -> ArrayLike:
+def given_or_read_matrix(name: str, given: NumbersOrPath) -> ArrayLike:
     """Return the given numbers, read from a file if a path was given.
 
     The suffix decides the format: ``.npz`` (the array of that name, the only array, or a sparse matrix as saved by
@@ -103,10 +103,10 @@ def numbers(name: str, given: NumbersOrPath) -> ArrayLike:
     """
     if not isinstance(given, str | Path):
         return given
-    path = path_of(name, given)
+    path = checked_file_path(name, given)
     if path.suffix.lower() not in _MATRIX_SUFFIXES:
         raise InputError(f"{name}: the suffix of {path} must be one of {', '.join(_MATRIX_SUFFIXES)}.", field=name)
-    check_regular(path, name)
+    check_regular_file(path, name)
     if not path.exists():
         raise InputError(f"{name}: the file {path} does not exist (working directory: {Path.cwd()}).", field=name)
     try:
@@ -118,21 +118,24 @@ def numbers(name: str, given: NumbersOrPath) -> ArrayLike:
     return array.ravel() if 1 in array.shape and array.shape != (1, 1) else array
 
 
-def checksum(name: str, path: Path) -> str:
-    """Return the SHA-256 of the shape and the numbers (little-endian doubles) of a file; errors as in `numbers`."""
-    array = np.asarray(numbers(name, path), dtype="<f8")
+def matrix_file_checksum(name: str, path: Path) -> str:
+    """Return the SHA-256 of the shape and the numbers (little-endian doubles) of a file.
+
+    Errors are those of `given_or_read_matrix`.
+    """
+    array = np.asarray(given_or_read_matrix(name, path), dtype="<f8")
     digest = hashlib.sha256(repr(array.shape).encode())
     digest.update(array.tobytes())
     return digest.hexdigest()
 
 
-def _from_npz(name: str, path: Path) -> Array:
+def _matrix_from_npz(name: str, path: Path) -> Array:
     with np.load(path, allow_pickle=False) as content:
         keys = content.files
         if "format" in keys and "data" in keys:
             from scipy.sparse import load_npz
 
-            return _dense(name, path, load_npz(path))
+            return _dense_matrix(name, path, load_npz(path))
         if name not in keys and len(keys) != 1:
             raise InputError(
                 f'{name}: {path} must contain an array "{name}" or a single array, but it contains {keys}.', field=name
@@ -140,11 +143,11 @@ def _from_npz(name: str, path: Path) -> Array:
         return np.asarray(content[name if name in keys else keys[0]], dtype=np.float64)
 
 
-def _from_mtx(name: str, path: Path) -> Array:
-    return _dense(name, path, read_matrix_market(path))
+def _matrix_from_mtx(name: str, path: Path) -> Array:
+    return _dense_matrix(name, path, read_matrix_market(path))
 
 
-def _dense(name: str, path: Path, matrix: Any) -> Array:
+def _dense_matrix(name: str, path: Path, matrix: Any) -> Array:
     if max(matrix.shape) > MAX_FREEDOMS:
         raise InputError(
             f"{name}: {path} contains a sparse matrix of shape {matrix.shape}, but matrices are treated as dense, with "
@@ -155,11 +158,11 @@ def _dense(name: str, path: Path, matrix: Any) -> Array:
     return np.asarray(matrix.toarray(), dtype=np.float64)
 
 
-def _from_csv(_: str, path: Path) -> Array:
+def _matrix_from_csv(_: str, path: Path) -> Array:
     return np.loadtxt(path, delimiter=",", ndmin=2)
 
 
-_READERS = {".npz": _from_npz, ".mtx": _from_mtx, ".csv": _from_csv}
+_READERS = {".npz": _matrix_from_npz, ".mtx": _matrix_from_mtx, ".csv": _matrix_from_csv}
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,8 +201,8 @@ class DegreesOfFreedom:
                 "given.",
                 field="rotations",
             )
-        turning = [whole_number("rotations, index", i, 0, size - 1, field="rotations") for i in rotations]
-        where, values = _translations(heights, turning, size)
+        turning = [checked_whole_number("rotations, index", i, 0, size - 1, field="rotations") for i in rotations]
+        where, values = _translating_freedoms(heights, turning, size)
         twice = sorted({i for i in turning if turning.count(i) > 1 or i in where})
         if twice:
             raise InputError(
@@ -266,15 +269,15 @@ class DegreesOfFreedom:
         )
 
 
-def _translations(heights: Heights, turning: Sequence[int], size: int) -> tuple[list[int], Array]:
+def _translating_freedoms(heights: Heights, turning: Sequence[int], size: int) -> tuple[list[int], Array]:
     """Return the degrees of freedom that translate horizontally, and their heights."""
     if isinstance(heights, Mapping):
-        where = [whole_number("heights, index", i, 0, size - 1, field="heights") for i in heights]
-        return where, finite_vector("heights", list(heights.values()), "m")
-    given = numbers("heights", heights)
+        where = [checked_whole_number("heights, index", i, 0, size - 1, field="heights") for i in heights]
+        return where, checked_finite_vector("heights", list(heights.values()), "m")
+    given = given_or_read_matrix("heights", heights)
     values = float_array(given)
     if values is None or values.ndim != 1:
-        finite_vector("heights", given, "m")  # raises an error
+        checked_finite_vector("heights", given, "m")  # raises an error
         raise AssertionError
     others = [i for i in range(size) if i not in turning]
     if values.size == size:
@@ -287,7 +290,9 @@ def _translations(heights: Heights, turning: Sequence[int], size: int) -> tuple[
             field="heights",
         )
     moves = ~np.isnan(values)
-    return [i for i, each in zip(others, moves, strict=True) if each], finite_vector("heights", values[moves], "m")
+    return [i for i, each in zip(others, moves, strict=True) if each], checked_finite_vector(
+        "heights", values[moves], "m"
+    )
 
 
 def from_matrices(
@@ -353,21 +358,21 @@ def from_matrices(
     >>> structure.modal().period.round(3)
     array([0.719, 0.275])
     """
-    k_given = numbers("stiffness", stiffness)
-    size = np.shape(k_given)[0] if dimensions(k_given) == 2 else 1
+    k_given = given_or_read_matrix("stiffness", stiffness)
+    size = np.shape(k_given)[0] if number_of_dimensions(k_given) == 2 else 1
     k = checked_stiffness(k_given, size)
-    m_given = numbers("mass", mass)
-    m = _mass_matrix(m_given, size)
+    m_given = given_or_read_matrix("mass", mass)
+    m = _checked_mass_matrix(m_given, size)
     freedoms = DegreesOfFreedom.of(heights, rotations, size)
     keep = np.asarray(m.any(axis=1))
     freedoms = freedoms.kept(keep)
     m = checked_mass(m[np.ix_(keep, keep)], freedoms.size)
-    with computable("The modes of the given mass and stiffness matrices"):
+    with explaining_overflow("The modes of the given mass and stiffness matrices"):
         if not keep.all():
             tie = k[np.ix_(keep, ~keep)]
             k = k[np.ix_(keep, keep)] - tie @ np.linalg.solve(k[np.ix_(~keep, ~keep)], tie.T)
             k = 0.5 * (k + k.T)
-        modes = freedoms.modes(*_modes(k, m), m)
+        modes = freedoms.modes(*_modes_from_matrices(k, m), m)
     return _modal_structure(modes, base_mass, half_width, damping_ratio, n_modes)
 
 
@@ -414,18 +419,18 @@ def from_modes(
     >>> structure.modal().effective_mass.round(-1)
     array([37890.,  2110.])
     """
-    w = finite_vector("omega", numbers("omega", omega), "rad/s")
+    w = checked_finite_vector("omega", given_or_read_matrix("omega", omega), "rad/s")
     falls = np.flatnonzero(np.diff(w, prepend=0.0) < 0.0)
     if w.size == 0 or w[0] <= 0.0 or falls.size:
         raise InputError(
             f"omega must contain positive frequencies in rad/s in ascending order, but {w} was given. Sort the modes.",
             field="omega",
         )
-    given = numbers("shapes", shapes)
-    columns = finite_vector("shapes", given, "any unit")[:, None] if dimensions(given) == 1 else given
-    size = np.shape(columns)[0] if dimensions(columns) == 2 else 1
-    phi = finite_matrix("shapes", columns, "any unit", (size, w.size))
-    m = _mass_matrix(numbers("mass", mass), size)
+    given = given_or_read_matrix("shapes", shapes)
+    columns = checked_finite_vector("shapes", given, "any unit")[:, None] if number_of_dimensions(given) == 1 else given
+    size = np.shape(columns)[0] if number_of_dimensions(columns) == 2 else 1
+    phi = checked_finite_matrix("shapes", columns, "any unit", (size, w.size))
+    m = _checked_mass_matrix(given_or_read_matrix("mass", mass), size)
     freedoms = DegreesOfFreedom.of(heights, rotations, size)
     products = phi.T @ m @ phi
     own = np.diag(products)
@@ -455,7 +460,7 @@ def _modal_structure(
     damping_ratio: ArrayLike,
     n_modes: SupportsIndex | None,
 ) -> ModalStructure:
-    kept = modes_that_take_part(modes.modal(), n_modes)
+    kept = excited_mode_indices(modes.modal(), n_modes)
     taken = replace(
         modes,
         omega=modes.omega[kept],
@@ -466,17 +471,17 @@ def _modal_structure(
     )
     return ModalStructure(
         taken,
-        positive("base_mass", base_mass, "kg", zero=True),
-        positive("half_width", half_width, "m"),
-        damping_ratios("damping_ratio", damping_ratio, kept.size),
+        checked_positive("base_mass", base_mass, "kg", zero=True),
+        checked_positive("half_width", half_width, "m"),
+        checked_damping_ratios("damping_ratio", damping_ratio, kept.size),
     )
 
 
-def _mass_matrix(given: ArrayLike, size: int) -> Array:
-    if dimensions(given) == 2:
-        m = finite_matrix("mass", given, "kg", (size, size))
+def _checked_mass_matrix(given: ArrayLike, size: int) -> Array:
+    if number_of_dimensions(given) == 2:
+        m = checked_finite_matrix("mass", given, "kg", (size, size))
     else:
-        values = finite_vector("mass", given, "kg")
+        values = checked_finite_vector("mass", given, "kg")
         if values.size != size:
             raise InputError(
                 f"mass must contain one mass for each of the {size} degrees of freedom, but {values.size} were given.",
@@ -490,7 +495,7 @@ def _mass_matrix(given: ArrayLike, size: int) -> Array:
     return m
 
 
-def _modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
+def _modes_from_matrices(stiffness: Array, mass: Array) -> tuple[Array, Array]:
     """Return the frequencies as singular values of C^T L^-T, with K = C C^T and M = L L^T, and the mode shapes."""
     root = np.linalg.cholesky(mass)
     _, omega, vectors = np.linalg.svd(np.linalg.solve(root, np.linalg.cholesky(stiffness)).T)

@@ -7,11 +7,18 @@ from dataclasses import dataclass, replace
 from typing import Any, Protocol, SupportsIndex
 
 from rockflex._arrays import Array
-from rockflex._checks import finite
+from rockflex._checks import checked_finite
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex._values import Value
-from rockflex.modal import BaseElement, MassNormalisedModes, ModalProperties, RockingProperties, Tendon, element_set
+from rockflex.modal import (
+    BaseElement,
+    MassNormalisedModes,
+    ModalProperties,
+    RockingProperties,
+    Tendon,
+    base_element_tuple,
+)
 
 MAX_PERIOD = 10.0  # s
 
@@ -187,7 +194,7 @@ class Eccentric(ModifiedStructure):
                 "have an eccentricity of their own: RockingProperties(..., eccentricity=...).",
                 field="structure",
             )
-        vars(self).update(structure=structure, eccentricity=finite("eccentricity", eccentricity, "m"))
+        vars(self).update(structure=structure, eccentricity=checked_finite("eccentricity", eccentricity, "m"))
         self.rocking(1)  # checks that the axis and the tendons are within the base
 
     def _changes(self) -> dict[str, Any]:
@@ -237,7 +244,7 @@ class Restrained(ModifiedStructure):
                 "have elements of their own: RockingProperties(..., elements=...).",
                 field="structure",
             )
-        vars(self).update(structure=structure, elements=element_set(elements))
+        vars(self).update(structure=structure, elements=base_element_tuple(elements))
         self.rocking(1)  # checks that they are within the base
 
     @property

@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import mode_count, one_of, positive, within
-from rockflex._computable import computable
+from rockflex._checks import checked_magnitude, checked_mode_count, checked_positive, is_one_of
 from rockflex._errors import InputError
+from rockflex._overflow import explaining_overflow
 from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.structure._beam import Beam
 from rockflex.structure._beam_sections import LumpedMasses
-from rockflex.structure._cross_section import Section, checked_section, section_value
+from rockflex.structure._cross_section import Section, checked_section, value_from_section
 from rockflex.structure._from_matrices import from_matrices
 from rockflex.structure._structure import AssembledStructure, ModalStructure
 
@@ -80,15 +80,15 @@ class TaperedTower(AssembledStructure, Value):
     n_modes: int = 5
 
     def __post_init__(self) -> None:
-        if not one_of(self.method, ("fe", "ritz")):
+        if not is_one_of(self.method, ("fe", "ritz")):
             raise InputError(f'method must be "fe" or "ritz", but {shown(self.method)} was given.', field="method")
         vars(self).update(
-            height=positive("height", self.height, "m"),
-            base_radius=positive("base_radius", self.base_radius, "m"),
-            top_radius=positive("top_radius", self.top_radius, "m"),
-            wall=positive("wall", self.wall, "m"),
-            density=positive("density", self.density, "kg/m³"),
-            elastic_modulus=positive("elastic_modulus", self.elastic_modulus, "N/m²"),
+            height=checked_positive("height", self.height, "m"),
+            base_radius=checked_positive("base_radius", self.base_radius, "m"),
+            top_radius=checked_positive("top_radius", self.top_radius, "m"),
+            wall=checked_positive("wall", self.wall, "m"),
+            density=checked_positive("density", self.density, "kg/m³"),
+            elastic_modulus=checked_positive("elastic_modulus", self.elastic_modulus, "N/m²"),
         )
         name, radius = min(("top_radius", self.top_radius), ("base_radius", self.base_radius), key=lambda r: r[1])
         if self.wall > radius:
@@ -100,17 +100,17 @@ class TaperedTower(AssembledStructure, Value):
         vars(self).update(n_modes=self.beam.n_modes, damping_ratio=self.beam.damping_ratio)
 
     @cached_property
-    @computable("The sections of a tower with these radii, wall, density and elastic_modulus")
+    @explaining_overflow("The sections of a tower with these radii, wall, density and elastic_modulus")
     def beam(self) -> Beam:
         """The tower as a cantilever beam."""
         ring = (self.height, self.base_radius, self.top_radius, self.wall)
         return Beam(
             height=self.height,
-            mass=_Area(*ring, self.density),
-            bending_stiffness=_SecondMoment(*ring, self.elastic_modulus),
+            mass=_RingArea(*ring, self.density),
+            bending_stiffness=_RingSecondMoment(*ring, self.elastic_modulus),
             half_width=self.base_radius,
             damping_ratio=self.damping_ratio,
-            rotary_inertia=_SecondMoment(*ring, self.density),
+            rotary_inertia=_RingSecondMoment(*ring, self.density),
             rotary_in_modes=False,
             method=self.method,
             n_modes=self.n_modes,
@@ -129,7 +129,7 @@ class TaperedTower(AssembledStructure, Value):
 
 
 @dataclass(frozen=True)
-class _Ring:
+class _RingSection:
     """The annular section at any height: height, radii and wall of the tower in m, and a factor."""
 
     height: float
@@ -143,7 +143,7 @@ class _Ring:
         return outer, np.maximum(outer - self.wall, 0.0)
 
 
-class _Area(_Ring):
+class _RingArea(_RingSection):
     """The factor times the area in m²."""
 
     def __call__(self, z: Array) -> Array:
@@ -151,7 +151,7 @@ class _Area(_Ring):
         return self.factor * (math.pi * (outer**2 - inner**2))
 
 
-class _SecondMoment(_Ring):
+class _RingSecondMoment(_RingSection):
     """The factor times the second moment of the area in m⁴."""
 
     def __call__(self, z: Array) -> Array:
@@ -216,14 +216,14 @@ class CantileverWithTipMass(AssembledStructure, Value):
 
     def __post_init__(self) -> None:
         section = checked_section(self.section)
-        stiffness = section_value(section, "bending_stiffness", self.bending_stiffness)
-        mass = section_value(section, "mass_per_length", self.mass_per_length, absent=0.0)
+        stiffness = value_from_section(section, "bending_stiffness", self.bending_stiffness)
+        mass = value_from_section(section, "mass_per_length", self.mass_per_length, absent=0.0)
         vars(self).update(
-            height=positive("height", self.height, "m"),
-            tip_mass=positive("tip_mass", self.tip_mass, "kg"),
-            bending_stiffness=positive("bending_stiffness", stiffness, "N m²"),
-            mass_per_length=positive("mass_per_length", mass, "kg/m", zero=True),
-            tip_inertia=positive("tip_inertia", self.tip_inertia, "kg m²", zero=True),
+            height=checked_positive("height", self.height, "m"),
+            tip_mass=checked_positive("tip_mass", self.tip_mass, "kg"),
+            bending_stiffness=checked_positive("bending_stiffness", stiffness, "N m²"),
+            mass_per_length=checked_positive("mass_per_length", mass, "kg/m", zero=True),
+            tip_inertia=checked_positive("tip_inertia", self.tip_inertia, "kg m²", zero=True),
         )
         built = self.built
         vars(self).update(base_mass=built.base_mass, half_width=built.half_width, damping_ratio=built.damping_ratio)
@@ -244,7 +244,7 @@ class CantileverWithTipMass(AssembledStructure, Value):
             )
         modes = 1 if self.tip_inertia == 0.0 else 2
         h, stiffness = self.height, self.bending_stiffness or 0.0
-        with computable(f"The stiffness of a column with height = {h:g} m and EI = {stiffness:g} N m²"):
+        with explaining_overflow(f"The stiffness of a column with height = {h:g} m and EI = {stiffness:g} N m²"):
             k = stiffness / h**3
             matrix = [[12.0 * k, -6.0 * k * h], [-6.0 * k * h, 4.0 * k * h**2]]
         return from_matrices(
@@ -255,7 +255,7 @@ class CantileverWithTipMass(AssembledStructure, Value):
             base_mass=self.base_mass,
             half_width=self.half_width,
             damping_ratio=self.damping_ratio,
-            n_modes=mode_count(self.n_modes, modes),
+            n_modes=checked_mode_count(self.n_modes, modes),
         )
 
     @property
@@ -274,7 +274,7 @@ class CantileverWithTipMass(AssembledStructure, Value):
         )
 
 
-@computable("The inertia of a block with this half_diagonal and mass")
+@explaining_overflow("The inertia of a block with this half_diagonal and mass")
 def rigid_block(slenderness: float, half_diagonal: float, mass: float = 1.0) -> RockingProperties:
     """Return the properties of a homogeneous rectangular block, for the models "rigid" and "rigid-C".
 
@@ -302,13 +302,13 @@ def rigid_block(slenderness: float, half_diagonal: float, mass: float = 1.0) -> 
     >>> round(block.half_width, 3), round(block.resisting_moment, 3)
     (0.742, 7.281)
     """
-    alpha = within("slenderness", slenderness, 0.5 * math.pi, "rad")
+    alpha = checked_magnitude("slenderness", slenderness, 0.5 * math.pi, "rad")
     if alpha <= 0.0:
         raise InputError(
             f"slenderness must be positive, but {shown(slenderness)} was given. It is atan(b/h) in rad.",
             field="slenderness",
         )
-    r, m = positive("half_diagonal", half_diagonal, "m"), positive("mass", mass, "kg")
+    r, m = checked_positive("half_diagonal", half_diagonal, "m"), checked_positive("mass", mass, "kg")
     return RockingProperties(
         omega=(),
         effective_mass=(),

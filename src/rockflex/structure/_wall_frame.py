@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import MOST_MODES, damping_ratios, positive, whole_number
-from rockflex._computable import computable
+from rockflex._checks import MOST_MODES, checked_damping_ratios, checked_positive, checked_whole_number
+from rockflex._overflow import explaining_overflow
 from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes
-from rockflex.structure._beam_modes import N_STATIONS, forces_at_stations, gauss_points, mesh_nodes
+from rockflex.structure._beam_modes import N_STATIONS, beam_forces_at_stations, beam_mesh_nodes, gauss_points
 from rockflex.structure._structure import AssembledStructure, ModalStructure
 
 _N_PANELS, _N_POINTS = 64, 8
@@ -74,17 +74,17 @@ class WallFrame(AssembledStructure, Value):
     n_modes: int = 5
 
     def __post_init__(self) -> None:
-        n_modes = whole_number("n_modes", self.n_modes, 1, MOST_MODES)
+        n_modes = checked_whole_number("n_modes", self.n_modes, 1, MOST_MODES)
         vars(self).update(
-            height=positive("height", self.height, "m"),
-            mass=positive("mass", self.mass, "kg"),
-            stiffness_parameter=positive(
+            height=checked_positive("height", self.height, "m"),
+            mass=checked_positive("mass", self.mass, "kg"),
+            stiffness_parameter=checked_positive(
                 "stiffness_parameter", self.stiffness_parameter, "m/m", zero=True, infinite=True
             ),
-            base_mass=positive("base_mass", self.base_mass, "kg", zero=True),
-            period=positive("period", self.period, "s"),
-            aspect_ratio=positive("aspect_ratio", self.aspect_ratio, "m of h*_1 a m of B"),
-            damping_ratio=damping_ratios("damping_ratio", self.damping_ratio, n_modes),
+            base_mass=checked_positive("base_mass", self.base_mass, "kg", zero=True),
+            period=checked_positive("period", self.period, "s"),
+            aspect_ratio=checked_positive("aspect_ratio", self.aspect_ratio, "m of h*_1 a m of B"),
+            damping_ratio=checked_damping_ratios("damping_ratio", self.damping_ratio, n_modes),
             n_modes=n_modes,
         )
 
@@ -100,16 +100,18 @@ class WallFrame(AssembledStructure, Value):
         return ModalStructure(self._modes, self.base_mass, self.half_width, zeta)
 
     @cached_property
-    @computable("The modes of a wall and frame with this height, mass, stiffness_parameter and period")
+    @explaining_overflow("The modes of a wall and frame with this height, mass, stiffness_parameter and period")
     def _modes(self) -> MassNormalisedModes:
         alpha = self.stiffness_parameter
-        roots = np.array([_root(n, alpha) for n in range(1, self.n_modes + 1)])
+        roots = np.array([_wall_frame_root(n, alpha) for n in range(1, self.n_modes + 1)])
         partners = np.sqrt(alpha**2 + roots**2)  # β of the hyperbolic functions, steepest in the highest mode
         layer = _BOUNDARY_LAYER / partners[-1] if math.isfinite(alpha) else np.zeros(0)
-        points, weights = gauss_points(mesh_nodes(1.0, max(_N_PANELS, 4 * self.n_modes), layer, 1.0 - layer), _N_POINTS)
+        points, weights = gauss_points(
+            beam_mesh_nodes(1.0, max(_N_PANELS, 4 * self.n_modes), layer, 1.0 - layer), _N_POINTS
+        )
         x, mass = points.ravel(), self.mass * weights.ravel()
         stations = np.linspace(0.0, 1.0, N_STATIONS)
-        shapes, ordinates = (np.column_stack([_shape(z, g, alpha) for g in roots]) for z in (x, stations))
+        shapes, ordinates = (np.column_stack([_wall_frame_shape(z, g, alpha) for g in roots]) for z in (x, stations))
         size = np.sqrt(mass @ shapes**2)
         forces = mass[:, None] * shapes / size
         speed = roots * partners if math.isfinite(alpha) else roots
@@ -120,14 +122,14 @@ class WallFrame(AssembledStructure, Value):
             moment=h * (x @ forces),
             heights=h * stations,
             ordinates=ordinates / size,
-            forces=forces_at_stations(stations, x, forces, np.zeros_like(forces)),
+            forces=beam_forces_at_stations(stations, x, forces, np.zeros_like(forces)),
             mass=self.mass,
             first_moment=self.mass * h / 2.0,
             inertia=self.mass * h**2 / 3.0,
         )
 
 
-def _root(n: int, alpha: float) -> float:
+def _wall_frame_root(n: int, alpha: float) -> float:
     """Return γ_n of sin γx from the boundary conditions of a free top."""
     if math.isinf(alpha):
         return (n - 0.5) * math.pi
@@ -146,7 +148,7 @@ def _root(n: int, alpha: float) -> float:
     return float(brentq(frequency, max((n - 1) * math.pi, 1e-6), n * math.pi, xtol=1e-15, rtol=1e-14))
 
 
-def _shape(x: Array, g: float, alpha: float) -> Array:
+def _wall_frame_shape(x: Array, g: float, alpha: float) -> Array:
     """Return sin γx - η cos γx - (γ/β) sinh βx + η cosh βx, with the growing exponential measured from the top."""
     if math.isinf(alpha):
         return np.sin(g * x)

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import finite_vector, one_of, real_or_nan, within
+from rockflex._checks import checked_finite_vector, checked_magnitude, is_one_of, real_or_nan
 from rockflex._errors import InputError
-from rockflex._shown import counted, shown
+from rockflex._shown import number_with_noun, shown
 from rockflex._values import Value
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model, RockingModel, parse_model
-from rockflex.motion import GroundMotion, check_horizontal
+from rockflex.motion import GroundMotion, check_horizontal_component
 
 Output = Literal["history", "peaks"]
 
@@ -37,7 +37,7 @@ class RockingStructure(Protocol):
         ...
 
 
-def properties_of(structure: RockingStructure | RockingProperties) -> RockingProperties:
+def rocking_properties_of(structure: RockingStructure | RockingProperties) -> RockingProperties:
     """Return the properties of a structure, or the properties themselves if they are given.
 
     Raises
@@ -47,20 +47,20 @@ def properties_of(structure: RockingStructure | RockingProperties) -> RockingPro
     """
     if isinstance(structure, RockingProperties):
         return structure
-    if not is_structure(structure):
+    if not is_structure_or_properties(structure):
         raise InputError(
             "structure must be a structure such as a Frame or a TaperedTower, or RockingProperties, but "
-            f"{described(structure)} was given."
+            f"{type_description(structure)} was given."
         )
     return structure.rocking()
 
 
-def is_structure(given: object) -> bool:
+def is_structure_or_properties(given: object) -> bool:
     """Return whether `given` is a structure or its properties; a class is not."""
     return isinstance(given, RockingProperties) or (hasattr(given, "rocking") and not isinstance(given, type))
 
 
-def described(given: Any) -> str:
+def type_description(given: Any) -> str:
     """Describe the type of an object, for a message."""
     return f"the class {given.__name__}" if isinstance(given, type) else type(given).__name__
 
@@ -85,7 +85,7 @@ def free_vibration_time(value: float | Literal["settle"]) -> float | None:
     return seconds
 
 
-def work_limit_of(value: float | Literal["none"] | None) -> float | None:
+def checked_work_limit(value: float | Literal["none"] | None) -> float | None:
     """Return the seconds of computing that one run may take; None means no limit, which files call "none".
 
     Raises
@@ -105,7 +105,7 @@ def work_limit_of(value: float | Literal["none"] | None) -> float | None:
     return seconds if math.isfinite(seconds) else None
 
 
-def check_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None, ground: GroundChoice = None) -> None:
+def check_run_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None, ground: GroundChoice = None) -> None:
     """Raise an InputError unless `bouc_wen` is a BoucWen, `impact` an impact law and `ground` a ground, or None."""
     if not isinstance(bouc_wen, BoucWen | None):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InputError(
@@ -114,19 +114,20 @@ def check_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None, ground: Gr
         )
     if impact is not None and (isinstance(impact, type) or not isinstance(impact, ImpactLaw)):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InputError(
-            f"impact must be an impact law, but {described(impact)} was given. Give VVELSimplified(), VVELComplete(), "
+            f"impact must be an impact law, but {type_description(impact)} was given. Give VVELSimplified(), "
+            "VVELComplete(), "
             "Restitution(e), or an object with `keeps`, `loses` and `after(properties, modal_velocity, "
             "rotation_velocity)`."
         )
     if ground is not None and (isinstance(ground, type) or not (isinstance(ground, Ground) or callable(ground))):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InputError(
             f"ground must be a Ground, a function of RockingProperties that returns one, or None, but "
-            f"{described(ground)} was given. Write Ground(friction=0.4), for example.",
+            f"{type_description(ground)} was given. Write Ground(friction=0.4), for example.",
             field="ground",
         )
 
 
-def ground_under(properties: RockingProperties, ground: GroundChoice) -> Ground | None:
+def ground_under_structure(properties: RockingProperties, ground: GroundChoice) -> Ground | None:
     """Return the ground under a structure.
 
     Raises
@@ -139,7 +140,8 @@ def ground_under(properties: RockingProperties, ground: GroundChoice) -> Ground 
     found = ground(properties)
     if not isinstance(found, Ground):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InputError(
-            f"ground must return a Ground for the properties of a structure, but it returned {described(found)}.",
+            "ground must return a Ground for the properties of a structure, but it returned "
+            f"{type_description(found)}.",
             field="ground",
         )
     return found
@@ -147,36 +149,38 @@ def ground_under(properties: RockingProperties, ground: GroundChoice) -> Ground 
 
 def wants_history(output: str) -> bool:
     """Return whether a run keeps its history; raise an InputError if `output` is neither "history" nor "peaks"."""
-    if not one_of(output, get_args(Output)):
+    if not is_one_of(output, get_args(Output)):
         raise InputError(f'output must be "history" or "peaks", but {shown(output)} was given.')
     return output == "history"
 
 
-def check_motion(motion: GroundMotion) -> None:
+def check_motion_argument(motion: GroundMotion) -> None:
     """Raise an InputError unless `motion` is a horizontal ground motion."""
     if not isinstance(motion, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise InputError(f"motion must be a GroundMotion, but {described(motion)} was given. Read or build one first.")
-    check_horizontal(motion)
+        raise InputError(
+            f"motion must be a GroundMotion, but {type_description(motion)} was given. Read or build one first."
+        )
+    check_horizontal_component(motion)
 
 
-def sequence_of(name: str, given: Any, accepts: Callable[[Any], bool], wanted: str) -> list[Any]:
+def checked_sequence(name: str, given: Any, accepts: Callable[[Any], bool], wanted: str) -> list[Any]:
     """Return one object, or a sequence of objects, as a list that is not empty."""
     if accepts(given):
         return [given]
-    items = _items(given)
+    items = _sequence_items(given)
     if items is None:
-        raise InputError(f"{name} must be {wanted}, or a sequence of them, but {described(given)} was given.")
+        raise InputError(f"{name} must be {wanted}, or a sequence of them, but {type_description(given)} was given.")
     if not items:
         raise InputError(f"{name} is empty. Give at least one.")
     for place, item in enumerate(items):
         if not accepts(item):
-            raise InputError(f"{name}[{place}] is {described(item)}. Expected {wanted}.")
+            raise InputError(f"{name}[{place}] is {type_description(item)}. Expected {wanted}.")
     return items
 
 
-def positive_numbers(name: str, values: Sequence[float], unit: str) -> list[float]:
+def checked_positive_numbers(name: str, values: Sequence[float], unit: str) -> list[float]:
     """Return one or more positive numbers as a list."""
-    numbers = finite_vector(name, values, unit)
+    numbers = checked_finite_vector(name, values, unit)
     if numbers.min(initial=math.inf) <= 0.0 or numbers.size == 0:
         raise InputError(
             f"{name} must be one or more positive numbers{unit and f' in {unit}'}, but {shown(values)} was given."
@@ -184,9 +188,9 @@ def positive_numbers(name: str, values: Sequence[float], unit: str) -> list[floa
     return numbers.tolist()
 
 
-def factors_of(scales: float | Sequence[float], strongest: GroundMotion) -> list[float]:
+def checked_scale_factors(scales: float | Sequence[float], strongest: GroundMotion) -> list[float]:
     """Return one or more factors as a list; they must be finite, and so must the strongest motion times each."""
-    given = [scales] if isinstance(scales, Real) else _items(scales)
+    given = [scales] if isinstance(scales, Real) else _sequence_items(scales)
     factors = [real_or_nan(factor) for factor in given or ()]
     if not factors or not all(map(math.isfinite, factors)):
         raise InputError(f"scales must be one or more finite factors, but {shown(scales)} was given.")
@@ -199,7 +203,7 @@ def factors_of(scales: float | Sequence[float], strongest: GroundMotion) -> list
     return factors
 
 
-def _items(given: Any) -> list[Any] | None:
+def _sequence_items(given: Any) -> list[Any] | None:
     """Return the items of a sequence; None if `given` is not a sequence."""
     if isinstance(given, str | bytes):
         return None
@@ -222,7 +226,7 @@ Motions: TypeAlias = GroundMotion | Iterable[GroundMotion] | Mapping[str, Ground
 Models: TypeAlias = str | Model | Iterable[str | Model]
 
 
-def structures_of(given: Structures) -> tuple[list[RockingStructure | RockingProperties], list[str] | None]:
+def checked_structures(given: Structures) -> tuple[list[RockingStructure | RockingProperties], list[str] | None]:
     """Return the structures, and their names if they are given by name.
 
     Raises
@@ -231,10 +235,12 @@ def structures_of(given: Structures) -> tuple[list[RockingStructure | RockingPro
         If there is none, an item is not a structure, or a name is not text.
     """
     names, several = _named_entries("structures", given)
-    return sequence_of("structures", several, is_structure, "a structure such as a Frame, or RockingProperties"), names
+    return checked_sequence(
+        "structures", several, is_structure_or_properties, "a structure such as a Frame, or RockingProperties"
+    ), names
 
 
-def motions_of(given: Motions) -> list[GroundMotion]:
+def checked_motions(given: Motions) -> list[GroundMotion]:
     """Return the motions; a name in the mapping replaces the name of the motion.
 
     Raises
@@ -243,13 +249,13 @@ def motions_of(given: Motions) -> list[GroundMotion]:
         If there is none, an item is not a motion, or a name is not text.
     """
     names, several = _named_entries("motions", given)
-    motions = sequence_of("motions", several, lambda each: isinstance(each, GroundMotion), "a GroundMotion")
+    motions = checked_sequence("motions", several, lambda each: isinstance(each, GroundMotion), "a GroundMotion")
     if names is None:
         return motions
     return [replace(motion, name=name) for name, motion in zip(names, motions, strict=True)]
 
 
-def models_of(given: Models) -> list[Model]:
+def checked_models(given: Models) -> list[Model]:
     """Return the models of labels.
 
     Raises
@@ -258,7 +264,7 @@ def models_of(given: Models) -> list[Model]:
         If there is none, a label is unknown, or something is neither a label nor a `Model`.
     """
     wanted = 'a label such as "2DOF-S", or a Model'
-    labels = sequence_of("models", given, lambda each: isinstance(each, str | Model), wanted)
+    labels = checked_sequence("models", given, lambda each: isinstance(each, str | Model), wanted)
     return [parse_model(each) for each in labels]
 
 
@@ -283,7 +289,7 @@ _EXAMPLES = (
 )
 
 
-def expand_scales(given: Any) -> Any:
+def expand_scale_range(given: Any) -> Any:
     """Return the factors of a mapping with `smallest`, `largest` and `step` or `count`; anything else unchanged.
 
     Both ends are included, the largest one if a whole number of steps leads there.
@@ -299,15 +305,19 @@ def expand_scales(given: Any) -> Any:
     spacing = values.pop("spacing", "linear")
     keys = set(values)
     logarithmic = spacing == "logarithmic"
-    known = one_of(spacing, ("linear", "logarithmic")) and not (logarithmic and "step" in keys)
+    known = is_one_of(spacing, ("linear", "logarithmic")) and not (logarithmic and "step" in keys)
     smallest, largest = real_or_nan(values.get("smallest")), real_or_nan(values.get("largest"))
     if known and keys == {"smallest", "largest", "step"}:
-        return stepped_scales(smallest, largest, real_or_nan(values["step"]))
+        return stepped_scale_factors(smallest, largest, real_or_nan(values["step"]))
     if known and keys == {"smallest", "largest", "count"} and type(values["count"]) is int:
         count = values["count"]
-        if _rises(smallest, largest) and 2 <= count <= MAX_FACTORS and not (logarithmic and smallest <= 0.0):
+        if (
+            _is_rising_scale_range(smallest, largest)
+            and 2 <= count <= MAX_FACTORS
+            and not (logarithmic and smallest <= 0.0)
+        ):
             spaced = np.geomspace if logarithmic else np.linspace
-            return [_tidy(factor) for factor in spaced(smallest, largest, count)]
+            return [_tidy_scale_factor(factor) for factor in spaced(smallest, largest, count)]
     raise InputError(
         f"scales must be a list, or a range such as {_EXAMPLES}, of at most {MAX_FACTORS} factors, but "
         f"{shown(given)} was given.",
@@ -315,7 +325,7 @@ def expand_scales(given: Any) -> Any:
     )
 
 
-def parse_scales(text: str) -> list[float]:
+def parse_scale_range(text: str) -> list[float]:
     """Return the factors of a text: a number, or a range such as ``0.5:3.0:0.25`` of smallest, largest and step.
 
     Raises
@@ -323,16 +333,16 @@ def parse_scales(text: str) -> list[float]:
     InputError
         If the text is neither.
     """
-    numbers = [_number(part) for part in text.split(":")]
+    numbers = [_number_in_text(part) for part in text.split(":")]
     if None in numbers or len(numbers) not in (1, 3):
         raise InputError(
             f"scales must be numbers, or ranges such as 0.5:3.0:0.25, but {shown(text)} was given.", field="scales"
         )
     found = [number for number in numbers if number is not None]
-    return found if len(found) == 1 else stepped_scales(*found)
+    return found if len(found) == 1 else stepped_scale_factors(*found)
 
 
-def stepped_scales(smallest: float, largest: float, step: float) -> list[float]:
+def stepped_scale_factors(smallest: float, largest: float, step: float) -> list[float]:
     """Return the factors from the smallest in steps up to the largest.
 
     Raises
@@ -340,10 +350,10 @@ def stepped_scales(smallest: float, largest: float, step: float) -> list[float]:
     InputError
         If they do not rise, or are too many.
     """
-    if _rises(smallest, largest) and 0.0 < step < math.inf:
+    if _is_rising_scale_range(smallest, largest) and 0.0 < step < math.inf:
         steps = (largest - smallest) / step + ROUNDING
         if 1.0 <= steps < MAX_FACTORS:
-            return [_tidy(smallest + place * step) for place in range(int(steps) + 1)]
+            return [_tidy_scale_factor(smallest + place * step) for place in range(int(steps) + 1)]
     raise InputError(
         f"scales must rise in 1 to {MAX_FACTORS - 1} steps, but a range from {smallest:g} to {largest:g} in steps of "
         f"{step:g} was given.",
@@ -351,18 +361,18 @@ def stepped_scales(smallest: float, largest: float, step: float) -> list[float]:
     )
 
 
-def _rises(smallest: float, largest: float) -> bool:
+def _is_rising_scale_range(smallest: float, largest: float) -> bool:
     return -math.inf < smallest < largest < math.inf
 
 
-def _number(text: str) -> float | None:
+def _number_in_text(text: str) -> float | None:
     try:
         return float(text)
     except ValueError:
         return None
 
 
-def _tidy(factor: float) -> float:
+def _tidy_scale_factor(factor: float) -> float:
     """The factor without the rounding of its sum, such as 0.3 in place of 0.30000000000000004."""
     return float(f"{factor:.12g}")
 
@@ -415,10 +425,10 @@ class InitialState(Value):
         rotation_velocity: float = 0.0,
     ) -> None:
         vars(self).update(
-            rotation=within("rotation", rotation, 0.5 * math.pi, "rad"),
-            modal_displacement=_modal("modal_displacement", modal_displacement, "m"),
-            modal_velocity=_modal("modal_velocity", modal_velocity, "m/s"),
-            rotation_velocity=within("rotation_velocity", rotation_velocity, MAX_STATE, "rad/s"),
+            rotation=checked_magnitude("rotation", rotation, 0.5 * math.pi, "rad"),
+            modal_displacement=_checked_modal_values("modal_displacement", modal_displacement, "m"),
+            modal_velocity=_checked_modal_values("modal_velocity", modal_velocity, "m/s"),
+            rotation_velocity=checked_magnitude("rotation_velocity", rotation_velocity, MAX_STATE, "rad/s"),
         )
 
     def state(self, model: RockingModel) -> Array:
@@ -439,7 +449,8 @@ class InitialState(Value):
                 continue
             if values.size > n:
                 raise InputError(
-                    f"{name} has {counted(values.size, 'value')}, but {model.label} has {counted(n, 'mode')}. Give at "
+                    f"{name} has {number_with_noun(values.size, 'value')}, but {model.label} has "
+                    f"{number_with_noun(n, 'mode')}. Give at "
                     f"most {n}."
                 )
             state[first : first + values.size] = values
@@ -452,10 +463,10 @@ class InitialState(Value):
         return state
 
 
-def _modal(name: str, values: ArrayLike | None, unit: str) -> Array | None:
+def _checked_modal_values(name: str, values: ArrayLike | None, unit: str) -> Array | None:
     if values is None:
         return None
-    vector = finite_vector(name, values, unit)
+    vector = checked_finite_vector(name, values, unit)
     for place, value in enumerate(vector.tolist()):
-        within(f"{name}[{place}]", value, MAX_STATE, unit)
+        checked_magnitude(f"{name}[{place}]", value, MAX_STATE, unit)
     return vector

@@ -9,12 +9,12 @@ from typing import Any
 from distributed import WorkerPlugin, get_worker
 
 from rockflex._errors import InputError
-from rockflex._versions import versions_of
+from rockflex._versions import package_versions
 
 PACKAGES = ("rockflex", "numpy", "scipy", "pyarrow", "distributed")  # the numbers or the transport need them
 
 
-class PlanPlugin(WorkerPlugin):
+class DaskPlanPlugin(WorkerPlugin):
     """A pickled plan, which Dask sends to every worker, including those that join later.
 
     If every chunk depended on the plan as a task, all chunks would go to the worker that holds it; and scattered data
@@ -41,15 +41,16 @@ class PlanPlugin(WorkerPlugin):
                     self.plan = pickle.loads(self.content)
                 except Exception as error:  # unpickling runs the modules' own code
                     raise InputError(
-                        f"The worker {_here()} cannot load the plan ({type(error).__name__}: {error}). Start the "
+                        f"The worker {_dask_worker_address()} cannot load the plan ({type(error).__name__}: {error}). "
+                        "Start the "
                         "workers in the same environment, from which its modules can be imported."
                     ) from error
             return self.plan
 
 
-def compute(name: str, numbers: tuple[int, ...], versions: dict[str, str]) -> tuple[list[Any], float]:
+def compute_chunks_on_worker(name: str, numbers: tuple[int, ...], versions: dict[str, str]) -> tuple[list[Any], float]:
     """Return the chunks of the plan stored under `name`, and the seconds they took, if the versions here are right."""
-    refuse_other_versions(_here(), installed_versions(), versions)
+    refuse_other_worker_versions(_dask_worker_address(), worker_package_versions(), versions)
     plugin: Any = get_worker().plugins[name]
     plan, start = plugin.load(), perf_counter()
     results: list[Any] = []
@@ -57,18 +58,18 @@ def compute(name: str, numbers: tuple[int, ...], versions: dict[str, str]) -> tu
         try:
             results.append(plan.chunk(number))
         except Exception as error:
-            error.add_note(f"This was raised by chunk {number} on a worker of the cluster, {_here()}.")
+            error.add_note(f"This was raised by chunk {number} on a worker of the cluster, {_dask_worker_address()}.")
             raise
     return results, perf_counter() - start
 
 
 @cache
-def installed_versions() -> dict[str, str]:
+def worker_package_versions() -> dict[str, str]:
     """Return the version of Python and of each package that matters; "none" for one that is not installed."""
-    return versions_of(PACKAGES)
+    return package_versions(PACKAGES)
 
 
-def refuse_other_versions(worker: str, there: dict[str, str], here: dict[str, str]) -> None:
+def refuse_other_worker_versions(worker: str, there: dict[str, str], here: dict[str, str]) -> None:
     """Raise an `InputError` that names every package whose version differs between a worker and the client."""
     wrong = [f"{name} {there.get(name, 'none')} and not {here[name]}" for name in here if there.get(name) != here[name]]
     if wrong:
@@ -77,5 +78,5 @@ def refuse_other_versions(worker: str, there: dict[str, str], here: dict[str, st
         )
 
 
-def _here() -> str:
+def _dask_worker_address() -> str:
     return get_worker().address

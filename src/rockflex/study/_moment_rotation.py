@@ -7,12 +7,18 @@ from typing import overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockflex._checks import finite_vector
+from rockflex._checks import checked_finite_vector
 from rockflex._errors import InputError
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import Model
 from rockflex.response import MomentRotation, MomentRotationOnSprings, static_path
-from rockflex.study._arguments import GroundChoice, RockingStructure, check_options, ground_under, properties_of
+from rockflex.study._arguments import (
+    GroundChoice,
+    RockingStructure,
+    check_run_options,
+    ground_under_structure,
+    rocking_properties_of,
+)
 
 QUARTER_TURN = 0.5 * math.pi
 
@@ -102,7 +108,7 @@ def moment_rotation(
     >>> print((push.uplift_moments / 1e3).round(1), push.contact_length[-1].round(3))
     [294.] 1.085
     """
-    path = finite_vector("rotations", rotations, "rad")
+    path = checked_finite_vector("rotations", rotations, "rad")
     if path.size == 0:
         raise InputError("rotations is empty. Give at least one rotation of the base in rad.", field="rotations")
     beyond = np.flatnonzero(np.abs(path) > QUARTER_TURN * (1.0 + 1e-9))  # a run that overturns ends at π/2
@@ -112,9 +118,9 @@ def moment_rotation(
             f"rotations[{beyond[0]}] = {path[beyond[0]]:g} rad was given. Check the units: one degree is 0.01745 rad.",
             field="rotations",
         )
-    properties = properties_of(structure)
-    check_options(None, None, ground)
-    under = ground_under(properties, ground)
+    properties = rocking_properties_of(structure)
+    check_run_options(None, None, ground)
+    under = ground_under_structure(properties, ground)
     if under is None:
         return static_path(properties, path)
     if under.springs is None:

@@ -5,12 +5,12 @@ from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from typing import TYPE_CHECKING, ClassVar, SupportsIndex, TypeVar
 
-from rockflex._checks import whole_number
-from rockflex.motion import Suite, check_horizontal
-from rockflex.study._run_matrix import StudyMatrix, checksums
-from rockflex.study._tables import ArrowTable, Columns, Row, tabulate, to_frame
+from rockflex._checks import checked_whole_number
+from rockflex.motion import Suite, check_horizontal_component
+from rockflex.study._result_tables import ArrowTable, Columns, Row, table_of_rows, tables_to_dataframe
+from rockflex.study._run_matrix import StudyMatrix, record_checksums
 from rockflex.study.parallel import map_runs
-from rockflex.study.progress import ProgressChoice, reporting
+from rockflex.study.progress import ProgressChoice, reporting_progress
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,13 +29,13 @@ class ChunkedPlan(ABC):
     """Whether `n_runs` is the number of runs, and not only an upper bound."""
 
     units: ClassVar[str] = "runs"
-    """What the units are, in the plural."""
+    """The name of the units, in the plural."""
 
     def __init__(self, motions: Suite, n_units: int, per_chunk: int) -> None:
-        check_horizontal(*motions)
+        check_horizontal_component(*motions)
         self.motions = motions
         self.n_units = n_units
-        self.per_chunk = whole_number("the size of a chunk", per_chunk, 1)
+        self.per_chunk = checked_whole_number("the size of a chunk", per_chunk, 1)
 
     @property
     @abstractmethod
@@ -88,7 +88,7 @@ class ChunkedPlan(ABC):
     @property
     def checksums(self) -> dict[str, str]:
         """SHA-256 of each record's step and samples, by its name."""
-        return checksums(self.motions)
+        return record_checksums(self.motions)
 
     def chunk(self, number: SupportsIndex) -> ArrowTable:
         """Compute a chunk. The table is the same to the last bit, whenever and wherever it is computed.
@@ -98,8 +98,8 @@ class ChunkedPlan(ABC):
         InputError
             If there is no such chunk. A run that cannot be solved is a row with a message in `error`.
         """
-        units = self.units_of(whole_number("number", number, 0, self.n_chunks - 1))
-        return tabulate(self.rows(units), self.columns)
+        units = self.units_of(checked_whole_number("number", number, 0, self.n_chunks - 1))
+        return table_of_rows(self.rows(units), self.columns)
 
 
 def run_plan(
@@ -122,18 +122,18 @@ def run_plan(
         The rows of all chunks; see the study for its columns.
     """
     tables: list[ArrowTable] = []
-    with reporting(progress, plan.n_units, plan.units) as advance:
+    with reporting_progress(progress, plan.n_units, plan.units) as advance:
         plan.check_work()
         for numbers in plan.rounds:
             if tables:
-                plan = plan.next_round(to_frame(*tables))
+                plan = plan.next_round(tables_to_dataframe(*tables))
             found = dict[int, ArrowTable]()
             with closing(map_chunks(plan.chunk, numbers, workers)) as coming:
                 for number, table in coming:
                     found[number] = table
                     advance(len(plan.units_of(number)))
             tables += [found[number] for number in numbers]
-    return to_frame(*tables)
+    return tables_to_dataframe(*tables)
 
 
 def map_chunks(

@@ -15,9 +15,9 @@ from pydantic import model_validator
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._schema import PLAIN, Key
+from rockflex._schema import PLAIN, SchemaKey
 from rockflex._shown import shown
-from rockflex.structure.file import Table, checked
+from rockflex.structure.file import TomlTable, parse_toml_table
 
 FUNCTIONS: dict[str, Callable[..., float]] = {
     "min": lambda *values: min(values),
@@ -42,7 +42,7 @@ def is_formula(given: object) -> bool:
     return isinstance(given, str) and given.startswith("=")
 
 
-def names_of(formula: str) -> set[str]:
+def names_in_formula(formula: str) -> set[str]:
     """Return the names that a formula needs.
 
     Raises
@@ -50,12 +50,14 @@ def names_of(formula: str) -> set[str]:
     InputError
         If it is not a formula.
     """
-    called = {id(node.func) for node in ast.walk(_parsed(formula)) if isinstance(node, ast.Call)}
-    found = (node for node in ast.walk(_parsed(formula)) if isinstance(node, ast.Name) and id(node) not in called)
+    called = {id(node.func) for node in ast.walk(_parsed_formula(formula)) if isinstance(node, ast.Call)}
+    found = (
+        node for node in ast.walk(_parsed_formula(formula)) if isinstance(node, ast.Name) and id(node) not in called
+    )
     return {node.id for node in found}
 
 
-def value_of(formula: str, values: Mapping[str, float]) -> float:
+def formula_value(formula: str, values: Mapping[str, float]) -> float:
     """Return the value of a formula, whose names are all in `values`; whole numbers stay whole.
 
     Raises
@@ -64,23 +66,23 @@ def value_of(formula: str, values: Mapping[str, float]) -> float:
         If it is not a formula, or has no value: a division by zero, for instance.
     """
     try:
-        value = _value(_parsed(formula), values)
+        value = _formula_node_value(_parsed_formula(formula), values)
         if isinstance(value, complex):
             raise ValueError("a power of a negative number")
     except (ArithmeticError, ValueError, TypeError) as error:
-        used = ", ".join(f"{name} = {values[name]:g}" for name in sorted(names_of(formula)))
+        used = ", ".join(f"{name} = {values[name]:g}" for name in sorted(names_in_formula(formula)))
         raise InputError(f"The formula {shown(formula)} has no value{used and f' for {used}'}: {error}.") from error
     return value
 
 
 @lru_cache(maxsize=1024)
-def _parsed(formula: str) -> ast.expr:
+def _parsed_formula(formula: str) -> ast.expr:
     text = formula.removeprefix("=").strip()
     try:
         if len(text) > MAX_CHARACTERS:
             raise SyntaxError
         found = ast.parse(text, mode="eval").body
-        if not _is_sound(found):
+        if not _is_allowed_formula_node(found):
             raise SyntaxError
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise InputError(
@@ -90,50 +92,55 @@ def _parsed(formula: str) -> ast.expr:
     return found
 
 
-def _is_sound(node: ast.expr) -> bool:
+def _is_allowed_formula_node(node: ast.expr) -> bool:
     if isinstance(node, ast.Constant):
         return isinstance(node.value, int | float) and not isinstance(node.value, bool)
     if isinstance(node, ast.UnaryOp):
-        return type(node.op) in _SIGNS and _is_sound(node.operand)
+        return type(node.op) in _SIGNS and _is_allowed_formula_node(node.operand)
     if isinstance(node, ast.BinOp):
-        return type(node.op) in _OPERATORS and _is_sound(node.left) and _is_sound(node.right)
+        return (
+            type(node.op) in _OPERATORS and _is_allowed_formula_node(node.left) and _is_allowed_formula_node(node.right)
+        )
     if isinstance(node, ast.Call):
         known = isinstance(node.func, ast.Name) and node.func.id in FUNCTIONS
-        return known and not node.keywords and bool(node.args) and all(map(_is_sound, node.args))
+        return known and not node.keywords and bool(node.args) and all(map(_is_allowed_formula_node, node.args))
     return isinstance(node, ast.Name)
 
 
-def _value(node: ast.expr, values: Mapping[str, float]) -> Any:
+def _formula_node_value(node: ast.expr, values: Mapping[str, float]) -> Any:
     if isinstance(node, ast.Constant):
         return node.value
     if isinstance(node, ast.UnaryOp):
-        return _SIGNS[type(node.op)](_value(node.operand, values))
+        return _SIGNS[type(node.op)](_formula_node_value(node.operand, values))
     if isinstance(node, ast.BinOp):
-        return _OPERATORS[type(node.op)](_value(node.left, values), _value(node.right, values))
+        return _OPERATORS[type(node.op)](
+            _formula_node_value(node.left, values), _formula_node_value(node.right, values)
+        )
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
-        return FUNCTIONS[node.func.id](*(_value(each, values) for each in node.args))
+        return FUNCTIONS[node.func.id](*(_formula_node_value(each, values) for each in node.args))
     return values[node.id if isinstance(node, ast.Name) else ""]
 
 
 _BITS = 52  # of a draw, which is the middle of one of 2**52 parts of (0, 1)
 
 
-class DistributionTable(Table):
+class DistributionTable(TomlTable):
     """The distribution of a variable: one of these keys."""
 
-    uniform: Annotated[list[float] | None, Key("a list of the smallest and the largest value", form=PLAIN)] = None
+    uniform: Annotated[list[float] | None, SchemaKey("a list of the smallest and the largest value", form=PLAIN)] = None
     log_uniform: Annotated[
         list[float] | None,
-        Key("a list of the smallest and the largest value, for a logarithm that is uniform", form=PLAIN),
+        SchemaKey("a list of the smallest and the largest value, for a logarithm that is uniform", form=PLAIN),
     ] = None
     whole: Annotated[
-        list[int] | None, Key("a list of the smallest and the largest of equally likely whole numbers", form=PLAIN)
+        list[int] | None,
+        SchemaKey("a list of the smallest and the largest of equally likely whole numbers", form=PLAIN),
     ] = None
-    normal: Annotated[list[float] | None, Key("a list of the mean and the standard deviation", form=PLAIN)] = None
+    normal: Annotated[list[float] | None, SchemaKey("a list of the mean and the standard deviation", form=PLAIN)] = None
     lognormal: Annotated[
-        list[float] | None, Key("a list of the median and the standard deviation of the logarithm", form=PLAIN)
+        list[float] | None, SchemaKey("a list of the median and the standard deviation of the logarithm", form=PLAIN)
     ] = None
-    one_of: Annotated[list[int | float] | None, Key("a list of equally likely values", form=PLAIN)] = None
+    one_of: Annotated[list[int | float] | None, SchemaKey("a list of equally likely values", form=PLAIN)] = None
 
     @model_validator(mode="after")
     def _one(self) -> "DistributionTable":
@@ -180,7 +187,7 @@ class DistributionTable(Table):
         return median * math.exp(spread * normal)
 
 
-class Variables:
+class RandomVariables:
     """Random variables by name: distributions, formulas of other variables, and numbers.
 
     The draw of a variable depends only on the seed, the number of the structure, and its own name. So another variable,
@@ -193,10 +200,10 @@ class Variables:
     """
 
     def __init__(self, given: Mapping[str, Any], reserved: Mapping[str, str]) -> None:
-        self.kinds = {name: _variable(name, value, reserved) for name, value in given.items()}
-        graph = {name: names_of(kind) for name, kind in self.kinds.items() if isinstance(kind, str)}
+        self.kinds = {name: _checked_random_variable(name, value, reserved) for name, value in given.items()}
+        graph = {name: names_in_formula(kind) for name, kind in self.kinds.items() if isinstance(kind, str)}
         for name, needed in graph.items():
-            check_known(f"[variables] {name}", needed, self.kinds)
+            check_formula_names_known(f"[variables] {name}", needed, self.kinds)
         try:
             order = [*TopologicalSorter(graph).static_order()]
         except CycleError as error:
@@ -215,28 +222,28 @@ class Variables:
         found: dict[str, float] = {}
         for name, kind in self.kinds.items():
             if isinstance(kind, DistributionTable):
-                found[name] = kind.value(float(draws(seed, number, name)[0]))
+                found[name] = kind.value(float(uniform_draws(seed, number, name)[0]))
             elif not isinstance(kind, str):
                 found[name] = kind
         for name in self._formulas:
-            found[name] = value_of(str(self.kinds[name]), found)
+            found[name] = formula_value(str(self.kinds[name]), found)
         return {name: found[name] for name in self.kinds}
 
 
-def draws(seed: int, number: int, name: str, size: int = 1) -> Array:
+def uniform_draws(seed: int, number: int, name: str, size: int = 1) -> Array:
     """Return uniform draws between 0 and 1 that belong to a seed, a number and a name, shape (size,)."""
     words = np.frombuffer(hashlib.sha256(name.encode()).digest()[:16], "<u4").tolist()
     bits = np.random.Philox(np.random.SeedSequence(seed, spawn_key=(number, *words)))
     return (np.random.Generator(bits).integers(2**_BITS, size=size) + 0.5) / 2**_BITS
 
 
-def check_known(place: str, needed: set[str], known: Mapping[str, object]) -> None:
+def check_formula_names_known(place: str, needed: set[str], known: Mapping[str, object]) -> None:
     """Raise an InputError if a formula needs a name that is not known."""
     for name in sorted(needed - known.keys()):
         raise InputError(f"{place}: {name} is not known; there are {', '.join(known) or 'no variables'}.")
 
 
-def _variable(name: str, given: Any, reserved: Mapping[str, str]) -> DistributionTable | str | float:
+def _checked_random_variable(name: str, given: Any, reserved: Mapping[str, str]) -> DistributionTable | str | float:
     if not name.isidentifier():
         raise InputError(
             f"[variables] {shown(name)} is not a name. Expected letters, digits and _, such as fuse_ratio."
@@ -245,7 +252,7 @@ def _variable(name: str, given: Any, reserved: Mapping[str, str]) -> Distributio
         what = reserved.get(name, "a function")
         raise InputError(f"[variables] {name} is already {what}. Give the variable another name.")
     if is_formula(given):
-        names_of(given)
+        names_in_formula(given)
         return given
     if isinstance(given, int | float) and not isinstance(given, bool):
         return given
@@ -254,4 +261,4 @@ def _variable(name: str, given: Any, reserved: Mapping[str, str]) -> Distributio
             f"[variables] {name} must be a distribution such as {{ uniform = [0.1, 0.5] }}, a formula such as "
             f'"= 2 * height", or a number, but {shown(given)} was given.'
         )
-    return checked(DistributionTable, {str(key): value for key, value in given.items()}, f"[variables.{name}]")  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]
+    return parse_toml_table(DistributionTable, {str(key): value for key, value in given.items()}, f"[variables.{name}]")  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]

@@ -9,13 +9,13 @@ from typing import Any, Literal, Self, cast
 
 import numpy as np
 
-from rockflex._checks import instance, real_or_nan
+from rockflex._checks import checked_instance, real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
-from rockflex._shown import few, shown
+from rockflex._shown import few_texts_shown, shown
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
-from rockflex.motion import MEASURES, GroundMotion, Shaking, Suite, intensities, recording_names
+from rockflex.motion import MEASURES, GroundMotion, MeasureInput, Suite, recording_names, scalable_measures
 from rockflex.response import Response
 from rockflex.solve import Task, WorkLimitError
 from rockflex.study._arguments import (
@@ -25,13 +25,13 @@ from rockflex.study._arguments import (
     Motions,
     RockingStructure,
     Structures,
-    models_of,
-    motions_of,
-    properties_of,
-    structures_of,
+    checked_models,
+    checked_motions,
+    checked_structures,
+    rocking_properties_of,
 )
-from rockflex.study._case import Case, RunOptions, Scaled, peaks_of
-from rockflex.study._tables import Columns, Row, kinds_of, result_columns
+from rockflex.study._prepared_case import PreparedCase, RunOptions, Scaled, peaks_of_runs
+from rockflex.study._result_tables import Columns, Row, columns_of_kind, result_columns
 
 Demands = Mapping[str, Callable[[Response], float]]
 
@@ -62,12 +62,13 @@ def checked_demands(demands: Demands | None, taken: Collection[str]) -> Demands:
     known = [name for name in demands if name in taken]
     if known:
         raise InputError(
-            f"demands: the table has a column {few(known)} already. Give the demand another name.", field="demands"
+            f"demands: the table has a column {few_texts_shown(known)} already. Give the demand another name.",
+            field="demands",
         )
     return dict(demands)
 
 
-def derived(response: Response, demands: Demands, *, friction: bool) -> Row:
+def friction_and_demand_columns(response: Response, demands: Demands, *, friction: bool) -> Row:
     """Return the friction that a response with its history requires, if asked for, and the value of each demand.
 
     A friction that cannot be found is a message in `error`.
@@ -77,24 +78,24 @@ def derived(response: Response, demands: Demands, *, friction: bool) -> Row:
     InputError
         If a function returns anything but a real number; NaN is one.
     """
-    found: Row = {name: _value(name, demand, response) for name, demand in demands.items()}
-    return found | _friction(response) if friction else found
+    found: Row = {name: _demand_value(name, demand, response) for name, demand in demands.items()}
+    return found | _required_friction_column(response) if friction else found
 
 
-def _friction(response: Response) -> Row:
+def _required_friction_column(response: Response) -> Row:
     try:
         return {"required_friction": response.required_friction}
     except (SolverError, InputError) as error:
         return {"error": f"No required friction: {error}"}
 
 
-def _is_nan(found: object) -> bool:
+def _is_nan_demand(found: object) -> bool:
     """Return whether a function answered NaN, as a number of Python or NumPy or an array without dimensions."""
     array = np.asarray(found)
     return array.ndim == 0 and array.dtype.kind == "f"
 
 
-def _value(name: str, demand: Callable[[Response], float], response: Response) -> float:
+def _demand_value(name: str, demand: Callable[[Response], float], response: Response) -> float:
     what = f"{response.model} under {response.motion}"
     try:
         found = cast("object", demand(response))
@@ -102,7 +103,7 @@ def _value(name: str, demand: Callable[[Response], float], response: Response) -
         error.add_note(f"This was raised by the demand {shown(name)} of {what}.")
         raise
     value = real_or_nan(found)
-    if value != value and not _is_nan(found):
+    if value != value and not _is_nan_demand(found):
         raise InputError(
             f"The demand {shown(name)} must return one number, but for {what} it returned {shown(found)}. Reduce it, "
             "by abs(...).max() for instance.",
@@ -111,17 +112,17 @@ def _value(name: str, demand: Callable[[Response], float], response: Response) -
     return value
 
 
-def intensity_measures(properties: RockingProperties, motion: GroundMotion) -> dict[str, float]:
+def measures_for_structure(properties: RockingProperties, motion: GroundMotion) -> dict[str, float]:
     """Return the measures of a motion for a structure, by name; those of a mode are NaN for a rigid block."""
     omega, zeta = math.nan, math.nan
     if properties.n_modes:
         omega, zeta = float(properties.omega[0]), float(properties.zeta[0])
     rate = math.sqrt(properties.l0r * GRAVITY / properties.i_theta)
-    shaking = Shaking(motion, omega, zeta, properties.uplift_acceleration, rate)
-    return {measure.name: float(measure.of(shaking)) for measure in intensities()}
+    shaking = MeasureInput(motion, omega, zeta, properties.uplift_acceleration, rate)
+    return {measure.name: float(measure.of(shaking)) for measure in scalable_measures()}
 
 
-def scaled_measures(measures: dict[str, float], scale: float) -> dict[str, float]:
+def measures_of_scaled_motion(measures: dict[str, float], scale: float) -> dict[str, float]:
     """Return the measures of the motion multiplied by `scale`, which may be negative."""
     return {name: MEASURES[name].scaled(value, scale) for name, value in measures.items()}
 
@@ -180,7 +181,7 @@ class RunMatrix:
     ) -> None:
         self.structures, self.motions, self.models = list(structures), motions, models
         self.options, self.history, self.floors = options.among(models), history, floors
-        self._cases: dict[tuple[int, int], Case | InputError] = {}
+        self._cases: dict[tuple[int, int], PreparedCase | InputError] = {}
 
     def __getstate__(self) -> dict[str, Any]:
         return vars(self) | {"_cases": {}}
@@ -191,16 +192,16 @@ class RunMatrix:
         other.structures, other._cases = [structure], {}
         return other
 
-    def cases(self, structure: int) -> list[Case | InputError]:
+    def cases(self, structure: int) -> list[PreparedCase | InputError]:
         """Return the cases of a structure with all models, or the reasons why there are none."""
         return [self.case(structure, model) for model in range(len(self.models))]
 
-    def case(self, structure: int, model: int) -> Case | InputError:
+    def case(self, structure: int, model: int) -> PreparedCase | InputError:
         """Return the case of a structure and a model, which is built once, or the reason why there is none."""
         found = self._cases.get((structure, model))
         if found is None:
             try:
-                properties = properties_of(self.structures[structure])
+                properties = rocking_properties_of(self.structures[structure])
                 found = self.options.case(self.models[model], properties, history=self.history, floors=self.floors)
             except InputError as error:
                 found = error
@@ -248,7 +249,7 @@ class StudyMatrix(RunMatrix):
         super().__init__([*structures.values()], motions, options.models, options, history=options.history)
         self.names = list(structures)
         self.labels = [model.label for model in options.models]
-        check_different("models", self.labels)
+        check_different_values("models", self.labels)
         if options.bouc_wen is not None and options.free_vibration is None:
             raise InputError(
                 'free_vibration="settle" cannot tell when a hysteretic spring is at rest. Give the free vibration in '
@@ -277,7 +278,7 @@ class StudyMatrix(RunMatrix):
         found: dict[str, type | Sequence[str]] = {"structure": self.names}
         found |= record_columns(self.motions)
         found |= {"model": self.labels, "scale": float}
-        found |= dict.fromkeys((measure.name for measure in intensities()), float)
+        found |= dict.fromkeys((measure.name for measure in scalable_measures()), float)
         found |= result_columns(self.structures, with_ground=self.options.ground is not None) | {
             "nominal_limit": float,
             "zeta_1": float,
@@ -290,7 +291,7 @@ class StudyMatrix(RunMatrix):
         """Intensity measures of a record at the scale 1; computed once."""
         found = self._measures.get((structure, record))
         if found is None:
-            found = intensity_measures(self.structures[structure], self.motions[record])
+            found = measures_for_structure(self.structures[structure], self.motions[record])
             self._measures[structure, record] = found
         return found
 
@@ -304,38 +305,40 @@ class StudyMatrix(RunMatrix):
 
     def run_all(self, runs: Sequence[Run]) -> list[Row]:
         """Simulate runs and return their rows, as `run` does; those of a structure with a model together."""
-        return rows_of([(self, run) for run in runs])
+        return rows_of_matrix_runs([(self, run) for run in runs])
 
 
-def rows_of(runs: Sequence[tuple[StudyMatrix, Run]], *, keep: bool = True) -> list[Row]:
-    """Simulate runs of some matrices, as `peaks_of` does, and return their rows."""
-    peaks, rows = peaks_of([each for matrix, run in runs for each in matrix.scaled([run])], keep=keep), list[Row]()
+def rows_of_matrix_runs(runs: Sequence[tuple[StudyMatrix, Run]], *, keep: bool = True) -> list[Row]:
+    """Simulate runs of some matrices, as `peaks_of_runs` does, and return their rows."""
+    peaks, rows = peaks_of_runs([each for matrix, run in runs for each in matrix.scaled([run])], keep=keep), list[Row]()
     for place, ((matrix, (structure, record, model, scale)), found) in enumerate(zip(runs, peaks.rows(), strict=True)):
-        measures = scaled_measures(matrix.measures(structure, record), scale)
+        measures = measures_of_scaled_motion(matrix.measures(structure, record), scale)
         row = matrix.head(structure, record, model, scale) | measures | found
         case = matrix.case(structure, model)
-        if "error" not in found and isinstance(case, Case):
-            row |= limit_of(case.model.properties)
+        if "error" not in found and isinstance(case, PreparedCase):
+            row |= nominal_limit_columns(case.model.properties)
         if place in peaks.responses:
-            row |= derived(peaks.responses[place], matrix.options.demands, friction=matrix.options.friction)
+            row |= friction_and_demand_columns(
+                peaks.responses[place], matrix.options.demands, friction=matrix.options.friction
+            )
         rows.append(row)
     return rows
 
 
-def limit_of(properties: RockingProperties) -> Row:
+def nominal_limit_columns(properties: RockingProperties) -> Row:
     """Return the rotation of nominal overturning in rad and the damping ratio of the first mode, NaN without one."""
     damping = float(properties.zeta[0]) if properties.n_modes else math.nan
     return {"nominal_limit": properties.nominal_overturning_rotation, "zeta_1": damping}
 
 
-def check_different(name: str, values: Sequence[str]) -> None:
+def check_different_values(name: str, values: Sequence[str]) -> None:
     """Raise an InputError if a value occurs more than once."""
     repeated = [value for place, value in enumerate(values) if value in values[:place]]
     if repeated:
         raise InputError(f"{name}: {shown(repeated[0])} occurs more than once. Give each once.")
 
 
-def check_lifts(matrix: StudyMatrix, what: str) -> None:
+def check_base_can_lift(matrix: StudyMatrix, what: str) -> None:
     """Raise an InputError if the base of a model cannot lift; `what` it has, and why the study is not for it."""
     for model in matrix.options.models:
         if not model.lifts:
@@ -350,10 +353,10 @@ def record_groups(motions: Iterable[GroundMotion]) -> list[str]:
     """
     members = list(motions)
     alike = recording_names([each.name for each in members])
-    return [_known_recording(each) or name for each, name in zip(members, alike, strict=True)]
+    return [_known_recording_name(each) or name for each, name in zip(members, alike, strict=True)]
 
 
-def _known_recording(motion: GroundMotion) -> str | None:
+def _known_recording_name(motion: GroundMotion) -> str | None:
     info = motion.metadata
     if info is not None and info.rsn is not None:
         return f"RSN{info.rsn}"
@@ -362,12 +365,12 @@ def _known_recording(motion: GroundMotion) -> str | None:
     return None
 
 
-def checksums(motions: Iterable[GroundMotion]) -> dict[str, str]:
+def record_checksums(motions: Iterable[GroundMotion]) -> dict[str, str]:
     """SHA-256 of each record's step and samples (little-endian doubles, vertical ones last), by its name."""
-    return {motion.name: _checksum(motion) for motion in motions}
+    return {motion.name: _record_checksum(motion) for motion in motions}
 
 
-def _checksum(motion: GroundMotion) -> str:
+def _record_checksum(motion: GroundMotion) -> str:
     digest = hashlib.sha256(float(motion.dt).hex().encode())
     digest.update(motion.acceleration.astype("<f8").tobytes())
     if motion.vertical is not None:
@@ -396,7 +399,7 @@ def record_facts(motions: Suite) -> list[Row]:
 def record_columns(motions: Suite) -> Columns:
     """Return the columns that `record_facts` fills."""
     groups = list(dict.fromkeys(record_groups(motions)))
-    return {"motion": motions.names, "group": groups, **kinds_of("magnitude distance_km", float)}
+    return {"motion": motions.names, "group": groups, **columns_of_kind("magnitude distance_km", float)}
 
 
 def study_matrix(
@@ -420,13 +423,13 @@ def study_matrix(
         If a label is unknown, a sequence is empty or holds something else, two motions have the same name, or an
         option is out of range.
     """
-    instance("friction", friction, bool)
-    chosen = tuple(models_of(models))
+    checked_instance("friction", friction, bool)
+    chosen = tuple(checked_models(models))
     options = StudyOptions.of(free_vibration, impact=impact, bouc_wen=bouc_wen, ground=ground, work_limit=work_limit)
-    suite = motions if isinstance(motions, Suite) else Suite(motions_of(motions))
-    listed, names = structures_of(structures)
+    suite = motions if isinstance(motions, Suite) else Suite(checked_motions(motions))
+    listed, names = checked_structures(structures)
     names = names or [f"S{place}" for place in range(1, len(listed) + 1)]
-    named = {name: properties_of(each) for name, each in zip(names, listed, strict=True)}
+    named = {name: rocking_properties_of(each) for name, each in zip(names, listed, strict=True)}
     options = replace(options, models=chosen, friction=friction)
     matrix = StudyMatrix(named, suite, options)
     own = checked_demands(demands, matrix.columns)

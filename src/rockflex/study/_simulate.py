@@ -21,7 +21,7 @@ from rockflex.models import (
     VVELSimplified,
     parse_model,
 )
-from rockflex.motion import GroundMotion, check_horizontal
+from rockflex.motion import GroundMotion, check_horizontal_component
 from rockflex.response import STATUSES, Response
 from rockflex.solve import WorkLimitError
 from rockflex.study._arguments import (
@@ -33,20 +33,20 @@ from rockflex.study._arguments import (
     Output,
     RockingStructure,
     Structures,
-    check_motion,
-    factors_of,
-    ground_under,
-    models_of,
-    motions_of,
-    properties_of,
-    structures_of,
+    check_motion_argument,
+    checked_models,
+    checked_motions,
+    checked_scale_factors,
+    checked_structures,
+    ground_under_structure,
+    rocking_properties_of,
     wants_history,
 )
-from rockflex.study._case import Case, RunOptions, peaks_of
+from rockflex.study._prepared_case import PreparedCase, RunOptions, peaks_of_runs
+from rockflex.study._result_tables import RESULTS, ResultColumns
 from rockflex.study._run_matrix import RunMatrix
-from rockflex.study._tables import RESULTS, ResultColumns
-from rockflex.study.parallel import in_order, worker_count
-from rockflex.study.progress import ProgressChoice, reporting
+from rockflex.study.parallel import map_runs_in_order, worker_count
+from rockflex.study.progress import ProgressChoice, reporting_progress
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -56,11 +56,11 @@ MAX_CASES = 32  # cases kept
 MIN_WEIGHED_BYTES, MAX_TOTAL_BYTES = 8_000_000, 256_000_000  # of the tables of a case that are counted anew, and of all
 IMMUTABLE_LAWS = (VVELSimplified, VVELComplete, Restitution, SidedRestitution)  # impact laws that cannot change
 
-_cache: OrderedDict[Hashable, tuple[Case, RockingProperties, RunOptions]] = OrderedDict()
+_cache: OrderedDict[Hashable, tuple[PreparedCase, RockingProperties, RunOptions]] = OrderedDict()
 _lock = Lock()
 
 
-def run_cached(
+def simulate_with_cached_case(
     model: Model,
     properties: RockingProperties,
     options: RunOptions,
@@ -84,7 +84,7 @@ def run_cached(
     rest = (options.bouc_wen, options.free_vibration, options.work_limit, history, motion.dt)
     key = (id(properties), id(options.ground), id(options.initial), model, options.impact, *rest)
     keeps = options.impact is None or type(options.impact) in IMMUTABLE_LAWS
-    known = _cached(key) if keeps else None
+    known = _cached_case(key) if keeps else None
     case = known or options.case(model, properties, history=history, floors=history)
     response = case.run(motion)
     if keeps and (known is None or case.engine.size > MIN_WEIGHED_BYTES):
@@ -96,7 +96,7 @@ def run_cached(
     return response
 
 
-def _cached(key: Hashable) -> Case | None:
+def _cached_case(key: Hashable) -> PreparedCase | None:
     with _lock:
         found = _cache.get(key)
         if found is None:
@@ -184,10 +184,12 @@ def simulate(
     options = RunOptions.of(
         free_vibration, impact=impact, bouc_wen=bouc_wen, ground=ground, initial=initial, work_limit=work_limit
     )
-    properties = properties_of(structure)
-    choice, below = parse_model(model), ground_under(properties, ground)
-    check_motion(motion)
-    return run_cached(choice, properties, replace(options, ground=below, all_yield=True), motion, history=history)
+    properties = rocking_properties_of(structure)
+    choice, below = parse_model(model), ground_under_structure(properties, ground)
+    check_motion_argument(motion)
+    return simulate_with_cached_case(
+        choice, properties, replace(options, ground=below, all_yield=True), motion, history=history
+    )
 
 
 RUNS_PER_TASK = 16, 256  # at least, to hide a task's cost; at most, in the share of a thread
@@ -273,11 +275,11 @@ def simulate_many(
     options = RunOptions.of(
         free_vibration, impact=impact, bouc_wen=bouc_wen, ground=ground, initial=initial, work_limit=work_limit
     )
-    everything, names = structures_of(structures)
-    records = motions_of(motions)
-    check_horizontal(*records)
-    chosen = models_of(models)
-    factors = factors_of(scales, max(records, key=lambda motion: motion.pga))
+    everything, names = checked_structures(structures)
+    records = checked_motions(motions)
+    check_horizontal_component(*records)
+    chosen = checked_models(models)
+    factors = checked_scale_factors(scales, max(records, key=lambda motion: motion.pga))
     shape = (len(everything), len(records), len(chosen), len(factors))
     matrix = RunMatrix(everything, records, chosen, options, history=history, floors=history)
     runs_of_one = [(0, *run) for run in product(range(len(records)), range(len(chosen)), factors)]
@@ -301,7 +303,7 @@ def simulate_many(
 
     def work(task: list[Part]) -> tuple[ResultColumns, list[WorkLimitError]]:
         runs = [run for _, first, last, own in task for run in own.scaled(runs_of_one[first:last])]
-        peaks = peaks_of(runs, keep=each > per_task)  # other tasks may need the engines
+        peaks = peaks_of_runs(runs, keep=each > per_task)  # other tasks may need the engines
         places = [index * each + place for index, first, last, _ in task for place in range(first, last)]
         for place, response in peaks.responses.items():
             responses[places[place]] = response
@@ -309,8 +311,8 @@ def simulate_many(
         return ResultColumns(peaks, columns), refused
 
     columns = {"status": STATUSES, "error": str, **RESULTS}
-    with reporting(progress, len(everything) * each, "runs") as advance:
-        found = in_order(work, tasks(), workers, lambda made: advance(made[0].size))
+    with reporting_progress(progress, len(everything) * each, "runs") as advance:
+        found = map_runs_in_order(work, tasks(), workers, lambda made: advance(made[0].size))
     results = ResultColumns.joined([sheet for sheet, _ in found])
     refused = [error for _, errors in found for error in errors]
     if len(refused) == len(everything) * each:
@@ -321,17 +323,17 @@ def simulate_many(
     structure, motion, model, scale = (axis.ravel() for axis in np.indices(shape, dtype=np.int32))
     table = pd.DataFrame(
         {
-            "structure": structure if names is None else _category(structure, names),
-            "motion": _category(motion, [record.name for record in records]),
+            "structure": structure if names is None else _categorical_column(structure, names),
+            "motion": _categorical_column(motion, [record.name for record in records]),
             "scale": np.asarray(factors)[scale],
-            "model": _category(model, [each.label for each in chosen]),
+            "model": _categorical_column(model, [each.label for each in chosen]),
             **results,
         }
     )
     return table.assign(response=responses) if responses.size else table
 
 
-def _category(codes: NDArray[np.int32], names: list[str]) -> "pd.Categorical[Any]":
+def _categorical_column(codes: NDArray[np.int32], names: list[str]) -> "pd.Categorical[Any]":
     """Return a categorical column; names that occur twice share a category."""
     import pandas as pd
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, SupportsIndex
 
 import numpy as np
 
-from rockflex._checks import in_range
+from rockflex._checks import checked_in_range
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
@@ -22,17 +22,17 @@ from rockflex.study._arguments import (
     WORK_LIMIT,
     GroundChoice,
     RockingStructure,
-    check_motion,
-    check_options,
-    described,
-    ground_under,
-    positive_numbers,
-    properties_of,
+    check_motion_argument,
+    check_run_options,
+    checked_positive_numbers,
+    ground_under_structure,
+    rocking_properties_of,
+    type_description,
 )
-from rockflex.study._case import RunOptions
+from rockflex.study._prepared_case import RunOptions
 from rockflex.study._simulate import simulate_many
-from rockflex.study.parallel import in_order
-from rockflex.study.progress import ProgressChoice, reporting
+from rockflex.study.parallel import map_runs_in_order
+from rockflex.study.progress import ProgressChoice, reporting_progress
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -98,15 +98,18 @@ def rocking_spectrum(
     0     2.0  overturned              7.854
     1     4.0     rocking              0.272
     """
-    alphas, times = positive_numbers("slendernesses", slendernesses, "rad"), positive_numbers("periods", periods, "s")
+    alphas, times = (
+        checked_positive_numbers("slendernesses", slendernesses, "rad"),
+        checked_positive_numbers("periods", periods, "s"),
+    )
     chosen = parse_model(model)
     if chosen.n_modes != 0:
         raise InputError(f'Blocks have no modes, but the model {chosen.label} was given. Use "rigid" or "rigid-C".')
-    check_options(None, impact, ground)
+    check_run_options(None, impact, ground)
     radii = [0.75 * GRAVITY * (time / (2.0 * math.pi)) ** 2 for time in times]
     blocks = [rigid_block(alpha, radius) for alpha in alphas for radius in radii]
     squattest = blocks[int(np.argmax(alphas)) * len(radii)]
-    chosen.of(squattest, impact, ground=ground_under(squattest, ground))  # before any work
+    chosen.of(squattest, impact, ground=ground_under_structure(squattest, ground))  # before any work
     table = simulate_many(
         blocks,
         motion,
@@ -214,10 +217,12 @@ def overturning_scales(
     >>> round(found.lowest, 3), found.impacts
     (2.372, 1)
     """
-    tried = _scan("scales", scales)
-    width = in_range("tolerance", tolerance, 1e-12, 0.1)
-    check_motion(motion)
-    return _search(_runner(structure, model, impact, work_limit, ground), motion, tried, width)
+    tried = _checked_search_scales("scales", scales)
+    width = checked_in_range("tolerance", tolerance, 1e-12, 0.1)
+    check_motion_argument(motion)
+    return _search_overturning_scales(
+        _run_of_spectrum(structure, model, impact, work_limit, ground), motion, tried, width
+    )
 
 
 def overturning_spectrum(
@@ -281,25 +286,29 @@ def overturning_spectrum(
        frequency_ratio  lowest
     0              3.0   1.387
     """
-    ratios = positive_numbers("frequency_ratios", frequency_ratios, "")
-    tried = _scan("relative_amplitudes", relative_amplitudes)
-    width = in_range("tolerance", tolerance, 1e-12, 0.1)
-    properties = properties_of(structure)
+    ratios = checked_positive_numbers("frequency_ratios", frequency_ratios, "")
+    tried = _checked_search_scales("relative_amplitudes", relative_amplitudes)
+    width = checked_in_range("tolerance", tolerance, 1e-12, 0.1)
+    properties = rocking_properties_of(structure)
     rate = math.sqrt(properties.l0r * GRAVITY / properties.i_theta)
     unit = properties.resisting_moment / properties.l0r  # g α
-    run = _runner(properties, model, impact, work_limit, ground)
+    run = _run_of_spectrum(properties, model, impact, work_limit, ground)
     periods = [2.0 * math.pi / (ratio * rate) for ratio in ratios]
     if not callable(pulse):
-        raise InputError(f"pulse must be a function of an amplitude and a period, but {described(pulse)} was given.")
+        raise InputError(
+            f"pulse must be a function of an amplitude and a period, but {type_description(pulse)} was given."
+        )
     pulses = [pulse(unit, period) for period in periods]
     for made in pulses:
         if not isinstance(made, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise InputError(
-                f"pulse must make a GroundMotion of an amplitude and a period, but it made {described(made)}. "
+                f"pulse must make a GroundMotion of an amplitude and a period, but it made {type_description(made)}. "
                 "Give one_sine_pulse, for instance."
             )
-    with reporting(progress, len(pulses), "frequencies") as advance:
-        rows = in_order(lambda made: _search(run, made, tried, width), pulses, workers, lambda _: advance(1))
+    with reporting_progress(progress, len(pulses), "frequencies") as advance:
+        rows = map_runs_in_order(
+            lambda made: _search_overturning_scales(run, made, tried, width), pulses, workers, lambda _: advance(1)
+        )
     import pandas as pd
 
     table = pd.DataFrame(rows).assign(frequency_ratio=ratios, period=periods)
@@ -310,7 +319,7 @@ def overturning_spectrum(
 Run = Callable[[GroundMotion, float], Response]
 
 
-def _runner(
+def _run_of_spectrum(
     structure: RockingStructure | RockingProperties,
     model: str | Model,
     impact: ImpactLaw | None,
@@ -318,7 +327,7 @@ def _runner(
     ground: GroundChoice,
 ) -> Run:
     options = RunOptions.of("settle", impact=impact, ground=ground, work_limit=work_limit)
-    properties, choice = properties_of(structure), parse_model(model)
+    properties, choice = rocking_properties_of(structure), parse_model(model)
     if not choice.lifts:
         raise InputError(
             f"{choice.label} has a base that cannot lift, so nothing overturns it. Give a model that rocks."
@@ -326,23 +335,29 @@ def _runner(
     return options.case(choice, properties).run
 
 
-def _search(run: Run, motion: GroundMotion, scales: list[float], width: float) -> OverturningScales:
+def _search_overturning_scales(run: Run, motion: GroundMotion, scales: list[float], width: float) -> OverturningScales:
     runs = [run(motion, scale) for scale in scales]
     falls = [response.status == "overturned" for response in runs]
     if not any(falls):
         return OverturningScales(math.nan, math.nan, 0)
     first = falls.index(True)
-    _, lowest, impacts = _bisect(run, motion, scales[first - 1] if first else 0.0, scales[first], width)
+    _, lowest, impacts = _bisect_overturning_scale(
+        run, motion, scales[first - 1] if first else 0.0, scales[first], width
+    )
     standing = [place for place, fell in enumerate(falls) if not fell]
     if standing and standing[-1] == len(scales) - 1:
         return OverturningScales(lowest, math.inf, impacts)
     last = standing[-1] if standing else -1
     if last <= first - 1:
         return OverturningScales(lowest, lowest, impacts)
-    return OverturningScales(lowest, _bisect(run, motion, scales[last], scales[last + 1], width)[0], impacts)
+    return OverturningScales(
+        lowest, _bisect_overturning_scale(run, motion, scales[last], scales[last + 1], width)[0], impacts
+    )
 
 
-def _bisect(run: Run, motion: GroundMotion, stands: float, falls: float, width: float) -> tuple[float, float, int]:
+def _bisect_overturning_scale(
+    run: Run, motion: GroundMotion, stands: float, falls: float, width: float
+) -> tuple[float, float, int]:
     """Return the scales on both sides of a boundary, one that stands and one that overturns, and its impacts."""
     impacts = run(motion, falls).n_impacts
     while falls - stands > width * falls:
@@ -355,8 +370,8 @@ def _bisect(run: Run, motion: GroundMotion, stands: float, falls: float, width: 
     return stands, falls, impacts
 
 
-def _scan(name: str, scales: Sequence[float]) -> list[float]:
-    numbers = positive_numbers(name, scales, "")
+def _checked_search_scales(name: str, scales: Sequence[float]) -> list[float]:
+    numbers = checked_positive_numbers(name, scales, "")
     if len(numbers) < 2 or any(b <= a for a, b in pairwise(numbers)):
         raise InputError(
             f"{name} must rise, two at least, but {shown(scales)} was given. They are the grid that is searched."

@@ -7,11 +7,19 @@ from pydantic import AfterValidator, BeforeValidator, Field
 
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import GroundMotion
-from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, Structures, expand_scales, factors_of
+from rockflex.study._arguments import (
+    WORK_LIMIT,
+    GroundChoice,
+    Models,
+    Motions,
+    Structures,
+    checked_scale_factors,
+    expand_scale_range,
+)
 from rockflex.study._plan import CrossPlan, run_plan
 from rockflex.study._run_matrix import Demands, StudyMatrix, study_matrix
 from rockflex.study.progress import ProgressChoice
-from rockflex.study.spec import StructuresSpec
+from rockflex.study.spec import StructuresStudySpec
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -20,17 +28,17 @@ if TYPE_CHECKING:
 QUIET = GroundMotion([0.0, 0.0, 0.0], 1.0)
 Factors = Annotated[
     list[float],
-    BeforeValidator(expand_scales),
+    BeforeValidator(expand_scale_range),
     Field(
         min_length=1,
         description="a list of factors on the acceleration, or a range such as "
         "{smallest = 0.5, largest = 3.0, step = 0.25}",
     ),
-    AfterValidator(lambda scales: factors_of(scales, QUIET)),
+    AfterValidator(lambda scales: checked_scale_factors(scales, QUIET)),
 ]
 
 
-class CloudStudy(StructuresSpec):
+class CloudStudy(StructuresStudySpec):
     """Cloud analysis (Silva & Stojadinović 2024, Section 3.2).
 
     The table has one row per run, structures outermost, then records, models and scales. Its columns are those of
@@ -69,7 +77,7 @@ class CloudPlan(CrossPlan):
     """The cross product of structures, records, models and scales, divided into chunks."""
 
     def __init__(self, matrix: StudyMatrix, scales: Sequence[float], per_chunk: int) -> None:
-        self.scales = factors_of(scales, max(matrix.motions, key=lambda motion: motion.pga))
+        self.scales = checked_scale_factors(scales, max(matrix.motions, key=lambda motion: motion.pga))
         super().__init__(matrix, len(self.scales), per_chunk)
 
     def scale(self, structure: int, record: int, level: int) -> float:  # noqa: ARG002

@@ -8,24 +8,24 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, SupportsIndex
 
 from pydantic import Field, model_validator
 
-from rockflex._checks import in_range, one_of, positive
+from rockflex._checks import checked_in_range, checked_positive, is_one_of
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.fragility import LIMIT_STATES, OVERTURNING
 from rockflex.models import BoucWen, ImpactLaw
-from rockflex.motion import intensity
+from rockflex.motion import scalable_measure
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, Structures
 from rockflex.study._plan import CrossPlan, run_plan
-from rockflex.study._run_matrix import StudyMatrix, check_lifts, study_matrix
-from rockflex.study._tables import Columns, Row
+from rockflex.study._result_tables import Columns, Row
+from rockflex.study._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
 from rockflex.study.progress import ProgressChoice
-from rockflex.study.spec import FreeVibration, StructuresSpec
+from rockflex.study.spec import FreeVibration, StructuresStudySpec
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-class Steps(NamedTuple):
+class ScaleSteps(NamedTuple):
     """The first and the last scale, each over the one before, and the width to which bisection narrows a boundary."""
 
     smallest: float
@@ -34,24 +34,24 @@ class Steps(NamedTuple):
     tolerance: float
 
 
-def grid_scales(smallest: float, largest: float, growth: float) -> list[float]:
+def rising_scales(smallest: float, largest: float, growth: float) -> list[float]:
     """Return scales from `smallest` to `largest`, each `growth` times the one before; the last step may be smaller."""
     count = math.ceil(math.log(largest / smallest) / math.log(growth) - 1e-9)
     return [*(smallest * growth**step for step in range(count)), largest]
 
 
-def steps_between(growth: float, tolerance: float) -> int:
+def max_bisections_between_scales(growth: float, tolerance: float) -> int:
     """Return the largest number of bisections between two neighbouring grid_scales."""
     return max(0, math.ceil(math.log2((growth - 1.0) / tolerance)))
 
 
-def steps_from_rest(tolerance: float) -> int:
+def max_bisections_below_scales(tolerance: float) -> int:
     """Return the largest number of bisections below the lowest scale, down to a thousandth of it."""
     return math.ceil(math.log2(1.0 / tolerance)) + 10
 
 
 @dataclass
-class Ladder:
+class ScaleLadder:
     """Runs of one structure under one record at rising scales.
 
     Overturning is not monotone: a structure may overturn at a scale and survive a larger one. Therefore all scales
@@ -95,7 +95,11 @@ class Ladder:
         return [(lower, upper) for (lower, fell), (upper, falls) in pairwise(known) if falls and not fell]
 
     def _bisect(self, stands: float, falls: float) -> None:
-        steps = steps_between(self.growth, self.tolerance) if stands > 0.0 else steps_from_rest(self.tolerance)
+        steps = (
+            max_bisections_between_scales(self.growth, self.tolerance)
+            if stands > 0.0
+            else max_bisections_below_scales(self.tolerance)
+        )
         for _ in range(steps):
             if falls - stands <= self.tolerance * falls:
                 break
@@ -125,7 +129,7 @@ Limit = Literal["overturning", "nominal"]
 MAX_SCALE_RATIO = 1e12  # the last scale over the first
 
 
-class IncrementalStudy(StructuresSpec):
+class IncrementalStudy(StructuresStudySpec):
     """Incremental dynamic analysis (Vamvatsikos & Cornell 2002) of structures that overturn.
 
     The table has one row per run; its columns are those of `run_incremental`.
@@ -152,7 +156,7 @@ class IncrementalStudy(StructuresSpec):
 
     @model_validator(mode="after")
     def _ladder(self) -> "IncrementalStudy":
-        check_ladder(self.smallest_scale, self.largest_scale, self.growth, self.tolerance)
+        check_scale_ladder(self.smallest_scale, self.largest_scale, self.growth, self.tolerance)
         return self
 
     def plan(self) -> "IncrementalPlan":
@@ -163,7 +167,7 @@ class IncrementalStudy(StructuresSpec):
         InputError
             If a structure cannot be built, a record cannot be read, or a model's base cannot lift.
         """
-        steps = Steps(self.smallest_scale, self.largest_scale, self.growth, self.tolerance)
+        steps = ScaleSteps(self.smallest_scale, self.largest_scale, self.growth, self.tolerance)
         return IncrementalPlan(self.matrix(), steps, self.limit, self.runs_per_chunk)
 
 
@@ -173,12 +177,16 @@ class IncrementalPlan(CrossPlan):
     exact_count = False
     units = "ladders"
 
-    def __init__(self, matrix: StudyMatrix, steps: Steps, limit: Limit, runs_per_chunk: int) -> None:
-        check_ladder(*steps)
-        check_lifts(matrix, "a base that cannot lift, so nothing overturns it")
+    def __init__(self, matrix: StudyMatrix, steps: ScaleSteps, limit: Limit, runs_per_chunk: int) -> None:
+        check_scale_ladder(*steps)
+        check_base_can_lift(matrix, "a base that cannot lift, so nothing overturns it")
         self.steps, self.limit = steps, limit
-        self.scales = grid_scales(steps.smallest, steps.largest, steps.growth)
-        most = len(self.scales) + steps_between(steps.growth, steps.tolerance) + steps_from_rest(steps.tolerance)
+        self.scales = rising_scales(steps.smallest, steps.largest, steps.growth)
+        most = (
+            len(self.scales)
+            + max_bisections_between_scales(steps.growth, steps.tolerance)
+            + max_bisections_below_scales(steps.tolerance)
+        )
         self._most = most
         super().__init__(matrix, 1, max(1, runs_per_chunk // most))
 
@@ -213,13 +221,13 @@ class IncrementalPlan(CrossPlan):
                 return row | {"overturned": None}
             return row | {"overturned": OVERTURNING.exceeded(row) or state.exceeded(row)}
 
-        return Ladder(run, self.scales, self.steps.growth, self.steps.tolerance).run_all()
+        return ScaleLadder(run, self.scales, self.steps.growth, self.steps.tolerance).run_all()
 
 
-def check_ladder(smallest: float, largest: float, growth: float, tolerance: float) -> None:
+def check_scale_ladder(smallest: float, largest: float, growth: float, tolerance: float) -> None:
     """Raise an InputError unless the scales form a ladder."""
-    positive("smallest_scale", smallest, "times the record")
-    positive("largest_scale", largest, "times the record")
+    checked_positive("smallest_scale", smallest, "times the record")
+    checked_positive("largest_scale", largest, "times the record")
     if not smallest < largest:
         raise InputError(f"largest_scale must be above smallest_scale, {smallest:g}, but {largest:g} was given.")
     if largest / smallest > MAX_SCALE_RATIO:
@@ -227,8 +235,10 @@ def check_ladder(smallest: float, largest: float, growth: float, tolerance: floa
             f"largest_scale must be at most {MAX_SCALE_RATIO:g} times smallest_scale, {smallest:g}, but {largest:g} "
             "was given. Bring the two closer."
         )
-    in_range("growth", growth, 1.0001, 100.0, hint="It is the factor from one scale to the next: 1.15 for 15 %.")
-    in_range("tolerance", tolerance, 1e-9, 0.5)
+    checked_in_range(
+        "growth", growth, 1.0001, 100.0, hint="It is the factor from one scale to the next: 1.15 for 15 %."
+    )
+    checked_in_range("tolerance", tolerance, 1e-9, 0.5)
 
 
 def run_incremental(
@@ -292,9 +302,9 @@ def run_incremental(
     matrix = study_matrix(
         structures, motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground
     )
-    if not one_of(limit, ("overturning", "nominal")):
+    if not is_one_of(limit, ("overturning", "nominal")):
         raise InputError(f'limit must be "overturning" or "nominal", but {shown(limit)} was given.')
-    steps = Steps(smallest_scale, largest_scale, growth, tolerance)
+    steps = ScaleSteps(smallest_scale, largest_scale, growth, tolerance)
     return run_plan(IncrementalPlan(matrix, steps, limit, 64), workers, progress)
 
 
@@ -330,7 +340,7 @@ def incremental_capacities(runs: "pd.DataFrame", measure: str = "pga") -> "pd.Da
       structure   model  capacity  censored
     0         A  2DOF-S      7.69     False
     """
-    intensity(measure)
+    scalable_measure(measure)
     import pandas as pd
 
     rows = []

@@ -9,17 +9,24 @@ from pydantic import Field
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex._schema import PLAIN, Key
+from rockflex._schema import PLAIN, SchemaKey
 from rockflex.modal import Ground, RockingProperties
-from rockflex.motion import Suite, intensities
-from rockflex.structure.file import StructureEntry, Table, checked, label_of
-from rockflex.study._arguments import factors_of, properties_of
+from rockflex.motion import Suite, scalable_measures
+from rockflex.structure.file import StructureEntry, TomlTable, parse_toml_table, toml_key_label
+from rockflex.study._arguments import checked_scale_factors, rocking_properties_of
 from rockflex.study._plan import ChunkedPlan
-from rockflex.study._random_variables import Variables, check_known, draws, is_formula, names_of, value_of
-from rockflex.study._run_matrix import StudyMatrix, rows_of
-from rockflex.study._tables import RESULTS, Columns, Row, kinds_of
+from rockflex.study._random_variables import (
+    RandomVariables,
+    check_formula_names_known,
+    formula_value,
+    is_formula,
+    names_in_formula,
+    uniform_draws,
+)
+from rockflex.study._result_tables import RESULTS, Columns, Row, columns_of_kind
+from rockflex.study._run_matrix import StudyMatrix, rows_of_matrix_runs
 from rockflex.study.cloud import Factors
-from rockflex.study.spec import GroundTable, RunsSpec
+from rockflex.study.spec import GroundTable, RunsStudySpec
 
 ELEMENT_KEYS = ("tendons", "elements")
 FACTS = {
@@ -28,20 +35,20 @@ FACTS = {
     "half_width": "the half width B of the base in m",
     "l0r_g": "the moment L_0^r g of the weight, a radian, in N m",
 }
-"""What formulas of tendons, elements and the ground may use besides the variables."""
+"""Properties that formulas of tendons, elements and the ground may use besides the variables."""
 
 Place = tuple[str | int, ...]
 
 
-class _Holder(Table):
+class _StructureEntryHolder(TomlTable):
     structure: StructureEntry
 
 
-class _GroundHolder(Table):
+class _GroundHolder(TomlTable):
     ground: GroundTable
 
 
-class Population:
+class RandomPopulation:
     """Structures that differ in the values of variables.
 
     Parameters
@@ -62,13 +69,20 @@ class Population:
     """
 
     def __init__(
-        self, variables: Variables, structure: Mapping[str, Any], folder: Path, ground: Mapping[str, Any] | None = None
+        self,
+        variables: RandomVariables,
+        structure: Mapping[str, Any],
+        folder: Path,
+        ground: Mapping[str, Any] | None = None,
     ) -> None:
         self.variables, self._structure, self._folder, self._ground = variables, structure, folder, ground
-        for place, formula in (*_formulas(structure, ("structure",)), *_formulas(ground, ("ground",))):
-            label, held = label_of(place), place[0] == "ground" or place[1] in ELEMENT_KEYS
+        for place, formula in (
+            *_formulas_in_structure_entry(structure, ("structure",)),
+            *_formulas_in_structure_entry(ground, ("ground",)),
+        ):
+            label, held = toml_key_label(place), place[0] == "ground" or place[1] in ELEMENT_KEYS
             try:
-                needed = names_of(formula)
+                needed = names_in_formula(formula)
             except InputError as error:
                 raise InputError(f"{label}: {error}") from error
             if not held and (early := sorted(needed & FACTS.keys())):
@@ -76,7 +90,7 @@ class Population:
                     f"{label}: {early[0]} is known only after the structure is built, so only formulas of elements, "
                     "tendons and the ground may use it."
                 )
-            check_known(label, needed, variables.kinds | (FACTS if held else {}))
+            check_formula_names_known(label, needed, variables.kinds | (FACTS if held else {}))
 
     def entry(self, values: Mapping[str, float]) -> StructureEntry:
         """Return the structure without tendons and elements for values of the variables.
@@ -86,7 +100,9 @@ class Population:
         InputError
             If a formula has no value, or a key is unknown, missing, or of the wrong kind.
         """
-        return _checked({key: value for key, value in self._structure.items() if key not in ELEMENT_KEYS}, values)
+        return _checked_random_structure(
+            {key: value for key, value in self._structure.items() if key not in ELEMENT_KEYS}, values
+        )
 
     def build(self, values: Mapping[str, float]) -> RockingProperties:
         """Return the structure for values of the variables.
@@ -96,10 +112,12 @@ class Population:
         InputError
             As `entry`, or if a value is out of range or values contradict each other.
         """
-        free = properties_of(self.entry(values).build(self._folder))
+        free = rocking_properties_of(self.entry(values).build(self._folder))
         if not any(self._structure.get(key) for key in ELEMENT_KEYS):
             return free
-        return properties_of(_checked(self._structure, {**values, **facts_of(free)}).hold(free))
+        return rocking_properties_of(
+            _checked_random_structure(self._structure, {**values, **random_structure_facts(free)}).hold(free)
+        )
 
     def ground_under(self, properties: RockingProperties, values: Mapping[str, float]) -> Ground | None:
         """Return the ground under a structure for values of the variables.
@@ -111,11 +129,13 @@ class Population:
         """
         if self._ground is None:
             return None
-        content = _evaluated(self._ground, {**values, **facts_of(properties)}, ("ground",))
-        return checked(_GroundHolder, {"ground": content}).ground.under(properties)
+        content = _structure_entry_with_values(
+            self._ground, {**values, **random_structure_facts(properties)}, ("ground",)
+        )
+        return parse_toml_table(_GroundHolder, {"ground": content}).ground.under(properties)
 
 
-def facts_of(properties: RockingProperties) -> dict[str, float]:
+def random_structure_facts(properties: RockingProperties) -> dict[str, float]:
     """Return the values of `FACTS`."""
     weight = properties.m_tot * GRAVITY
     return {
@@ -126,31 +146,36 @@ def facts_of(properties: RockingProperties) -> dict[str, float]:
     }
 
 
-def _checked(content: Mapping[str, Any], values: Mapping[str, float]) -> StructureEntry:
-    return checked(_Holder, {"structure": _evaluated(content, values, ("structure",))}).structure
+def _checked_random_structure(content: Mapping[str, Any], values: Mapping[str, float]) -> StructureEntry:
+    return parse_toml_table(
+        _StructureEntryHolder, {"structure": _structure_entry_with_values(content, values, ("structure",))}
+    ).structure
 
 
-def _formulas(content: object, place: Place) -> Iterator[tuple[Place, str]]:
+def _formulas_in_structure_entry(content: object, place: Place) -> Iterator[tuple[Place, str]]:
     if is_formula(content):
         yield place, str(content)
-    for key, each in _items(content):
-        yield from _formulas(each, (*place, key))
+    for key, each in _structure_entry_items(content):
+        yield from _formulas_in_structure_entry(each, (*place, key))
 
 
-def _evaluated(content: Any, values: Mapping[str, float], place: Place) -> Any:
+def _structure_entry_with_values(content: Any, values: Mapping[str, float], place: Place) -> Any:
     """Return the content with the values of its formulas."""
     if is_formula(content):
         try:
-            return value_of(content, values)
+            return formula_value(content, values)
         except InputError as error:
-            raise InputError(f"{label_of(place)}: {error}") from error
-    evaluated = ((key, _evaluated(each, values, (*place, key))) for key, each in _items(content))
+            raise InputError(f"{toml_key_label(place)}: {error}") from error
+    evaluated = (
+        (key, _structure_entry_with_values(each, values, (*place, key)))
+        for key, each in _structure_entry_items(content)
+    )
     if isinstance(content, Mapping):
         return dict(evaluated)
     return [each for _, each in evaluated] if isinstance(content, list) else content
 
 
-def _items(content: object) -> Iterator[tuple[str | int, Any]]:
+def _structure_entry_items(content: object) -> Iterator[tuple[str | int, Any]]:
     if isinstance(content, Mapping):
         yield from cast("Mapping[str, Any]", content).items()
     elif isinstance(content, list):
@@ -162,10 +187,16 @@ MAX_TRIALS = 20  # structures, at most, until one can be built
 STRUCTURES_PER_BATCH = 256  # structures that are prepared together
 OF_STRUCTURE = "resisting_moment recentring_ratio"
 _RUN = "structure number motion group magnitude distance_km model scale nominal_limit zeta_1 error"
-_COLUMNS = (*_RUN.split(), *OF_STRUCTURE.split(), *(measure.name for measure in intensities()), "status", *RESULTS)
+_COLUMNS = (
+    *_RUN.split(),
+    *OF_STRUCTURE.split(),
+    *(measure.name for measure in scalable_measures()),
+    "status",
+    *RESULTS,
+)
 
 
-class MonteCarloStudy(RunsSpec):
+class MonteCarloStudy(RunsStudySpec):
     """Random structures under all records, or under some that are drawn for each structure.
 
     `variables` are distributions (`uniform`, `log_uniform`, `whole`, `normal`, `lognormal` or `one_of`), formulas of
@@ -213,13 +244,13 @@ class MonteCarloStudy(RunsSpec):
     seed: int = Field(0, ge=0, description="what the draws depend on, a whole number of at least 0")
     variables: dict[str, Any] = Field(description="a table of random variables")
     structure: dict[str, Any] = Field(description="a table of a structure, such as [structure.frame]")
-    ground: Annotated[dict[str, Any] | None, Key("a table", form=PLAIN)] = None  # pyright: ignore[reportIncompatibleVariableOverride]
+    ground: Annotated[dict[str, Any] | None, SchemaKey("a table", form=PLAIN)] = None  # pyright: ignore[reportIncompatibleVariableOverride]
     scales: Factors = Field([1.0])
     records_per_structure: int | None = Field(
         None, ge=1, description="how many records to draw for each structure, a whole number (default: all records)"
     )
 
-    def population(self) -> Population:
+    def population(self) -> RandomPopulation:
         """Return the population of structures.
 
         Raises
@@ -228,7 +259,9 @@ class MonteCarloStudy(RunsSpec):
             If a variable or a formula is wrong.
         """
         taken = dict.fromkeys(_COLUMNS, "a column of the table")
-        return Population(Variables(self.variables, taken | FACTS), self.structure, self._folder, self.ground)
+        return RandomPopulation(
+            RandomVariables(self.variables, taken | FACTS), self.structure, self._folder, self.ground
+        )
 
     def structure_of(self, number: int) -> RockingProperties:
         """Return the random structure of a number from 0.
@@ -295,7 +328,7 @@ class MonteCarloPlan(ChunkedPlan):
                 f"records_per_structure must be at most the number of records, {len(motions)}, but "
                 f"{self._per_structure} was given."
             )
-        self.scales = factors_of(study.scales, max(motions, key=lambda motion: motion.pga))
+        self.scales = checked_scale_factors(study.scales, max(motions, key=lambda motion: motion.pga))
         first = self._first(study.count)
         self.matrix = StudyMatrix({study.name or "random structures": first}, motions, study.study_options())
         runs = self._per_structure * len(self.matrix.labels) * len(self.scales)
@@ -325,14 +358,14 @@ class MonteCarloPlan(ChunkedPlan):
         """Columns of every chunk's table."""
         head, *rest = self.matrix.columns.items()
         drawn = dict.fromkeys(self.population.variables.kinds, float)
-        of_structure = dict.fromkeys(FACTS, float) | kinds_of(OF_STRUCTURE, float)
+        of_structure = dict.fromkeys(FACTS, float) | columns_of_kind(OF_STRUCTURE, float)
         return dict([head]) | {"number": int} | drawn | of_structure | dict(rest)
 
     def records_of(self, number: int) -> list[int]:
         """Return the places of the records of a structure, in the order of the suite."""
         if self._per_structure == len(self.motions):
             return [*range(len(self.motions))]
-        order = np.argsort(draws(self.seed, number, "", len(self.motions)), kind="stable")
+        order = np.argsort(uniform_draws(self.seed, number, "", len(self.motions)), kind="stable")
         return sorted(order[: self._per_structure].tolist())
 
     def rows(self, units: Sequence[int]) -> list[Row]:
@@ -343,7 +376,7 @@ class MonteCarloPlan(ChunkedPlan):
     def _rows(self, units: Sequence[int]) -> Iterator[Row]:
         drawn = [(unit, *self._drawn(unit)) for unit in units]
         runs = [(matrix, run) for unit, _, matrix in drawn if matrix is not None for run in self._runs(unit)]
-        found = iter(rows_of(runs, keep=False))
+        found = iter(rows_of_matrix_runs(runs, keep=False))
         for unit, row, matrix in drawn:
             for run in self._runs(unit):
                 yield (self.matrix.head(*run) if matrix is None else next(found)) | row
@@ -357,7 +390,7 @@ class MonteCarloPlan(ChunkedPlan):
             ground = self.population.ground_under(properties, row)
         except InputError as error:
             return row | {"error": str(error)}, None
-        row |= facts_of(properties)
+        row |= random_structure_facts(properties)
         row |= {"resisting_moment": properties.resisting_moment, "recentring_ratio": properties.recentring_ratio}
         return row, self.matrix.on_ground(properties, ground)
 

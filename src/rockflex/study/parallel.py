@@ -12,7 +12,7 @@ from threading import Event
 from typing import Any, Generic, Protocol, SupportsIndex, TypeAlias, TypeVar
 from uuid import uuid4
 
-from rockflex._checks import positive, whole_number
+from rockflex._checks import checked_positive, checked_whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.solve import asked_to_stop, stopping_when
@@ -34,7 +34,7 @@ def worker_count(workers: SupportsIndex | None) -> int:
     InputError
         If `workers` is neither None nor a whole number of at least 1.
     """
-    return core_count() if workers is None else whole_number("workers", workers, 1)
+    return core_count() if workers is None else checked_whole_number("workers", workers, 1)
 
 
 def map_threads(
@@ -101,7 +101,7 @@ def map_runs(
     return map_threads(guarded, tasks, workers, leave.set)
 
 
-def in_order(
+def map_runs_in_order(
     function: Callable[[Task], Result],
     tasks: Iterable[Task],
     workers: SupportsIndex | None = None,
@@ -122,7 +122,7 @@ MIN_TASK_TIME = 1.0  # s of computing in a task, at least, where there is so muc
 MAX_TASK_RATE = 50.0  # tasks a second that a scheduler is given, at most; it manages several times as many
 
 
-def batch_size(left: int, threads: int, chunk_time: float | None) -> int:
+def chunks_per_task(left: int, threads: int, chunk_time: float | None) -> int:
     """Return how many of the chunks that are left go into the next task.
 
     A task takes as long as it must for the scheduler to keep up, by the measured time of a chunk, `chunk_time` in s
@@ -147,7 +147,7 @@ class ClusterError(RuntimeError):
     """A cluster failed during the map; earlier chunks are valid, and the rest can be requested again."""
 
 
-class Chunks(Protocol, Generic[Result_co]):
+class NumberedChunks(Protocol, Generic[Result_co]):
     """Work in numbered chunks; pure, deterministic and picklable."""
 
     def chunk(self, number: int, /) -> Result_co:
@@ -155,8 +155,8 @@ class Chunks(Protocol, Generic[Result_co]):
         ...
 
 
-def map_dask(
-    plan: Chunks[Result_co],
+def map_chunks_on_dask(
+    plan: NumberedChunks[Result_co],
     numbers: Iterable[int],
     address: str,
     *,
@@ -194,7 +194,10 @@ def map_dask(
     Exception
         The error of a chunk, with a note that names the chunk.
     """
-    again, limit = whole_number("retries", retries, 0), positive("patience", patience, "s", infinite=True)
+    again, limit = (
+        checked_whole_number("retries", retries, 0),
+        checked_positive("patience", patience, "s", infinite=True),
+    )
     if not isinstance(address, str) or not address:  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InputError(
             f'address must be that of a Dask scheduler, such as "tcp://10.0.0.1:8786", but {shown(address)} was given.'
@@ -202,22 +205,24 @@ def map_dask(
     asked = list(numbers)
     if not asked:
         return
-    content, client = _pickled(plan), _connected(address)
+    content, client = _pickled_plan(plan), _connected_dask_client(address)
     name, done = f"rockflex-{uuid4().hex}", 0
     try:
-        from rockflex.study._dask_worker import PlanPlugin, compute, installed_versions
+        from rockflex.study._dask_worker import DaskPlanPlugin, compute_chunks_on_worker, worker_package_versions
 
-        versions = installed_versions()
-        with _scheduler_lost(address, done, len(asked)):
-            _refuse_workers(client, versions)
-            client.register_plugin(PlanPlugin(content), name=name)
-        tasks = _Tasks(
-            lambda batch: client.submit(compute, name, batch, versions, key=f"{name}-{batch[0]}", retries=again)
+        versions = worker_package_versions()
+        with _explaining_lost_scheduler(address, done, len(asked)):
+            _refuse_dask_workers(client, versions)
+            client.register_plugin(DaskPlanPlugin(content), name=name)
+        tasks = _DaskTasks(
+            lambda batch: client.submit(
+                compute_chunks_on_worker, name, batch, versions, key=f"{name}-{batch[0]}", retries=again
+            )
         )
         looked, threads, alive = -RECOUNT_INTERVAL, 0, time.monotonic()
         left = asked
         while done < len(asked):
-            with _scheduler_lost(address, done, len(asked)):
+            with _explaining_lost_scheduler(address, done, len(asked)):
                 if time.monotonic() - looked > RECOUNT_INTERVAL or not threads:
                     threads, looked = sum(client.nthreads().values()), time.monotonic()
                 left = tasks.send(left, threads)
@@ -226,32 +231,33 @@ def map_dask(
             alive = now if threads else alive
             if now - alive > limit:
                 raise ClusterError(
-                    f"The Dask scheduler at {address} has had no worker for {limit:g} s; {_count(done, len(asked))}. "
+                    f"The Dask scheduler at {address} has had no worker for {limit:g} s; "
+                    f"{_chunk_count_text(done, len(asked))}. "
                     "Start workers and run it again."
                 )
             if error is not None:
-                raise _explained(error, batch, _count(done, len(asked)))
+                raise _explained_dask_error(error, batch, _chunk_count_text(done, len(asked)))
             results.reverse()
             for number in batch:  # each result is let go once it has been used
                 done += 1
                 yield number, results.pop()
     finally:
-        _disconnect(client, name)
+        _disconnect_from_dask(client, name)
 
 
-def _refuse_workers(client: Any, versions: dict[str, str]) -> None:
-    from rockflex.study._dask_worker import installed_versions, refuse_other_versions
+def _refuse_dask_workers(client: Any, versions: dict[str, str]) -> None:
+    from rockflex.study._dask_worker import refuse_other_worker_versions, worker_package_versions
 
-    for worker, found in client.run(installed_versions, on_error="return").items():
+    for worker, found in client.run(worker_package_versions, on_error="return").items():
         if isinstance(found, dict):
-            refuse_other_versions(worker, found, versions)
+            refuse_other_worker_versions(worker, found, versions)
         elif not isinstance(found, OSError):  # which is that of a worker that has died in the meantime
             raise InputError(
                 f"The worker {worker} cannot use rockflex: {found}. Start the workers in an environment that has it."
             )
 
 
-def _disconnect(client: Any, name: str) -> None:
+def _disconnect_from_dask(client: Any, name: str) -> None:
     """Remove the plan from the workers if the cluster still answers, and disconnect."""
     with suppress(OSError, ValueError, KeyError, CancelledError):  # the plan may not have reached every worker
         if client.status == "running":
@@ -260,7 +266,7 @@ def _disconnect(client: Any, name: str) -> None:
         client.close(timeout=2)
 
 
-def _pickled(plan: object) -> bytes:
+def _pickled_plan(plan: object) -> bytes:
     try:
         return pickle.dumps(plan, protocol=5)
     except (pickle.PicklingError, TypeError, AttributeError) as error:
@@ -269,7 +275,7 @@ def _pickled(plan: object) -> bytes:
         ) from error
 
 
-def _connected(address: str) -> Any:
+def _connected_dask_client(address: str) -> Any:
     try:
         from distributed import Client
     except ImportError as error:
@@ -293,7 +299,7 @@ def _connected(address: str) -> Any:
             gc.enable()
 
 
-class _Tasks:
+class _DaskTasks:
     """The tasks that are in flight, each a batch of chunks, and the time that a chunk takes."""
 
     def __init__(self, submit: Callable[[Batch], Any]) -> None:
@@ -306,7 +312,7 @@ class _Tasks:
         """Send so many of these chunks that every thread has work, and return the others."""
         place = 0
         while place < len(numbers) and len(self.running) < TASKS_PER_THREAD * threads:
-            batch = tuple(numbers[place : place + batch_size(len(numbers) - place, threads, self.chunk_time)])
+            batch = tuple(numbers[place : place + chunks_per_task(len(numbers) - place, threads, self.chunk_time)])
             place += len(batch)
             future = self.submit(batch)
             self.running[future] = batch
@@ -328,7 +334,7 @@ class _Tasks:
         return batch, results, None
 
 
-def _explained(error: BaseException, batch: Batch, count: str) -> BaseException:
+def _explained_dask_error(error: BaseException, batch: Batch, count: str) -> BaseException:
     from distributed import KilledWorker
 
     if isinstance(error, KilledWorker):
@@ -343,17 +349,18 @@ def _explained(error: BaseException, batch: Batch, count: str) -> BaseException:
 
 
 @contextmanager
-def _scheduler_lost(address: str, done: int, total: int) -> Generator[None]:
+def _explaining_lost_scheduler(address: str, done: int, total: int) -> Generator[None]:
     from distributed.client import ClosedClientError
 
     try:
         yield
     except (CancelledError, ClosedClientError, OSError) as error:
         raise ClusterError(
-            f"The Dask scheduler at {address} was lost ({type(error).__name__}); {_count(done, total)}. What was "
+            f"The Dask scheduler at {address} was lost ({type(error).__name__}); {_chunk_count_text(done, total)}. "
+            "What was "
             "stored is kept. Restart the cluster and run it again."
         ) from error
 
 
-def _count(done: int, total: int) -> str:
+def _chunk_count_text(done: int, total: int) -> str:
     return f"{done} of the {total} chunks requested had come back"

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress as RichProgress
 
 
-def duration(seconds: float) -> str:
+def duration_text(seconds: float) -> str:
     """Write a time as 0.8 s, 45 s, 12 min or 3.4 h."""
     if seconds < 90.0:
         return f"{seconds:.1f} s" if seconds < 10.0 else f"{seconds:.0f} s"
@@ -36,7 +36,7 @@ MIN_INTERVAL, MAX_INTERVAL = 30.0, 600.0  # s after the last line: the next one 
 MIN_SHARE = 0.1
 
 
-class LogLines:
+class ProgressLogLines:
     """Lines of a log on stderr, each with what is done, the time since the start, and the time that it may still take.
 
     A study of less than half a minute writes none, unless `last`, which asks for one at the end.
@@ -61,9 +61,9 @@ class LogLines:
 
     def _line(self, done: int, total: int, remark: str, elapsed: float) -> str:
         made = done - (self.first or 0)
-        text = f"{self.title}: {done} of {total} ({100 * done // max(total, 1)} %), {duration(elapsed)} elapsed"
+        text = f"{self.title}: {done} of {total} ({100 * done // max(total, 1)} %), {duration_text(elapsed)} elapsed"
         if made and done < total:
-            text += f", about {duration(elapsed / made * (total - done))} left"
+            text += f", about {duration_text(elapsed / made * (total - done))} left"
         return f"{text}, {remark}" if remark else text
 
 
@@ -73,7 +73,7 @@ REFRESH_INTERVAL = {"terminal": 0.1, "notebook": 0.3}  # s between two pictures 
 
 
 @contextmanager
-def bar(title: str, *, transient: bool = False) -> Generator[Show]:
+def progress_bar(title: str, *, transient: bool = False) -> Generator[Show]:
     """Show a bar on stderr; the yielded function takes what is done, the total, and a remark.
 
     A terminal or a notebook shows the bar with its count and the remaining time, and keeps it unless `transient`; any
@@ -83,26 +83,26 @@ def bar(title: str, *, transient: bool = False) -> Generator[Show]:
 
     console = Console(stderr=True)
     if console.is_jupyter:
-        with _picture(title) as show:
+        with _notebook_progress_bar(title) as show:
             yield show
     elif console.is_terminal:
-        with _columns(console=console, transient=transient, auto_refresh=False) as drawn:
-            yield _throttled(drawn, title, drawn.refresh, REFRESH_INTERVAL["terminal"])
+        with _progress_bar_columns(console=console, transient=transient, auto_refresh=False) as drawn:
+            yield _throttled_progress_display(drawn, title, drawn.refresh, REFRESH_INTERVAL["terminal"])
     else:
-        yield LogLines(title, last=not transient).show
+        yield ProgressLogLines(title, last=not transient).show
 
 
 @contextmanager
-def _picture(title: str) -> Generator[Show]:
+def _notebook_progress_bar(title: str) -> Generator[Show]:
     """Show the bar as the output of a notebook's cell."""
     from IPython.display import display
 
-    drawn = _columns(auto_refresh=False)  # never started: only its table is used
+    drawn = _progress_bar_columns(auto_refresh=False)  # never started: only its table is used
 
     def table() -> Any:
         return drawn.make_tasks_table(drawn.tasks)
 
-    show = _throttled(drawn, title, lambda: handle.update(table()), REFRESH_INTERVAL["notebook"])
+    show = _throttled_progress_display(drawn, title, lambda: handle.update(table()), REFRESH_INTERVAL["notebook"])
     handle: Any = display(table(), display_id=True)
     try:
         yield show
@@ -110,7 +110,7 @@ def _picture(title: str) -> Generator[Show]:
         handle.update(table())
 
 
-def _columns(**how: Any) -> "RichProgress":
+def _progress_bar_columns(**how: Any) -> "RichProgress":
     from rich.progress import (
         BarColumn,
         MofNCompleteColumn,
@@ -123,7 +123,7 @@ def _columns(**how: Any) -> "RichProgress":
     return RichProgress(*look, TimeElapsedColumn(), TextColumn("{task.fields[left]}", style="cyan"), **how)
 
 
-def _throttled(drawn: "RichProgress", title: str, refresh: Callable[[], object], every: float) -> Show:
+def _throttled_progress_display(drawn: "RichProgress", title: str, refresh: Callable[[], object], every: float) -> Show:
     """Return a function that draws the bar, but not more often than a person can see."""
     task = drawn.add_task(title, total=None, remark="", left="")
     start, last = perf_counter(), -every
@@ -134,7 +134,9 @@ def _throttled(drawn: "RichProgress", title: str, refresh: Callable[[], object],
         first, now = done if first is None else first, perf_counter()
         # From the whole time: parts may end in bursts, or further apart than any window.
         left = (now - start) / (done - first) * (total - done) if first < done < total else 0.0
-        drawn.update(task, completed=done, total=total, remark=remark, left=f"{duration(left)} left" if left else "")
+        drawn.update(
+            task, completed=done, total=total, remark=remark, left=f"{duration_text(left)} left" if left else ""
+        )
         if now - last >= every or done >= total:
             last = now
             refresh()
@@ -146,7 +148,7 @@ ProgressChoice = Literal["bar"] | Callable[[int, int], object] | None
 
 
 @contextmanager
-def reporting(progress: ProgressChoice, total: int, units: str) -> Generator[Callable[[int], None]]:
+def reporting_progress(progress: ProgressChoice, total: int, units: str) -> Generator[Callable[[int], None]]:
     """Tell the progress of `total` units; the yielded function takes how many more of them are done.
 
     A function is called in the thread of the caller, first with ``(0, total)``. What it raises goes through.
@@ -160,13 +162,13 @@ def reporting(progress: ProgressChoice, total: int, units: str) -> Generator[Cal
     if progress is None:
         yield lambda _: None
     elif isinstance(progress, str):
-        with bar(units.capitalize()) as show:
-            yield counter(lambda done, total: show(done, total, ""), total)
+        with progress_bar(units.capitalize()) as show:
+            yield progress_counter(lambda done, total: show(done, total, ""), total)
     else:
-        yield counter(progress, total)
+        yield progress_counter(progress, total)
 
 
-def counter(tell: Callable[[int, int], object], total: int) -> Callable[[int], None]:
+def progress_counter(tell: Callable[[int, int], object], total: int) -> Callable[[int], None]:
     """Return a function that counts what is done, and tells it; it tells the start at once."""
     done = 0
     tell(done, total)
@@ -209,7 +211,7 @@ def check_part_progress(progress: PartProgress) -> None:
 
 
 @contextmanager
-def reporting_parts(progress: PartProgress) -> Generator[Callable[[Progress], object]]:
+def reporting_part_progress(progress: PartProgress) -> Generator[Callable[[Progress], object]]:
     """Yield a function that tells the progress of a study.
 
     Raises
@@ -221,14 +223,14 @@ def reporting_parts(progress: PartProgress) -> Generator[Callable[[Progress], ob
     if progress is None:
         yield lambda _: None
     elif isinstance(progress, str):
-        with bar("Parts") as show:
+        with progress_bar("Parts") as show:
             start = perf_counter()
-            yield lambda now: show(now.done, now.parts, row_rate(now, perf_counter() - start))
+            yield lambda now: show(now.done, now.parts, row_rate_text(now, perf_counter() - start))
     else:
         yield progress
 
 
-def row_rate(now: Progress, seconds: float) -> str:
+def row_rate_text(now: Progress, seconds: float) -> str:
     """Write how many rows a second were computed; empty before the first."""
     rate = now.runs / max(seconds, 1e-9)
     return f"{rate:.{0 if rate >= 10.0 else 2}f} rows/s" if now.runs else ""

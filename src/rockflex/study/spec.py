@@ -14,19 +14,36 @@ import numpy as np
 from pydantic import AfterValidator, Field, InstanceOf, PrivateAttr, ValidationError, field_validator, model_validator
 
 from rockflex._errors import InputError
-from rockflex._json import plain
-from rockflex._schema import IMPACT, PLAIN, WHOLE, BedKeys, BoucWenKeys, GroundKeys, ImpactKeys, Key, LawName, each
+from rockflex._json import as_json_value
+from rockflex._schema import (
+    IMPACT,
+    PLAIN,
+    WHOLE,
+    BoucWenKeys,
+    GroundKeys,
+    ImpactKeys,
+    LawName,
+    SchemaKey,
+    SpringBedKeys,
+    one_for_each,
+)
 from rockflex._shown import shown
 from rockflex.modal import Ground, RockingProperties, Springs, asce41_bed, winkler_bed
 from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, VVELSimplified, parse_model
 from rockflex.motion import OnError, Suite, Vertical, load_suite, read_suite
-from rockflex.structure.file import StructureEntry, Table, problems
-from rockflex.study._arguments import WORK_LIMIT, check_options, free_vibration_time, properties_of, work_limit_of
+from rockflex.structure.file import StructureEntry, TomlTable, toml_problem_sentences
+from rockflex.study._arguments import (
+    WORK_LIMIT,
+    check_run_options,
+    checked_work_limit,
+    free_vibration_time,
+    rocking_properties_of,
+)
 from rockflex.study._plan import ChunkedPlan
-from rockflex.study._run_matrix import StudyMatrix, StudyOptions, check_different
+from rockflex.study._run_matrix import StudyMatrix, StudyOptions, check_different_values
 
 
-class Records(Table):
+class Records(TomlTable):
     """Records by the names of embedded suites, from a folder, or both.
 
     Examples
@@ -82,21 +99,23 @@ class Records(Table):
         return Suite(m for m in motions if any(fnmatchcase(m.name, pattern) for pattern in self.include))
 
 
-_EACH = each("spring")
-_DAMPING_RATIO = Key("the damping of the heave mode over the critical damping", low=0.0, high=100.0)
+_EACH = one_for_each("spring")
+_DAMPING_RATIO = SchemaKey("the damping of the heave mode over the critical damping", low=0.0, high=100.0)
 
 
-class SpringsTable(Table):
+class SpringsTable(TomlTable):
     """The arguments of `Springs`; by default two springs are at the edges of the base."""
 
     positions: Annotated[
         list[float] | None,
-        Key("a list of distances to the right of the axis of the masses in m (default: the edges)", "m", form=PLAIN),
+        SchemaKey(
+            "a list of distances to the right of the axis of the masses in m (default: the edges)", "m", form=PLAIN
+        ),
     ] = None
-    stiffness: Annotated[float | list[float], Key("the stiffness in N/m", "N/m", form=_EACH, low=1.0, high=1e15)]
+    stiffness: Annotated[float | list[float], SchemaKey("the stiffness in N/m", "N/m", form=_EACH, low=1.0, high=1e15)]
     damping: Annotated[
         float | list[float] | None,
-        Key("the damping coefficient in N s/m", "N s/m", form=_EACH, low=0.0, high=1e15),
+        SchemaKey("the damping coefficient in N s/m", "N s/m", form=_EACH, low=0.0, high=1e15),
     ] = None
     heave_damping_ratio: Annotated[float | None, _DAMPING_RATIO] = None
 
@@ -114,21 +133,21 @@ class SpringsTable(Table):
             self.stiffness,
             0.0 if self.damping is None else self.damping,
         )
-        return _damped(springs, self, properties)
+        return _springs_with_heave_damping(springs, self, properties)
 
 
-class BedTable(BedKeys, Table):
+class SpringBedTable(SpringBedKeys, TomlTable):
     """The arguments of `winkler_bed` or, with a shear modulus, of `asce41_bed`, for the width of the structure."""
 
     damping: Annotated[
-        float | None, Key("the damping coefficient of all springs together", "N s/m", low=0.0, high=1e15)
+        float | None, SchemaKey("the damping coefficient of all springs together", "N s/m", low=0.0, high=1e15)
     ] = None
-    n: Annotated[int, Key("the number of springs", label="Number of springs", form=WHOLE, low=2, high=200)] = 20
+    n: Annotated[int, SchemaKey("the number of springs", label="Number of springs", form=WHOLE, low=2, high=200)] = 20
     end_zone: Annotated[
-        float | None, Key("the length of the stiffer zone at either end", "m", low=0.0, high=1000.0)
+        float | None, SchemaKey("the length of the stiffer zone at either end", "m", low=0.0, high=1000.0)
     ] = None
     end_ratio: Annotated[
-        float | None, Key("the stiffness of the end zones over that of the rest", low=1e-3, high=1e3)
+        float | None, SchemaKey("the stiffness of the end zones over that of the rest", low=1e-3, high=1e3)
     ] = None
 
     def under(self, properties: RockingProperties) -> Springs:
@@ -156,14 +175,14 @@ class BedTable(BedKeys, Table):
                 "for the stiffened ends of ASCE 41.",
                 field="subgrade_modulus",
             )
-        return _damped(bed, self, properties)
+        return _springs_with_heave_damping(bed, self, properties)
 
 
-class GroundTable(GroundKeys, Table):
+class GroundTable(GroundKeys, TomlTable):
     """The arguments of `Ground`, with springs or a bed as tables."""
 
-    springs: Annotated[SpringsTable | None, Key("a table", form=PLAIN)] = None
-    bed: Annotated[BedTable | None, Key("a table", form=PLAIN)] = None
+    springs: Annotated[SpringsTable | None, SchemaKey("a table", form=PLAIN)] = None
+    bed: Annotated[SpringBedTable | None, SchemaKey("a table", form=PLAIN)] = None
 
     def under(self, properties: RockingProperties) -> Ground:
         """Return the ground under a structure.
@@ -204,7 +223,9 @@ class GroundTable(GroundKeys, Table):
         return self.mat_mass * (2.0 * properties.half_width) ** 2 / 12.0
 
 
-def _damped(springs: Springs, table: SpringsTable | BedTable, properties: RockingProperties) -> Springs:
+def _springs_with_heave_damping(
+    springs: Springs, table: SpringsTable | SpringBedTable, properties: RockingProperties
+) -> Springs:
     if table.heave_damping_ratio is None:
         return springs
     if table.damping is not None:
@@ -223,11 +244,11 @@ _LAWS: dict[str, Callable[..., ImpactLaw]] = {
 }
 
 
-class BoucWenTable(BoucWenKeys, Table):
+class BoucWenTable(BoucWenKeys, TomlTable):
     """The arguments of `BoucWen`."""
 
 
-class RunOptionKeys(ImpactKeys, Table):
+class RunOptionKeys(ImpactKeys, TomlTable):
     """The options of a run that files, links and forms share: impact law, hysteresis and ground.
 
     By default each model has its own law, nothing yields, and the base cannot slide on rigid ground.
@@ -236,14 +257,14 @@ class RunOptionKeys(ImpactKeys, Table):
     """
 
     impact: Annotated[LawName | InstanceOf[ImpactLaw] | None, IMPACT] = None  # pyright: ignore[reportIncompatibleVariableOverride]
-    bouc_wen: Annotated[BoucWenTable | None, Key("a table", form=PLAIN)] = None
-    ground: Annotated[GroundTable | None, Key("a table", form=PLAIN)] = None
+    bouc_wen: Annotated[BoucWenTable | None, SchemaKey("a table", form=PLAIN)] = None
+    ground: Annotated[GroundTable | None, SchemaKey("a table", form=PLAIN)] = None
 
     @field_validator("impact", mode="before")
     @classmethod
     def _law(cls, given: object) -> object:
         if not isinstance(given, str | int | float | list | dict | None):  # not a value that a file can hold
-            check_options(None, given)  # pyright: ignore[reportArgumentType]
+            check_run_options(None, given)  # pyright: ignore[reportArgumentType]
         return given
 
     def law(self) -> ImpactLaw | None:
@@ -272,7 +293,7 @@ class RunOptionKeys(ImpactKeys, Table):
             if self.impact not in _LAWS:  # a copy with another law was not checked
                 raise InputError(f"impact must be {IMPACT.expected}, but {shown(self.impact)} was given.")
             return _LAWS[self.impact](*[] if self.restitution is None else [self.restitution])
-        check_options(None, self.impact)
+        check_run_options(None, self.impact)
         return self.impact
 
     def hysteresis(self) -> BoucWen | None:
@@ -290,12 +311,12 @@ class RunOptionKeys(ImpactKeys, Table):
         return None if self.ground is None else self.ground.under
 
 
-def name_of(law: ImpactLaw) -> str:
+def impact_law_name(law: ImpactLaw) -> str:
     """Return the name of an impact law of the package in a file."""
     return next(name for name, kind in _LAWS.items() if type(law) is kind)
 
 
-def law_document(law: ImpactLaw) -> dict[str, Any]:
+def impact_law_document(law: ImpactLaw) -> dict[str, Any]:
     """Return the class of a law, the names of what it keeps and loses, and its values, as plain JSON.
 
     Raises
@@ -306,11 +327,11 @@ def law_document(law: ImpactLaw) -> dict[str, Any]:
     kind = type(law)
     state = cast("Any", law).__getstate__()
     parts = state if isinstance(state, tuple) else (state,)  # a class with slots gives two dictionaries
-    values = {name: _said(name, value, kind) for part in parts if part for name, value in part.items()}
+    values = {name: _impact_law_value(name, value, kind) for part in parts if part for name, value in part.items()}
     return {"law": f"{kind.__module__}.{kind.__qualname__}", "keeps": law.keeps, "loses": law.loses, "values": values}
 
 
-def law_checksum(law: ImpactLaw) -> dict[str, str]:
+def impact_law_checksum(law: ImpactLaw) -> dict[str, str]:
     """Return the SHA-256 of the module that defines the class of a law; an empty dictionary for laws of rockflex.
 
     Raises
@@ -331,24 +352,24 @@ def law_checksum(law: ImpactLaw) -> dict[str, str]:
     return {f"impact, {kind.__module__}": hashlib.sha256(source.encode()).hexdigest()}
 
 
-def _said(name: str, value: Any, kind: type) -> Any:
+def _impact_law_value(name: str, value: Any, kind: type) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
     if value is None or isinstance(value, str | bool | int | float):
         return value
     if isinstance(value, np.ndarray | np.generic):
-        return _said(name, value.tolist(), kind)
+        return _impact_law_value(name, value.tolist(), kind)
     if isinstance(value, list | tuple):
-        return [_said(name, each, kind) for each in cast("list[Any]", value)]
+        return [_impact_law_value(name, each, kind) for each in cast("list[Any]", value)]
     if isinstance(value, Mapping):
-        return {str(key): _said(name, each, kind) for key, each in cast("Mapping[Any, Any]", value).items()}
+        return {str(key): _impact_law_value(name, each, kind) for key, each in cast("Mapping[Any, Any]", value).items()}
     raise InputError(
         f"A study's folder must record the values of its impact law, but {kind.__qualname__}.{name} is of type "
         f"{type(value).__name__}. Let the law hold numbers, texts and arrays, or run the study without a folder."
     )
 
 
-def checked_by(check: Callable[[Any], object]) -> AfterValidator:
+def validator_of_check(check: Callable[[Any], object]) -> AfterValidator:
     """Return a validator that raises what `check` raises, and keeps the value as it is."""
 
     def checked(value: Any) -> Any:
@@ -361,11 +382,11 @@ def checked_by(check: Callable[[Any], object]) -> AfterValidator:
 FreeVibration = Annotated[
     float | Literal["settle"],
     Field(description='the free vibration after the record, a number in s or "settle"'),
-    checked_by(free_vibration_time),
+    validator_of_check(free_vibration_time),
 ]
 
 
-class Spec(Table):
+class StudySpec(TomlTable):
     """A study as a file or Python describes it; in Python, its tables are dictionaries.
 
     Raises
@@ -379,7 +400,7 @@ class Spec(Table):
     runs_per_chunk: int = Field(
         256, ge=1, description="about how many runs to compute and store together, a whole number of at least 1"
     )
-    work_limit: Annotated[float | Literal["none"], checked_by(work_limit_of)] = Field(
+    work_limit: Annotated[float | Literal["none"], validator_of_check(checked_work_limit)] = Field(
         WORK_LIMIT, description='the most computing that one run may take, a number in s or "none"'
     )
 
@@ -390,7 +411,7 @@ class Spec(Table):
         try:
             super().__init__(**content)
         except ValidationError as error:
-            raise InputError(" ".join(problems(error, content, type(self)))) from error
+            raise InputError(" ".join(toml_problem_sentences(error, content, type(self)))) from error
 
     @property
     def kind(self) -> str:
@@ -403,7 +424,7 @@ class Spec(Table):
 
     def document(self) -> dict[str, Any]:
         """Return all that determines the study as plain JSON: infinite numbers are "inf", and None is left out."""
-        return plain(self.model_dump(exclude_none=True))
+        return as_json_value(self.model_dump(exclude_none=True))
 
     def checksums(self) -> dict[str, str]:
         """Return the SHA-256 of the numbers in each file that a structure names, by its key in the document."""
@@ -420,10 +441,10 @@ class Spec(Table):
         return self
 
 
-class RunsSpec(RunOptionKeys, Spec):
+class RunsStudySpec(RunOptionKeys, StudySpec):
     """A study with models, and with the options of the runs."""
 
-    models: Annotated[list[str], checked_by(lambda labels: [*map(parse_model, labels)])] = Field(
+    models: Annotated[list[str], validator_of_check(lambda labels: [*map(parse_model, labels)])] = Field(
         ["MDOF-S"], min_length=1, description='a list of models, such as ["MDOF-S", "2DOF-S"]'
     )
     free_vibration: FreeVibration = 0.0
@@ -438,7 +459,7 @@ class RunsSpec(RunOptionKeys, Spec):
         """
         if self.impact is None or isinstance(self.impact, str):
             return super().document()
-        return self.model_copy(update={"impact": None}).document() | {"impact": law_document(self.impact)}
+        return self.model_copy(update={"impact": None}).document() | {"impact": impact_law_document(self.impact)}
 
     def checksums(self) -> dict[str, str]:
         """Return the SHA-256 of the source of a user-defined impact law.
@@ -448,7 +469,7 @@ class RunsSpec(RunOptionKeys, Spec):
         InputError
             If that law is not defined in a file.
         """
-        return {} if self.impact is None or isinstance(self.impact, str) else law_checksum(self.impact)
+        return {} if self.impact is None or isinstance(self.impact, str) else impact_law_checksum(self.impact)
 
     def study_options(self, *, friction: bool = False) -> StudyOptions:
         """Return the options that all runs share.
@@ -465,7 +486,7 @@ class RunsSpec(RunOptionKeys, Spec):
         return replace(options, models=tuple(map(parse_model, self.models)), friction=friction)
 
 
-class StructuresSpec(RunsSpec):
+class StructuresStudySpec(RunsStudySpec):
     """A study of given structures: the structures, the models, and the options of the runs."""
 
     structures: list[StructureEntry] = Field(min_length=1, description="one or more tables [[structures]]")
@@ -494,11 +515,11 @@ class StructuresSpec(RunsSpec):
             If a structure or a record is not available, or the options contradict each other.
         """
         names = [entry.name or f"S{place}" for place, entry in enumerate(self.structures, start=1)]
-        check_different("the names of the structures", names)
+        check_different_values("the names of the structures", names)
         properties: dict[str, RockingProperties] = {}
         for place, entry in enumerate(self.structures, start=1):
             try:
-                built = properties[names[place - 1]] = properties_of(entry.build(self._folder))
+                built = properties[names[place - 1]] = rocking_properties_of(entry.build(self._folder))
             except InputError as error:
                 raise InputError(
                     f"[[structures]] no. {place}{entry.name and f', {shown(entry.name)}'}: {error}"

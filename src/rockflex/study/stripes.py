@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from pydantic import Field
 
-from rockflex._checks import positive
+from rockflex._checks import checked_positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.fragility import NOMINAL, OVERTURNING, TENDON_YIELD, UPLIFT, LimitState, beyond
-from rockflex.motion import intensity
-from rockflex.study._arguments import positive_numbers
+from rockflex.fragility import NOMINAL, OVERTURNING, TENDON_YIELD, UPLIFT, LimitState, rotation_limit_state
+from rockflex.motion import scalable_measure
+from rockflex.study._arguments import checked_positive_numbers
 from rockflex.study._plan import CrossPlan
+from rockflex.study._result_tables import Columns, Row
 from rockflex.study._run_matrix import StudyMatrix
-from rockflex.study._tables import Columns, Row
-from rockflex.study.spec import StructuresSpec
+from rockflex.study.spec import StructuresStudySpec
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,7 +26,7 @@ COUNTED = (OVERTURNING, NOMINAL, TENDON_YIELD, UPLIFT)
 StripeLimit: TypeAlias = Literal["overturning", "nominal", "tendon_yield", "uplift"] | float | LimitState
 
 
-class StripeStudy(StructuresSpec):
+class StripeStudy(StructuresStudySpec):
     """Multiple-stripe analysis: every record is scaled to each level of an intensity measure.
 
     The table has the columns of `run_cloud` and the `level` of the stripe; `stripe_counts` counts its runs.
@@ -65,9 +65,9 @@ class StripePlan(CrossPlan):
     """The cross product of structures, records, models and levels, divided into chunks."""
 
     def __init__(self, matrix: StudyMatrix, measure: str, levels: Sequence[float], per_chunk: int) -> None:
-        chosen = intensity(measure)
+        chosen = scalable_measure(measure)
         self.measure = measure  # the name, because a pickle cannot hold the measure
-        self.levels = positive_numbers("levels", levels, "")
+        self.levels = checked_positive_numbers("levels", levels, "")
         for structure, name in enumerate(matrix.names):
             for record, motion in enumerate(matrix.motions):
                 if not math.isfinite(chosen.factor(matrix.measures(structure, record)[measure], 1.0)):
@@ -79,7 +79,7 @@ class StripePlan(CrossPlan):
     def scale(self, structure: int, record: int, level: int) -> float:
         """Return the factor that scales a record to a level of the measure."""
         value = self.matrix.measures(structure, record)[self.measure]
-        return intensity(self.measure).factor(value, self.levels[level])
+        return scalable_measure(self.measure).factor(value, self.levels[level])
 
     @property
     def columns(self) -> Columns:
@@ -101,7 +101,7 @@ def stripe_counts(runs: "pd.DataFrame", limit: StripeLimit = "overturning") -> "
         The table of a `StripeStudy`.
     limit
         ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"tendon_yield"``, ``"uplift"``, a
-        rotation in rad, or a limit state such as ``rockflex.fragility.residual_beyond(0.005)``.
+        rotation in rad, or a limit state such as ``rockflex.fragility.residual_rotation_limit_state(0.005)``.
 
     Returns
     -------
@@ -127,14 +127,14 @@ def stripe_counts(runs: "pd.DataFrame", limit: StripeLimit = "overturning") -> "
     0    0.2            1        1
     1    0.4            1        1
     """
-    solved, state = runs[runs["status"].notna()], stripe_limit(limit)
+    solved, state = runs[runs["status"].notna()], stripe_limit_state(limit)
     counted = solved.assign(exceeds=state.exceeded(solved).astype(bool)).groupby(
         ["structure", "model", "level"], observed=True
     )
     return counted["exceeds"].agg(n_exceeding="sum", n_total="size").reset_index()
 
 
-def stripe_limit(limit: StripeLimit) -> LimitState:
+def stripe_limit_state(limit: StripeLimit) -> LimitState:
     """Return the limit state that `stripe_counts` counts.
 
     Raises
@@ -145,7 +145,7 @@ def stripe_limit(limit: StripeLimit) -> LimitState:
     if isinstance(limit, LimitState):
         return limit
     if not isinstance(limit, str):
-        return beyond(positive("limit", limit, "rad"))
+        return rotation_limit_state(checked_positive("limit", limit, "rad"))
     state = next((each for each in COUNTED if each.name == limit), None)
     if state is None:
         words = ", ".join(f'"{each.name}"' for each in COUNTED)

@@ -18,13 +18,13 @@ from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
 from rockflex._errors import InputError, SolverError
-from rockflex._json import plain
+from rockflex._json import as_json_value
 from rockflex.solve import RunStoppedError, stopping_when
-from rockflex.web._downloads import MEDIA_TYPES, animation, download, study_file
-from rockflex.web._earthquake import PULSES, record_view, suite_view, suites
-from rockflex.web._folders import FIELD, MAX_LIST_BYTES, read_folder, unpacked
-from rockflex.web._forms import PRESETS, forms
-from rockflex.web._jobs import MAX_FILES, MAX_STUDIES, FileJob, Job, Jobs
+from rockflex.web._downloads import MEDIA_TYPES, animation_file, download_file, study_file
+from rockflex.web._earthquake import PULSES, embedded_suite_names, record_view, suite_view
+from rockflex.web._folders import FIELD, MAX_LIST_BYTES, read_record_folder, unpacked_record_files
+from rockflex.web._forms import PRESETS, forms_of_structures
+from rockflex.web._jobs import MAX_FILES, MAX_STUDIES, BackgroundFileJob, BackgroundJobs, StudyJob
 from rockflex.web._limits import (
     MAX_DURATION,
     MAX_ELEMENTS,
@@ -37,13 +37,19 @@ from rockflex.web._limits import (
 )
 from rockflex.web._protection import KnownHosts, SecurityHeaders
 from rockflex.web._refusal import Refusal
-from rockflex.web._requests import file_answer, file_of, state_and_content, state_of, step_of
+from rockflex.web._requests import (
+    file_download_answer,
+    sampling_step_in_query,
+    state_and_request_content,
+    state_in_request,
+    uploaded_file_bytes,
+)
 from rockflex.web._response import response_view
-from rockflex.web._selection import factor_view, selection_view
-from rockflex.web._state import State, limit_states, measures
-from rockflex.web._structure import build, structure_view
+from rockflex.web._selection import scale_factor_view, selection_view
+from rockflex.web._state import PageState, limit_state_labels, measure_labels
+from rockflex.web._structure import build_page_structure, structure_view
 from rockflex.web._studies import PAGES, study_plan
-from rockflex.web._uploads import Uploads, read_matrices, read_record, read_vertical
+from rockflex.web._uploads import UploadedRecords, read_uploaded_matrices, read_uploaded_record, read_uploaded_vertical
 
 WATCH_INTERVAL = 0.2  # s between checks whether a visitor still waits
 STATIC = Path(__file__).parent / "static"
@@ -56,12 +62,15 @@ MAX_MESSAGE_LETTERS = 1000  # of a message: some repeat an input
 Answer = Callable[[], Any]
 
 
-class Server:
+class PageServer:
     """The requests of the page; only uploads and running studies are stored."""
 
     def __init__(self) -> None:
-        self.uploads = Uploads()
-        self.jobs, self.files = Jobs[Job]("studies", MAX_STUDIES), Jobs[FileJob]("files", MAX_FILES)
+        self.uploads = UploadedRecords()
+        self.jobs, self.files = (
+            BackgroundJobs[StudyJob]("studies", MAX_STUDIES),
+            BackgroundJobs[BackgroundFileJob]("files", MAX_FILES),
+        )
         self._ready = Event()
         self._folders_received = asyncio.Semaphore(MAX_FOLDERS_RECEIVED)
         self._limiters: dict[int, anyio.CapacityLimiter] = {}
@@ -70,7 +79,7 @@ class Server:
         """Import the modules and prepare the engine before the first visitor needs them."""
         pulse = {"source": "pulse", "pulse": {"shape": "one_sine", "amplitude": 5.0, "period": 0.5}}
         content = {"structure": PRESETS[0]["structure"], "record": pulse, "free_vibration": 0.0}
-        state = State.model_validate(content | {"models": ["MDOF-S", "2DOF-S", "2DOF-C", "fixed"]})
+        state = PageState.model_validate(content | {"models": ["MDOF-S", "2DOF-S", "2DOF-C", "fixed"]})
         response_view(state, self.uploads)
         self._ready.set()
 
@@ -103,7 +112,7 @@ class Server:
 
     async def about(self, _: Request) -> Response:
         """Forms, presets, suites, pulses and limits, and whether the first answer is ready."""
-        return JSONResponse(await anyio.to_thread.run_sync(_about) | {"ready": self._ready.is_set()})
+        return JSONResponse(await anyio.to_thread.run_sync(_answer_about_page) | {"ready": self._ready.is_set()})
 
     async def suite(self, request: Request) -> Response:
         """Records of a suite."""
@@ -112,21 +121,21 @@ class Server:
 
     async def state(self, request: Request) -> Response:
         """Check the state of a link, and fill in its missing values."""
-        state = await state_of(request)
-        return JSONResponse(plain(state.model_dump(exclude_none=True)))
+        state = await state_in_request(request)
+        return JSONResponse(as_json_value(state.model_dump(exclude_none=True)))
 
     async def structure(self, request: Request) -> Response:
         """Structure tab."""
-        state = await state_of(request)
+        state = await state_in_request(request)
         return JSONResponse(await self.answer(lambda: structure_view(state.structure, state.ground)))
 
     async def record(self, request: Request) -> Response:
         """Earthquake tab."""
-        state = await state_of(request)
+        state = await state_in_request(request)
 
         def work() -> Any:
             try:
-                built = build(state.structure)
+                built = build_page_structure(state.structure)
             except Refusal:
                 built = None  # the record can be shown before the structure is complete
             return record_view(state, built, self.uploads)
@@ -135,24 +144,24 @@ class Server:
 
     async def response(self, request: Request) -> Response:
         """Response tab."""
-        state, content = await state_and_content(request)
+        state, content = await state_and_request_content(request)
         asked = content.get("focus"), content.get("element")
         return JSONResponse(await self.run(request, lambda: response_view(state, self.uploads, *asked)))
 
     async def upload(self, request: Request) -> Response:
         """A record from an uploaded file, or the vertical component of the record `under`; its name is in the query."""
-        body, query = await file_of(request), request.query_params
+        body, query = await uploaded_file_bytes(request), request.query_params
         name, units = query.get("name", "record"), query.get("units") or None
-        dt, under = step_of(query.get("dt", "")), query.get("under", "")
+        dt, under = sampling_step_in_query(query.get("dt", "")), query.get("under", "")
 
         def work() -> Any:
             if under:
-                motion = read_vertical(name, body, units, dt, self.uploads.get(under))
+                motion = read_uploaded_vertical(name, body, units, dt, self.uploads.get(under))
             else:
-                motion = read_record(name, body, units, dt)
+                motion = read_uploaded_record(name, body, units, dt)
             key = self.uploads.add(motion, body, f"{units} {dt} {motion.name} {under}")
             facts = {"samples": motion.acceleration.size, "pga": motion.pga, "pva": motion.pva}
-            return plain({"upload": key, "name": motion.name, **facts})
+            return as_json_value({"upload": key, "name": motion.name, **facts})
 
         return JSONResponse(await self.answer(work))
 
@@ -160,14 +169,14 @@ class Server:
         """Records from a folder."""
         async with self._folders_received:  # others wait with their files on their own machines
             body, query = (
-                await file_of(request, MAX_FOLDER_BYTES + MAX_LIST_BYTES, MAX_FOLDER_BYTES),
+                await uploaded_file_bytes(request, MAX_FOLDER_BYTES + MAX_LIST_BYTES, MAX_FOLDER_BYTES),
                 request.query_params,
             )
-            units, dt = query.get("units") or None, step_of(query.get("dt", ""), FIELD)
+            units, dt = query.get("units") or None, sampling_step_in_query(query.get("dt", ""), FIELD)
 
             def work() -> dict[str, Any]:
-                files = unpacked(body)
-                folder = read_folder(files, units, dt)
+                files = unpacked_record_files(body)
+                folder = read_record_folder(files, units, dt)
                 token = self.uploads.folders.add(folder, files, f"{units} {dt}")
                 return {"folder": token, **folder.report}
 
@@ -180,50 +189,56 @@ class Server:
 
     async def selection(self, request: Request) -> Response:
         """Records selected for a target spectrum."""
-        state = await state_of(request)
+        state = await state_in_request(request)
         return JSONResponse(
             await self.run(request, lambda: selection_view(state, self.uploads), MAX_SELECTIONS_COMPUTED)
         )
 
     async def factor(self, request: Request) -> Response:
         """Scale factor of the record for a target spectrum."""
-        state, content = await state_and_content(request)
-        return JSONResponse(await self.run(request, lambda: factor_view(state, self.uploads, content.get("period"))))
+        state, content = await state_and_request_content(request)
+        return JSONResponse(
+            await self.run(request, lambda: scale_factor_view(state, self.uploads, content.get("period")))
+        )
 
     async def matrices(self, request: Request) -> Response:
         """Matrices from a file."""
-        body, query = await file_of(request), request.query_params
+        body, query = await uploaded_file_bytes(request), request.query_params
         name, part = query.get("name", "matrices"), query.get("part", "")
-        return JSONResponse(await self.answer(lambda: read_matrices(name, body, part)))
+        return JSONResponse(await self.answer(lambda: read_uploaded_matrices(name, body, part)))
 
     async def download(self, request: Request) -> Response:
         """A file of the results on the page."""
-        state = await state_of(request)
+        state = await state_in_request(request)
         what = request.path_params["what"]
-        return file_answer(*await self.run(request, lambda: download(state, what, self.uploads), MAX_FILES_WRITTEN))
+        return file_download_answer(
+            *await self.run(request, lambda: download_file(state, what, self.uploads), MAX_FILES_WRITTEN)
+        )
 
     async def start(self, request: Request) -> Response:
         """Start a study."""
-        kind = _kind(request)
-        state = await state_of(request)
+        kind = _study_kind_in_request(request)
+        state = await state_in_request(request)
 
         def work() -> dict[str, str]:
-            return {"token": self.jobs.start(Job(study_plan(PAGES[kind].study(state, self.uploads), kind), kind))}
+            return {"token": self.jobs.start(StudyJob(study_plan(PAGES[kind].study(state, self.uploads), kind), kind))}
 
         return JSONResponse(await self.answer(work))
 
     async def progress(self, request: Request) -> Response:
         """Progress of a study, and its results so far for the limit states of the page."""
         kind, job = self._job(request)
-        state = await state_of(request)
+        state = await state_in_request(request)
         return JSONResponse(await self.answer(lambda: PAGES[kind].view(job, state)))
 
     async def study_file(self, request: Request) -> Response:
         """Table or figure of a study."""
         kind, job = self._job(request)
-        state = await state_of(request)
+        state = await state_in_request(request)
         what = request.path_params["what"]
-        return file_answer(*await self.answer(lambda: study_file(PAGES[kind], job, state, what), MAX_FILES_WRITTEN))
+        return file_download_answer(
+            *await self.answer(lambda: study_file(PAGES[kind], job, state, what), MAX_FILES_WRITTEN)
+        )
 
     async def cancel(self, request: Request) -> Response:
         """Stop a study."""
@@ -235,8 +250,10 @@ class Server:
         what = request.path_params["what"]
         if what != "animation":
             raise Refusal(f"There is no file named {what[:40]!r} to make.", 404)
-        state = await state_of(request)
-        return JSONResponse({"token": self.files.start(FileJob(lambda told: animation(state, self.uploads, told)))})
+        state = await state_in_request(request)
+        return JSONResponse(
+            {"token": self.files.start(BackgroundFileJob(lambda told: animation_file(state, self.uploads, told)))}
+        )
 
     async def making(self, request: Request) -> Response:
         """Progress of a file."""
@@ -250,30 +267,30 @@ class Server:
         if job.file is None:
             raise Refusal("The file is not finished.", 404)
         name, content = job.file
-        return file_answer(name, MEDIA_TYPES[Path(name).suffix], content)
+        return file_download_answer(name, MEDIA_TYPES[Path(name).suffix], content)
 
     async def unmake(self, request: Request) -> Response:
         """Stop to make a file."""
         self.files.cancel(request.path_params["token"])
         return JSONResponse({})
 
-    def _job(self, request: Request) -> tuple[str, Job]:
-        kind, job = _kind(request), self.jobs.get(request.path_params["token"])
+    def _job(self, request: Request) -> tuple[str, StudyJob]:
+        kind, job = _study_kind_in_request(request), self.jobs.get(request.path_params["token"])
         if job.kind != kind:
             raise Refusal(f"That study is not a {kind} study.", 404)
         return kind, job
 
 
-def _kind(request: Request) -> str:
+def _study_kind_in_request(request: Request) -> str:
     kind = request.path_params["kind"]
     if kind not in PAGES:
         raise Refusal(f"There is no study of the kind {kind[:40]!r}.", 404)
     return kind
 
 
-def create(host: str, names: Sequence[str]) -> Starlette:
+def create_page_application(host: str, names: Sequence[str]) -> Starlette:
     """Return the application for a host name; it answers to that and to some others (`KnownHosts`)."""
-    server = Server()
+    server = PageServer()
 
     @asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncGenerator[None]:
@@ -288,7 +305,7 @@ def create(host: str, names: Sequence[str]) -> Starlette:
         Middleware(GZipMiddleware, minimum_size=1000, compresslevel=3),
     ]
     routes = [
-        Route("/", _page),
+        Route("/", _page_html),
         Route("/api/about", server.about),
         Route("/api/suite/{name}", server.suite),
         Route("/api/state", server.state, methods=["POST"]),
@@ -313,20 +330,20 @@ def create(host: str, names: Sequence[str]) -> Starlette:
         Mount("/static", StaticFiles(directory=STATIC)),
     ]
     handlers: dict[Any, Any] = {
-        Refusal: _refused,
-        InputError: _unusable,
-        SolverError: _unusable,
-        ClientDisconnect: _gone,
-        Exception: _failed,
+        Refusal: _answer_to_refusal,
+        InputError: _answer_to_unusable_input,
+        SolverError: _answer_to_unusable_input,
+        ClientDisconnect: _answer_to_gone_client,
+        Exception: _answer_to_failure,
     }
     return Starlette(routes=routes, middleware=middleware, exception_handlers=handlers, lifespan=lifespan)
 
 
-async def _page(_: Request) -> Response:
+async def _page_html(_: Request) -> Response:
     return FileResponse(STATIC / "index.html")
 
 
-def _about() -> dict[str, Any]:
+def _answer_about_page() -> dict[str, Any]:
     usual = ("amplitude", "period")
     pulses = {name: {"title": each.title, "fields": (*usual, *each.fields)} for name, each in PULSES.items()}
     limits = {
@@ -339,32 +356,32 @@ def _about() -> dict[str, Any]:
         "runs": MAX_STUDY_RUNS,
         "elements": MAX_ELEMENTS,
     }
-    first = State.model_validate({"structure": PRESETS[0]["structure"]})
-    return forms() | {
-        "suites": suites(),
-        "measures": measures(),
-        "limit_states": limit_states(),
+    first = PageState.model_validate({"structure": PRESETS[0]["structure"]})
+    return forms_of_structures() | {
+        "suites": embedded_suite_names(),
+        "measures": measure_labels(),
+        "limit_states": limit_state_labels(),
         "pulses": pulses,
         "limits": limits,
-        "state": plain(first.model_dump(exclude_none=True)),
+        "state": as_json_value(first.model_dump(exclude_none=True)),
     }
 
 
-async def _refused(_: Request, error: Exception) -> Response:
+async def _answer_to_refusal(_: Request, error: Exception) -> Response:
     assert isinstance(error, Refusal)
     errors = {path[:200]: text[:MAX_MESSAGE_LETTERS] for path, text in error.errors.items()}
     return JSONResponse({"errors": errors}, status_code=error.status)
 
 
-async def _unusable(_: Request, error: Exception) -> Response:
+async def _answer_to_unusable_input(_: Request, error: Exception) -> Response:
     return JSONResponse({"errors": {"": str(error)[:MAX_MESSAGE_LETTERS]}}, status_code=422)
 
 
-async def _gone(_: Request, __: Exception) -> Response:
+async def _answer_to_gone_client(_: Request, __: Exception) -> Response:
     return Response(status_code=400)  # the visitor left during the request, and nobody reads this
 
 
-async def _failed(_: Request, error: Exception) -> Response:
+async def _answer_to_failure(_: Request, error: Exception) -> Response:
     logging.getLogger(__name__).error("Internal error", exc_info=error)
     message = "An internal error occurred; the log of the server has the details."
     return JSONResponse({"errors": {"": message}}, status_code=500)

@@ -8,7 +8,7 @@ from typing import Generic, TypeVar
 Cached = TypeVar("Cached")
 
 
-class Cache(Generic[Cached]):
+class LatestValuesCache(Generic[Cached]):
     """The values last stored or read, by their keys, as many as fit; safe for threads.
 
     Parameters

@@ -12,14 +12,14 @@ import tomli_w
 
 from rockflex.kinds import KINDS
 from rockflex.motion import GroundMotion, record_csv
-from rockflex.report.run import report_html
+from rockflex.report.run import run_report_as_html
 from rockflex.response import UNITS_OF_GROUND, UNITS_OF_HISTORY, Response, ground_columns
-from rockflex.web._earthquake import motion_of
-from rockflex.web._encoding import svg
-from rockflex.web._folders import packed_records
-from rockflex.web._jobs import Job
-from rockflex.web._refusal import Refusal, refusing
-from rockflex.web._response import check_energy, responses
+from rockflex.web._earthquake import chosen_motion
+from rockflex.web._encoding import figure_svg_bytes
+from rockflex.web._folders import records_as_zip
+from rockflex.web._jobs import StudyJob
+from rockflex.web._refusal import Refusal, errors_as_refusals
+from rockflex.web._response import check_work_of_energy, simulate_state_models
 from rockflex.web._script import response_script
 from rockflex.web._selection import (
     RECORDS_FOLDER,
@@ -27,51 +27,52 @@ from rockflex.web._selection import (
     UNPACK_HINT,
     VISITOR_FOLDER,
     WHOLE_FOLDER,
-    call_of,
     folder_suite,
-    options_of,
-    target_of,
+    selection_options_of_choice,
+    target_spectrum_call,
+    target_spectrum_of_choice,
 )
-from rockflex.web._state import State
+from rockflex.web._state import PageState
 from rockflex.web._studies import PAGES, StudyPage
-from rockflex.web._uploads import Uploads, clean_name
+from rockflex.web._uploads import UploadedRecords, clean_upload_name
 
 
-def _selection_table(state: State, uploads: Uploads) -> tuple[str, str]:
+def _selection_table_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
     return "selection.csv", SELECTIONS.of(state, uploads)[0].table().to_csv(index=False, lineterminator="\n")
 
 
-def _selection_spectra(state: State, uploads: Uploads) -> tuple[str, str]:
+def _selection_spectra_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
     return "spectra.csv", SELECTIONS.of(state, uploads)[0].spectra().to_csv(index=False, lineterminator="\n")
 
 
-def _selection_figure(state: State, uploads: Uploads) -> tuple[str, bytes]:
+def _selection_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes]:
     from rockflex.plot import plot_selection
 
-    return "selection.svg", svg(plot_selection(SELECTIONS.of(state, uploads)[0]))
+    return "selection.svg", figure_svg_bytes(plot_selection(SELECTIONS.of(state, uploads)[0]))
 
 
-def _selection_records(state: State, uploads: Uploads) -> tuple[str, bytes]:
-    return "scaled-records.zip", packed_records(SELECTIONS.of(state, uploads)[0].suite)
+def _selection_records_file(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes]:
+    return "scaled-records.zip", records_as_zip(SELECTIONS.of(state, uploads)[0].suite)
 
 
-def _selection_python(state: State, _: Uploads) -> tuple[str, str]:
+def _selection_python_file(state: PageState, _: UploadedRecords) -> tuple[str, str]:
     choice = state.target
-    name, values, named = call_of(choice)
+    name, values, named = target_spectrum_call(choice)
     if name == "read_target":
-        target = target_of(choice)
+        target = target_spectrum_of_choice(choice)
         name, named = "TargetSpectrum", {"damping_ratio": target.damping_ratio, "name": target.name}
         values = [target.periods.tolist(), target.sa.tolist()]
-    options = {key: value for key, value in options_of(choice).items() if value is not None}
+    options = {key: value for key, value in selection_options_of_choice(choice).items() if value is not None}
     given = (
         f"rf.read_suite({WHOLE_FOLDER!r})  # unpacked from {WHOLE_FOLDER}.zip, which the page saves: Your records (ZIP)"
     )
     lines = [
         "import rockflex as rf",
         "",
-        f"target = rf.{name}({_arguments(values, named)})",
+        f"target = rf.{name}({_python_arguments(values, named)})",
         f"suite = {given if choice.source == VISITOR_FOLDER else f'rf.load_suite({choice.source!r})'}",
-        f"chosen = suite.select(target, {_arguments([choice.count, (choice.shortest, choice.longest)], options)})",
+        "chosen = suite.select(target, "
+        f"{_python_arguments([choice.count, (choice.shortest, choice.longest)], options)})",
         "print(chosen)",
         "print(chosen.table().to_string(index=False))",
         'chosen.spectra().to_csv("spectra.csv", index=False)',
@@ -80,20 +81,20 @@ def _selection_python(state: State, _: Uploads) -> tuple[str, str]:
     return "selection.py", "\n".join([*lines, ""])
 
 
-def _arguments(values: list[Any], named: dict[str, Any]) -> str:
+def _python_arguments(values: list[Any], named: dict[str, Any]) -> str:
     return ", ".join([*map(repr, values), *(f"{name}={value!r}" for name, value in named.items())])
 
 
-SELECTION_FILES: dict[str, Callable[[State, Uploads], tuple[str, str | bytes]]] = {
-    "selection": _selection_table,
-    "selection-spectra": _selection_spectra,
-    "selection-figure": _selection_figure,
-    "selection-records": _selection_records,
-    "selection-python": _selection_python,
+SELECTION_FILES: dict[str, Callable[[PageState, UploadedRecords], tuple[str, str | bytes]]] = {
+    "selection": _selection_table_file,
+    "selection-spectra": _selection_spectra_file,
+    "selection-figure": _selection_figure_file,
+    "selection-records": _selection_records_file,
+    "selection-python": _selection_python_file,
 }
 
 
-def run_report(state: State, uploads: Uploads) -> tuple[str, str]:
+def run_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
     """Return the name and the text of the report of the runs of a state.
 
     Energies and friction that would keep a visitor waiting are left out, and the page says so.
@@ -103,28 +104,28 @@ def run_report(state: State, uploads: Uploads) -> tuple[str, str]:
     Refusal
         If a run cannot be made, or takes too long.
     """
-    built, acting, found = responses(state, uploads)
-    motion = motion_of(state.record, uploads)
+    built, acting, found = simulate_state_models(state, uploads)
+    motion = chosen_motion(state.record, uploads)
     times = "" if state.scale == 1.0 else f" × {state.scale:g}"
     name = state.structure.name or "Structure"
-    with refusing("models"):
-        text = report_html(
+    with errors_as_refusals("models"):
+        text = run_report_as_html(
             found,
             structure=built.structure,
             motion=motion,
             title=f"{name} under {motion.name or 'a ground motion'}{times}",
-            omitted=[response.model for response in found if _is_long(response, acting, state)],
+            omitted=[response.model for response in found if _is_long_run_report(response, acting, state)],
         )
     return "report.html", text
 
 
-def _is_long(response: Response, motion: GroundMotion, state: State) -> bool:
+def _is_long_run_report(response: Response, motion: GroundMotion, state: PageState) -> bool:
     """Whether energies and friction would take too long here, as they do on many stiff springs."""
-    assert response.history is not None  # asked for in `responses`
+    assert response.history is not None  # asked for in `simulate_state_models`
     if response.history.model.springs is not None:
         return True
     try:
-        check_energy(response, motion, state)
+        check_work_of_energy(response, motion, state)
     except Refusal:
         return True
     return False
@@ -135,7 +136,9 @@ FRAME_RATES = ((60.0, 25.0), (120.0, 12.5))
 ANIMATION_WIDTH = 800  # pixels
 
 
-def animation(state: State, uploads: Uploads, progress: Callable[[int, int], None]) -> tuple[str, bytes]:
+def animation_file(
+    state: PageState, uploads: UploadedRecords, progress: Callable[[int, int], None]
+) -> tuple[str, bytes]:
     """Return the name and the content of a GIF of the models that are shown, at their true speed.
 
     `progress` is called with the number of frames drawn and that of all.
@@ -146,9 +149,9 @@ def animation(state: State, uploads: Uploads, progress: Callable[[int, int], Non
         If a run cannot be made, or the animation would be too long.
     """
     from rockflex.plot import animate
-    from rockflex.plot._style import literal
+    from rockflex.plot._style import literal_text
 
-    built, motion, found = responses(state, uploads)
+    built, motion, found = simulate_state_models(state, uploads)
     seconds = max(response.end_time for response in found)
     rate = next((rate for longest, rate in FRAME_RATES if seconds <= longest), None)
     if rate is None:
@@ -157,8 +160,8 @@ def animation(state: State, uploads: Uploads, progress: Callable[[int, int], Non
             "shorter record or less free vibration, or take Python lines and add rf.animate(..., start=, stop=)."
         )
         raise Refusal({"free_vibration": message})
-    title = None if state.scale == 1.0 else f"{literal(motion.name)} × {state.scale:g}"
-    with TemporaryDirectory() as folder, refusing("models"):
+    title = None if state.scale == 1.0 else f"{literal_text(motion.name)} × {state.scale:g}"
+    with TemporaryDirectory() as folder, errors_as_refusals("models"):
         file = animate(
             found, Path(folder) / "animation.gif", structure=built.structure, frames_per_second=rate, title=title,
             width=ANIMATION_WIDTH, progress=progress,
@@ -179,7 +182,7 @@ MAX_HISTORY_ROWS = 250_000  # of a table of histories
 MAX_HISTORY_VALUES = 6_000_000  # of it: a bed has a column for every spring
 
 
-def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes]:
+def download_file(state: PageState, what: str, uploads: UploadedRecords) -> tuple[str, str, bytes]:
     """Return the name, the type and the content of a file.
 
     Parameters
@@ -199,7 +202,7 @@ def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes
     Refusal
         If there is no such file, or the state cannot be simulated.
     """
-    maker = _MAKERS.get(what) or _study_maker(what)
+    maker = _MAKERS.get(what) or _maker_of_study_file(what)
     if maker is None:
         raise Refusal(f"There is no download named {what[:40]!r}.", 404)
     name, content = maker(state, uploads)
@@ -207,33 +210,33 @@ def download(state: State, what: str, uploads: Uploads) -> tuple[str, str, bytes
     return name, MEDIA_TYPES[Path(name).suffix], data
 
 
-def _figure(state: State, uploads: Uploads) -> tuple[str, bytes]:
+def _history_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes]:
     from rockflex.plot import plot_history
 
-    return "response.svg", svg(plot_history(responses(state, uploads)[2]))
+    return "response.svg", figure_svg_bytes(plot_history(simulate_state_models(state, uploads)[2]))
 
 
-def _energy(state: State, uploads: Uploads) -> tuple[str, bytes]:
+def _energy_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes]:
     from rockflex.plot import plot_energy
 
-    _, motion, found = responses(state, uploads)
-    check_energy(found[0], motion, state)
-    return "energy.svg", svg(plot_energy(found[0]))
+    _, motion, found = simulate_state_models(state, uploads)
+    check_work_of_energy(found[0], motion, state)
+    return "energy.svg", figure_svg_bytes(plot_energy(found[0]))
 
 
-def _modes(state: State, _: Uploads) -> tuple[str, bytes]:
+def _mode_shapes_figure_file(state: PageState, _: UploadedRecords) -> tuple[str, bytes]:
     from rockflex.plot import plot_mode_shapes
-    from rockflex.web._structure import build
+    from rockflex.web._structure import build_page_structure
 
-    built = build(state.structure)
+    built = build_page_structure(state.structure)
     if built.modes is None:
         message = "the shapes of the modes are not known, so there is no figure of them."
         raise Refusal({"structure": message})
-    return "modes.svg", svg(plot_mode_shapes(built.modes, min(built.modes.n_modes, 10)))
+    return "modes.svg", figure_svg_bytes(plot_mode_shapes(built.modes, min(built.modes.n_modes, 10)))
 
 
-def _peaks(state: State, uploads: Uploads) -> tuple[str, str]:
-    _, motion, found = responses(state, uploads)
+def _peaks_table_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
+    _, motion, found = simulate_state_models(state, uploads)
     rows = [response.peaks() for response in found]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -242,10 +245,10 @@ def _peaks(state: State, uploads: Uploads) -> tuple[str, str]:
     return "peaks.csv", text.getvalue()
 
 
-def _histories(state: State, uploads: Uploads) -> tuple[str, str]:
+def _histories_table_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
     import pandas as pd
 
-    found = responses(state, uploads)[2]
+    found = simulate_state_models(state, uploads)[2]
     rows = sum(response.time.size for response in found)
     if rows > MAX_HISTORY_ROWS:
         message = (
@@ -253,7 +256,7 @@ def _histories(state: State, uploads: Uploads) -> tuple[str, str]:
             "Python lines."
         )
         raise Refusal({"models": message})
-    of_ground = [_of_ground(each) for each in found]
+    of_ground = [_ground_history_columns(each) for each in found]
     cells = sum(
         each.time.size * (len(UNITS_OF_HISTORY) + len(more)) for each, more in zip(found, of_ground, strict=True)
     )
@@ -267,19 +270,19 @@ def _histories(state: State, uploads: Uploads) -> tuple[str, str]:
     # The total displacement is missing where the height of the top is not known.
     columns = ({head: getattr(each, name, math.nan) for name, head in heads.items()} for each in found)
     tables = [
-        pd.DataFrame({"model": each.model, **part, **_of_elements(each), **more})
+        pd.DataFrame({"model": each.model, **part, **_element_history_columns(each), **more})
         for each, part, more in zip(found, columns, of_ground, strict=True)
     ]
     return "histories.csv", pd.concat(tables).to_csv(index=False, float_format="%.9g", na_rep="nan")
 
 
-def _of_ground(response: Response) -> dict[str, Any]:
+def _ground_history_columns(response: Response) -> dict[str, Any]:
     """Return the histories of a base that slides or is on springs, and of vertical motion, as columns."""
     columns = {} if response.history is None else ground_columns(response.history)
     return {f"{name} ({UNITS_OF_GROUND[name.rstrip('0123456789').rstrip('_')]})": columns[name] for name in columns}
 
 
-def _of_elements(response: Response) -> dict[str, Any]:
+def _element_history_columns(response: Response) -> dict[str, Any]:
     """Return the histories of the elements between the base and the ground as columns, counted from one."""
     columns: dict[str, Any] = {}
     parts = zip(response.element_elongation.T, response.element_force.T, strict=True)
@@ -289,31 +292,31 @@ def _of_elements(response: Response) -> dict[str, Any]:
     return columns
 
 
-def _record(state: State, uploads: Uploads) -> tuple[str, str]:
-    motion = motion_of(state.record, uploads)
-    return f"{_file_name(motion)}.csv", record_csv(motion)
+def _record_csv_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
+    motion = chosen_motion(state.record, uploads)
+    return f"{_motion_file_name(motion)}.csv", record_csv(motion)
 
 
-def _records(state: State, uploads: Uploads) -> tuple[str, bytes]:
-    return f"{WHOLE_FOLDER}.zip", packed_records(folder_suite(state, uploads))
+def _folder_records_file(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes]:
+    return f"{WHOLE_FOLDER}.zip", records_as_zip(folder_suite(state, uploads))
 
 
-def _file_name(motion: GroundMotion) -> str:
+def _motion_file_name(motion: GroundMotion) -> str:
     """The name of a motion as a file name; a unit in it, such as m/s, is not a path."""
-    return clean_name(motion.name.replace("/", "_"))
+    return clean_upload_name(motion.name.replace("/", "_"))
 
 
-def _structure_toml(state: State, _: Uploads) -> tuple[str, str]:
+def _structure_toml_file(state: PageState, _: UploadedRecords) -> tuple[str, str]:
     return "structure.toml", tomli_w.dumps(state.structure.model_dump(exclude_none=True))
 
 
-def _study(state: State, uploads: Uploads) -> tuple[str, str]:
+def _response_study_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
     """The runs of the Response tab as a cloud study of one record."""
-    motion = motion_of(state.record, uploads)
+    motion = chosen_motion(state.record, uploads)
     head = "# rockflex cloud study.toml --out study\n"
     records: dict[str, Any] = {"suites": [state.record.suite], "include": [motion.name]}
     if state.record.source != "suite":
-        name = f"{_file_name(motion)}.csv"
+        name = f"{_motion_file_name(motion)}.csv"
         head += f'# Put the record, which the page saves as "{name}", into the folder records next to this file.\n'
         records = {"folder": "records"}
     content: dict[str, Any] = {
@@ -328,35 +331,35 @@ def _study(state: State, uploads: Uploads) -> tuple[str, str]:
     return "study.toml", head + tomli_w.dumps(content | {"records": records, "structures": [structure]})
 
 
-def _python(state: State, uploads: Uploads) -> tuple[str, str]:
+def _response_python_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
     own = state.record.source in ("upload", "folder")
-    name = _file_name(motion_of(state.record, uploads)) if own else ""
+    name = _motion_file_name(chosen_motion(state.record, uploads)) if own else ""
     return "response.py", response_script(state, name)
 
 
-def _study_maker(what: str) -> Callable[[State, Uploads], tuple[str, str | bytes]] | None:
+def _maker_of_study_file(what: str) -> Callable[[PageState, UploadedRecords], tuple[str, str | bytes]] | None:
     """Return the maker of a file of a study, such as "cloud-study" or "design-python"; None if there is none."""
     kind, _, form = what.partition("-")
     page = PAGES.get(kind)
     if page is None:
         return None
 
-    def toml(state: State, uploads: Uploads) -> tuple[str, str]:
+    def toml(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
         study = page.study(state, uploads)
         head = f"# rockflex {KINDS[kind].command} {kind}.toml --out study\n"
         head += UNPACK_HINT if study.records.folder else ""
         return f"{kind}.toml", head + tomli_w.dumps(study.model_dump(exclude_none=True))
 
-    def python(state: State, uploads: Uploads) -> tuple[str, str]:
+    def python(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
         return f"{kind}.py", page.script(state, page.study(state, uploads))
 
-    def records(state: State, uploads: Uploads) -> tuple[str, bytes]:
-        return f"{RECORDS_FOLDER}.zip", packed_records(page.study(state, uploads).records.motions)
+    def records(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes]:
+        return f"{RECORDS_FOLDER}.zip", records_as_zip(page.study(state, uploads).records.motions)
 
     return {"study": toml, "python": python, "records": records}.get(form)
 
 
-def study_file(page: StudyPage, job: Job, state: State, what: str) -> tuple[str, str, bytes]:
+def study_file(page: StudyPage, job: StudyJob, state: PageState, what: str) -> tuple[str, str, bytes]:
     """Return the name, the type and the content of the table or the figure of a study, from its runs so far.
 
     Raises
@@ -366,20 +369,20 @@ def study_file(page: StudyPage, job: Job, state: State, what: str) -> tuple[str,
     """
     if what == "table":
         return f"{page.table_name}.csv", "text/csv", page.table(job, state).to_csv(index=False).encode()
-    with refusing(""):
-        return f"{page.figure_name}.svg", "image/svg+xml", svg(page.figure(job, state))
+    with errors_as_refusals(""):
+        return f"{page.figure_name}.svg", "image/svg+xml", figure_svg_bytes(page.figure(job, state))
 
 
 _MAKERS: dict[str, Any] = SELECTION_FILES | {
-    "figure": _figure,
-    "energy": _energy,
-    "report": run_report,
-    "modes": _modes,
-    "peaks": _peaks,
-    "histories": _histories,
-    "record": _record,
-    "records": _records,
-    "structure": _structure_toml,
-    "study": _study,
-    "python": _python,
+    "figure": _history_figure_file,
+    "energy": _energy_figure_file,
+    "report": run_report_file,
+    "modes": _mode_shapes_figure_file,
+    "peaks": _peaks_table_file,
+    "histories": _histories_table_file,
+    "record": _record_csv_file,
+    "records": _folder_records_file,
+    "structure": _structure_toml_file,
+    "study": _response_study_file,
+    "python": _response_python_file,
 }

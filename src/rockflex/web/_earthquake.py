@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rockflex._json import plain
+from rockflex._json import as_json_value
 from rockflex.motion import (
     MEASURES,
     GroundMotion,
-    Measure,
-    Shaking,
+    IntensityMeasure,
+    MeasureInput,
     Suite,
     half_sine_pulse,
     load_suite,
@@ -25,18 +25,18 @@ from rockflex.motion import (
     suite_names,
     vertical_measures,
 )
-from rockflex.web._encoding import envelope, pack
-from rockflex.web._refusal import refusing
-from rockflex.web._state import PulseChoice, RecordChoice, State
-from rockflex.web._structure import Built
-from rockflex.web._uploads import Uploads
+from rockflex.web._encoding import envelope_indices, pack_array_as_base64
+from rockflex.web._refusal import errors_as_refusals
+from rockflex.web._state import PageState, PulseChoice, RecordChoice
+from rockflex.web._structure import BuiltStructure
+from rockflex.web._uploads import UploadedRecords
 
 MAX_THUMBNAIL_POINTS = 120  # points of a thumbnail
 MAX_CURVE_POINTS = 2000  # of a curve
 PERIODS = np.geomspace(0.05, 5.0, 90)
 
 
-class Pulse(NamedTuple):
+class PulseChoices(NamedTuple):
     """A pulse: its title, the function that makes it, and the arguments besides amplitude and period."""
 
     title: str
@@ -50,28 +50,28 @@ class Pulse(NamedTuple):
 
 
 PULSES = {
-    "ricker_antisymmetric": Pulse("Ricker, antisymmetric", ricker_pulse),
-    "ricker_symmetric": Pulse("Ricker, symmetric", ricker_pulse, fixed={"kind": "symmetric"}),
-    "one_sine": Pulse("One sine", one_sine_pulse),
-    "one_cosine": Pulse("One cosine", one_cosine_pulse),
-    "half_sine": Pulse("Half a sine", half_sine_pulse),
-    "rectangular": Pulse("Rectangle", rectangular_pulse),
-    "mavroeidis": Pulse("Mavroeidis–Papageorgiou (velocity)", mavroeidis_papageorgiou_pulse, ("gamma", "nu")),
+    "ricker_antisymmetric": PulseChoices("Ricker, antisymmetric", ricker_pulse),
+    "ricker_symmetric": PulseChoices("Ricker, symmetric", ricker_pulse, fixed={"kind": "symmetric"}),
+    "one_sine": PulseChoices("One sine", one_sine_pulse),
+    "one_cosine": PulseChoices("One cosine", one_cosine_pulse),
+    "half_sine": PulseChoices("Half a sine", half_sine_pulse),
+    "rectangular": PulseChoices("Rectangle", rectangular_pulse),
+    "mavroeidis": PulseChoices("Mavroeidis–Papageorgiou (velocity)", mavroeidis_papageorgiou_pulse, ("gamma", "nu")),
 }
 
 
-def suites() -> tuple[str, ...]:
+def embedded_suite_names() -> tuple[str, ...]:
     """Return the names of the embedded suites."""
     return tuple(suite_names())
 
 
 @lru_cache(maxsize=8)
-def _suite(name: str) -> Suite:
-    with refusing("record.suite"):
+def _loaded_suite(name: str) -> Suite:
+    with errors_as_refusals("record.suite"):
         return load_suite(name)
 
 
-def motion_of(choice: RecordChoice, uploads: Uploads) -> GroundMotion:
+def chosen_motion(choice: RecordChoice, uploads: UploadedRecords) -> GroundMotion:
     """Return the chosen record, without the scale factor.
 
     Raises
@@ -82,17 +82,17 @@ def motion_of(choice: RecordChoice, uploads: Uploads) -> GroundMotion:
     if choice.source == "upload":
         return uploads.get(choice.upload)
     if choice.source == "folder":
-        return folder_motion(choice, uploads)
+        return chosen_folder_motion(choice, uploads)
     if choice.source == "pulse":
         pulse = PULSES[choice.pulse.shape]
-        with refusing("record.pulse"):
+        with errors_as_refusals("record.pulse"):
             return pulse.maker(choice.pulse.amplitude, choice.pulse.period, **pulse.options(choice.pulse))
-    suite = _suite(choice.suite)
-    with refusing("record.name"):
+    suite = _loaded_suite(choice.suite)
+    with errors_as_refusals("record.name"):
         return suite[choice.name]
 
 
-def folder_motion(choice: RecordChoice, uploads: Uploads) -> GroundMotion:
+def chosen_folder_motion(choice: RecordChoice, uploads: UploadedRecords) -> GroundMotion:
     """Return the chosen record of the folder, with its vertical component if that is wanted and there.
 
     Raises
@@ -101,7 +101,7 @@ def folder_motion(choice: RecordChoice, uploads: Uploads) -> GroundMotion:
         If the server does not have the folder, or it has no such record.
     """
     suite = uploads.folders.get(choice.folder).suite(vertical=choice.vertical)
-    with refusing("record.folder"):
+    with errors_as_refusals("record.folder"):
         return suite[choice.given]
 
 
@@ -114,11 +114,11 @@ def suite_view(name: str) -> dict[str, Any]:
     Refusal
         If the suite is unknown.
     """
-    return plain({"name": name, "records": [_thumbnail(motion) for motion in _suite(name)]})
+    return as_json_value({"name": name, "records": [_record_thumbnail(motion) for motion in _loaded_suite(name)]})
 
 
-def _thumbnail(motion: GroundMotion) -> dict[str, Any]:
-    kept = envelope([motion.acceleration], MAX_THUMBNAIL_POINTS)
+def _record_thumbnail(motion: GroundMotion) -> dict[str, Any]:
+    kept = envelope_indices([motion.acceleration], MAX_THUMBNAIL_POINTS)
     info = motion.metadata
     event = " ".join(str(part) for part in (info.event, info.year) if part is not None) if info else ""
     return {
@@ -129,21 +129,24 @@ def _thumbnail(motion: GroundMotion) -> dict[str, Any]:
         "pga": motion.pga,
         "pgv": motion.pgv,
         "duration": motion.duration,
-        "t": pack(motion.time[kept] / motion.duration),
-        "a": pack(motion.acceleration[kept] / motion.pga),
+        "t": pack_array_as_base64(motion.time[kept] / motion.duration),
+        "a": pack_array_as_base64(motion.acceleration[kept] / motion.pga),
     }
 
 
-def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str, Any]:
+def record_view(state: PageState, built: BuiltStructure | None, uploads: UploadedRecords) -> dict[str, Any]:
     """Return the history, the spectrum and the measures of the scaled record."""
-    motion = motion_of(state.record, uploads).scaled(state.scale)
+    motion = chosen_motion(state.record, uploads).scaled(state.scale)
     velocity, displacement = motion.velocity, motion.displacement
     upwards = [] if motion.vertical is None else [motion.vertical]
-    kept = envelope([motion.acceleration, velocity, displacement, *upwards], MAX_CURVE_POINTS)
+    kept = envelope_indices([motion.acceleration, velocity, displacement, *upwards], MAX_CURVE_POINTS)
     spectrum = motion.spectrum(PERIODS)
     measures: list[dict[str, Any]] = [
-        *(_fact(measure, measure.of(Shaking(motion)), measure.words) for measure in record_measures()),
-        *(_fact(measure, measure.of(Shaking(motion)), measure.words) for measure in _vertical(motion)),
+        *(_measure_fact(measure, measure.of(MeasureInput(motion)), measure.words) for measure in record_measures()),
+        *(
+            _measure_fact(measure, measure.of(MeasureInput(motion)), measure.words)
+            for measure in _vertical_measures_of_motion(motion)
+        ),
         {"name": "Duration", "value": motion.duration, "unit": "s", "help": "length of the record"},
         {"name": "Step", "value": motion.dt, "unit": "s", "help": "sampling step"},
     ]
@@ -152,36 +155,36 @@ def record_view(state: State, built: Built | None, uploads: Uploads) -> dict[str
         first = 2.0 * np.pi / float(built.properties.omega[0])
         zeta, of_mode = float(built.properties.zeta[0]), MEASURES["sa_t1"]
         measures += [
-            _fact(of_mode, motion.sa(first, zeta), f"{of_mode.words}, {zeta:.3g}, and its first period"),
-            _fact(MEASURES["sa_t1_5"], motion.sa(first, 0.05), MEASURES["sa_t1_5"].words),
+            _measure_fact(of_mode, motion.sa(first, zeta), f"{of_mode.words}, {zeta:.3g}, and its first period"),
+            _measure_fact(MEASURES["sa_t1_5"], motion.sa(first, 0.05), MEASURES["sa_t1_5"].words),
         ]
-    return plain(
+    return as_json_value(
         {
             "name": motion.name,
-            "title": _title(motion),
+            "title": _record_title(motion),
             "measures": measures,
-            "t": pack(motion.time[kept]),
-            "acceleration": pack(motion.acceleration[kept]),
-            "vertical": pack(upwards[0][kept]) if upwards else None,
-            "velocity": pack(velocity[kept]),
-            "displacement": pack(displacement[kept]),
-            "periods": pack(PERIODS),
-            "sa": pack(spectrum.sa),
+            "t": pack_array_as_base64(motion.time[kept]),
+            "acceleration": pack_array_as_base64(motion.acceleration[kept]),
+            "vertical": pack_array_as_base64(upwards[0][kept]) if upwards else None,
+            "velocity": pack_array_as_base64(velocity[kept]),
+            "displacement": pack_array_as_base64(displacement[kept]),
+            "periods": pack_array_as_base64(PERIODS),
+            "sa": pack_array_as_base64(spectrum.sa),
             "first_period": first,
             "lifting": None if built is None else built.properties.uplift_acceleration,
         }
     )
 
 
-def _vertical(motion: GroundMotion) -> list[Measure]:
+def _vertical_measures_of_motion(motion: GroundMotion) -> list[IntensityMeasure]:
     return [] if motion.vertical is None else vertical_measures()
 
 
-def _fact(measure: Measure, value: float, words: str) -> dict[str, Any]:
+def _measure_fact(measure: IntensityMeasure, value: float, words: str) -> dict[str, Any]:
     return {"name": measure.head, "value": value, "unit": measure.unit, "help": words}
 
 
-def _title(motion: GroundMotion) -> str:
+def _record_title(motion: GroundMotion) -> str:
     info = motion.metadata
     if info is None:
         return ""

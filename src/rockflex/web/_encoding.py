@@ -12,13 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._arrays import Array
 
 
-def pack(values: ArrayLike) -> str:
+def pack_array_as_base64(values: ArrayLike) -> str:
     """Encode an array as base64 of little-endian single precision, which is enough for a figure."""
     with np.errstate(over="ignore"):
         return base64.b64encode(np.asarray(values, dtype="<f4").tobytes()).decode()
 
 
-def envelope(curves: list[Array], most: int) -> NDArray[np.intp]:
+def envelope_indices(curves: list[Array], most: int) -> NDArray[np.intp]:
     """Return the indices of about `most` points that include the extremes of every curve in every interval.
 
     Parameters
@@ -46,7 +46,7 @@ def envelope(curves: list[Array], most: int) -> NDArray[np.intp]:
     return np.unique(np.concatenate(kept))
 
 
-def svg(figure: Any) -> bytes:
+def figure_svg_bytes(figure: Any) -> bytes:
     """Return a figure as SVG."""
     from rockflex.plot import save_figure
 

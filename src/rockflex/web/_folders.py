@@ -13,20 +13,20 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from rockflex._errors import InputError, RecordWarning
-from rockflex._json import plain
-from rockflex.motion import GroundMotion, RecordSurvey, Suite, SurveyEntry, record_csv, survey_plain
-from rockflex.motion._record_info import unique_names
-from rockflex.web._cache import Cache
+from rockflex._json import as_json_value
+from rockflex.motion import GroundMotion, RecordSurvey, Suite, SurveyEntry, record_csv, survey_without_obspy
+from rockflex.motion._record_info import unique_record_names
+from rockflex.web._cache import LatestValuesCache
 from rockflex.web._limits import (
     MAX_CACHED_SAMPLES,
     MAX_FILE_BYTES,
     MAX_FOLDER_BYTES,
     MAX_FOLDER_FILES,
     MAX_FOLDER_SAMPLES,
-    check_motion,
+    check_record_length,
 )
 from rockflex.web._refusal import Refusal
-from rockflex.web._state import parse_json
+from rockflex.web._state import parse_page_json
 
 FIELD = "record.folder"  # of the messages
 MAX_STEM_LETTERS, MAX_SUFFIX_LETTERS = 70, 12  # letters of a name that are kept
@@ -38,7 +38,7 @@ DAMAGED = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, Runtim
 
 
 @dataclass(frozen=True)
-class SentFile:
+class SentRecordFile:
     """A file of a visitor; without content if it is too large, with its size in bytes."""
 
     name: str
@@ -46,7 +46,7 @@ class SentFile:
     size: int
 
 
-def unpacked(body: bytes) -> list[SentFile]:
+def unpacked_record_files(body: bytes) -> list[SentRecordFile]:
     """Return the files in a request.
 
     Parameters
@@ -62,43 +62,43 @@ def unpacked(body: bytes) -> list[SentFile]:
         or an archive cannot be unpacked.
     """
     paths, found, work = list[str](), list[tuple[bytes | None, int]](), 0
-    for path, content, size in _listed(body):
+    for path, content, size in _files_in_list(body):
         if content is not None and path.lower().endswith(".zip"):
-            inside = _archived(path, content, MAX_FOLDER_BYTES - work)
+            inside = _files_in_archive(path, content, MAX_FOLDER_BYTES - work)
         else:
             inside = [(path, content, size)]
         for name, each, length in inside:
             paths.append(name)
             found.append((each, length))
-            work += _unpacked_bytes(each)
+            work += _unpacked_size(each)
             if work > MAX_FOLDER_BYTES:
-                raise _too_large()
+                raise _folder_too_large()
             if len(paths) > MAX_FOLDER_FILES:
-                raise _refused(
+                raise _folder_refusal(
                     f"there are more than {MAX_FOLDER_FILES} files, which is more than the page takes. Choose fewer."
                 )
     if not paths:
-        raise _refused("there is no file in it.")
-    return [SentFile(name, *each) for name, each in zip(flat_names(paths), found, strict=True)]
+        raise _folder_refusal("there is no file in it.")
+    return [SentRecordFile(name, *each) for name, each in zip(flat_file_names(paths), found, strict=True)]
 
 
-def _listed(body: bytes) -> Iterator[tuple[str, bytes | None, int]]:
+def _files_in_list(body: bytes) -> Iterator[tuple[str, bytes | None, int]]:
     head, end, _ = body[:MAX_LIST_BYTES].partition(b"\n")
     if not end:
         raise Refusal("The list of files does not end.", 400)
-    place, entries = len(head) + 1, parse_json(head)
+    place, entries = len(head) + 1, parse_page_json(head)
     for entry in entries if isinstance(entries, list) else [None]:
-        name, size, sent = _listed_file(entry)
+        name, size, sent = _listed_file_entry(entry)
         content = body[place : place + size] if sent else None
         if content is not None and len(content) < size:
             raise Refusal("The request ends before its files do.", 400)
-        yield _checked(name), content, size
+        yield _checked_folder_path(name), content, size
         place += size if sent else 0
     if place < len(body):
         raise Refusal("The request holds more than the files of its list.", 400)
 
 
-def _listed_file(entry: Any) -> tuple[str, int, bool]:
+def _listed_file_entry(entry: Any) -> tuple[str, int, bool]:
     known = isinstance(entry, dict) and isinstance(entry.get("name"), str) and type(entry.get("size")) is int
     if not known or entry["size"] < 0 or not isinstance(entry.get("sent"), bool):
         raise Refusal("A list of files with name, size and sent is expected before their contents.", 400)
@@ -106,22 +106,22 @@ def _listed_file(entry: Any) -> tuple[str, int, bool]:
     return entry["name"], entry["size"], entry["sent"] and not large
 
 
-def _archived(path: str, content: bytes, room: int) -> Iterator[tuple[str, bytes | None, int]]:
+def _files_in_archive(path: str, content: bytes, room: int) -> Iterator[tuple[str, bytes | None, int]]:
     """Yield the files of an archive, of which no more than `room` bytes are unpacked."""
-    shown = flat_names([path])[0]
+    shown = flat_file_names([path])[0]
     if content.count(ZIP_ENTRY) > 2 * MAX_FOLDER_FILES:  # opening it would take an object for each
-        raise _refused(
+        raise _folder_refusal(
             f"{shown} holds more than {MAX_FOLDER_FILES} files, which is more than the page takes. Pack fewer."
         )
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             entries = [each for each in archive.infolist() if not each.is_dir()]
             if len(entries) > MAX_FOLDER_FILES:
-                raise _refused(
+                raise _folder_refusal(
                     f"{shown} holds {len(entries)} files, but the page takes {MAX_FOLDER_FILES} at most. Pack fewer."
                 )
             for each in entries:
-                inner = _checked(each.filename)
+                inner = _checked_folder_path(each.filename)
                 if each.file_size > MAX_FILE_BYTES:
                     yield inner, None, each.file_size
                     continue
@@ -129,15 +129,15 @@ def _archived(path: str, content: bytes, room: int) -> Iterator[tuple[str, bytes
                     data = file.read(min(MAX_FILE_BYTES, room) + 1)  # whatever the archive says of its size
                 room -= len(data)
                 if room < 0:
-                    raise _too_large()
+                    raise _folder_too_large()
                 yield (inner, data, len(data)) if len(data) <= MAX_FILE_BYTES else (inner, None, len(data))
     except DAMAGED as error:
         locked = isinstance(error, RuntimeError) and "password" in str(error)
         reason = "is protected by a password" if locked else "is a damaged archive, or packed in an unknown way"
-        raise _refused(f"{shown} {reason}. Unpack it, and give the folder instead.") from error
+        raise _folder_refusal(f"{shown} {reason}. Unpack it, and give the folder instead.") from error
 
 
-def _unpacked_bytes(content: bytes | None) -> int:
+def _unpacked_size(content: bytes | None) -> int:
     """Return the number of bytes read from a file; a workbook is an archive, so its unpacked size counts."""
     if content is None or not content.startswith(b"PK"):
         return len(content or b"")
@@ -148,7 +148,7 @@ def _unpacked_bytes(content: bytes | None) -> int:
         return len(content)
 
 
-def _checked(path: str) -> str:
+def _checked_folder_path(path: str) -> str:
     """Return a path within the folder of a visitor.
 
     Raises
@@ -158,19 +158,21 @@ def _checked(path: str) -> str:
     """
     parts = re.split(r"[/\\]", path)
     if ".." in parts or not parts[0] or re.match(r"[A-Za-z]:", path):
-        raise _refused(f"the name {path[:80]!r} points out of its folder. Pack the records anew, without such names.")
+        raise _folder_refusal(
+            f"the name {path[:80]!r} points out of its folder. Pack the records anew, without such names."
+        )
     return path
 
 
-def flat_names(paths: Iterable[str]) -> list[str]:
+def flat_file_names(paths: Iterable[str]) -> list[str]:
     """Return a different name for each path: its last part, with its folders only where two are equal."""
     names: list[str] = []
     used: set[str] = set()
     for path in paths:
-        parts = [part for each in re.split(r"[/\\]", path) if (part := _clean(each))] or ["file"]
-        name = _short(parts[-1])
+        parts = [part for each in re.split(r"[/\\]", path) if (part := _clean_path_part(each))] or ["file"]
+        name = _short_file_name(parts[-1])
         if name.casefold() in used:
-            name = _short("_".join(parts[1:] if len(parts) > 2 else parts))
+            name = _short_file_name("_".join(parts[1:] if len(parts) > 2 else parts))
         plain, count = PurePosixPath(name), 1
         while name.casefold() in used:
             count += 1
@@ -180,35 +182,35 @@ def flat_names(paths: Iterable[str]) -> list[str]:
     return names
 
 
-def _clean(part: str) -> str:
+def _clean_path_part(part: str) -> str:
     text = FORBIDDEN.sub("_", part.encode("utf-8", "replace").decode()).strip()
     return "" if text in (".", "..") else text
 
 
-def _short(name: str) -> str:
+def _short_file_name(name: str) -> str:
     path = PurePosixPath(name)
     stem = path.stem[:MAX_STEM_LETTERS].encode()[:MAX_NAME_BYTES].decode("utf-8", "ignore")
     return f"{stem}{path.suffix[:MAX_SUFFIX_LETTERS]}"
 
 
-def _too_large() -> Refusal:
+def _folder_too_large() -> Refusal:
     message = (
         f"the files have more than {MAX_FOLDER_BYTES / 1e6:g} MB, which is more than the page takes. Choose fewer."
     )
-    return _refused(message, 413)
+    return _folder_refusal(message, 413)
 
 
-def _refused(message: str, status: int = 422) -> Refusal:
+def _folder_refusal(message: str, status: int = 422) -> Refusal:
     return Refusal({FIELD: message}, status)
 
 
 ZIP_DATE = (1980, 1, 1, 0, 0, 0)  # the same records give the same archive
 
 
-def packed_records(motions: Iterable[GroundMotion]) -> bytes:
+def records_as_zip(motions: Iterable[GroundMotion]) -> bytes:
     """Return a ZIP archive with a CSV file of each motion and its metadata."""
     members = list(motions)
-    names = flat_names(f"{motion.name.replace('/', '_')}.csv" for motion in members)
+    names = flat_file_names(f"{motion.name.replace('/', '_')}.csv" for motion in members)
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED, compresslevel=3) as archive:
         for name, motion in zip(names, members, strict=True):
@@ -224,7 +226,7 @@ NO_FOLDER = "no records were given yet. Choose a folder on the Earthquake tab fi
 
 
 @dataclass(frozen=True, eq=False)
-class Folder:
+class RecordFolder:
     """Records of a visitor, and the report of them on the page.
 
     Attributes
@@ -250,16 +252,16 @@ class Folder:
         return self.both if vertical else self.along
 
 
-class Folders:
+class RecordFolders:
     """Sets of records by the checksum of their files; the latest ones of all visitors, as far as memory is set aside.
 
     The checksum is known only to those who have the files or a link with it.
     """
 
     def __init__(self) -> None:
-        self._folders = Cache[Folder](lambda: MAX_CACHED_SAMPLES, lambda folder: folder.samples)
+        self._folders = LatestValuesCache[RecordFolder](lambda: MAX_CACHED_SAMPLES, lambda folder: folder.samples)
 
-    def add(self, folder: Folder, files: Sequence[SentFile], options: str) -> str:
+    def add(self, folder: RecordFolder, files: Sequence[SentRecordFile], options: str) -> str:
         """Keep a set, and return its checksum."""
         digest = hashlib.sha256(options.encode())
         for each in sorted(files, key=lambda file: file.name):
@@ -270,7 +272,7 @@ class Folders:
         self._folders.put(token, folder)
         return token
 
-    def get(self, token: str) -> Folder:
+    def get(self, token: str) -> RecordFolder:
         """Return a set.
 
         Raises
@@ -284,7 +286,7 @@ class Folders:
         return found
 
 
-def read_folder(files: Sequence[SentFile], units: str | None, dt: float | None) -> Folder:
+def read_record_folder(files: Sequence[SentRecordFile], units: str | None, dt: float | None) -> RecordFolder:
     """Read the files of a visitor, as `survey_records` does, without ObsPy.
 
     Raises
@@ -303,32 +305,36 @@ def read_folder(files: Sequence[SentFile], units: str | None, dt: float | None) 
     ]
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", RecordWarning)
-        along, both = _surveys(files, units, dt)
+        along, both = _folder_surveys(files, units, dt)
     samples = sum(motion.acceleration.size for motion in along.motions)
     if samples > MAX_FOLDER_SAMPLES:
         message = f"the records have {samples} samples together, but the page takes {MAX_FOLDER_SAMPLES} at most."
         raise Refusal({FIELD: f"{message} Choose fewer."}, 413)
-    refused = {place: text for place, motion in enumerate(along.motions) if (text := _too_long(motion))}
+    refused = {place: text for place, motion in enumerate(along.motions) if (text := _record_too_long_text(motion))}
     kept = [place for place in range(len(along.motions)) if place not in refused]
     if not kept:
-        raise Refusal({FIELD: _none_of([*large, *along.entries], refused)})
-    names = unique_names([motion.name for motion in along.motions])
+        raise Refusal({FIELD: _no_record_in_folder_text([*large, *along.entries], refused)})
+    names = unique_record_names([motion.name for motion in along.motions])
     suites = [Suite(replace(each.motions[place], name=names[place]) for place in kept) for each in (along, both)]
-    report = _report(along, both, names, refused)
-    report["entries"] = sorted([*(_entry(each) for each in large), *report["entries"]], key=lambda entry: entry["file"])
+    report = _folder_report(along, both, names, refused)
+    report["entries"] = sorted(
+        [*(_folder_report_entry(each) for each in large), *report["entries"]], key=lambda entry: entry["file"]
+    )
     report["notes"] = sorted({str(warning.message) for warning in caught})
     paired = any(motion.vertical is not None for motion in both.motions)
-    return Folder(plain(report), suites[0], suites[1] if paired else suites[0])
+    return RecordFolder(as_json_value(report), suites[0], suites[1] if paired else suites[0])
 
 
-def _surveys(files: Sequence[SentFile], units: str | None, dt: float | None) -> tuple[RecordSurvey, RecordSurvey]:
+def _folder_surveys(
+    files: Sequence[SentRecordFile], units: str | None, dt: float | None
+) -> tuple[RecordSurvey, RecordSurvey]:
     try:
         with TemporaryDirectory() as folder:
             for each in files:
                 if each.content is not None:
                     (Path(folder) / each.name).write_bytes(each.content)
             try:
-                return survey_plain(Path(folder), units, dt)
+                return survey_without_obspy(Path(folder), units, dt)
             except InputError as error:
                 raise Refusal({FIELD: str(error).replace(folder, "the folder")}) from error
     except OSError as error:
@@ -336,20 +342,22 @@ def _surveys(files: Sequence[SentFile], units: str | None, dt: float | None) -> 
         raise Refusal({FIELD: message}, 503) from error
 
 
-def _too_long(motion: GroundMotion) -> str:
+def _record_too_long_text(motion: GroundMotion) -> str:
     try:
-        check_motion(motion, "")
+        check_record_length(motion, "")
     except Refusal as error:
         return error.errors[""]
     return ""
 
 
-def _none_of(entries: Sequence[SurveyEntry], refused: dict[int, str]) -> str:
+def _no_record_in_folder_text(entries: Sequence[SurveyEntry], refused: dict[int, str]) -> str:
     first = next(iter(refused.values()), "") or next((f"{e.file}: {e.reason}" for e in entries if e.reason), "")
     return f"none of the files is a horizontal record that can be used. {first}"
 
 
-def _report(along: RecordSurvey, both: RecordSurvey, names: list[str], refused: dict[int, str]) -> dict[str, Any]:
+def _folder_report(
+    along: RecordSurvey, both: RecordSurvey, names: list[str], refused: dict[int, str]
+) -> dict[str, Any]:
     """Return the entries of a survey with the stations of its records.
 
     Both surveys have the same motions and entries in the same order; they differ in what they say of vertical ones.
@@ -358,7 +366,7 @@ def _report(along: RecordSurvey, both: RecordSurvey, names: list[str], refused: 
     entries: list[dict[str, Any]] = []
     place = 0
     for entry, paired in zip(along.entries, both.entries, strict=True):
-        found = _entry(entry)
+        found = _folder_report_entry(entry)
         if entry.taken:  # a horizontal one: without "pair" a survey takes no others
             motion, upright = along.motions[place], both.motions[place].vertical is not None
             station = station_of.get(motion.name)
@@ -385,7 +393,7 @@ def _report(along: RecordSurvey, both: RecordSurvey, names: list[str], refused: 
     return {"entries": entries, "stations": stations}
 
 
-def _entry(entry: SurveyEntry) -> dict[str, Any]:
+def _folder_report_entry(entry: SurveyEntry) -> dict[str, Any]:
     facts = ("file", "taken", "reason", "name", "format", "station", "component", "dt", "pga", "magnitude", "vs30")
     found: dict[str, Any] = {name: getattr(entry, name) for name in facts}
     return found | {

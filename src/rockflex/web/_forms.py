@@ -8,12 +8,21 @@ from typing import Any, Literal, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
-from rockflex._json import plain
-from rockflex.structure.file import ELEMENTS, KINDS, PartTable, StructureEntry, Table, inner_table, key_of, parts
+from rockflex._json import as_json_value
+from rockflex.structure.file import (
+    ELEMENTS,
+    KINDS,
+    PartTable,
+    StructureEntry,
+    TomlTable,
+    first_table_in_annotation,
+    members_of_annotation,
+    schema_key_of_field,
+)
 from rockflex.study.spec import BoucWenTable, GroundTable
 
 
-def _frame(number: int, period: float, aspect_ratio: float, stiffness_ratio: float) -> dict[str, Any]:
+def _preset_frame(number: int, period: float, aspect_ratio: float, stiffness_ratio: float) -> dict[str, Any]:
     kind = "shear" if stiffness_ratio else "flexure"
     return {
         "title": f"Frame #{number}: {kind}, {period:g} s, h*/B = {aspect_ratio:g}",
@@ -34,64 +43,66 @@ def _frame(number: int, period: float, aspect_ratio: float, stiffness_ratio: flo
 
 
 PRESETS: list[dict[str, Any]] = [
-    _frame(1, 1.0, 10.0, math.inf),
-    _frame(2, 1.0, 10.0, 0.0),
-    _frame(3, 0.5, 10.0, math.inf),
-    _frame(4, 0.5, 10.0, 0.0),
-    _frame(5, 1.0, 5.0, math.inf),
-    _frame(6, 1.0, 5.0, 0.0),
+    _preset_frame(1, 1.0, 10.0, math.inf),
+    _preset_frame(2, 1.0, 10.0, 0.0),
+    _preset_frame(3, 0.5, 10.0, math.inf),
+    _preset_frame(4, 0.5, 10.0, 0.0),
+    _preset_frame(5, 1.0, 5.0, math.inf),
+    _preset_frame(6, 1.0, 5.0, 0.0),
     *tomllib.loads((Path(__file__).parent / "presets.toml").read_text("utf-8"))["presets"],
 ]
 """Title and structure of each preset: Table 1 of Silva & Stojadinović 2024, its chimney, and others."""
 
 
-def forms() -> dict[str, Any]:
+def forms_of_structures() -> dict[str, Any]:
     """Return the fields of every kind of structure and of element, the base and a hysteresis, and the presets."""
-    return plain(
+    return as_json_value(
         {
-            "kinds": {name: {"title": table.title, "fields": _fields(table)} for name, table in KINDS.items()},
-            "eccentricity": _field("eccentricity", StructureEntry.model_fields["eccentricity"]),
-            "elements": {name: {"title": table.title, "fields": _fields(table)} for name, table in ELEMENTS.items()},
-            "bouc_wen": _fields(BoucWenTable),
-            "ground": _fields(GroundTable),
-            "section_part": _fields(PartTable),
+            "kinds": {name: {"title": table.title, "fields": _form_fields(table)} for name, table in KINDS.items()},
+            "eccentricity": _form_field("eccentricity", StructureEntry.model_fields["eccentricity"]),
+            "elements": {
+                name: {"title": table.title, "fields": _form_fields(table)} for name, table in ELEMENTS.items()
+            },
+            "bouc_wen": _form_fields(BoucWenTable),
+            "ground": _form_fields(GroundTable),
+            "section_part": _form_fields(PartTable),
             "presets": PRESETS,
         }
     )
 
 
-def _fields(table: type[Table]) -> list[dict[str, Any]]:
+def _form_fields(table: type[TomlTable]) -> list[dict[str, Any]]:
     left_out = ("kind", "parts")  # chosen in a list; of a composite section
-    return [_field(name, field) for name, field in table.model_fields.items() if name not in left_out]
+    return [_form_field(name, field) for name, field in table.model_fields.items() if name not in left_out]
 
 
-def _field(name: str, field: FieldInfo) -> dict[str, Any]:
-    key, inner = key_of(field), inner_table(field.annotation)
+def _form_field(name: str, field: FieldInfo) -> dict[str, Any]:
+    key, inner = schema_key_of_field(field), first_table_in_annotation(field.annotation)
     default = None if field.is_required() else field.get_default(call_default_factory=True)
     return {
         "name": name,
         "label": key.label or name.replace("_", " ").capitalize(),
         "unit": key.unit,
-        "help": _sentence(key.page or key.description),
-        "type": _type(field.annotation),
-        "choices": _choices(field.annotation),
+        "help": _form_field_sentence(key.page or key.description),
+        "type": _form_field_type(field.annotation),
+        "choices": _form_field_choices(field.annotation),
         "required": field.is_required(),
         "default": None if hasattr(default, "model_fields") else default,
         "low": key.low,
         "high": key.high,
         "infinite": key.high == math.inf,
-        "fields": None if inner is None else _fields(inner),
+        "fields": None if inner is None else _form_fields(inner),
     }
 
 
-def _sentence(description: str) -> str:
+def _form_field_sentence(description: str) -> str:
     begins = description[:1].upper() if re.match("a |[a-z]{2}", description) else description[:1]  # not γ, n or h*_1
     return f"{begins}{description[1:]}."
 
 
-def _type(annotation: Any) -> str:
+def _form_field_type(annotation: Any) -> str:
     """The simplest form that accepts every kind of value of a field."""
-    kinds = parts(annotation)
+    kinds = members_of_annotation(annotation)
     if any(get_origin(kind) is Literal for kind in kinds):
         return "choice"
     if bool in kinds:
@@ -109,6 +120,11 @@ def _type(annotation: Any) -> str:
     return "number" if float in kinds else "table"
 
 
-def _choices(annotation: Any) -> list[str]:
-    words = [str(value) for part in parts(annotation) if get_origin(part) is Literal for value in get_args(part)]
+def _form_field_choices(annotation: Any) -> list[str]:
+    words = [
+        str(value)
+        for part in members_of_annotation(annotation)
+        if get_origin(part) is Literal
+        for value in get_args(part)
+    ]
     return [word for word in words if word != "composite"]  # a section of several parts, which only files have

@@ -20,7 +20,7 @@ MAX_WAITING = 12  # jobs of a kind that may wait or run at the same time
 ABANDONED_AFTER = 30.0  # s without a request after which a job stops, because its page was closed
 
 
-class Work:
+class BackgroundWork:
     """Work of one thread whose progress others read.
 
     Attributes
@@ -69,7 +69,7 @@ class Work:
         return self.cancelled.is_set() or monotonic() - self.seen > ABANDONED_AFTER
 
 
-class Job(Work):
+class StudyJob(BackgroundWork):
     """A study, computed chunk after chunk; `tables` only grows."""
 
     def __init__(self, plan: ChunkedPlan, kind: str) -> None:
@@ -86,7 +86,7 @@ class Job(Work):
             self.runs += table.num_rows
 
 
-class FileJob(Work):
+class BackgroundFileJob(BackgroundWork):
     """A file that takes long: `make` returns its name and content, and reports how many parts of how many are done."""
 
     def __init__(self, make: Callable[[Callable[[int, int], None]], tuple[str, bytes]]) -> None:
@@ -104,10 +104,10 @@ class FileJob(Work):
         self.done, self.total = done, total
 
 
-AnyWork = TypeVar("AnyWork", bound=Work)
+AnyWork = TypeVar("AnyWork", bound=BackgroundWork)
 
 
-class Jobs(Generic[AnyWork]):
+class BackgroundJobs(Generic[AnyWork]):
     """Jobs by token, which cannot be guessed. One runs at a time, so that a core is free for answers.
 
     Parameters

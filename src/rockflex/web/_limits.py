@@ -6,15 +6,23 @@ from typing import TYPE_CHECKING, Any, Literal, get_origin
 
 from pydantic.fields import FieldInfo
 
-from rockflex._schema import Key
-from rockflex._shown import counted
+from rockflex._schema import SchemaKey
+from rockflex._shown import number_with_noun
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.solve import Task
-from rockflex.structure.file import ELEMENTS, ElementTable, Table, expected, inner_table, key_of, parts
-from rockflex.study import Case
-from rockflex.web._refusal import Refusal, refusing
+from rockflex.structure.file import (
+    ELEMENTS,
+    ElementTable,
+    TomlTable,
+    first_table_in_annotation,
+    members_of_annotation,
+    schema_key_of_field,
+    valid_value_description,
+)
+from rockflex.study import PreparedCase
+from rockflex.web._refusal import Refusal, errors_as_refusals
 
 if TYPE_CHECKING:
     from rockflex.study.cloud import CloudPlan
@@ -39,39 +47,39 @@ MAX_STUDY_COST = 180.0  # s of estimated computing time of all runs of a study
 MAX_NUMBER = 1e15
 
 
-def check_numbers(path: str, value: Any, table: type[Table]) -> None:
-    """Raise the errors of `errors_of_numbers` as a refusal."""
-    if errors := errors_of_numbers(path, value, table):
+def check_form_numbers(path: str, value: Any, table: type[TomlTable]) -> None:
+    """Raise the errors of `form_number_errors` as a refusal."""
+    if errors := form_number_errors(path, value, table):
         raise Refusal(errors)
 
 
-def errors_of_numbers(path: str, value: Any, table: type[Table]) -> dict[str, str]:
+def form_number_errors(path: str, value: Any, table: type[TomlTable]) -> dict[str, str]:
     """Return a message for each number outside the range of its field, each list that is too long, and each text.
 
     A text in place of numbers would be the path of a file: nothing that a visitor writes reaches the file system.
     """
     errors: dict[str, str] = {}
-    for place, field, each in _leaves(path, value, table):
+    for place, field, each in _form_values_and_fields(path, value, table):
         if isinstance(each, str):
-            if field is None or not _takes_text(field):
-                needed = "numbers" if field is None else wanted(field)
-                errors[place] = f"it must be {needed}, but {each[:60]!r} was given.{unclear(each)}"
+            if field is None or not _field_takes_text(field):
+                needed = "numbers" if field is None else wanted_value_text(field)
+                errors[place] = f"it must be {needed}, but {each[:60]!r} was given.{unclear_commas_text(each)}"
         elif isinstance(each, list):
-            errors[place] = f"it holds {len(each)} values, but the page takes {_most(each)} at most."
+            errors[place] = f"it holds {len(each)} values, but the page takes {_most_values_of_list(each)} at most."
         elif isinstance(each, int | float) and not isinstance(each, bool):
-            key = Key("") if field is None else key_of(field)
+            key = SchemaKey("") if field is None else schema_key_of_field(field)
             low, high = (-MAX_NUMBER if key.low is None else key.low), (MAX_NUMBER if key.high is None else key.high)
             if not low <= each <= high:  # NaN, too
                 errors[place] = f"it must be from {low:g} to {high:g}, but {each:g} was given."
     return errors
 
 
-def wanted(field: FieldInfo) -> str:
+def wanted_value_text(field: FieldInfo) -> str:
     """Return the condition on the value of a field, for a message."""
-    return key_of(field).page or expected(field)
+    return schema_key_of_field(field).page or valid_value_description(field)
 
 
-def unclear(value: Any) -> str:
+def unclear_commas_text(value: Any) -> str:
     """Return how to write numbers whose commas may be read in two ways; empty if there are none."""
     values = value if isinstance(value, list) else [value]
     if not any(isinstance(each, str) and re.fullmatch(r"[-+\d.,\s]*\d,\d[\d.,\s]*", each) for each in values):
@@ -82,15 +90,15 @@ def unclear(value: Any) -> str:
     )
 
 
-def _takes_text(field: FieldInfo) -> bool:
+def _field_takes_text(field: FieldInfo) -> bool:
     """Tell whether a field holds a word, a name or a table; one for numbers takes text as the path of a file."""
-    kinds = parts(field.annotation)
+    kinds = members_of_annotation(field.annotation)
     words = kinds == [str] or any(get_origin(kind) is Literal for kind in kinds)
-    return words or inner_table(field.annotation) is not None
+    return words or first_table_in_annotation(field.annotation) is not None
 
 
-def _leaves(
-    path: str, value: Any, table: type[Table] | None, field: FieldInfo | None = None
+def _form_values_and_fields(
+    path: str, value: Any, table: type[TomlTable] | None, field: FieldInfo | None = None
 ) -> Iterator[tuple[str, FieldInfo | None, Any]]:
     """Yield every number and text with its field, and every list that is too long."""
     if isinstance(value, Mapping):
@@ -98,27 +106,29 @@ def _leaves(
             table = ELEMENTS.get(str(value.get("kind")), table)
         for key, each in value.items():
             if str(key).isdigit():  # the heights of degrees of freedom by their indices
-                yield from _leaves(path, each, None, field)
+                yield from _form_values_and_fields(path, each, None, field)
             else:
                 inner = None if table is None else table.model_fields.get(str(key))
-                below = None if inner is None else inner_table(inner.annotation)
-                yield from _leaves(f"{path}.{key}", each, below, inner)
+                below = None if inner is None else first_table_in_annotation(inner.annotation)
+                yield from _form_values_and_fields(f"{path}.{key}", each, below, inner)
     elif isinstance(value, list | tuple):
-        if value and len(value) > _most(value):
+        if value and len(value) > _most_values_of_list(value):
             yield path, field, list(value)
             return
         for place, each in enumerate(value):
-            yield from _leaves(f"{path}.{place}" if isinstance(each, Mapping) else path, each, table, field)
+            yield from _form_values_and_fields(
+                f"{path}.{place}" if isinstance(each, Mapping) else path, each, table, field
+            )
     elif value is not None:
         yield path, field, value
 
 
-def _most(values: Sequence[Any]) -> int:
+def _most_values_of_list(values: Sequence[Any]) -> int:
     """Return how many values or tables a list may have."""
     return MAX_ELEMENTS if isinstance(values[0], Mapping) else MAX_FREEDOMS
 
 
-def check_motion(motion: GroundMotion, path: str) -> None:
+def check_record_length(motion: GroundMotion, path: str) -> None:
     """Refuse records that are too long."""
     if motion.acceleration.size > MAX_SAMPLES or motion.duration > MAX_DURATION:
         message = (
@@ -128,19 +138,19 @@ def check_motion(motion: GroundMotion, path: str) -> None:
         raise Refusal({path: message})
 
 
-def check_together(cases: Sequence[Case], motion: GroundMotion) -> None:
+def check_work_of_runs(cases: Sequence[PreparedCase], motion: GroundMotion) -> None:
     """Refuse runs that take too long, individually or together."""
-    together = sum(_checked_work(case.task(motion), "models") for case in cases)
+    together = sum(_checked_work_of_run(case.task(motion), "models") for case in cases)
     if together > MAX_ANSWER_COST:
         message = "these models take too long together for a page. Choose fewer of them, or a shorter record."
         raise Refusal({"models": message})
 
 
-def _checked_work(task: Task, path: str) -> float:
+def _checked_work_of_run(task: Task, path: str) -> float:
     """Return the estimated computing time of a run in s; refuse one that takes too long."""
     work = task.work().total
     if work > MAX_RUN_COST:
-        modes = counted(task.pace.modes, "mode")
+        modes = number_with_noun(task.pace.modes, "mode")
         message = (
             f"{task.model.label} with {modes} over {task.record.size} samples takes too long for a page. Choose a "
             "model with fewer modes, a wider base or a shorter record, or use the library."
@@ -149,13 +159,13 @@ def _checked_work(task: Task, path: str) -> float:
     return work
 
 
-def _check_model(plan: "CloudPlan", properties: RockingProperties, label: str, path: str) -> None:
+def _check_model_of_structure(plan: "CloudPlan", properties: RockingProperties, label: str, path: str) -> None:
     """Refuse a model that the structure cannot have, such as one with modes for a rigid block."""
-    with refusing(path):
+    with errors_as_refusals(path):
         plan.matrix.options.tied(parse_model(label), properties)
 
 
-def check_runs(plan: "CloudPlan", path: str) -> None:
+def check_size_of_study(plan: "CloudPlan", path: str) -> None:
     """Refuse a study whose runs are impossible, too many, or too long."""
     if plan.n_runs > MAX_STUDY_RUNS:
         message = f"it has {plan.n_runs} runs, but the page takes {MAX_STUDY_RUNS} at most. Use the command line."
@@ -165,11 +175,11 @@ def check_runs(plan: "CloudPlan", path: str) -> None:
     work = 0.0
     for structure, properties in enumerate(matrix.structures):
         for model, label in enumerate(matrix.labels):
-            _check_model(plan, properties, label, path)
+            _check_model_of_structure(plan, properties, label, path)
             for record in range(len(matrix.motions)):
                 task = matrix.task(structure, record, model, largest)
                 if task is not None:
-                    work += len(plan.scales) * _checked_work(task, path)
+                    work += len(plan.scales) * _checked_work_of_run(task, path)
     if work > MAX_STUDY_COST:
         message = "it takes too long for a page. Choose models with fewer modes, or use the command line."
         raise Refusal({path: message})

@@ -12,7 +12,7 @@ from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from rockflex.web._hosts import is_address, is_everywhere, is_loopback
+from rockflex.web._hosts import is_host_of_all_addresses, is_loopback_host, is_numeric_host
 
 HEADERS = {
     "Content-Security-Policy": "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; base-uri 'none'; "
@@ -63,7 +63,7 @@ class KnownHosts:
 
     def __init__(self, app: ASGIApp, host: str, names: Iterable[str]) -> None:
         self._app = app
-        self._everywhere = is_everywhere(host)
+        self._everywhere = is_host_of_all_addresses(host)
         own = [socket.gethostname()] if self._everywhere else []
         self._names = {name.lower() for name in ("localhost", host, *own, *names)}
 
@@ -82,14 +82,14 @@ class KnownHosts:
             name = urlsplit(url).hostname or ""
         except ValueError:
             return False
-        return name in self._names or is_loopback(name) or (self._everywhere and is_address(name))
+        return name in self._names or is_loopback_host(name) or (self._everywhere and is_numeric_host(name))
 
 
 REQUEST_TIMEOUT = 20  # s for the next request to begin and its headers to arrive
 MAX_CONNECTIONS = 400  # connections, before those that wait for their clients are closed
 
 
-class Connection(H11Protocol):
+class LimitedConnection(H11Protocol):
     """A connection of uvicorn with a time limit for headers; beyond `MAX_CONNECTIONS` the idlest are closed.
 
     A server alone would keep half a request for ever, and refuse everybody once it has too many.
@@ -103,7 +103,7 @@ class Connection(H11Protocol):
         super().connection_made(transport)
         self._wait()
         if len(self.connections) > MAX_CONNECTIONS:
-            waiting = [each for each in self.connections if isinstance(each, Connection) and each.waits]
+            waiting = [each for each in self.connections if isinstance(each, LimitedConnection) and each.waits]
             if waiting:
                 idlest = min(waiting, key=attrgetter("since"))
                 idlest.transport.abort()

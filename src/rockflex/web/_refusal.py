@@ -16,7 +16,7 @@ class Refusal(Exception):  # noqa: N818 - an answer, not a failure
 
 
 @contextmanager
-def refusing(path: str, before: str = "") -> Generator[None]:
+def errors_as_refusals(path: str, before: str = "") -> Generator[None]:
     """Turn an error about the field at a path into a refusal, whose message begins with `before`."""
     try:
         yield

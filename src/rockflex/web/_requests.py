@@ -8,15 +8,15 @@ import anyio
 from starlette.requests import Request
 from starlette.responses import Response
 
-from rockflex.web._limits import MAX_BODY_BYTES, MAX_FILE_BYTES, unclear
+from rockflex.web._limits import MAX_BODY_BYTES, MAX_FILE_BYTES, unclear_commas_text
 from rockflex.web._refusal import Refusal
-from rockflex.web._state import State, parse_json, parse_state
+from rockflex.web._state import PageState, parse_page_json, parse_page_state
 
 BODY_TIMEOUT = 60.0  # s to receive a body
 MAX_INLINE_BYTES = 20_000  # bytes that are checked within a few milliseconds; more would block the event loop
 
 
-async def state_of(request: Request) -> State:
+async def state_in_request(request: Request) -> PageState:
     """Return the state in a request.
 
     Raises
@@ -24,29 +24,29 @@ async def state_of(request: Request) -> State:
     Refusal
         If there is none, or it cannot be used.
     """
-    return (await state_and_content(request))[0]
+    return (await state_and_request_content(request))[0]
 
 
-async def state_and_content(request: Request) -> tuple[State, dict[str, Any]]:
+async def state_and_request_content(request: Request) -> tuple[PageState, dict[str, Any]]:
     """Return the state in a request, and all of its content.
 
     Raises
     ------
     Refusal
-        As `state_of`.
+        As `state_in_request`.
     """
-    body = await _body_of(request, "application/json")
+    body = await _request_body(request, "application/json")
     if len(body) <= MAX_INLINE_BYTES:
-        return _parse_request(body)
-    return await anyio.to_thread.run_sync(_parse_request, body)
+        return _parse_request_body(body)
+    return await anyio.to_thread.run_sync(_parse_request_body, body)
 
 
-async def file_of(request: Request, most: int = MAX_BODY_BYTES, said: int = MAX_FILE_BYTES) -> bytes:
+async def uploaded_file_bytes(request: Request, most: int = MAX_BODY_BYTES, said: int = MAX_FILE_BYTES) -> bytes:
     """Return the bytes of an uploaded file, of at most `most`; messages name the limit `said`."""
-    return await _body_of(request, "application/octet-stream", most, said)
+    return await _request_body(request, "application/octet-stream", most, said)
 
 
-async def _body_of(request: Request, wanted: str, most: int = MAX_BODY_BYTES, said: int = MAX_FILE_BYTES) -> bytes:
+async def _request_body(request: Request, wanted: str, most: int = MAX_BODY_BYTES, said: int = MAX_FILE_BYTES) -> bytes:
     """Return the body of a request, within the limits of its size and its time.
 
     Another content type would let foreign pages send it unasked, without the browser's preflight.
@@ -69,14 +69,14 @@ async def _body_of(request: Request, wanted: str, most: int = MAX_BODY_BYTES, sa
     return b"".join(chunks)
 
 
-def _parse_request(body: bytes) -> tuple[State, dict[str, Any]]:
-    content = parse_json(body)
+def _parse_request_body(body: bytes) -> tuple[PageState, dict[str, Any]]:
+    content = parse_page_json(body)
     if not isinstance(content, dict):
         raise Refusal("A request must be a JSON object.", 400)
-    return parse_state(content.get("state")), content
+    return parse_page_state(content.get("state")), content
 
 
-def step_of(text: str, field: str = "record.upload") -> float | None:
+def sampling_step_in_query(text: str, field: str = "record.upload") -> float | None:
     """Return the sampling step in a query; None for the file's own. Messages are about `field`.
 
     Raises
@@ -89,11 +89,11 @@ def step_of(text: str, field: str = "record.upload") -> float | None:
     try:
         return float(text)
     except ValueError as error:
-        message = f"the sampling step must be a number in s, but {text[:40]!r} was given.{unclear(text)}"
+        message = f"the sampling step must be a number in s, but {text[:40]!r} was given.{unclear_commas_text(text)}"
         raise Refusal({field: message}) from error
 
 
-def file_answer(name: str, kind: str, content: bytes) -> Response:
+def file_download_answer(name: str, kind: str, content: bytes) -> Response:
     """Return a file as a download with a name."""
     # A header holds Latin letters only: others are given in the long form, and as underscores in the short one.
     short = re.sub(r"[^ -~]", "_", name)

@@ -7,20 +7,26 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._json import plain
+from rockflex._json import as_json_value
 from rockflex.modal import RockingProperties, Tendon, YieldingDissipator
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.response import History, Response, warnings_of, warnings_of_energy
 from rockflex.solve import pace_of
-from rockflex.study import Case
-from rockflex.web._earthquake import motion_of
-from rockflex.web._encoding import envelope, pack
-from rockflex.web._limits import check_together
-from rockflex.web._refusal import Refusal, refusing
-from rockflex.web._state import State
-from rockflex.web._structure import Built, build, ground_of, ground_view, outline
-from rockflex.web._uploads import Uploads
+from rockflex.study import PreparedCase
+from rockflex.web._earthquake import chosen_motion
+from rockflex.web._encoding import envelope_indices, pack_array_as_base64
+from rockflex.web._limits import check_work_of_runs
+from rockflex.web._refusal import Refusal, errors_as_refusals
+from rockflex.web._state import PageState
+from rockflex.web._structure import (
+    BuiltStructure,
+    build_page_structure,
+    ground_under_page_structure,
+    ground_view,
+    structure_outline_view,
+)
+from rockflex.web._uploads import UploadedRecords
 
 
 def chosen_element(asked: object, p: RockingProperties) -> int | None:
@@ -30,7 +36,7 @@ def chosen_element(asked: object, p: RockingProperties) -> int | None:
     return asked if type(asked) is int and 0 <= asked < len(p.elements) else 0
 
 
-def elements_view(p: RockingProperties, response: Response, *, energies: bool) -> dict[str, Any]:
+def elements_response_view(p: RockingProperties, response: Response, *, energies: bool) -> dict[str, Any]:
     """Return the peaks of every element in a model that lifts; their energies, which take longer, if wanted."""
     dissipated = response.element_energy.tolist() if energies else [None] * len(p.elements)
     prestress = iter(response.remaining_prestress.tolist())
@@ -41,7 +47,7 @@ def elements_view(p: RockingProperties, response: Response, *, energies: bool) -
             "elongation": elongation,
             "energy": energy,
             "yielded": yielded,
-            "broken": _breaks_at(element) <= elongation,
+            "broken": _elongation_at_break(element) <= elongation,
             "prestress": next(prestress) if isinstance(element, Tendon) else None,
         }
         for element, force, elongation, yielded, energy in zip(
@@ -51,13 +57,13 @@ def elements_view(p: RockingProperties, response: Response, *, energies: bool) -
     return {"label": response.model, "rows": rows}
 
 
-def _breaks_at(element: object) -> float:
+def _elongation_at_break(element: object) -> float:
     """Return the elongation in m at which an element breaks; infinite if it never does."""
     found = element.rupture_elongation if isinstance(element, Tendon | YieldingDissipator) else None
     return float("inf") if found is None else found
 
 
-def self_centring(p: RockingProperties, rotation: float) -> list[dict[str, Any]]:
+def self_centring_view(p: RockingProperties, rotation: float) -> list[dict[str, Any]]:
     """Return whether weight and prestress close the base about each edge, where dissipators keep it open.
 
     `ratio` is λ at a vanishing rotation, and `at` that at a rotation in rad, the smaller of both edges.
@@ -76,7 +82,9 @@ CURVES = ("rotation", "top_displacement", "base_moment", "base_shear")
 MAX_ENERGY_COST = 1.0  # s of estimated computing time of the energies, see `rockflex.solve.Pace`
 
 
-def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list[Response]]:
+def simulate_state_models(
+    state: PageState, uploads: UploadedRecords
+) -> tuple[BuiltStructure, GroundMotion, list[Response]]:
     """Simulate the models of a state.
 
     Raises
@@ -84,52 +92,57 @@ def responses(state: State, uploads: Uploads) -> tuple[Built, GroundMotion, list
     Refusal
         If a run cannot be made, or takes too long.
     """
-    built = build(state.structure)
-    motion = motion_of(state.record, uploads).scaled(state.scale)
-    options, cases = state.run_options(ground_of(state.ground, built.properties)), dict[str, Case]()
+    built = build_page_structure(state.structure)
+    motion = chosen_motion(state.record, uploads).scaled(state.scale)
+    options, cases = (
+        state.run_options(ground_under_page_structure(state.ground, built.properties)),
+        dict[str, PreparedCase](),
+    )
     for label in state.models:
-        with refusing("models", f"{label}: "):
+        with errors_as_refusals("models", f"{label}: "):
             cases[label] = options.case(parse_model(label), built.properties, history=True, floors=True)
-    check_together(list(cases.values()), motion)
+    check_work_of_runs(list(cases.values()), motion)
     found = list[Response]()
     for label, case in cases.items():
-        with refusing("models", f"{label}: "):
+        with errors_as_refusals("models", f"{label}: "):
             found.append(case.run(motion))
     return built, motion, found
 
 
-def response_view(state: State, uploads: Uploads, focus: object = "", element: object = 0) -> dict[str, Any]:
+def response_view(
+    state: PageState, uploads: UploadedRecords, focus: object = "", element: object = 0
+) -> dict[str, Any]:
     """Return histories, events and peaks of all models, and the loop of one element.
 
     The energies and the elements are those of the model named `focus`, or of the first; elements of the first that
     lifts if that one does not.
     """
-    built, motion, found = responses(state, uploads)
+    built, motion, found = simulate_state_models(state, uploads)
     main = next((r for r in found if r.model == focus), found[0])
     p = built.properties
     drawn = chosen_element(element, p)
-    energy, curves = _energy(motion, main, state), [_curves(built, response, drawn) for response in found]
+    energy, curves = _energy_view(motion, main, state), [_response_curves(built, response, drawn) for response in found]
     curves[found.index(main)]["warnings"] += warnings_of_energy(energy.get("closing_error", 0.0))
-    return plain(
+    return as_json_value(
         {
-            **outline(state.structure, built),
+            **structure_outline_view(state.structure, built),
             "motion": motion.name,
             "duration": motion.duration,
             "nominal": p.nominal_overturning_rotation,
             "models": curves,
-            "ground": ground_view(ground_of(state.ground, p), p),
+            "ground": ground_view(ground_under_page_structure(state.ground, p), p),
             "element": drawn,
-            "held": _element_peaks(p, motion, main, found, state),
-            "self_centring": self_centring(
+            "held": _element_peaks_view(p, motion, main, found, state),
+            "self_centring": self_centring_view(
                 p, max((r.max_rotation for r in found if r.status == "rocking"), default=0.0)
             ),
-            "suggested_yield": _suggested_yield(p, motion),
+            "suggested_yield": _suggested_yield_displacement(p, motion),
             "energy": energy,
         }
     )
 
 
-def _suggested_yield(p: RockingProperties, motion: GroundMotion) -> float | None:
+def _suggested_yield_displacement(p: RockingProperties, motion: GroundMotion) -> float | None:
     """Suggest a yield displacement in m, beyond the uplift of the base and below the demand on a fixed base."""
     if not p.n_modes:
         return None
@@ -139,12 +152,12 @@ def _suggested_yield(p: RockingProperties, motion: GroundMotion) -> float | None
     return float(f"{min(max(min(held, fixed), 1e-4), 10.0):.2g}")
 
 
-def _curves(built: Built, response: Response, element: int | None) -> dict[str, Any]:
+def _response_curves(built: BuiltStructure, response: Response, element: int | None) -> dict[str, Any]:
     history = response.history
-    assert history is not None  # asked for in `responses`
+    assert history is not None  # asked for in `simulate_state_models`
     pulled = None if element is None or not history.model.lifts else history.element_force[:, element]
-    base = base_curves(history)
-    kept = _thinned(history, pulled, list(base.values()))
+    base = base_motion_curves(history)
+    kept = _thinned_history_nodes(history, pulled, list(base.values()))
     modal = history.modal_displacement[kept]
     points = modal @ built.shapes[:, : modal.shape[1]].T
     known = history.model.properties.top_height is not None
@@ -154,21 +167,23 @@ def _curves(built: Built, response: Response, element: int | None) -> dict[str, 
         "peaks": response.peaks(),
         "warnings": warnings_of(response.model, response.peaks()),  # the energies of one model only are computed
         "lifts": history.model.lifts,
-        "fall_time": _fall_time(history),
+        "fall_time": _overturning_time(history),
         "uplift_times": history.uplift_times[:MAX_EVENT_NODES],
         "impact_times": history.impact_times[:MAX_EVENT_NODES],
-        "t": pack(history.time[kept]),
-        **{name: pack(getattr(history, name)[kept]) for name in CURVES},
-        "total_top_displacement": pack(history.total_top_displacement[kept]) if known else None,
-        **{name: pack(values[kept]) for name, values in base.items()},
-        "uplifted": pack(history.uplifted[kept]),
-        "points": pack(points),
-        "element_force": None if pulled is None else pack(pulled[kept]),
-        "element_elongation": None if pulled is None else pack(history.element_elongation[kept, element]),
+        "t": pack_array_as_base64(history.time[kept]),
+        **{name: pack_array_as_base64(getattr(history, name)[kept]) for name in CURVES},
+        "total_top_displacement": pack_array_as_base64(history.total_top_displacement[kept]) if known else None,
+        **{name: pack_array_as_base64(values[kept]) for name, values in base.items()},
+        "uplifted": pack_array_as_base64(history.uplifted[kept]),
+        "points": pack_array_as_base64(points),
+        "element_force": None if pulled is None else pack_array_as_base64(pulled[kept]),
+        "element_elongation": None
+        if pulled is None
+        else pack_array_as_base64(history.element_elongation[kept, element]),
     }
 
 
-def base_curves(history: History) -> dict[str, Array]:
+def base_motion_curves(history: History) -> dict[str, Array]:
     """Return how the base of a history moves on its ground, in m, shapes (n_states,); none on rigid ground.
 
     The slip if it can slide, and on springs the heave and the rise of the edges.
@@ -183,7 +198,7 @@ def base_curves(history: History) -> dict[str, Array]:
     return curves
 
 
-def _thinned(history: History, pulled: Array | None, base: list[Array]) -> NDArray[np.intp]:
+def _thinned_history_nodes(history: History, pulled: Array | None, base: list[Array]) -> NDArray[np.intp]:
     """Return the nodes that are sent: the extremes of every interval, and both sides of the events.
 
     `pulled` is the force of an element in N, if one is drawn, and `base` how the base moves on its ground.
@@ -195,12 +210,12 @@ def _thinned(history: History, pulled: Array | None, base: list[Array]) -> NDArr
         points *= 2
     if history.model.properties.top_height is not None:
         curves.append(history.total_top_displacement)
-    kept = envelope(curves, points)
+    kept = envelope_indices(curves, points)
     events = np.flatnonzero(np.diff(history.time) == 0.0)[: MAX_EVENT_NODES // 2]
     return np.unique(np.concatenate((kept, events, events + 1)))
 
 
-def _fall_time(history: History) -> float | None:
+def _overturning_time(history: History) -> float | None:
     """Return the time after which the rotation stays beyond the point of balance, if there is one."""
     p = history.model.properties
     balance = np.where(history.rotation < 0.0, p.pivot(-1).balance_rotation, p.pivot(1).balance_rotation)
@@ -210,23 +225,23 @@ def _fall_time(history: History) -> float | None:
     return float(history.time[inside[-1] + 1])
 
 
-def _element_peaks(
-    p: RockingProperties, motion: GroundMotion, main: Response, found: list[Response], state: State
+def _element_peaks_view(
+    p: RockingProperties, motion: GroundMotion, main: Response, found: list[Response], state: PageState
 ) -> dict[str, Any] | None:
     """Return the peaks of the elements in the model `main`, or in the first that lifts; None if nothing is held."""
     shown = next((r for r in (main, *found) if r.history is not None and r.history.model.lifts), None)
     if not p.elements or shown is None:
         return None
     try:
-        check_energy(shown, motion, state)
-        return elements_view(p, shown, energies=True)
+        check_work_of_energy(shown, motion, state)
+        return elements_response_view(p, shown, energies=True)
     except (Refusal, InputError):
-        return elements_view(p, shown, energies=False)
+        return elements_response_view(p, shown, energies=False)
 
 
-def check_energy(response: Response, motion: GroundMotion, state: State) -> None:
+def check_work_of_energy(response: Response, motion: GroundMotion, state: PageState) -> None:
     """Refuse energies that would take too long to compute."""
-    assert response.history is not None  # asked for in `responses`
+    assert response.history is not None  # asked for in `simulate_state_models`
     model = response.history.model
     samples = motion.acceleration.size + state.free_vibration / motion.dt
     work = pace_of(model, 1).energy(samples, motion.dt) * (1.0 + 0.5 * len(model.elements))  # more branches to follow
@@ -235,12 +250,12 @@ def check_energy(response: Response, motion: GroundMotion, state: State) -> None
         raise Refusal({"energy": message})
 
 
-def _energy(motion: GroundMotion, response: Response, state: State) -> dict[str, Any]:
+def _energy_view(motion: GroundMotion, response: Response, state: PageState) -> dict[str, Any]:
     """Return the energies over time, or a note if they cannot be computed."""
     history = response.history
-    assert history is not None  # asked for in `responses`
+    assert history is not None  # asked for in `simulate_state_models`
     try:
-        check_energy(response, motion, state)
+        check_work_of_energy(response, motion, state)
         ledger = history.energy
     except (Refusal, InputError) as error:
         said = error.errors["energy"].capitalize() if isinstance(error, Refusal) else str(error)
@@ -255,11 +270,11 @@ def _energy(motion: GroundMotion, response: Response, state: State) -> dict[str,
     curves["element_strain"] = curves["element_strain"] + held
     curves["gravity"] = curves["gravity"] + sunk  # from the deepest position of a base on springs
     curves["input"] = curves["input"] + float(ledger.stored[0]) + held + sunk
-    kept = envelope([curves["kinetic"], curves["strain"]], 1000)
+    kept = envelope_indices([curves["kinetic"], curves["strain"]], 1000)
     kept = np.unique(np.concatenate((kept, np.flatnonzero(np.diff(ledger.lost) != 0.0)[:MAX_EVENT_NODES] + 1)))
     return {
         "label": response.model,
-        "t": pack(history.time[kept]),
-        **{name: pack(values[kept]) for name, values in curves.items()},
+        "t": pack_array_as_base64(history.time[kept]),
+        **{name: pack_array_as_base64(values[kept]) for name, values in curves.items()},
         "closing_error": ledger.closing_error,
     }

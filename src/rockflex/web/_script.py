@@ -11,24 +11,24 @@ from rockflex.fragility import NOMINAL, ROCKING
 from rockflex.modal import BaseElement
 from rockflex.structure import LumpedMasses, Section
 from rockflex.structure.file import StructureEntry
-from rockflex.study import yielding
+from rockflex.study import yielding_model_labels
 from rockflex.study.cloud import CloudStudy
 from rockflex.study.design import DesignStudy
-from rockflex.study.spec import BedTable, GroundTable, SpringsTable
+from rockflex.study.spec import GroundTable, SpringBedTable, SpringsTable
 from rockflex.web._earthquake import PULSES
 from rockflex.web._selection import RECORDS_FOLDER, VISITOR_SUITES
-from rockflex.web._state import ROTATION, PulseChoice, State
+from rockflex.web._state import ROTATION, PageState, PulseChoice
 
 
-def response_script(state: State, upload_name: str = "record") -> str:
+def response_script(state: PageState, upload_name: str = "record") -> str:
     """Return a program that repeats the simulations of the Response tab, in `responses` by model."""
-    extra = f", free_vibration={state.free_vibration!r}{_law(state)}{_on_ground(state)}"
-    yields = bool(yielding(state.models))
+    extra = f", free_vibration={state.free_vibration!r}{_impact_law_code(state)}{_ground_argument_code(state)}"
+    yields = bool(yielding_model_labels(state.models))
     if yields:
         extra += ', bouc_wen=yielding if "-BW" in model else None'
-    return _program(
+    return _python_program(
         state,
-        _motion(state, upload_name),
+        _motion_code_lines(state, upload_name),
         [
             "",
             f"models = {list(state.models)!r}",
@@ -41,7 +41,7 @@ def response_script(state: State, upload_name: str = "record") -> str:
             '    print(f"  largest base moment {response.max_base_moment:.6g} N m")',
             '    print(f"  largest base shear {response.max_base_shear:.6g} N")',
             '    print(f"  the ground must hold {response.max_horizontal_reaction:.6g} N across")',
-            *_element_lines(state),
+            *_element_code_lines(state),
             "    for warning in response.warnings:",
             '        print(f"  {warning}")',
             'rf.save_figure(rf.plot_history(responses.values()), "response.svg")',
@@ -50,11 +50,12 @@ def response_script(state: State, upload_name: str = "record") -> str:
     )
 
 
-def cloud_script(state: State, study: CloudStudy) -> str:
+def cloud_script(state: PageState, study: CloudStudy) -> str:
     """Return a program that repeats the cloud of the Fragility tab, with its table in `runs`."""
     cloud = state.cloud
     lines = [
-        f"runs = rf.run_cloud(structure, motions, {list(cloud.models)!r}, {_options(state, study, cloud.scales)})",
+        f"runs = rf.run_cloud(structure, motions, {list(cloud.models)!r}, "
+        f"{_study_options_code(state, study, cloud.scales)})",
         f"im = np.geomspace(runs[{cloud.measure!r}].min(), runs[{cloud.measure!r}].max(), 60)",
         "curves = {}",
         f"for fit in rf.fit_clouds(runs, {cloud.measure!r}, nominal={cloud.limit == NOMINAL.name}):",
@@ -64,10 +65,12 @@ def cloud_script(state: State, study: CloudStudy) -> str:
     else:
         curve = "initiation" if cloud.limit == ROCKING.name else "overturning"
         lines.append(f"    curves[fit.model] = fit.outcomes.{curve}.probability(im)")
-    return _program(state, [_motions(cloud.suites)], [*lines, "print(curves)"], yields=study.bouc_wen is not None)
+    return _python_program(
+        state, [_suite_motions_code(cloud.suites)], [*lines, "print(curves)"], yields=study.bouc_wen is not None
+    )
 
 
-def design_script(state: State, study: DesignStudy) -> str:
+def design_script(state: PageState, study: DesignStudy) -> str:
     """Return a program that repeats the Design tab, with its chart in `table` and its answer in `answer`."""
     choice = state.design
     levels = [
@@ -75,12 +78,12 @@ def design_script(state: State, study: DesignStudy) -> str:
         for each in study.tendons
     ]
     widths = f"half_widths = {study.half_widths!r}"
-    return _program(
+    return _python_program(
         state,
-        [_motions(choice.suites), widths, f"tendons = [{', '.join(levels)}]"],
+        [_suite_motions_code(choice.suites), widths, f"tendons = [{', '.join(levels)}]"],
         [
             f"runs = rf.run_design(structure, motions, half_widths, tendons, {choice.model!r}, "
-            f"{_options(state, study, choice.scales)})",
+            f"{_study_options_code(state, study, choice.scales)})",
             f"table = rf.design_table(runs, {study.limits[0]!r}, measure={choice.measure!r}, at={choice.at!r})",
             f"answer = rf.smallest_width(table, {choice.target!r})",
             "print(answer)",
@@ -90,12 +93,12 @@ def design_script(state: State, study: DesignStudy) -> str:
     )
 
 
-def record_file(upload_name: str) -> str:
+def uploaded_record_file_name(upload_name: str) -> str:
     """Name of the file in which the page saves an uploaded record."""
     return f"{upload_name}.csv"
 
 
-def _element_lines(state: State) -> list[str]:
+def _element_code_lines(state: PageState) -> list[str]:
     """Return lines about the elements between the base and the ground; none without them."""
     if not state.structure.elements:
         return []
@@ -107,63 +110,65 @@ def _element_lines(state: State) -> list[str]:
     ]
 
 
-def _law(state: State) -> str:
+def _impact_law_code(state: PageState) -> str:
     """The argument for an impact law; empty if each model has its own."""
     return "" if state.impact is None else f", impact=rf.{state.law()!r}"
 
 
-def _on_ground(state: State) -> str:
+def _ground_argument_code(state: PageState) -> str:
     """The argument for the ground; empty if it is rigid and the base cannot slide."""
     return "" if state.ground is None else ", ground=ground"
 
 
-def _ground(given: GroundTable | None) -> list[str]:
+def _ground_function_code_lines(given: GroundTable | None) -> list[str]:
     """The lines of a function that returns the ground of a structure; none without a ground."""
     if given is None:
         return []
     lines, table = ["def ground(properties):"], given.springs or given.bed
     if table is not None:
-        lines += [f"    springs = {_springs(table)}"]
+        lines += [f"    springs = {_springs_code(table)}"]
         if table.heave_damping_ratio is not None:
             lines += [f"    springs = springs.damped({table.heave_damping_ratio!r}, properties.m_tot)"]
     inertia = "" if given.base_inertia is None else f"base_inertia={given.base_inertia!r}"
     if given.mat_mass is not None:
         inertia = f"base_inertia={given.mat_mass!r} * (2 * properties.half_width) ** 2 / 12"
-    parts = (_named({"friction": given.friction}), "" if table is None else "springs=springs", inertia)
+    parts = (_python_named_arguments({"friction": given.friction}), "" if table is None else "springs=springs", inertia)
     return ["", "", *lines, f"    return rf.Ground({', '.join(filter(None, parts))})", "", ""]
 
 
-def _springs(table: SpringsTable | BedTable) -> str:
+def _springs_code(table: SpringsTable | SpringBedTable) -> str:
     """The call that makes the springs of a file under the base of `properties`."""
     if isinstance(table, SpringsTable):
         edges = "[side * properties.half_width - properties.eccentricity for side in (-1, 1)]"
-        positions = edges if table.positions is None else _literal(table.positions)
-        return f"rf.Springs({positions}, {_named({'stiffness': table.stiffness, 'damping': table.damping})})"
-    named = _named(table.model_dump(exclude={"heave_damping_ratio"}))
+        positions = edges if table.positions is None else _python_literal(table.positions)
+        named = _python_named_arguments({"stiffness": table.stiffness, "damping": table.damping})
+        return f"rf.Springs({positions}, {named})"
+    named = _python_named_arguments(table.model_dump(exclude={"heave_damping_ratio"}))
     maker = "asce41_bed" if table.subgrade_modulus is None else "winkler_bed"
     return f"rf.{maker}(properties.half_width, {named}, eccentricity=properties.eccentricity)"
 
 
-def _options(state: State, study: CloudStudy | DesignStudy, scales: Sequence[float]) -> str:
+def _study_options_code(state: PageState, study: CloudStudy | DesignStudy, scales: Sequence[float]) -> str:
     """The last arguments of a study."""
     yields = "" if study.bouc_wen is None else ", bouc_wen=yielding"
-    return f"scales={list(scales)!r}, free_vibration={study.free_vibration!r}{_law(state)}{_on_ground(state)}{yields}"
+    rest = f"{_impact_law_code(state)}{_ground_argument_code(state)}{yields}"
+    return f"scales={list(scales)!r}, free_vibration={study.free_vibration!r}{rest}"
 
 
-def _program(state: State, motions: list[str], lines: list[str], *, yields: bool) -> str:
+def _python_program(state: PageState, motions: list[str], lines: list[str], *, yields: bool) -> str:
     hysteresis = [f"yielding = rf.{state.hysteresis()!r}"] if yields else []
     head = [
         "import numpy as np",
         "import rockflex as rf",
         "",
-        *_structure(state.structure),
+        *_structure_code_lines(state.structure),
         *motions,
-        *_ground(state.ground),
+        *_ground_function_code_lines(state.ground),
     ]
     return "\n".join([*head, *hysteresis, *lines, ""])
 
 
-def _motions(suites: Sequence[str]) -> str:
+def _suite_motions_code(suites: Sequence[str]) -> str:
     embedded = [f"list(rf.load_suite({name!r}))" for name in suites if name not in VISITOR_SUITES]
     if len(embedded) == len(suites):
         return f"motions = {' + '.join(embedded)}"
@@ -171,50 +176,56 @@ def _motions(suites: Sequence[str]) -> str:
     return f"motions = {' + '.join([*embedded, f'list(rf.read_suite({RECORDS_FOLDER!r}))'])}  {note}"
 
 
-def _structure(entry: StructureEntry) -> list[str]:
+def _structure_code_lines(entry: StructureEntry) -> list[str]:
     given: Any = entry.table
-    lines = [f"structure = {_call(type(given).makes.__name__, given.arguments(''))}"]
+    lines = [f"structure = {_python_call(type(given).makes.__name__, given.arguments(''))}"]
     elements = [each.element() for each in entry.elements or []]
     based = {name: value for name, value in (("eccentricity", entry.eccentricity), ("elements", elements)) if value}
     if based and entry.kind in ("properties", "block"):
-        return [*lines, "from dataclasses import replace", f"structure = replace(structure, {_named(based)})"]
+        return [
+            *lines,
+            "from dataclasses import replace",
+            f"structure = replace(structure, {_python_named_arguments(based)})",
+        ]
     wraps = {"eccentricity": "Eccentric", "elements": "Restrained"}
-    return lines + [f"structure = rf.{wraps[name]}(structure, {_literal(value)})" for name, value in based.items()]
+    return lines + [
+        f"structure = rf.{wraps[name]}(structure, {_python_literal(value)})" for name, value in based.items()
+    ]
 
 
-def _motion(state: State, upload_name: str) -> list[str]:
+def _motion_code_lines(state: PageState, upload_name: str) -> list[str]:
     choice = state.record
     if choice.source in ("upload", "folder"):
-        line = f"motion = rf.read_motion({record_file(upload_name)!r})  # saved by the page: Record (CSV)"
+        line = f"motion = rf.read_motion({uploaded_record_file_name(upload_name)!r})  # saved by the page: Record (CSV)"
     elif choice.source == "pulse":
-        line = f"motion = {_pulse(choice.pulse)}"
+        line = f"motion = {_pulse_code(choice.pulse)}"
     else:
         line = f"motion = rf.load_suite({choice.suite!r})[{choice.name!r}]"
     return [line, f"motion = motion.scaled({state.scale!r})"]
 
 
-def _pulse(choice: PulseChoice) -> str:
+def _pulse_code(choice: PulseChoice) -> str:
     pulse = PULSES[choice.shape]
-    return _call(pulse.maker.__name__, pulse.options(choice), choice.amplitude, choice.period)
+    return _python_call(pulse.maker.__name__, pulse.options(choice), choice.amplitude, choice.period)
 
 
-def _call(name: str, named: Mapping[str, Any], *values: Any) -> str:
-    return f"rf.{name}({', '.join(filter(None, (*map(_literal, values), _named(named))))})"
+def _python_call(name: str, named: Mapping[str, Any], *values: Any) -> str:
+    return f"rf.{name}({', '.join(filter(None, (*map(_python_literal, values), _python_named_arguments(named))))})"
 
 
-def _named(values: Mapping[str, Any]) -> str:
-    return ", ".join(f"{name}={_literal(value)}" for name, value in values.items() if value is not None)
+def _python_named_arguments(values: Mapping[str, Any]) -> str:
+    return ", ".join(f"{name}={_python_literal(value)}" for name, value in values.items() if value is not None)
 
 
-def _literal(value: Any) -> str:
+def _python_literal(value: Any) -> str:
     if isinstance(value, np.ndarray):
-        return _literal(value.tolist())
+        return _python_literal(value.tolist())
     if isinstance(value, LumpedMasses | Section | BaseElement):
-        return _call(type(value).__name__, {each.name: getattr(value, each.name) for each in fields(value)})
+        return _python_call(type(value).__name__, {each.name: getattr(value, each.name) for each in fields(value)})
     if isinstance(value, dict):
-        return f"{{{', '.join(f'{key!r}: {_literal(each)}' for key, each in value.items())}}}"
+        return f"{{{', '.join(f'{key!r}: {_python_literal(each)}' for key, each in value.items())}}}"
     if isinstance(value, list):
-        return f"[{', '.join(map(_literal, value))}]"
+        return f"[{', '.join(map(_python_literal, value))}]"
     if isinstance(value, tuple):
-        return f"({', '.join(map(_literal, value))},)"
+        return f"({', '.join(map(_python_literal, value))},)"
     return "np.inf" if value == math.inf else repr(value)

@@ -13,7 +13,7 @@ from pydantic import PrivateAttr
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, RecordWarning
-from rockflex._json import plain
+from rockflex._json import as_json_value
 from rockflex.motion import (
     GroundMotion,
     Selection,
@@ -28,12 +28,12 @@ from rockflex.motion import (
 )
 from rockflex.solve import check_interruption
 from rockflex.study import Records
-from rockflex.web._cache import Cache
-from rockflex.web._earthquake import motion_of
-from rockflex.web._limits import unclear
-from rockflex.web._refusal import Refusal, refusing
-from rockflex.web._state import State, TargetChoice
-from rockflex.web._uploads import Uploads
+from rockflex.web._cache import LatestValuesCache
+from rockflex.web._earthquake import chosen_motion
+from rockflex.web._limits import unclear_commas_text
+from rockflex.web._refusal import Refusal, errors_as_refusals
+from rockflex.web._state import PageState, TargetChoice
+from rockflex.web._uploads import UploadedRecords
 
 VISITOR_FOLDER = "given"  # stands for the visitor's folder among the names of suites
 SELECTED = "chosen"  # and this for the records chosen for the target spectrum
@@ -75,7 +75,7 @@ class VisitorRecords(Records):
         return Suite([*(motion for name in self.suites for motion in load_suite(name)), *self._motions])
 
 
-def folder_suite(state: State, uploads: Uploads) -> Suite:
+def folder_suite(state: PageState, uploads: UploadedRecords) -> Suite:
     """Return the records of the visitor's folder, with vertical components if these are wanted.
 
     Raises
@@ -115,7 +115,7 @@ def _refusing_target(missing: str) -> Generator[None]:
         raise Refusal({f"target.{name if name in TargetChoice.model_fields else missing}": error.said}) from error
 
 
-def target_of(choice: TargetChoice) -> TargetSpectrum:
+def target_spectrum_of_choice(choice: TargetChoice) -> TargetSpectrum:
     """Return the target spectrum.
 
     Raises
@@ -124,9 +124,9 @@ def target_of(choice: TargetChoice) -> TargetSpectrum:
         If it cannot be made, at the field at fault.
     """
     with _refusing_target("kind"):
-        name, values, named = call_of(choice)
+        name, values, named = target_spectrum_call(choice)
         if name == "read_target":
-            return _pasted(choice)
+            return _pasted_target_spectrum(choice)
         makers: dict[str, Callable[..., TargetSpectrum]] = {
             "ec8_spectrum": ec8_spectrum,
             "ec8_second_spectrum": ec8_second_spectrum,
@@ -136,7 +136,7 @@ def target_of(choice: TargetChoice) -> TargetSpectrum:
         return makers[name](*values, **named)
 
 
-def call_of(choice: TargetChoice) -> tuple[str, list[Any], dict[str, Any]]:
+def target_spectrum_call(choice: TargetChoice) -> tuple[str, list[Any], dict[str, Any]]:
     """Return the function of the library that makes a target, and its arguments in m/s² and s."""
     if choice.kind == "ec8":
         named: dict[str, Any] = {"importance": choice.importance, "damping_ratio": choice.damping}
@@ -152,7 +152,7 @@ def call_of(choice: TargetChoice) -> tuple[str, list[Any], dict[str, Any]]:
     return "read_target", [], {"units": choice.units or None, "damping_ratio": choice.damping}
 
 
-def _pasted(choice: TargetChoice) -> TargetSpectrum:
+def _pasted_target_spectrum(choice: TargetChoice) -> TargetSpectrum:
     if not choice.table.strip():
         raise Refusal({"target.table": "no table was given yet: two columns, the period in s and S_a."})
     try:
@@ -170,13 +170,13 @@ def _pasted(choice: TargetChoice) -> TargetSpectrum:
         raise Refusal({"target.table": "the table contains a character that cannot be stored."}) from error
 
 
-class Selections:
+class LatestSelections:
     """The latest choices of records of all visitors, so that charts, files and studies do not repeat them."""
 
     def __init__(self) -> None:
-        self._selections = Cache[Selected](lambda: MAX_SELECTIONS)
+        self._selections = LatestValuesCache[Selected](lambda: MAX_SELECTIONS)
 
-    def of(self, state: State, uploads: Uploads) -> Selected:
+    def of(self, state: PageState, uploads: UploadedRecords) -> Selected:
         """Return the records chosen for the target of a state, and remarks on the choice.
 
         Raises
@@ -191,25 +191,27 @@ class Selections:
         found = self._selections.get(key)
         if found is not None:
             return found
-        target, suite = target_of(choice), source_of(state, uploads)
-        _check_work(suite, choice)
+        target, suite = target_spectrum_of_choice(choice), suite_to_select_from(state, uploads)
+        _check_work_of_selection(suite, choice)
         check_interruption()  # the visitor may have changed the choice while it waited for its turn
         with warnings.catch_warnings(record=True) as caught, _refusing_target("count"):
             warnings.simplefilter("always", RecordWarning)
-            chosen = suite.select(target, choice.count, (choice.shortest, choice.longest), **options_of(choice))
+            chosen = suite.select(
+                target, choice.count, (choice.shortest, choice.longest), **selection_options_of_choice(choice)
+            )
         found = (chosen, [str(each.message) for each in caught])
         self._selections.put(key, found)
         return found
 
     @staticmethod
-    def _source(state: State) -> list[Any]:
+    def _source(state: PageState) -> list[Any]:
         return [state.record.folder, state.record.vertical] if state.target.source == VISITOR_FOLDER else []
 
 
-SELECTIONS = Selections()
+SELECTIONS = LatestSelections()
 
 
-def options_of(choice: TargetChoice) -> dict[str, Any]:
+def selection_options_of_choice(choice: TargetChoice) -> dict[str, Any]:
     """Return the named arguments of `Suite.select`."""
     return {
         "measure": choice.measure,
@@ -221,7 +223,7 @@ def options_of(choice: TargetChoice) -> dict[str, Any]:
     }
 
 
-def source_of(state: State, uploads: Uploads) -> Suite:
+def suite_to_select_from(state: PageState, uploads: UploadedRecords) -> Suite:
     """Return the records that are chosen from.
 
     Raises
@@ -238,7 +240,7 @@ def source_of(state: State, uploads: Uploads) -> Suite:
         raise Refusal({"target.source": next(iter(error.errors.values()))}, error.status) from error
 
 
-def _check_work(suite: Suite, choice: TargetChoice) -> None:
+def _check_work_of_selection(suite: Suite, choice: TargetChoice) -> None:
     rotated = choice.measure.startswith("rotd")
     work = sum(motion.acceleration.size for motion in suite) * (ROTATED_COST if rotated else 1.0)
     if work > MAX_SPECTRUM_SAMPLES:
@@ -246,13 +248,13 @@ def _check_work(suite: Suite, choice: TargetChoice) -> None:
         raise Refusal({"target.measure": f"{message} choose the geometric mean."})
 
 
-def selection_view(state: State, uploads: Uploads) -> dict[str, Any]:
+def selection_view(state: PageState, uploads: UploadedRecords) -> dict[str, Any]:
     """Return the chosen records with their factors, and the spectra around the range of periods.
 
     Raises
     ------
     Refusal
-        As `Selections.of`.
+        As `LatestSelections.of`.
     """
     chosen, notes = SELECTIONS.of(state, uploads)
     target, low, high = chosen.target, float(chosen.periods[0]), float(chosen.periods[-1])
@@ -263,12 +265,12 @@ def selection_view(state: State, uploads: Uploads) -> dict[str, Any]:
     logs = np.log(rows)
     spread = logs.std(axis=0, ddof=1) if len(rows) > 1 else np.zeros(periods.size)
     table = chosen.table().astype(object)
-    return plain(
+    return as_json_value(
         {
             "target": target.name,
             "damping": target.damping_ratio,
             "range": [low, high],
-            "offered": len(source_of(state, uploads)),
+            "offered": len(suite_to_select_from(state, uploads)),
             "periods": periods,
             "wanted": target.at(periods),
             "mean": rows.mean(axis=0),
@@ -285,7 +287,7 @@ def selection_view(state: State, uploads: Uploads) -> dict[str, Any]:
     )
 
 
-def factor_view(state: State, uploads: Uploads, period: object) -> dict[str, Any]:
+def scale_factor_view(state: PageState, uploads: UploadedRecords, period: object) -> dict[str, Any]:
     """Return the factor that scales the page's record to the target at a period in s, or over the range if it is None.
 
     Raises
@@ -293,13 +295,14 @@ def factor_view(state: State, uploads: Uploads, period: object) -> dict[str, Any
     Refusal
         If it cannot be scaled, or the factor is beyond those of the page.
     """
-    choice, motion, target = state.target, motion_of(state.record, uploads), target_of(state.target)
+    choice, motion, target = state.target, chosen_motion(state.record, uploads), target_spectrum_of_choice(state.target)
     if period is None:
         with _refusing_target("longest"):
             scaled = motion.scaled_to(target, (choice.shortest, choice.longest))
     else:
         if not isinstance(period, int | float) or isinstance(period, bool) or not 0.0 <= period <= 100.0:
-            message = f"it must be a period in s, from 0 to 100, but {str(period)[:40]} was given.{unclear(period)}"
+            hint = unclear_commas_text(period)
+            message = f"it must be a period in s, from 0 to 100, but {str(period)[:40]} was given.{hint}"
             raise Refusal({"target.period": message})
         try:
             wanted = float(target.at([period])[0])
@@ -319,7 +322,9 @@ def factor_view(state: State, uploads: Uploads, period: object) -> dict[str, Any
 TITLES = {VISITOR_FOLDER: "your folder", SELECTED: "the records for the target"}
 
 
-def records_of(state: State, names: Sequence[str], uploads: Uploads, path: str) -> VisitorRecords:
+def records_of_named_suites(
+    state: PageState, names: Sequence[str], uploads: UploadedRecords, path: str
+) -> VisitorRecords:
     """Return the records of the suites with these names, the choice of the field `path`.
 
     Raises
@@ -337,12 +342,12 @@ def records_of(state: State, names: Sequence[str], uploads: Uploads, path: str) 
     except Refusal as error:  # the field at fault is on another tab
         raise Refusal({path: next(iter(error.errors.values()))}, error.status) from error
     embedded = [name for name in names if name not in VISITOR_SUITES]
-    with refusing(path):
-        _check_different_records({name: load_suite(name) for name in embedded} | own if own else {}, path)
+    with errors_as_refusals(path):
+        _check_different_suite_records({name: load_suite(name) for name in embedded} | own if own else {}, path)
         return VisitorRecords.of(embedded, [motion for suite in own.values() for motion in suite])
 
 
-def _check_different_records(suites: Mapping[str, Suite], path: str) -> None:
+def _check_different_suite_records(suites: Mapping[str, Suite], path: str) -> None:
     """Refuse suites with a record of the same name: records for a target may be those of another suite, scaled."""
     found = dict[str, str]()
     for name, suite in suites.items():

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rockflex._checks import whole_number
+from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError
-from rockflex.web._hosts import address_of
+from rockflex.web._hosts import page_address
 
 if TYPE_CHECKING:
     from starlette.applications import Starlette
@@ -30,10 +30,10 @@ def make_app(host: str = "127.0.0.1", names: Sequence[str] = ()) -> "Starlette":
     InputError
         If the packages of ``rockflex[web]`` are missing.
     """
-    _check_installed()
-    from rockflex.web._app import create
+    _check_server_is_installed()
+    from rockflex.web._app import create_page_application
 
-    return create(host, names)
+    return create_page_application(host, names)
 
 
 def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (), open_browser: bool = False) -> None:
@@ -59,7 +59,7 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (
     InputError
         If the packages of ``rockflex[web]`` are missing, or the port cannot be opened.
     """
-    number = whole_number("port", port, 1, 65535)
+    number = checked_whole_number("port", port, 1, 65535)
     app = make_app(host, names)
     import signal
     import socket
@@ -67,7 +67,7 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (
 
     import uvicorn
 
-    from rockflex.web._protection import REQUEST_TIMEOUT, Connection
+    from rockflex.web._protection import REQUEST_TIMEOUT, LimitedConnection
 
     listener = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -79,8 +79,8 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (
             f"The page cannot listen on {host}, port {number}: {error.strerror or error}. Choose another --port."
         ) from error
     config = uvicorn.Config(
-        app, log_level="warning", http=Connection, ws="none", timeout_keep_alive=REQUEST_TIMEOUT, limit_concurrency=500,
-        timeout_graceful_shutdown=GRACE, server_header=False,
+        app, log_level="warning", http=LimitedConnection, ws="none", timeout_keep_alive=REQUEST_TIMEOUT,
+        limit_concurrency=500, timeout_graceful_shutdown=GRACE, server_header=False,
     )  # fmt: skip
     server = uvicorn.Server(config)
     # The threads that it starts are daemons as well: none of them, whatever it reads, keeps the process alive.
@@ -92,7 +92,7 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (
         if open_browser:
             import webbrowser
 
-            Timer(1.0, webbrowser.open, [address_of(host, number)]).start()
+            Timer(1.0, webbrowser.open, [page_address(host, number)]).start()
         try:
             while running.is_alive():
                 running.join(0.5)
@@ -101,7 +101,7 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (
             running.join(GRACE + 2.0)
 
 
-def _check_installed() -> None:
+def _check_server_is_installed() -> None:
     from importlib.util import find_spec
 
     missing = [name for name in NEEDED if find_spec(name) is None]

@@ -9,17 +9,24 @@ from pydantic import AfterValidator, AliasChoices, Field, StringConstraints, Val
 from pydantic_core import PydanticCustomError
 
 from rockflex._errors import InputError
-from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKED, ROCKING, LimitState, beyond
+from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKED, ROCKING, LimitState, rotation_limit_state
 from rockflex.modal import Ground
-from rockflex.motion import Combination, Measure, intensities
-from rockflex.structure.file import StructureEntry, Table, spot_of
-from rockflex.study import RunOptions, yielding
+from rockflex.motion import Combination, IntensityMeasure, scalable_measures
+from rockflex.structure.file import StructureEntry, TomlTable, toml_problem_place
+from rockflex.study import RunOptions, yielding_model_labels
 from rockflex.study.spec import BoucWenTable, GroundTable, RunOptionKeys
-from rockflex.web._limits import MAX_MODELS, RUN_WORK_LIMIT, check_numbers, errors_of_numbers, unclear, wanted
-from rockflex.web._refusal import Refusal, refusing
+from rockflex.web._limits import (
+    MAX_MODELS,
+    RUN_WORK_LIMIT,
+    check_form_numbers,
+    form_number_errors,
+    unclear_commas_text,
+    wanted_value_text,
+)
+from rockflex.web._refusal import Refusal, errors_as_refusals
 
 
-def among(known: Callable[[], Container[str]]) -> AfterValidator:
+def check_of_known_names(known: Callable[[], Container[str]]) -> AfterValidator:
     """Return the check that a text is one of some names."""
 
     def checked(name: str) -> str:
@@ -48,16 +55,16 @@ LIMIT_STATE_CHOICES = (
 )
 
 
-LimitName = Annotated[str, among(lambda: [each.name for each in LIMIT_STATE_CHOICES])]
-DesignLimit = Annotated[str, among(lambda: [each.name for each in LIMIT_STATE_CHOICES if each.noun])]
+LimitName = Annotated[str, check_of_known_names(lambda: [each.name for each in LIMIT_STATE_CHOICES])]
+DesignLimit = Annotated[str, check_of_known_names(lambda: [each.name for each in LIMIT_STATE_CHOICES if each.noun])]
 
 
-def limit_state(name: str, rotation: float) -> LimitState:
+def limit_state_of_choice(name: str, rotation: float) -> LimitState:
     """Return a limit by its name on the page; `rotation` in rad belongs to the limit "rotation"."""
-    return beyond(rotation) if name == ROTATION else LIMIT_STATES[name]
+    return rotation_limit_state(rotation) if name == ROTATION else LIMIT_STATES[name]
 
 
-def limit_states() -> list[dict[str, Any]]:
+def limit_state_labels() -> list[dict[str, Any]]:
     """Return the labels of all limit states."""
     return [each._asdict() for each in LIMIT_STATE_CHOICES]
 
@@ -65,14 +72,14 @@ def limit_states() -> list[dict[str, Any]]:
 FIRST_MEASURES = ("pgv", "pga", "pgd", "sa_t1_5", "sa_t1", "sd_t1")  # in the list; the others follow in their own order
 
 
-MeasureName = Annotated[str, among(lambda: [measure.name for measure in _offered_measures()])]
+MeasureName = Annotated[str, check_of_known_names(lambda: [measure.name for measure in _measures_on_page()])]
 SameForAll = Annotated[
-    str, among(lambda: [measure.name for measure in _offered_measures() if measure.of_what != "base"])
+    str, check_of_known_names(lambda: [measure.name for measure in _measures_on_page() if measure.of_what != "base"])
 ]
 """A measure that does not depend on the base, so that one level means the same motion for every width."""
 
 
-def measures() -> list[dict[str, Any]]:
+def measure_labels() -> list[dict[str, Any]]:
     """Return the labels of each measure, and whether a search for a width can use it."""
     return [
         {
@@ -82,16 +89,16 @@ def measures() -> list[dict[str, Any]]:
             "axis": measure.with_unit(measure.label),
             "of_base": measure.of_what == "base",
         }
-        for measure in sorted(_offered_measures(), key=_list_order)
+        for measure in sorted(_measures_on_page(), key=_measure_list_order)
     ]
 
 
-def _offered_measures() -> list[Measure]:
+def _measures_on_page() -> list[IntensityMeasure]:
     """The measures of the suites that the page has, which hold no vertical components."""
-    return [measure for measure in intensities() if measure.of_what != "vertical"]
+    return [measure for measure in scalable_measures() if measure.of_what != "vertical"]
 
 
-def _list_order(measure: Measure) -> int:
+def _measure_list_order(measure: IntensityMeasure) -> int:
     return FIRST_MEASURES.index(measure.name) if measure.name in FIRST_MEASURES else len(FIRST_MEASURES)
 
 
@@ -105,7 +112,7 @@ InG = Annotated[float, Field(ge=0.001, le=5.0)]
 Seconds = Annotated[float, Field(ge=0.01, le=100.0)]
 
 
-class TargetChoice(Table):
+class TargetChoice(TomlTable):
     """A target spectrum, and how records are chosen for it. Accelerations are in g, as codes and maps give them."""
 
     shown: bool = Field(False, description="true or false")
@@ -158,7 +165,7 @@ MAX_STATE_VALUES = 150_000  # values in a state: three matrices of 200 freedoms,
 MAX_MESSAGES = 50  # messages in one answer
 
 
-class PulseChoice(Table):
+class PulseChoice(TomlTable):
     """A mathematical pulse."""
 
     shape: Literal[
@@ -172,7 +179,7 @@ class PulseChoice(Table):
     nu: float = Field(0.0, ge=-math.pi, le=math.pi, description="the phase ν in rad, from -π to π")
 
 
-class RecordChoice(Table):
+class RecordChoice(TomlTable):
     """A ground motion: one of a suite, a pulse, an upload by its checksum, or one of the folder with its checksum.
 
     The folder is that of the studies too, and `vertical` says whether its vertical components are used.
@@ -190,7 +197,7 @@ class RecordChoice(Table):
     vertical: bool = Field(False, description="true or false")
 
 
-class CloudChoice(Table):
+class CloudChoice(TomlTable):
     """A cloud analysis, and its limit state."""
 
     suites: Suites = Field(["fema-p695-far-field"], description="a list of one to four suites")
@@ -210,7 +217,7 @@ class CloudChoice(Table):
     )
 
 
-class DesignChoice(Table):
+class DesignChoice(TomlTable):
     """A search for the width of the base."""
 
     suites: Suites = Field(["fema-p695-far-field"], description="a list of one to four suites")
@@ -232,7 +239,7 @@ class DesignChoice(Table):
     target: float = Field(0.25, ge=1e-4, le=0.99, description="a probability from 0.0001 to 0.99")
 
 
-class State(RunOptionKeys):
+class PageState(RunOptionKeys):
     """The state of the whole page."""
 
     tab: Literal["structure", "earthquake", "response", "fragility", "design"] = Field(
@@ -263,11 +270,11 @@ class State(RunOptionKeys):
 
     def option_keys(self, labels: Sequence[str]) -> dict[str, Any]:
         """Return the impact law, the ground, and the hysteresis if one of the models yields, as keys of a study."""
-        names = {"impact", "restitution", "ground", *(["bouc_wen"] if yielding(labels) else [])}
+        names = {"impact", "restitution", "ground", *(["bouc_wen"] if yielding_model_labels(labels) else [])}
         return self.model_dump(include=names, exclude_none=True)
 
 
-def parse_json(body: bytes) -> Any:
+def parse_page_json(body: bytes) -> Any:
     """Read JSON; infinite and absurdly large numbers are left to the checks of the fields.
 
     Raises
@@ -281,7 +288,7 @@ def parse_json(body: bytes) -> Any:
         raise Refusal(f"The request is not valid JSON: {str(error)[:200]}.", 400) from error
 
 
-def parse_state(content: Any) -> State:
+def parse_page_state(content: Any) -> PageState:
     """Return the state of a form or a link, checked.
 
     Raises
@@ -292,36 +299,36 @@ def parse_state(content: Any) -> State:
     if not isinstance(content, dict):
         raise Refusal("The link does not hold a state of the page.")
     try:
-        if _size(content) > MAX_STATE_VALUES:
+        if _number_of_values(content) > MAX_STATE_VALUES:
             raise Refusal(
                 f"The link holds more than {MAX_STATE_VALUES} values, which is more than the page takes.", 413
             )
-        content = _with_elements(content)
-        state = State.model_validate(_infinite(content))
+        content = _state_with_tendons_as_elements(content)
+        state = PageState.model_validate(_with_infinite_numbers(content))
     except ValidationError as error:
-        structure = _infinite(content.get("structure"))
-        ranges = errors_of_numbers("structure", structure, StructureEntry) if isinstance(structure, dict) else {}
-        raise Refusal(dict([*(ranges | _messages(error, content)).items()][:MAX_MESSAGES])) from error
+        structure = _with_infinite_numbers(content.get("structure"))
+        ranges = form_number_errors("structure", structure, StructureEntry) if isinstance(structure, dict) else {}
+        raise Refusal(dict([*(ranges | _field_error_messages(error, content)).items()][:MAX_MESSAGES])) from error
     except RecursionError as error:
         raise Refusal("The link is nested too deep.") from error
     try:
         state.structure.name.encode()
     except UnicodeEncodeError as error:
         raise Refusal({"structure.name": "it contains a character that cannot be encoded."}) from error
-    check_numbers("structure", state.structure.model_dump(), StructureEntry)
-    _check_models(state)
-    _check_run_options(state)
+    check_form_numbers("structure", state.structure.model_dump(), StructureEntry)
+    _check_models_of_state(state)
+    _check_run_options_of_state(state)
     return state
 
 
-def _check_models(state: State) -> None:
+def _check_models_of_state(state: PageState) -> None:
     for path, labels in (
         ("models", state.models),
         ("cloud.models", state.cloud.models),
         ("design.model", [state.design.model]),
     ):
-        with refusing(path):
-            yields = yielding(labels)
+        with errors_as_refusals(path):
+            yields = yielding_model_labels(labels)
         if len(set(labels)) < len(labels):
             raise Refusal({path: "the same model is chosen twice."})
         if yields and state.bouc_wen is None:
@@ -329,28 +336,28 @@ def _check_models(state: State) -> None:
             raise Refusal({path: message})
 
 
-def _check_run_options(state: State) -> None:
-    with refusing("restitution"):
+def _check_run_options_of_state(state: PageState) -> None:
+    with errors_as_refusals("restitution"):
         state.law()
     if state.ground is not None:
-        check_numbers("ground", state.ground.model_dump(), GroundTable)
+        check_form_numbers("ground", state.ground.model_dump(), GroundTable)
     if state.bouc_wen is None:
         return
-    check_numbers("bouc_wen", state.bouc_wen.model_dump(), BoucWenTable)
+    check_form_numbers("bouc_wen", state.bouc_wen.model_dump(), BoucWenTable)
     try:
         state.hysteresis()
     except InputError as error:
         raise Refusal({f"bouc_wen.{error.field}": str(error)}) from error
 
 
-def _size(value: Any) -> int:
+def _number_of_values(value: Any) -> int:
     """The number of values, including tables and lists."""
     if isinstance(value, dict):
-        return 1 + sum(map(_size, value.values()))
-    return 1 + sum(map(_size, value)) if isinstance(value, list) else 1
+        return 1 + sum(map(_number_of_values, value.values()))
+    return 1 + sum(map(_number_of_values, value)) if isinstance(value, list) else 1
 
 
-def _with_elements(content: dict[str, Any]) -> dict[str, Any]:
+def _state_with_tendons_as_elements(content: dict[str, Any]) -> dict[str, Any]:
     """Return a state whose tendons are among its elements; older links have a list of them."""
     structure = content.get("structure")
     if not isinstance(structure, dict) or not isinstance(structure.get("tendons"), list):
@@ -364,21 +371,21 @@ def _with_elements(content: dict[str, Any]) -> dict[str, Any]:
     return content | {"structure": rest}
 
 
-def _infinite(value: Any) -> Any:
+def _with_infinite_numbers(value: Any) -> Any:
     """Replace "inf" by the number, which JSON cannot write."""
     if isinstance(value, dict):
-        return {str(key): _infinite(each) for key, each in value.items()}
+        return {str(key): _with_infinite_numbers(each) for key, each in value.items()}
     if isinstance(value, list):
-        return [_infinite(each) for each in value]
+        return [_with_infinite_numbers(each) for each in value]
     return math.inf if value == "inf" else value
 
 
-def _messages(error: ValidationError, content: dict[str, Any]) -> dict[str, str]:
+def _field_error_messages(error: ValidationError, content: dict[str, Any]) -> dict[str, str]:
     """Return a sentence for each field at fault."""
     found: dict[str, str] = {}
     for problem in error.errors(include_url=False)[:MAX_MESSAGES]:
-        spot = spot_of(problem["loc"], content, State)
-        needed = "something else" if spot.field is None else wanted(spot.field)
+        spot = toml_problem_place(problem["loc"], content, PageState)
+        needed = "something else" if spot.field is None else wanted_value_text(spot.field)
         if problem["type"] == "extra_forbidden":
             said = "it is not known here."
         elif problem["type"] in ("missing", "union_tag_not_found"):
@@ -386,11 +393,13 @@ def _messages(error: ValidationError, content: dict[str, Any]) -> dict[str, str]
         elif problem["type"] == "value_error":
             said = str(problem.get("ctx", {}).get("error", problem["msg"]))
         else:
-            said = f"it must be {needed}, but {_short(spot.value)} was given.{unclear(spot.value)}"
+            said = (
+                f"it must be {needed}, but {_short_value_text(spot.value)} was given.{unclear_commas_text(spot.value)}"
+            )
         found[".".join(map(str, spot.path))] = said
     return found
 
 
-def _short(value: Any) -> str:
+def _short_value_text(value: Any) -> str:
     text = str(value) if isinstance(value, int | float) else repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."

@@ -11,19 +11,19 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
-from rockflex._json import plain
+from rockflex._json import as_json_value
 from rockflex.modal import Ground, ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
 from rockflex.structure import structure_warnings
 from rockflex.structure._from_matrices import DegreesOfFreedom
-from rockflex.structure.file import Structure, StructureEntry, StructureTable, Table
-from rockflex.structure.file._tables import MatricesTable, ModesTable
+from rockflex.structure.file import Structure, StructureEntry, StructureTable, TomlTable
+from rockflex.structure.file._structure_tables import MatricesTable, ModesTable
 from rockflex.study.spec import GroundTable
-from rockflex.web._refusal import Refusal, refusing
+from rockflex.web._refusal import Refusal, errors_as_refusals
 
 MAX_SPRINGS_DRAWN = 9  # springs of a drawing, at most
 
 
-def ground_of(table: GroundTable | None, p: RockingProperties) -> Ground | None:
+def ground_under_page_structure(table: GroundTable | None, p: RockingProperties) -> Ground | None:
     """Return the ground under a structure, None if it is rigid and the base cannot slide.
 
     Raises
@@ -52,20 +52,20 @@ def ground_view(ground: Ground | None, p: RockingProperties) -> dict[str, Any] |
         "springs": springs.positions[kept],
         "settlement": settlement,
         "facts": [
-            _ground_fact("w", 1e3 * settlement, "mm", "settlement of the axis under the weight"),
-            _ground_fact("Σk", springs.total_stiffness, "N/m", "vertical stiffness of all springs"),
-            _ground_fact("Σkx²", springs.rotational_stiffness, "N m/rad", "rotational stiffness of all springs"),
-            _ground_fact("ζ_z", ratio, "", "damping of the heave mode, as a share of critical"),
-            _ground_fact("I_b", ground.base_inertia, "kg m²", "rotary inertia of base and floors"),
+            _fact_about_ground("w", 1e3 * settlement, "mm", "settlement of the axis under the weight"),
+            _fact_about_ground("Σk", springs.total_stiffness, "N/m", "vertical stiffness of all springs"),
+            _fact_about_ground("Σkx²", springs.rotational_stiffness, "N m/rad", "rotational stiffness of all springs"),
+            _fact_about_ground("ζ_z", ratio, "", "damping of the heave mode, as a share of critical"),
+            _fact_about_ground("I_b", ground.base_inertia, "kg m²", "rotary inertia of base and floors"),
         ],
     }
 
 
-def _ground_fact(symbol: str, value: float | None, unit: str, said: str) -> dict[str, Any]:
+def _fact_about_ground(symbol: str, value: float | None, unit: str, said: str) -> dict[str, Any]:
     return {"symbol": symbol, "value": value, "unit": unit, "help": said}
 
 
-def section_facts(table: Table) -> list[dict[str, Any]]:
+def section_facts(table: TomlTable) -> list[dict[str, Any]]:
     """Return area, second moment, stiffness and mass of the cross-section of a structure; none without one."""
     given: Any = getattr(table, "section", None)
     if given is None:
@@ -89,7 +89,7 @@ RECENTRING_HELP = (
 
 
 @dataclass(frozen=True, eq=False)
-class Built:
+class BuiltStructure:
     """A structure that can be simulated and drawn.
 
     Attributes
@@ -113,7 +113,7 @@ class Built:
     shapes: Array
 
 
-def build(entry: StructureEntry) -> Built:
+def build_page_structure(entry: StructureEntry) -> BuiltStructure:
     """Build a structure, or return it from the cache.
 
     Raises
@@ -122,20 +122,20 @@ def build(entry: StructureEntry) -> Built:
         If it cannot be built, with the message at the field at fault.
     """
     try:
-        return _build(json.dumps(entry.model_dump(exclude_none=True)))
+        return _build_structure_from_json(json.dumps(entry.model_dump(exclude_none=True)))
     except InputError as error:
-        raise Refusal({_place(entry, error.field): error.said}) from error
+        raise Refusal({_form_field_path(entry, error.field): error.said}) from error
     except (ArithmeticError, MemoryError, RuntimeError, ValueError) as error:  # of linear algebra, at absurd numbers
         message = "the modes cannot be computed from these numbers; check their sizes and units."
         raise Refusal({"structure": message}) from error
 
 
 @lru_cache(maxsize=64)
-def _build(text: str) -> Built:
+def _build_structure_from_json(text: str) -> BuiltStructure:
     entry = StructureEntry.model_validate(json.loads(text))
     structure = entry.build()
     if isinstance(structure, RockingProperties):
-        return Built(structure, structure, None, *_straight_shape(entry, structure))
+        return BuiltStructure(structure, structure, None, *_straight_shape_of_structure(entry, structure))
     properties, modes = structure.rocking(), structure.modal()
     kept = np.unique(np.linspace(0, modes.heights.size - 1, min(MAX_HEIGHTS_DRAWN, modes.heights.size)).astype(int))
     shapes = (modes.shapes * modes.participation)[kept, : properties.n_modes]
@@ -143,10 +143,10 @@ def _build(text: str) -> Built:
     shapes = np.vstack((np.zeros(shapes.shape[1]), shapes))
     # The heights of freedoms may come in any order.
     order = np.argsort(heights, kind="stable")
-    return Built(structure, properties, modes, heights[order], shapes[order])
+    return BuiltStructure(structure, properties, modes, heights[order], shapes[order])
 
 
-def _straight_shape(entry: StructureEntry, p: RockingProperties) -> tuple[Array, Array]:
+def _straight_shape_of_structure(entry: StructureEntry, p: RockingProperties) -> tuple[Array, Array]:
     """Shape of a structure with only a known displacement of the top: a straight line."""
     if p.n_modes:
         height = float(np.abs(p.effective_height).max()) * 1.25
@@ -164,18 +164,18 @@ def structure_view(entry: StructureEntry, table: GroundTable | None = None) -> d
     Refusal
         If it cannot be built, the adequacy of its modes cannot be determined, or the ground contradicts itself.
     """
-    built = build(entry)
+    built = build_page_structure(entry)
     p = built.properties
-    with refusing("structure"):
-        modes, judged = _modes(built), _mode_adequacy(entry, p)
-    return plain(
+    with errors_as_refusals("structure"):
+        modes, judged = _mode_facts(built), _mode_adequacy_view(entry, p)
+    return as_json_value(
         {
-            **outline(entry, built),
+            **structure_outline_view(entry, built),
             "name": entry.name,
-            "ground": ground_view(ground_of(table, p), p),
+            "ground": ground_view(ground_under_page_structure(table, p), p),
             "shapes": built.shapes[:, :MAX_MODES_DRAWN].T,
-            "properties": _parameters(p),
-            "freedoms": _freedoms(entry.table),
+            "properties": _rocking_parameter_facts(p),
+            "freedoms": _freedoms_of_matrices_text(entry.table),
             "section": section_facts(entry.table),
             "warnings": structure_warnings(built.structure),
             "modes": modes,
@@ -184,7 +184,7 @@ def structure_view(entry: StructureEntry, table: GroundTable | None = None) -> d
     )
 
 
-def outline(entry: StructureEntry, built: Built) -> dict[str, Any]:
+def structure_outline_view(entry: StructureEntry, built: BuiltStructure) -> dict[str, Any]:
     """Return the data of the drawing of a structure."""
     p = built.properties
     return {
@@ -198,7 +198,7 @@ def outline(entry: StructureEntry, built: Built) -> dict[str, Any]:
     }
 
 
-def _freedoms(table: StructureTable) -> str:
+def _freedoms_of_matrices_text(table: StructureTable) -> str:
     """Describe the degrees of freedom of given matrices; empty for other structures."""
     if not isinstance(table, MatricesTable | ModesTable):
         return ""
@@ -214,7 +214,7 @@ def _freedoms(table: StructureTable) -> str:
     return f"Degrees of freedom: {counted}.{condensed}"
 
 
-def _mode_adequacy(entry: StructureEntry, p: RockingProperties) -> dict[str, Any] | None:
+def _mode_adequacy_view(entry: StructureEntry, p: RockingProperties) -> dict[str, Any] | None:
     """How many modes are enough, and why."""
     if not p.n_modes:
         return None
@@ -226,7 +226,7 @@ def _mode_adequacy(entry: StructureEntry, p: RockingProperties) -> dict[str, Any
     return {"reason": found.reason, "model": found.model, "model_for_shear": found.model_for_shear}
 
 
-def _parameters(p: RockingProperties) -> list[dict[str, Any]]:
+def _rocking_parameter_facts(p: RockingProperties) -> list[dict[str, Any]]:
     """Return the parameters with symbols, units and meaning, for each edge of the base where the two differ."""
     moved = {"symbol": "e", "value": p.eccentricity, "unit": "m", "help": "masses to the right of the base's middle"}
     base = [
@@ -236,13 +236,13 @@ def _parameters(p: RockingProperties) -> list[dict[str, Any]]:
     ]
     arm = {"symbol": "L₀ʳ", "value": p.l0r, "unit": "kg m", "help": "sum of mass times height"}
     if p.symmetric:
-        lifting, *rest = _of_pivot(p, p.pivot(1), "")
+        lifting, *rest = _pivot_parameter_facts(p, p.pivot(1), "")
         return [*base, lifting, arm, *rest]
     edges = {1: "to the right: ", -1: "to the left: "}
-    return [*base, arm, *(each for pivot in p.pivots for each in _of_pivot(p, pivot, edges[pivot.side]))]
+    return [*base, arm, *(each for pivot in p.pivots for each in _pivot_parameter_facts(p, pivot, edges[pivot.side]))]
 
 
-def _of_pivot(p: RockingProperties, pivot: Pivot, about: str) -> list[dict[str, Any]]:
+def _pivot_parameter_facts(p: RockingProperties, pivot: Pivot, about: str) -> list[dict[str, Any]]:
     alpha = pivot.balance_rotation if math.isfinite(pivot.balance_rotation) else None
     nominal = pivot.nominal_overturning_rotation
     limit = "nominal limit 0.7 atan(B/h*₁)" if p.symmetric else "nominal limit 0.7 atan(b/h*₁), b to this edge"
@@ -261,7 +261,7 @@ def _of_pivot(p: RockingProperties, pivot: Pivot, about: str) -> list[dict[str, 
     ]
 
 
-def _modes(built: Built) -> list[dict[str, Any]]:
+def _mode_facts(built: BuiltStructure) -> list[dict[str, Any]]:
     p = built.properties
     if not p.n_modes:
         return []
@@ -285,7 +285,7 @@ def _modes(built: Built) -> list[dict[str, Any]]:
     ]
 
 
-def _place(entry: StructureEntry, name: str | None) -> str:
+def _form_field_path(entry: StructureEntry, name: str | None) -> str:
     """Return the path of a field of the form, or of the whole form if it has no such field."""
     if name in type(entry.table).model_fields:
         return f"structure.{entry.kind}.{name}"

@@ -9,8 +9,8 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError, SolverError
-from rockflex._json import plain
-from rockflex._shown import counted
+from rockflex._json import as_json_value
+from rockflex._shown import number_with_noun
 from rockflex.fragility import (
     NOMINAL,
     OVERTURNING,
@@ -18,22 +18,22 @@ from rockflex.fragility import (
     CloudFits,
     fit_each_cloud,
     fit_outcomes,
-    observed_fractions,
-    recordings_of,
+    observed_exceedance_fractions,
+    recordings_of_runs,
 )
 from rockflex.kinds import KINDS
 from rockflex.motion import MEASURES
-from rockflex.study import pivot_lifts, to_frame, yielding
+from rockflex.study import count_pivot_lifts, tables_to_dataframe, yielding_model_labels
 from rockflex.study.cloud import CloudPlan, CloudStudy
 from rockflex.study.design import DesignStudy, design_table, smallest_width
-from rockflex.web._jobs import Job
-from rockflex.web._limits import MAX_RUN_COST, check_runs
-from rockflex.web._refusal import Refusal, refusing
+from rockflex.web._jobs import StudyJob
+from rockflex.web._limits import MAX_RUN_COST, check_size_of_study
+from rockflex.web._refusal import Refusal, errors_as_refusals
 from rockflex.web._script import cloud_script, design_script
-from rockflex.web._selection import records_of
-from rockflex.web._state import ROTATION, CloudChoice, DesignChoice, State, limit_state
-from rockflex.web._structure import build
-from rockflex.web._uploads import Uploads
+from rockflex.web._selection import records_of_named_suites
+from rockflex.web._state import ROTATION, CloudChoice, DesignChoice, PageState, limit_state_of_choice
+from rockflex.web._structure import build_page_structure
+from rockflex.web._uploads import UploadedRecords
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -61,17 +61,17 @@ class StudyPage:
         Returns a Python program that repeats the study.
     """
 
-    study: Callable[[State, Uploads], Any]
-    view: "Callable[[Job, State], dict[str, Any]]"
-    table: "Callable[[Job, State], pd.DataFrame]"
-    figure: "Callable[[Job, State], Any]"
-    script: Callable[[State, Any], str]
+    study: Callable[[PageState, UploadedRecords], Any]
+    view: "Callable[[StudyJob, PageState], dict[str, Any]]"
+    table: "Callable[[StudyJob, PageState], pd.DataFrame]"
+    figure: "Callable[[StudyJob, PageState], Any]"
+    script: Callable[[PageState, Any], str]
     table_name: str
     figure_name: str
 
 
-def common_content(
-    state: State, uploads: Uploads, kind: Literal["cloud", "design"], labels: Sequence[str], name: str
+def common_study_content(
+    state: PageState, uploads: UploadedRecords, kind: Literal["cloud", "design"], labels: Sequence[str], name: str
 ) -> dict[str, Any]:
     """Return the content that both kinds of study share; `name` is used for a structure without a name.
 
@@ -84,10 +84,10 @@ def common_content(
     return {
         "name": state.structure.name or name,
         "structures": [state.structure.model_dump(exclude_none=True)],
-        "records": records_of(state, choice.suites, uploads, f"{kind}.suites"),
+        "records": records_of_named_suites(state, choice.suites, uploads, f"{kind}.suites"),
         "models": list(labels),
         "scales": list(choice.scales),
-        "free_vibration": YIELDING_FREE_VIBRATION if yielding(labels) else "settle",
+        "free_vibration": YIELDING_FREE_VIBRATION if yielding_model_labels(labels) else "settle",
         "runs_per_chunk": RUNS_PER_CHUNK,
         **state.option_keys(labels),
     }
@@ -101,20 +101,20 @@ def study_plan(study: CloudStudy | DesignStudy, path: str) -> CloudPlan:
     Refusal
         If they cannot be prepared, are too many for the page, or take too long.
     """
-    with refusing(path):
+    with errors_as_refusals(path):
         plan = cast("CloudPlan", study.plan())  # the page has no design study with a search
     plan.matrix = plan.matrix.limited(MAX_RUN_COST)
-    check_runs(plan, path)
+    check_size_of_study(plan, path)
     return plan
 
 
-def runs_of(job: Job) -> "pd.DataFrame | None":
+def runs_of_study_job(job: StudyJob) -> "pd.DataFrame | None":
     """Return the table of the runs so far; None if there are none."""
     tables = list(job.tables)
-    return to_frame(*tables) if tables else None
+    return tables_to_dataframe(*tables) if tables else None
 
 
-def some_runs_of(job: Job) -> "pd.DataFrame":
+def some_runs_of_study_job(job: StudyJob) -> "pd.DataFrame":
     """Return the table of the runs so far.
 
     Raises
@@ -122,13 +122,13 @@ def some_runs_of(job: Job) -> "pd.DataFrame":
     Refusal
         If there are none.
     """
-    runs = runs_of(job)
+    runs = runs_of_study_job(job)
     if runs is None:
         raise Refusal("There are no runs yet.")
     return runs
 
 
-def progress(job: Job, measure: str) -> dict[str, Any]:
+def study_progress_view(job: StudyJob, measure: str) -> dict[str, Any]:
     """Return the progress of a study, with empty lists for the curves and notes."""
     return {
         "status": job.status,
@@ -141,7 +141,7 @@ def progress(job: Job, measure: str) -> dict[str, Any]:
     }
 
 
-def none_solved(job: Job, runs: "pd.DataFrame") -> dict[str, str]:
+def no_solved_run_message(job: StudyJob, runs: "pd.DataFrame") -> dict[str, str]:
     """Return the message for a study that has ended without a solved run; an empty dictionary otherwise."""
     if not job.over or runs["status"].notna().any():
         return {}
@@ -153,7 +153,7 @@ MIN_RUNS_FITTED = 12  # runs before a curve is fitted
 OBSERVED_BINS = 8  # groups of the observed fractions
 
 
-def cloud_study(state: State, uploads: Uploads) -> CloudStudy:
+def cloud_study(state: PageState, uploads: UploadedRecords) -> CloudStudy:
     """Return the study of a state, as `rockflex cloud` runs it; `uploads` are the records of visitors.
 
     Raises
@@ -161,44 +161,48 @@ def cloud_study(state: State, uploads: Uploads) -> CloudStudy:
     Refusal
         If the state does not describe a valid study.
     """
-    build(state.structure)  # for its messages, which are shown next to the fields
-    content = common_content(state, uploads, "cloud", state.cloud.models, "Cloud")
-    with refusing("cloud"):
+    build_page_structure(state.structure)  # for its messages, which are shown next to the fields
+    content = common_study_content(state, uploads, "cloud", state.cloud.models, "Cloud")
+    with errors_as_refusals("cloud"):
         return CloudStudy(**content)
 
 
-def cloud_view(job: Job, state: State) -> dict[str, Any]:
+def cloud_view(job: StudyJob, state: PageState) -> dict[str, Any]:
     """Return progress, points and curves for the chosen measure and limit state."""
     choice = state.cloud
-    view = progress(job, choice.measure)
-    runs = runs_of(job)
+    view = study_progress_view(job, choice.measure)
+    runs = runs_of_study_job(job)
     if runs is None:
         return view
-    view |= none_solved(job, runs)
+    view |= no_solved_run_message(job, runs)
     solved = runs[runs["status"].notna() & runs[choice.measure].notna()]
     failed = len(runs) - len(solved)
     if failed:
         first = runs["error"].dropna()
-        view["notes"].append(f"{counted(failed, 'run')} could not be solved. {first.iloc[0] if len(first) else ''}")
-    view["notes"] += [text for each in pivot_lifts(solved) for text in each.warnings]
+        view["notes"].append(
+            f"{number_with_noun(failed, 'run')} could not be solved. {first.iloc[0] if len(first) else ''}"
+        )
+    view["notes"] += [text for each in count_pivot_lifts(solved) for text in each.warnings]
     if len(solved) < MIN_RUNS_FITTED:
-        return plain(view)
+        return as_json_value(view)
     im = solved[choice.measure].to_numpy(dtype=float)
     if not (im > 0.0).all() or im.min() == im.max():
         view["notes"].append("All runs so far have the same intensity.")
-        return plain(view)
+        return as_json_value(view)
     grid = np.geomspace(im.min(), im.max(), CURVE_POINTS)
     fits, reasons = fit_each_cloud(solved, choice.measure, nominal=choice.limit == NOMINAL.name)
     view["notes"] += [f"{model}: {reason}" for (_, model), reason in reasons.items()]
     for fit in fits:
         part = solved[solved["model"].astype(str) == fit.model]
-        view["curves"].append(_curve(fit, part, choice, grid, view["notes"]))
-    return plain(view)
+        view["curves"].append(_fragility_curve_view(fit, part, choice, grid, view["notes"]))
+    return as_json_value(view)
 
 
-def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Array, notes: list[str]) -> dict[str, Any]:
+def _fragility_curve_view(
+    fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Array, notes: list[str]
+) -> dict[str, Any]:
     im, rotation = (part[name].to_numpy(dtype=float) for name in (choice.measure, "max_rotation"))
-    over = limit_state(choice.limit, choice.rotation).exceeded(part).to_numpy(dtype=bool)
+    over = limit_state_of_choice(choice.limit, choice.rotation).exceeded(part).to_numpy(dtype=bool)
     found: dict[str, Any] = {
         "model": fit.model,
         "n": len(part),
@@ -207,7 +211,7 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
         "point_im": im,
         "point_rotation": np.minimum(rotation, 0.5 * math.pi),
         "point_over": over.astype(int),
-        "observed": observed_fractions(im, over, OBSERVED_BINS),
+        "observed": observed_exceedance_fractions(im, over, OBSERVED_BINS),
         "median": None,
         "p": None,
         "low": None,
@@ -218,9 +222,9 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
         try:
             # On springs bases turn without uplift too, so a rotation is not one of rocking runs only.
             fallen = OVERTURNING.exceeded(part).to_numpy(dtype=bool)
-            turned = fit_outcomes(im, rotation, fallen, recordings_of(part)).curve(choice.rotation)
+            turned = fit_outcomes(im, rotation, fallen, recordings_of_runs(part)).curve(choice.rotation)
             found["p"] = turned.probability(grid)
-            found["median"] = _median(grid, found["p"])
+            found["median"] = _interpolated_fragility_median(grid, found["p"])
             found["low"], found["high"] = turned.band(grid, choice.confidence)
         except (InputError, SolverError) as error:
             notes.append(f"{fit.model}: {error}")
@@ -234,7 +238,7 @@ def _curve(fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Arra
     return found | {"p": curve.probability(grid), "low": low, "high": high, "median": median}
 
 
-def _median(grid: Array, p: Array) -> float | None:
+def _interpolated_fragility_median(grid: Array, p: Array) -> float | None:
     """Return the lowest intensity at which the probability reaches one half, interpolated; None if it does not."""
     above = np.flatnonzero(p >= 0.5)
     if not above.size or above[0] == 0:
@@ -244,15 +248,15 @@ def _median(grid: Array, p: Array) -> float | None:
     return float(np.exp(np.log(grid[k - 1]) + share * np.log(grid[k] / grid[k - 1])))
 
 
-def _cloud_table(job: Job, _: State) -> "pd.DataFrame":
-    return some_runs_of(job)
+def _cloud_table(job: StudyJob, _: PageState) -> "pd.DataFrame":
+    return some_runs_of_study_job(job)
 
 
-def _cloud_figure(job: Job, state: State) -> Any:
+def _cloud_figure(job: StudyJob, state: PageState) -> Any:
     from rockflex.plot import plot_fragility
 
     choice = state.cloud
-    fits, reasons = fit_each_cloud(some_runs_of(job), choice.measure, nominal=choice.limit == NOMINAL.name)
+    fits, reasons = fit_each_cloud(some_runs_of_study_job(job), choice.measure, nominal=choice.limit == NOMINAL.name)
     if not fits:
         reason = " ".join(f"{model}: {why}" for (_, model), why in reasons.items())
         raise Refusal(f"There is no curve to draw. {reason}")
@@ -270,12 +274,12 @@ CLOUD_PAGE = StudyPage(
 )
 
 
-def limit_of(choice: DesignChoice) -> float | str:
+def limit_for_fragility(choice: DesignChoice) -> float | str:
     """Return the limit in the form that the library expects."""
     return choice.rotation if choice.limit == ROTATION else choice.limit
 
 
-def design_study(state: State, uploads: Uploads) -> DesignStudy:
+def design_study(state: PageState, uploads: UploadedRecords) -> DesignStudy:
     """Return the study of a state, as `rockflex design` runs it; `uploads` are the records of visitors.
 
     Raises
@@ -284,7 +288,7 @@ def design_study(state: State, uploads: Uploads) -> DesignStudy:
         If the state does not describe a valid study.
     """
     choice = state.design
-    present = build(state.structure).properties
+    present = build_page_structure(state.structure).properties
     if choice.widest <= choice.narrowest:
         message = f"it must be more than the narrowest, {choice.narrowest:g}, but {choice.widest:g} was given."
         raise Refusal({"design.widest": message})
@@ -295,48 +299,48 @@ def design_study(state: State, uploads: Uploads) -> DesignStudy:
             name = f"F₀ = {force:g} W" if force else "no tendon"
             stiffness = choice.stiffness if force else 0.0
             levels.append({"prestress_ratio": force, "stiffness_ratio": stiffness, "name": name})
-    content: dict[str, Any] = common_content(state, uploads, "design", [choice.model], "Design") | {
+    content: dict[str, Any] = common_study_content(state, uploads, "design", [choice.model], "Design") | {
         "half_widths": [float(f"{width:.6g}") for width in widths],
         "tendons": levels,
         "measure": choice.measure,
         "level": choice.at,
-        "limits": [limit_of(choice)],
+        "limits": [limit_for_fragility(choice)],
         "target": choice.target,
     }
-    with refusing("design"):
+    with errors_as_refusals("design"):
         return DesignStudy(**content)
 
 
-def _design_table(job: Job, state: State) -> "pd.DataFrame":
+def _design_table(job: StudyJob, state: PageState) -> "pd.DataFrame":
     """Return the table of designs from the runs so far, one row per design."""
-    runs, choice = some_runs_of(job), state.design
-    with refusing("design"):
-        return design_table(runs, limit_of(choice), measure=choice.measure, at=choice.at)
+    runs, choice = some_runs_of_study_job(job), state.design
+    with errors_as_refusals("design"):
+        return design_table(runs, limit_for_fragility(choice), measure=choice.measure, at=choice.at)
 
 
-def design_view(job: Job, state: State) -> dict[str, Any]:
+def design_view(job: StudyJob, state: PageState) -> dict[str, Any]:
     """Return progress, the probability against the half width for every tendon, and the smallest width."""
     choice = state.design
-    present = build(state.structure).properties.half_width
-    view: dict[str, Any] = progress(job, choice.measure) | {"present": present, "answers": []}
-    runs = runs_of(job)
-    lost = {} if runs is None else none_solved(job, runs)
+    present = build_page_structure(state.structure).properties.half_width
+    view: dict[str, Any] = study_progress_view(job, choice.measure) | {"present": present, "answers": []}
+    runs = runs_of_study_job(job)
+    lost = {} if runs is None else no_solved_run_message(job, runs)
     if runs is None or lost:
-        return plain(view | lost)
+        return as_json_value(view | lost)
     table = _design_table(job, state)
     for tendon, part in table.groupby("tendon", observed=True, sort=False):
         names = ("half_width", "aspect_ratio", "probability", "low", "high", "median_base_moment", "n_runs")
         view["curves"].append({"tendon": str(tendon), **{name: part[name].to_numpy(dtype=float) for name in names}})
         view["notes"] += [f"{tendon}: {note}" for note in dict.fromkeys(part["note"]) if note]
-    view["notes"] += [text for each in pivot_lifts(KINDS["design"].runs(runs)) for text in each.warnings]
+    view["notes"] += [text for each in count_pivot_lifts(KINDS["design"].runs(runs)) for text in each.warnings]
     answers = smallest_width(table, choice.target)
     view["answers"] = answers[["tendon", "half_width", "half_width_upper", "outcome", "monotone", "note"]].to_dict(
         "records"
     )
-    return plain(view)
+    return as_json_value(view)
 
 
-def _design_figure(job: Job, state: State) -> Any:
+def _design_figure(job: StudyJob, state: PageState) -> Any:
     from rockflex.plot import plot_design
 
     return plot_design(_design_table(job, state), state.design.target)

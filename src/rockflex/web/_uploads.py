@@ -12,25 +12,31 @@ from typing import Any
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex.motion import GroundMotion, RecordInfo, direction_of, is_vertical, read_plain
-from rockflex.web._cache import Cache
-from rockflex.web._folders import Folders
-from rockflex.web._limits import MAX_FILE_BYTES, MAX_FREEDOMS, check_motion
-from rockflex.web._refusal import Refusal, refusing
+from rockflex.motion import (
+    GroundMotion,
+    RecordInfo,
+    component_direction,
+    is_vertical_component,
+    read_motion_without_obspy,
+)
+from rockflex.web._cache import LatestValuesCache
+from rockflex.web._folders import RecordFolders
+from rockflex.web._limits import MAX_FILE_BYTES, MAX_FREEDOMS, check_record_length
+from rockflex.web._refusal import Refusal, errors_as_refusals
 
 MAX_RECORDS = 64  # in memory
 MATRICES = ("mass", "stiffness", "heights", "rotations")
 
 
-class Uploads:
+class UploadedRecords:
     """Records by the checksum of their file; the latest `MAX_RECORDS` of all visitors. `folders` holds sets of records.
 
     The checksum is known only to those who have the file or a link with it.
     """
 
     def __init__(self) -> None:
-        self._records = Cache[GroundMotion](lambda: MAX_RECORDS)
-        self.folders = Folders()
+        self._records = LatestValuesCache[GroundMotion](lambda: MAX_RECORDS)
+        self.folders = RecordFolders()
 
     def add(self, motion: GroundMotion, content: bytes, options: str) -> str:
         """Store a record, and return its checksum."""
@@ -55,7 +61,7 @@ class Uploads:
         return motion
 
 
-def read_record(name: str, content: bytes, units: str | None, dt: float | None) -> GroundMotion:
+def read_uploaded_record(name: str, content: bytes, units: str | None, dt: float | None) -> GroundMotion:
     """Read a record from the bytes of a file.
 
     Parameters
@@ -72,9 +78,9 @@ def read_record(name: str, content: bytes, units: str | None, dt: float | None) 
     Refusal
         If the file is too large, cannot be read, or contains a vertical component or a record that is too long.
     """
-    named = _read(name, content, units, dt, "record.upload")
-    if is_vertical(named):
-        shown = clean_name(name)
+    named = _read_uploaded_motion(name, content, units, dt, "record.upload")
+    if is_vertical_component(named):
+        shown = clean_upload_name(name)
         message = (
             f"{shown} is a vertical component by its header or its name. Choose a horizontal one here, and this one as "
             "its vertical component."
@@ -83,31 +89,33 @@ def read_record(name: str, content: bytes, units: str | None, dt: float | None) 
     return named
 
 
-def read_vertical(name: str, content: bytes, units: str | None, dt: float | None, along: GroundMotion) -> GroundMotion:
-    """Return a stored horizontal record with the vertical component in a file; parameters as in `read_record`.
+def read_uploaded_vertical(
+    name: str, content: bytes, units: str | None, dt: float | None, along: GroundMotion
+) -> GroundMotion:
+    """Return a stored horizontal record with the vertical component in a file; parameters as in `read_uploaded_record`.
 
     Raises
     ------
     Refusal
         If the file cannot be read, contains a horizontal component, or has another step than the record.
     """
-    upwards = _read(name, content, units, dt, "record.vertical")
-    with refusing("record.vertical"):
+    upwards = _read_uploaded_motion(name, content, units, dt, "record.vertical")
+    with errors_as_refusals("record.vertical"):
         motion = along.with_vertical(upwards)
-    check_motion(motion, "record.vertical")
+    check_record_length(motion, "record.vertical")
     return motion
 
 
-def _read(name: str, content: bytes, units: str | None, dt: float | None, field: str) -> GroundMotion:
+def _read_uploaded_motion(name: str, content: bytes, units: str | None, dt: float | None, field: str) -> GroundMotion:
     """Read a motion of any direction, named as its file."""
-    shown = clean_name(name)
-    _check_size(shown, content, field)
+    shown = clean_upload_name(name)
+    _check_upload_size(shown, content, field)
     try:
         with TemporaryDirectory() as folder:
             file = Path(folder) / ("record.at2" if shown.lower().endswith(".at2") else "record.txt")
             file.write_bytes(content)
             try:
-                motion = read_plain(file, units=units, dt=dt)
+                motion = read_motion_without_obspy(file, units=units, dt=dt)
             except InputError as error:
                 said = str(error).replace(str(file), shown)
                 if error.field == "component":
@@ -118,25 +126,25 @@ def _read(name: str, content: bytes, units: str | None, dt: float | None, field:
         raise Refusal({field: message}, 503) from error
     info = motion.metadata or RecordInfo()
     # The temporary file has another name.
-    info = replace(info, direction=direction_of(Path(shown), info.component) or info.direction)
+    info = replace(info, direction=component_direction(Path(shown), info.component) or info.direction)
     named = GroundMotion(motion.acceleration, motion.dt, Path(shown).stem or "record", info, motion.vertical)
-    check_motion(named, field)
+    check_record_length(named, field)
     return named
 
 
-def clean_name(name: str) -> str:
+def clean_upload_name(name: str) -> str:
     """Return a name without folders and control characters, and not too long."""
     last = re.split(r"[/\\]", name)[-1]
     return re.sub(r"[^\w.()+ -]", "_", last)[:80].strip() or "record"
 
 
-def _check_size(name: str, content: bytes, field: str) -> None:
+def _check_upload_size(name: str, content: bytes, field: str) -> None:
     if len(content) > MAX_FILE_BYTES:
         message = f"{name} has {len(content) / 1e6:.1f} MB, but the page takes {MAX_FILE_BYTES / 1e6:g} MB at most."
         raise Refusal({field: message}, 413)
 
 
-def read_matrices(name: str, content: bytes, part: str) -> dict[str, Any]:
+def read_uploaded_matrices(name: str, content: bytes, part: str) -> dict[str, Any]:
     """Read matrices from a ``.npz`` with arrays mass, stiffness, heights and rotations, or one of them from a CSV file.
 
     Heights are one for each freedom, NaN for none; or rows of an index and a height, or with NaN, which become a table.
@@ -146,15 +154,15 @@ def read_matrices(name: str, content: bytes, part: str) -> dict[str, Any]:
     Refusal
         If the file is too large or cannot be read, or an array is.
     """
-    shown = clean_name(name)
-    _check_size(shown, content, "structure")
+    shown = clean_upload_name(name)
+    _check_upload_size(shown, content, "structure")
     try:
         if shown.lower().endswith(".npz"):
-            return _from_npz(shown, content)
+            return _matrices_from_npz(shown, content)
         if part not in MATRICES:
             message = f"say which of {', '.join(MATRICES)} the file {shown} holds."
             raise Refusal({"structure": message})
-        return {part: _numbers(shown, part, _from_text(content.decode("utf-8-sig")))}
+        return {part: _matrix_as_numbers(shown, part, _matrix_from_text(content.decode("utf-8-sig")))}
     except Refusal:
         raise
     except Exception as error:  # damaged files raise many kinds of errors
@@ -162,7 +170,7 @@ def read_matrices(name: str, content: bytes, part: str) -> dict[str, Any]:
         raise Refusal({"structure": message}) from error
 
 
-def _from_text(text: str) -> Any:
+def _matrix_from_text(text: str) -> Any:
     """Return the numbers of a CSV file, or between blanks; empty cells, which heights may have, are NaN."""
     if ";" in text:  # then commas are decimal commas
         text = text.replace(",", ".").replace(";", ",")
@@ -172,7 +180,7 @@ def _from_text(text: str) -> Any:
     )  # fmt: skip
 
 
-def _from_npz(name: str, content: bytes) -> dict[str, Any]:
+def _matrices_from_npz(name: str, content: bytes) -> dict[str, Any]:
     found: dict[str, Any] = {}
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         for part in MATRICES:
@@ -190,14 +198,14 @@ def _from_npz(name: str, content: bytes) -> dict[str, Any]:
                 )
                 raise Refusal({"structure": message})
             with archive.open(f"{part}.npy") as file:
-                found[part] = _numbers(name, part, np.lib.format.read_array(file, allow_pickle=False))
+                found[part] = _matrix_as_numbers(name, part, np.lib.format.read_array(file, allow_pickle=False))
     if "stiffness" not in found:
         message = f"{name} must hold the arrays mass, stiffness and heights, but it holds no stiffness."
         raise Refusal({"structure": message})
     return found
 
 
-def _numbers(name: str, part: str, array: Any) -> Any:
+def _matrix_as_numbers(name: str, part: str, array: Any) -> Any:
     """Return an array as the state of the page stores it: numbers, or heights by the indices of their freedoms."""
     values = np.asarray(array, dtype=np.float64)
     blank = np.isnan(values) & (part == "heights")
@@ -205,7 +213,7 @@ def _numbers(name: str, part: str, array: Any) -> Any:
         message = f"{name}: {part} must hold finite numbers for up to {MAX_FREEDOMS} freedoms."
         raise Refusal({"structure": message})
     if part == "heights" and values.ndim == 2 and values.shape[1] == 2 and len(values) > 1:
-        found = {str(_index(name, part, each)): height for each, height in values.tolist()}
+        found = {str(_index_of_freedom(name, part, each)): height for each, height in values.tolist()}
         if len(found) < len(values):
             message = f"{name}: {part} must hold each freedom once."
             raise Refusal({"structure": message})
@@ -213,13 +221,13 @@ def _numbers(name: str, part: str, array: Any) -> Any:
     if values.ndim == 2 and 1 in values.shape and part != "stiffness":
         values = values.ravel()
     if part == "rotations":
-        return [_index(name, part, each) for each in values.ravel()]
+        return [_index_of_freedom(name, part, each) for each in values.ravel()]
     if blank.any():
         return {str(i): float(values.ravel()[i]) for i in np.flatnonzero(~blank)}
     return values.tolist()
 
 
-def _index(name: str, part: str, number: float) -> int:
+def _index_of_freedom(name: str, part: str, number: float) -> int:
     if not number.is_integer():
         message = f"{name}: {part} must hold whole indices of freedoms, counted from 0, but {number:g} was found."
         raise Refusal({"structure": message})

@@ -2,25 +2,25 @@
 
 The paper is "Surrogate models for seismic response analysis of flexible rocking structures", Earthquake Engng Struct
 Dyn, doi 10.1002/eqe.4193. A target is a table or a figure: a title, and a function of the records that returns a
-`rockflex.report.Result`. `_targets` lists them, each section of the paper has a module, and `_comparison` has the rules
-by which a number passes.
+`rockflex.report.ReproducedResult`. `_targets` lists them, each section of the paper has a module, and `_comparison` has
+the rules by which a number passes.
 
 The package also holds what the library has only for this paper: the random `population` and the equivalents of the two
 tested specimens.
 """
 
-from rockflex.papers.silva_stojadinovic_2024._comparison import Kind, Verdict
+from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, Verdict
 from rockflex.papers.silva_stojadinovic_2024._equivalents import equivalent_2hz_long_base, equivalent_s1
-from rockflex.papers.silva_stojadinovic_2024._inputs import Records
-from rockflex.papers.silva_stojadinovic_2024._targets import TARGETS, reproduce, title_of
+from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
+from rockflex.papers.silva_stojadinovic_2024._targets import TARGETS, reproduce_targets, target_title
 
 __all__ = [
     "TARGETS",
-    "Kind",
-    "Records",
+    "PaperRecords",
+    "RemarkKind",
     "Verdict",
     "equivalent_2hz_long_base",
     "equivalent_s1",
-    "reproduce",
-    "title_of",
+    "reproduce_targets",
+    "target_title",
 ]

@@ -14,7 +14,7 @@
 5. *Does not reproduce.* Everything else. Nothing is adjusted to pass.
 
 A printed value counts once, even if it is repeated. Anything that follows from the way the library or an equivalent
-specimen is built is a `Check`, not a number; additional computations are `Remark`s.
+specimen is built is a `ConstructionCheck`, not a number; additional computations are `Remark`s.
 """
 
 import math
@@ -24,8 +24,8 @@ from enum import StrEnum
 from typing import NamedTuple
 
 import rockflex as rf
-from rockflex.report import Check, Number
-from rockflex.report._document import as_text
+from rockflex.report import ConstructionCheck, PublishedNumber
+from rockflex.report._document import decimal_text
 
 MAX_INTERVAL_WIDTH = 0.5  # over the printed value, above which the interval decides nothing
 APPROXIMATE = 0.2  # largest relative difference from a value that is printed as "about" so much
@@ -37,18 +37,21 @@ _SLACK = 1e-14  # relative, for the binary image of a decimal edge
 MUST_ROUND = "must round to it"
 
 
-class _Explained(StrEnum):
+class _ExplainedName(StrEnum):
     meaning: str
 
-    def __new__(cls, name: str, meaning: str) -> "_Explained":
+    def __new__(cls, name: str, meaning: str) -> "_ExplainedName":
         """Make a member whose value is the name."""
         member = str.__new__(cls, name)
         member._value_, member.meaning = name, meaning
         return member
 
 
-class Verdict(_Explained):
-    """How our number compares with the printed one; `_number` has the rules. `meaning` is the rule in a sentence."""
+class Verdict(_ExplainedName):
+    """How our number compares with the printed one; `meaning` is the rule in a sentence.
+
+    The rules are in `_compared_number_of_verdict`.
+    """
 
     REPRODUCED = (
         "reproduced",
@@ -80,7 +83,7 @@ class Verdict(_Explained):
     NOT = "does not reproduce", "None of these. Nothing is adjusted to pass; the difference is shown."
 
 
-class Kind(_Explained):
+class RemarkKind(_ExplainedName):
     """The kind of a remark, with its `meaning`."""
 
     AFTERWARDS = (
@@ -92,7 +95,7 @@ class Kind(_Explained):
 
 
 @dataclass(frozen=True)
-class Range:
+class PrintedRange:
     """The values that a printed number can represent.
 
     Attributes
@@ -133,7 +136,7 @@ class Range:
         return low <= self.high and high >= self.low
 
 
-def range_of(printed: str, *, truncated: bool = False) -> Range:
+def printed_range(printed: str, *, truncated: bool = False) -> PrintedRange:
     """Read a printed number.
 
     Parameters
@@ -151,54 +154,57 @@ def range_of(printed: str, *, truncated: bool = False) -> Range:
     """
     bound = _BOUND.fullmatch(printed.strip())
     if bound:
-        value, sign = _parsed(bound["value"]), bound["sign"]
+        value, sign = _parsed_printed_number(bound["value"]), bound["sign"]
         below, above = (-math.inf, value), (value, math.inf)
         low, high = below if sign in "<≤" else above
-        return Range(low, high, sign in "<>", value, _step(bound["value"]), is_bound=True)
+        return PrintedRange(low, high, sign in "<>", value, _step_of_last_printed_digit(bound["value"]), is_bound=True)
     match = _VALUE.fullmatch(printed.strip())
     if not match:
         raise rf.InputError(
             f"A printed number must read like '1.66', 'about 44', '580000/3' or '≤ 3.2', but {printed!r} was given. "
             "Give what is no number as a statement, with a criterion."
         )
-    divisor = _parsed(match["divisor"]) if match["divisor"] else 1.0
-    value, step = _parsed(match["value"]) / divisor, _step(match["value"]) / divisor
+    divisor = _parsed_printed_number(match["divisor"]) if match["divisor"] else 1.0
+    value, step = (
+        _parsed_printed_number(match["value"]) / divisor,
+        _step_of_last_printed_digit(match["value"]) / divisor,
+    )
     low, high = value - 0.5 * step, value + 0.5 * step
     if truncated:
         low, high = (value - step, high) if value < 0.0 else (low, value + step)
     rough = match["word"] is not None
     if rough:
         low, high = max(low, value - APPROXIMATE * abs(value)), min(high, value + APPROXIMATE * abs(value))
-    return Range(low, high, open=False, value=value, step=step, is_bound=False, rough=rough)
+    return PrintedRange(low, high, open=False, value=value, step=step, is_bound=False, rough=rough)
 
 
-def _parsed(text: str) -> float:
+def _parsed_printed_number(text: str) -> float:
     return float(re.sub("[' ]", "", text).replace("−", "-"))
 
 
-def _step(text: str) -> float:
+def _step_of_last_printed_digit(text: str) -> float:
     return 10.0 ** -len(text.partition(".")[2])
 
 
-class Interval(NamedTuple):
+class ResampledInterval(NamedTuple):
     """An estimate and its 90 % interval over resampled recordings or random draws; NaN if it does not exist."""
 
     estimate: float
     low: float
     high: float
 
-    def times(self, factor: float) -> "Interval":
+    def times(self, factor: float) -> "ResampledInterval":
         """Return the interval in another unit, such as per cent."""
-        return Interval(*(factor * value for value in self))
+        return ResampledInterval(*(factor * value for value in self))
 
 
-def intervals_of(band: rf.BootstrapBand) -> list[Interval]:
+def bootstrap_intervals(band: rf.BootstrapBand) -> list[ResampledInterval]:
     """Return the interval of each value of a bootstrap."""
     three = zip(band.estimate.tolist(), band.low.tolist(), band.high.tolist(), strict=True)
-    return [Interval(*each) for each in three]
+    return [ResampledInterval(*each) for each in three]
 
 
-def compared(
+def compared_number(
     name: str,
     place: str,
     printed: str,
@@ -208,29 +214,29 @@ def compared(
     agreed: Verdict = Verdict.REPRODUCED,
     truncated: bool = False,
     note: str = "",
-) -> Number:
+) -> PublishedNumber:
     """Compare a printed value or bound with ours (rules 1 and 3).
 
     Parameters
     ----------
     name, place, printed, ours, unit, note
-        As in `Number`; `ours` in the unit in print.
+        As in `PublishedNumber`; `ours` in the unit in print.
     ground
         Verdict if the value agrees.
     truncated
         Whether digits may have been cut off in print (rule 1).
     """
-    wanted, value = range_of(printed, truncated=truncated), float(ours)
+    wanted, value = printed_range(printed, truncated=truncated), float(ours)
     criterion = "must hold" if wanted.is_bound else MUST_ROUND
     if wanted.rough:
         criterion += f", and be within {100.0 * APPROXIMATE:g} % of it"
-    if truncated and value in wanted and value not in range_of(printed):
+    if truncated and value in wanted and value not in printed_range(printed):
         criterion = "cut off, not rounded, to it"
     verdict = agreed if value in wanted else Verdict.NOT
-    return _number(name, place, printed, value, unit, criterion, verdict, wanted, note)
+    return _compared_number_of_verdict(name, place, printed, value, unit, criterion, verdict, wanted, note)
 
 
-def stated(
+def compared_statement(
     name: str,
     place: str,
     printed: str,
@@ -240,20 +246,24 @@ def stated(
     *,
     agreed: Verdict = Verdict.REPRODUCED,
     note: str = "",
-) -> Number:
+) -> PublishedNumber:
     """Check a statement in words by a bound, such as ``"> 1"``, on a number (rules 1 and 3)."""
-    wanted, value = range_of(criterion), float(ours)
+    wanted, value = printed_range(criterion), float(ours)
     verdict = agreed if value in wanted else Verdict.NOT
-    return Number(name, place, printed, value, unit, criterion, _digits(wanted, value), note, verdict, None, None)
+    return PublishedNumber(
+        name, place, printed, value, unit, criterion, _digits_beside_bound(wanted, value), note, verdict, None, None
+    )
 
 
-def statistic(name: str, place: str, printed: str, ours: Interval, unit: str = "", *, note: str = "") -> Number:
+def compared_statistic(
+    name: str, place: str, printed: str, ours: ResampledInterval, unit: str = "", *, note: str = ""
+) -> PublishedNumber:
     """Compare a printed value with the interval of ours, from other records or draws (rule 2)."""
-    wanted = range_of(printed)
-    digits = _digits_of(wanted, ours.estimate)
+    wanted = printed_range(printed)
+    digits = _digits_beyond_print(wanted, ours.estimate)
     known = math.isfinite(ours.low) and math.isfinite(ours.high)
     wide = ours.high - ours.low > MAX_INTERVAL_WIDTH * abs(wanted.value)
-    interval = f"90 % interval {as_text(ours.low, digits)} to {as_text(ours.high, digits)}"
+    interval = f"90 % interval {decimal_text(ours.low, digits)} to {decimal_text(ours.high, digits)}"
     if not known:
         verdict, criterion = Verdict.UNDECIDED, "too few runs for an interval"
     elif not wanted.meets(ours.low, ours.high):
@@ -262,56 +272,60 @@ def statistic(name: str, place: str, printed: str, ours: Interval, unit: str = "
         verdict, criterion = Verdict.UNDECIDED, f"{interval} meets it, and is wider than half of it"
     else:
         verdict, criterion = Verdict.COMPATIBLE, f"{interval} must meet it"
-    return _number(name, place, printed, float(ours.estimate), unit, criterion, verdict, wanted, note)
+    return _compared_number_of_verdict(
+        name, place, printed, float(ours.estimate), unit, criterion, verdict, wanted, note
+    )
 
 
-def count_of(name: str, place: str, printed: str, ours: Interval) -> Number:
+def compared_count(name: str, place: str, printed: str, ours: ResampledInterval) -> PublishedNumber:
     """Show a count of outcomes, which depends on how strong the records are, next to the printed one (rule 4)."""
-    criterion = f"none; 90 % interval {as_text(ours.low, 0)} to {as_text(ours.high, 0)}"
-    wanted, note = range_of(printed), "depends on how strong the records are"
-    return _number(name, place, printed, float(ours.estimate), "", criterion, Verdict.INCOMPARABLE, wanted, note)
+    criterion = f"none; 90 % interval {decimal_text(ours.low, 0)} to {decimal_text(ours.high, 0)}"
+    wanted, note = printed_range(printed), "depends on how strong the records are"
+    return _compared_number_of_verdict(
+        name, place, printed, float(ours.estimate), "", criterion, Verdict.INCOMPARABLE, wanted, note
+    )
 
 
-def tendency(
-    name: str, place: str, printed: str, ours: Interval, criterion: str, unit: str = "", *, note: str = ""
-) -> Number:
+def compared_tendency(
+    name: str, place: str, printed: str, ours: ResampledInterval, criterion: str, unit: str = "", *, note: str = ""
+) -> PublishedNumber:
     """Check a bound or a statement in words on the interval of a number from other records or draws (rule 2)."""
-    wanted, value = range_of(criterion), float(ours.estimate)
-    digits = _digits(wanted, value)
+    wanted, value = printed_range(criterion), float(ours.estimate)
+    digits = _digits_beside_bound(wanted, value)
     holds = [float(end) in wanted for end in (ours.low, ours.high)]
     verdict = Verdict.COMPATIBLE if all(holds) else Verdict.UNDECIDED if any(holds) else Verdict.NOT
     if math.isnan(ours.low) or math.isnan(ours.high):
         verdict = Verdict.UNDECIDED
-    text = f"{criterion} over the 90 % interval {as_text(ours.low, digits)} to {as_text(ours.high, digits)}"
-    return Number(name, place, printed, value, unit, text, digits, note, verdict, None, None)
+    text = f"{criterion} over the 90 % interval {decimal_text(ours.low, digits)} to {decimal_text(ours.high, digits)}"
+    return PublishedNumber(name, place, printed, value, unit, text, digits, note, verdict, None, None)
 
 
-def check(
+def construction_check(
     name: str, place: str, printed: str, ours: float, criterion: str = "", unit: str = "", *, note: str = ""
-) -> Check:
+) -> ConstructionCheck:
     """Check a value against a bound, such as ``"< 1"``, or by default against the printed number."""
-    wanted, value = range_of(criterion or printed), float(ours)
-    digits, words = _digits_of(wanted, value), criterion or MUST_ROUND
-    return Check(name, place, printed, value, unit, words, digits, note, value in wanted)
+    wanted, value = printed_range(criterion or printed), float(ours)
+    digits, words = _digits_beyond_print(wanted, value), criterion or MUST_ROUND
+    return ConstructionCheck(name, place, printed, value, unit, words, digits, note, value in wanted)
 
 
-def _number(
-    name: str, place: str, printed: str, ours: float, unit: str, criterion: str, verdict: Verdict, wanted: Range,
+def _compared_number_of_verdict(
+    name: str, place: str, printed: str, ours: float, unit: str, criterion: str, verdict: Verdict, wanted: PrintedRange,
     note: str,
-) -> Number:  # fmt: skip
+) -> PublishedNumber:  # fmt: skip
     away = ours - wanted.value
     silent = not math.isfinite(away) or (wanted.is_bound and verdict is not Verdict.NOT)
     relative = None if silent or wanted.value == 0.0 else away / abs(wanted.value)
-    digits, difference = _digits_of(wanted, ours), None if silent else away
-    return Number(name, place, printed, ours, unit, criterion, digits, note, verdict, difference, relative)
+    digits, difference = _digits_beyond_print(wanted, ours), None if silent else away
+    return PublishedNumber(name, place, printed, ours, unit, criterion, digits, note, verdict, difference, relative)
 
 
-def _digits_of(wanted: Range, ours: float) -> int:
+def _digits_beyond_print(wanted: PrintedRange, ours: float) -> int:
     """Return two decimals more than printed, or none if both are integers."""
     decimals = max(0, round(-math.log10(wanted.step)))
     return 0 if decimals == 0 and ours.is_integer() else decimals + 2
 
 
-def _digits(wanted: Range, ours: float) -> int:
+def _digits_beside_bound(wanted: PrintedRange, ours: float) -> int:
     """Return the decimals of a number that is compared with a bound: at least three, or none for an integer."""
-    return 0 if ours.is_integer() else max(_digits_of(wanted, ours), 3)
+    return 0 if ours.is_integer() else max(_digits_beyond_print(wanted, ours), 3)

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import brentq, root
 
 from rockflex._arrays import Array
-from rockflex._checks import damping_ratios, in_range, positive, whole_number
+from rockflex._checks import checked_damping_ratios, checked_in_range, checked_positive, checked_whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties, modal_properties
@@ -52,11 +52,11 @@ def equivalent_2hz_long_base(base_mass_ratio: float, damping_ratio: float, n_mod
     >>> rf.equivalent_2hz_long_base(base_mass_ratio=0.1, damping_ratio=0.01).effective_height.round(3).tolist()
     [0.887, 0.228]
     """
-    heavy = positive("base_mass_ratio", base_mass_ratio, "kg of base a kg above it", zero=True)
-    zeta = damping_ratios("damping_ratio", damping_ratio, 1)[0]
-    n = whole_number("n_modes", n_modes, 1, 5)
+    heavy = checked_positive("base_mass_ratio", base_mass_ratio, "kg of base a kg above it", zero=True)
+    zeta = checked_damping_ratios("damping_ratio", damping_ratio, 1)[0]
+    n = checked_whole_number("n_modes", n_modes, 1, 5)
     tip = _tip_mass_ratio(0.92)
-    roots, mass, height, top = tipped_cantilever(tip, n)
+    roots, mass, height, top = modes_of_tipped_cantilever(tip, n)
     omega_1 = 2.0 * math.pi / 0.5
     length = GRAVITY / (omega_1**2 * 0.07) / height[0]
     half_width = 0.16 * length * height[0]
@@ -120,9 +120,9 @@ def equivalent_s1(
     >>> p.n_modes, round(6.2832 / float(p.omega[0]), 3)
     (5, 0.11)
     """
-    height = positive("effective_height", effective_height, "m")
-    exponent = in_range("spacing", spacing, *_SPACING, hint="Elsewhere no masses meet both ratios well.")
-    ordinates, masses = _five_masses(exponent)
+    height = checked_positive("effective_height", effective_height, "m")
+    exponent = checked_in_range("spacing", spacing, *_SPACING, hint="Elsewhere no masses meet both ratios well.")
+    ordinates, masses = _five_masses_of_s1(exponent)
     stiffness = _cantilever_stiffness(ordinates)
     unit = modal_properties(masses, stiffness, ordinates)
     length = height / float(unit.effective_height[0])
@@ -131,13 +131,13 @@ def equivalent_s1(
         masses,
         stretch * stiffness,
         length * ordinates,
-        base_mass=positive("base_mass_ratio", base_mass_ratio, "kg of base a kg above it", zero=True),
-        half_width=positive("width_ratio", width_ratio, "m of B a m of h*_1") * height,
+        base_mass=checked_positive("base_mass_ratio", base_mass_ratio, "kg of base a kg above it", zero=True),
+        half_width=checked_positive("width_ratio", width_ratio, "m of B a m of h*_1") * height,
         damping_ratio=damping_ratio,
     ).rocking()
 
 
-def tipped_cantilever(tip: float, n_modes: int) -> tuple[Array, Array, Array, Array]:
+def modes_of_tipped_cantilever(tip: float, n_modes: int) -> tuple[Array, Array, Array, Array]:
     """Return the modes of a uniform Euler-Bernoulli cantilever of unit length with `tip` times its mass at the tip.
 
     Returns
@@ -169,11 +169,11 @@ def tipped_cantilever(tip: float, n_modes: int) -> tuple[Array, Array, Array, Ar
 @lru_cache(maxsize=4)
 def _tip_mass_ratio(share: float) -> float:
     """Return the tip mass, over that of the column, for which m*_1 is `share` of their sum."""
-    return float(brentq(lambda tip: float(tipped_cantilever(tip, 1)[1][0]) - share, 0.0, 100.0, xtol=1e-12))
+    return float(brentq(lambda tip: float(modes_of_tipped_cantilever(tip, 1)[1][0]) - share, 0.0, 100.0, xtol=1e-12))
 
 
 @lru_cache(maxsize=32)
-def _five_masses(spacing: float) -> tuple[Array, Array]:
+def _five_masses_of_s1(spacing: float) -> tuple[Array, Array]:
     """Return heights (largest 1) and masses (sum 1) that meet the two ratios of S1."""
     x = (np.arange(1, 6) / 5.0) ** spacing
 

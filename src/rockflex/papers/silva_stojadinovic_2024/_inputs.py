@@ -30,7 +30,7 @@ SEEDS, MIN_POPULATIONS, SEED = 20, 10, 2024
 SUITES = ("fema-p695-far-field", "fema-p695-near-field-no-pulse")
 
 
-def frame_of(name: str) -> rf.Frame:
+def table_1_frame(name: str) -> rf.Frame:
     """Return a structure of Table 1."""
     period, aspect_ratio, behaviour = STRUCTURES[name]
     return rf.Frame(
@@ -48,7 +48,7 @@ def tall_frame(behaviour: str, aspect_ratio: float = MARK) -> rf.Frame:
 
 
 @dataclass(frozen=True, eq=False)
-class Records:
+class PaperRecords:
     """The records of the studies of Sections 3.2 to 3.4, and El Centro 1940 of Sections 4.1.1 and 4.2.
 
     Attributes

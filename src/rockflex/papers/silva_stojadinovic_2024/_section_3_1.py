@@ -9,10 +9,16 @@ import numpy as np
 
 import rockflex as rf
 from rockflex._arrays import Array
-from rockflex.papers.silva_stojadinovic_2024._comparison import Kind, Verdict, check, compared, stated
-from rockflex.papers.silva_stojadinovic_2024._inputs import Records
-from rockflex.report import Check, Number, Remark, Result
-from rockflex.report._document import as_text
+from rockflex.papers.silva_stojadinovic_2024._comparison import (
+    RemarkKind,
+    Verdict,
+    compared_number,
+    compared_statement,
+    construction_check,
+)
+from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
+from rockflex.report import ConstructionCheck, PublishedNumber, Remark, ReproducedResult
+from rockflex.report._document import decimal_text
 
 SPECIMEN_MODELS = ("2DOF-C", "2DOF-C-SI", "2DOF-S", "MDOF-S")
 
@@ -26,8 +32,8 @@ S1 = {
     "spacing": (1.5, 1.3, 1.65),
 }
 
-equal = partial(compared, agreed=Verdict.EQUIVALENT)
-holds = partial(stated, agreed=Verdict.EQUIVALENT)
+equal = partial(compared_number, agreed=Verdict.EQUIVALENT)
+holds = partial(compared_statement, agreed=Verdict.EQUIVALENT)
 BY_CONSTRUCTION = "the equivalent is built so"
 
 Free = Mapping[str, tuple[float, ...]]
@@ -51,35 +57,35 @@ NOTE_4 = (
 )
 
 
-def nominal(free: Free) -> dict[str, float]:
+def nominal_parameters(free: Free) -> dict[str, float]:
     """Return the nominal value of each parameter."""
     return {name: values[0] for name, values in free.items()}
 
 
-def combinations(free: Free) -> list[dict[str, float]]:
+def parameter_combinations(free: Free) -> list[dict[str, float]]:
     """Return every combination of the values."""
     return [dict(zip(free, values, strict=True)) for values in product(*free.values())]
 
 
-def histories(properties: rf.RockingProperties, run: Run) -> dict[str, rf.Response]:
+def responses_of_four_models(properties: rf.RockingProperties, run: Run) -> dict[str, rf.Response]:
     """Return the responses of the four models by name."""
     return {model: run(properties, model) for model in SPECIMEN_MODELS}
 
 
-def largest_ratio(values: Iterable[float]) -> float:
+def largest_to_smallest_ratio(values: Iterable[float]) -> float:
     """Return the ratio of the largest to the smallest value."""
     found = list(values)
     return max(found) / min(found)
 
 
-def drawings(
+def drawings_of_responses(
     name: str, title: str, responses: Mapping[str, rf.Response], free: Free, make: Make, run: Run
 ) -> dict[str, Callable[[], Any]]:
     """Return the figure of the responses, and the figure of each model with the band over all combinations."""
     nominals, panels = list(responses.values()), ("rotation", "top_displacement")
 
     def spread() -> Any:
-        cases = [make(**case) for case in combinations(free)]
+        cases = [make(**case) for case in parameter_combinations(free)]
         varied = [[run(case, model) for case in cases] for model in responses]
         return rf.plot_spread(nominals, varied, panels=panels, title=title)
 
@@ -91,40 +97,40 @@ def run_figure_3(properties: rf.RockingProperties, model: str) -> rf.Response:
     return rf.simulate(properties, rf.ricker_pulse(0.1 * 9.81, 0.5), model, free_vibration=4.0)
 
 
-def figure_3(_: Records) -> Result:
+def figure_3(_: PaperRecords) -> ReproducedResult:
     """Run the four models."""
     make: Make = rf.equivalent_2hz_long_base
-    properties = make(**nominal(TWO_HZ))
-    runs = histories(properties, run_figure_3)
-    figures = drawings("figure-3", LABEL_3, runs, TWO_HZ, make, run_figure_3)
-    return Result(
-        "figure-3", FIGURE_3, _numbers_3(properties, runs), figures, NOTE_3, _checks_3(properties, runs["2DOF-C"]),
-        (partial(_both_signs, properties, runs),),
+    properties = make(**nominal_parameters(TWO_HZ))
+    runs = responses_of_four_models(properties, run_figure_3)
+    figures = drawings_of_responses("figure-3", LABEL_3, runs, TWO_HZ, make, run_figure_3)
+    return ReproducedResult(
+        "figure-3", FIGURE_3, _numbers_of_figure_3(properties, runs), figures, NOTE_3,
+        _checks_of_figure_3(properties, runs["2DOF-C"]), (partial(_friction_with_both_signs, properties, runs),),
     )  # fmt: skip
 
 
-def _numbers_3(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> list[Number]:
+def _numbers_of_figure_3(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> list[PublishedNumber]:
     lever = p.effective_mass[0] * p.effective_height[0]
     complete, simple = runs["2DOF-C"], runs["2DOF-S"]
     longest = [float(np.max(r.impact_times - r.uplift_times[: r.impact_times.size])) for r in (simple, complete)]
-    friction = _as_printed(complete)
+    friction = _friction_as_printed(complete)
     return [
         equal("m*_1 h*_1/L_0^r", PLACE, "0.98", lever / p.l0r, note="follows from the form chosen"),
         holds(
             "θ_max, largest over least of the four models", PLACE, "any of the four can be used for the maxima",
-            largest_ratio(r.max_rotation for r in runs.values()), "< 1.2",
+            largest_to_smallest_ratio(r.max_rotation for r in runs.values()), "< 1.2",
         ),
         holds(
             "u_top,max, largest over least of the four models", PLACE, "any of the four can be used for the maxima",
-            largest_ratio(r.max_top_displacement for r in runs.values()), "< 1.2",
+            largest_to_smallest_ratio(r.max_top_displacement for r in runs.values()), "< 1.2",
         ),
         holds(
             "θ_max of 2DOF-C and 2DOF-C-SI, larger over smaller", PLACE, "2DOF-C and 2DOF-C-SI both follow the test",
-            largest_ratio(runs[m].max_rotation for m in ("2DOF-C", "2DOF-C-SI")), "< 1.02",
+            largest_to_smallest_ratio(runs[m].max_rotation for m in ("2DOF-C", "2DOF-C-SI")), "< 1.02",
         ),
         holds(
             "θ_max of MDOF-S and 2DOF-S, larger over smaller", PLACE, "the simplified models are very similar",
-            largest_ratio(runs[m].max_rotation for m in ("MDOF-S", "2DOF-S")), "< 1.02",
+            largest_to_smallest_ratio(runs[m].max_rotation for m in ("MDOF-S", "2DOF-S")), "< 1.02",
         ),
         holds(
             "longest time off the ground, 2DOF-S over 2DOF-C", PLACE, "simplified models have shorter rocking periods",
@@ -136,31 +142,32 @@ def _numbers_3(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> list[Nu
         ),
         holds(
             "friction that 2DOF-C needs over B/h*_1, Eq. 22 as printed", PLACE, "larger than B/h*_1",
-            friction / _slenderness(p), "> 1", note="with the corrected sign of the weight it is not: see the remark",
+            friction / _slenderness_angle(p), "> 1",
+            note="with the corrected sign of the weight it is not: see the remark",
         ),
     ]  # fmt: skip
 
 
-def _checks_3(p: rf.RockingProperties, complete: rf.Response) -> tuple[Check, ...]:
+def _checks_of_figure_3(p: rf.RockingProperties, complete: rf.Response) -> tuple[ConstructionCheck, ...]:
     return (
-        check("T_1", PLACE, "0.5", 2.0 * np.pi / p.omega[0], unit="s", note=BY_CONSTRUCTION),
-        check("m*_1/m_s,tot", PLACE, "0.92", p.effective_mass[0] / 1.0, note=BY_CONSTRUCTION),
-        check("B/h*_1", PLACE, "0.16", _slenderness(p), note=BY_CONSTRUCTION),
-        check(
+        construction_check("T_1", PLACE, "0.5", 2.0 * np.pi / p.omega[0], unit="s", note=BY_CONSTRUCTION),
+        construction_check("m*_1/m_s,tot", PLACE, "0.92", p.effective_mass[0] / 1.0, note=BY_CONSTRUCTION),
+        construction_check("B/h*_1", PLACE, "0.16", _slenderness_angle(p), note=BY_CONSTRUCTION),
+        construction_check(
             "simplified over complete resisting moment, less 1, mean while rocking", PLACE, "approximately 7",
-            100.0 * _excess(p, complete), unit="%", note="its size is chosen for 7 % at the uplift",
+            100.0 * _simplified_moment_excess(p, complete), unit="%", note="its size is chosen for 7 % at the uplift",
         ),
     )  # fmt: skip
 
 
-def _both_signs(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> Remark:
+def _friction_with_both_signs(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> Remark:
     """Compute the required friction with both signs of the weight."""
     rows = [
-        (model, f"{_as_printed(run):.3f}", f"{run.required_friction:.3f}", f"{_slenderness(p):.3f}")
+        (model, f"{_friction_as_printed(run):.3f}", f"{run.required_friction:.3f}", f"{_slenderness_angle(p):.3f}")
         for model, run in runs.items()
     ]
     return Remark(
-        Kind.BESIDE,
+        RemarkKind.BESIDE,
         "Both signs of the weight in Eq. 22",
         "Eq. 22 as printed requires more friction than B/h*_1. With the corrected sign, the complete models require "
         "about B/h*_1, at which the base lifts.",
@@ -169,16 +176,16 @@ def _both_signs(p: rf.RockingProperties, runs: dict[str, rf.Response]) -> Remark
     )
 
 
-def _as_printed(run: rf.Response) -> float:
+def _friction_as_printed(run: rf.Response) -> float:
     """Return the friction that a run requires by Eq. 22 as printed."""
     return run.required_friction_excluding_impacts(0.0, printed=True)
 
 
-def _slenderness(p: rf.RockingProperties) -> float:
+def _slenderness_angle(p: rf.RockingProperties) -> float:
     return float(p.half_width / p.effective_height[0])
 
 
-def _excess(p: rf.RockingProperties, response: rf.Response) -> float:
+def _simplified_moment_excess(p: rf.RockingProperties, response: rf.Response) -> float:
     """Mean of simplified over complete resisting moment, less 1, of the nodes off the ground."""
     rocking = response.side != 0.0
     theta = np.abs(response.rotation[rocking])
@@ -196,21 +203,23 @@ def run_figure_4(
     return rf.simulate(properties, rf.quiet_motion(3.0, 0.001), model, output, initial=start)
 
 
-def figure_4(_: Records) -> Result:
+def figure_4(_: PaperRecords) -> ReproducedResult:
     """Run the four models, and the top displacement of two of them over all combinations."""
-    properties = rf.equivalent_s1(**nominal(S1))
-    runs = histories(properties, run_figure_4)
-    figures = drawings("figure-4", LABEL_4, runs, S1, rf.equivalent_s1, run_figure_4)
-    return Result("figure-4", FIGURE_4, _numbers_4(runs), figures, NOTE_4, _checks_4(properties))
+    properties = rf.equivalent_s1(**nominal_parameters(S1))
+    runs = responses_of_four_models(properties, run_figure_4)
+    figures = drawings_of_responses("figure-4", LABEL_4, runs, S1, rf.equivalent_s1, run_figure_4)
+    return ReproducedResult(
+        "figure-4", FIGURE_4, _numbers_of_figure_4(runs), figures, NOTE_4, _checks_of_figure_4(properties)
+    )
 
 
-def _numbers_4(runs: dict[str, rf.Response]) -> list[Number]:
+def _numbers_of_figure_4(runs: dict[str, rf.Response]) -> list[PublishedNumber]:
     every = runs["MDOF-S"]
     printed = every.required_friction_excluding_impacts(0.0, printed=True)
     friction = float("inf") if printed > BOUNDLESS else printed
     alone = ("2DOF-C", "2DOF-C-SI", "2DOF-S")
     change = 100.0 * (runs["MDOF-S"].max_top_displacement / runs["2DOF-S"].max_top_displacement - 1.0)
-    changes = _changes()
+    changes = _top_displacement_changes()
     swept = (
         f"over {changes.size} combinations of the unpublished values it is from {changes.min():+.0f} % to "
         f"{changes.max():+.0f} %, {np.median(changes):+.1f} % in the median"
@@ -219,33 +228,33 @@ def _numbers_4(runs: dict[str, rf.Response]) -> list[Number]:
         equal("u_top,max of MDOF-S over 2DOF-S, less 1", PLACE, "about −21", change, "%", note=swept),
         holds(
             "u_top,max of the 2DOF models, largest over least", PLACE, "2DOF-C, 2DOF-S and 2DOF-C-SI almost identical",
-            largest_ratio(runs[m].max_top_displacement for m in alone), "< 1.02",
+            largest_to_smallest_ratio(runs[m].max_top_displacement for m in alone), "< 1.02",
         ),
         holds(
             "time of the first impact, largest over least of the four models", PLACE,
             "all four agree for the first rocking cycle",
-            largest_ratio(float(r.impact_times[0]) for r in runs.values()), "< 1.02",
+            largest_to_smallest_ratio(float(r.impact_times[0]) for r in runs.values()), "< 1.02",
         ),
         holds(
             "friction that MDOF-S needs, Eq. 22 as printed", PLACE, "force ratios higher than 2", friction, "> 2",
             note="∞: the vertical sum passes through zero; with the corrected sign of the weight "
-            f"{as_text(every.required_friction, 1)}",
+            f"{decimal_text(every.required_friction, 1)}",
         ),
     ]  # fmt: skip
 
 
-def _checks_4(p: rf.RockingProperties) -> tuple[Check, ...]:
+def _checks_of_figure_4(p: rf.RockingProperties) -> tuple[ConstructionCheck, ...]:
     lever = p.effective_mass[0] * p.effective_height[0]
     return (
-        check("T_1", PLACE, "0.11", 2.0 * np.pi / p.omega[0], unit="s", note=BY_CONSTRUCTION),
-        check("m*_1/m_s,tot", PLACE, "0.48", p.effective_mass[0] / 1.0, note=BY_CONSTRUCTION),
-        check("m*_1 h*_1/L_0^r", PLACE, "0.87", lever / p.l0r, note=BY_CONSTRUCTION),
+        construction_check("T_1", PLACE, "0.11", 2.0 * np.pi / p.omega[0], unit="s", note=BY_CONSTRUCTION),
+        construction_check("m*_1/m_s,tot", PLACE, "0.48", p.effective_mass[0] / 1.0, note=BY_CONSTRUCTION),
+        construction_check("m*_1 h*_1/L_0^r", PLACE, "0.87", lever / p.l0r, note=BY_CONSTRUCTION),
     )
 
 
-def _changes() -> Array:
+def _top_displacement_changes() -> Array:
     """Compare u_top,max of MDOF-S and 2DOF-S, in per cent, over all combinations."""
-    made = [rf.equivalent_s1(**case) for case in combinations(S1)]
+    made = [rf.equivalent_s1(**case) for case in parameter_combinations(S1)]
     every, one = (
         np.array([run_figure_4(p, model, "peaks").max_top_displacement for p in made]) for model in ("MDOF-S", "2DOF-S")
     )

@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 import rockflex as rf
 from rockflex._arrays import Array, Bools
 from rockflex.papers.silva_stojadinovic_2024._comparison import (
-    Interval,
-    Kind,
-    compared,
-    intervals_of,
-    statistic,
-    tendency,
+    RemarkKind,
+    ResampledInterval,
+    bootstrap_intervals,
+    compared_number,
+    compared_statistic,
+    compared_tendency,
 )
-from rockflex.papers.silva_stojadinovic_2024._inputs import MODELS, STRUCTURES, Records, frame_of
-from rockflex.report import Number, Remark, Result
+from rockflex.papers.silva_stojadinovic_2024._inputs import MODELS, STRUCTURES, PaperRecords, table_1_frame
+from rockflex.report import PublishedNumber, Remark, ReproducedResult
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -110,11 +110,11 @@ WORDS = {
 ABOVE = "runs that need more than 1.0"
 
 
-def table_1(_: Records) -> Result:
+def table_1(_: PaperRecords) -> ReproducedResult:
     """Compute the modal properties of every structure."""
-    ours = {name: _modal_values(name) for name in STRUCTURES}
+    ours = {name: _table_1_modal_values(name) for name in STRUCTURES}
     numbers = [
-        _farthest(quantity, text, {name: ours[name][quantity] for name in names})
+        _farthest_from_print(quantity, text, {name: ours[name][quantity] for name in names})
         for quantity, row in PRINTED.items()
         for names, text in row.items()
     ]
@@ -122,12 +122,12 @@ def table_1(_: Records) -> Result:
         "T_1 and h*_1/B are input, so they are not among the numbers. A value that the table repeats, because it does "
         "not depend on them, is one number; ours is the value of the structure that differs most from it."
     )
-    return Result("table-1", TABLE_1, numbers, note=note)
+    return ReproducedResult("table-1", TABLE_1, numbers, note=note)
 
 
-def _modal_values(name: str) -> dict[str, float]:
+def _table_1_modal_values(name: str) -> dict[str, float]:
     """Return the quantities of the table for a structure."""
-    frame = frame_of(name)
+    frame = table_1_frame(name)
     p = frame.rocking()
     mass, height = p.effective_mass.tolist(), p.effective_height.tolist()
     lever = mass[0] * height[0]
@@ -138,22 +138,22 @@ def _modal_values(name: str) -> dict[str, float]:
     return found
 
 
-def _farthest(quantity: str, printed: str, values: Mapping[str, float]) -> Number:
+def _farthest_from_print(quantity: str, printed: str, values: Mapping[str, float]) -> PublishedNumber:
     """Compare the value that differs most from the printed one."""
     place = f"Table 1, {', '.join(values)}"
-    lines = [compared(quantity, place, printed, value) for value in values.values()]
+    lines = [compared_number(quantity, place, printed, value) for value in values.values()]
     return max(lines, key=lambda line: abs(line.difference or 0.0))
 
 
 @lru_cache(maxsize=1)
-def cloud(records: Records) -> "pd.DataFrame":
+def run_cloud_of_paper(records: PaperRecords) -> "pd.DataFrame":
     """Run the six structures with three models under every record, at the scales 1 and 2."""
-    frames = {name: frame_of(name) for name in STRUCTURES}
+    frames = {name: table_1_frame(name) for name in STRUCTURES}
     return rf.run_cloud(frames, records.suite, MODELS, (1.0, 2.0))
 
 
 @lru_cache(maxsize=2)
-def differences(records: Records, quantity: str) -> dict[str, Interval]:
+def differences_between_models(records: PaperRecords, quantity: str) -> dict[str, ResampledInterval]:
     """Compare the fits of a response, ``"max_rotation"`` or ``"max_top_displacement"``, at PGV = 0.4 m/s.
 
     Records are resampled whole, with both components, both scales, all structures and all models.
@@ -174,15 +174,15 @@ def differences(records: Records, quantity: str) -> dict[str, Interval]:
         If too few runs rocked for a fit.
     """
     im, table, groups = _rocking_runs(records, quantity)
-    names = list(_compare(_fit(im, table)))
+    names = list(_compared_cloud_fits(_fitted_cloud_quantiles(im, table)))
     band = rf.bootstrap_band(
-        _fit, im, table, groups, at=np.arange(len(names)), n=CLOUD_RESAMPLES,
-        curve=lambda fits, _: np.array(list(_compare(fits).values())),
+        _fitted_cloud_quantiles, im, table, groups, at=np.arange(len(names)), n=CLOUD_RESAMPLES,
+        curve=lambda fits, _: np.array(list(_compared_cloud_fits(fits).values())),
     )  # fmt: skip
-    return dict(zip(names, intervals_of(band), strict=True))
+    return dict(zip(names, bootstrap_intervals(band), strict=True))
 
 
-def places(records: Records, quantity: str) -> "pd.DataFrame":
+def cases_of_differences(records: PaperRecords, quantity: str) -> "pd.DataFrame":
     """Differences by structure and 2DOF model, such as ``"#3, 2DOF-S"``.
 
     The columns are `median` and `quantile`, in the response's unit, and the same over the value of MDOF-S,
@@ -191,40 +191,44 @@ def places(records: Records, quantity: str) -> "pd.DataFrame":
     import pandas as pd
 
     im, table, _ = _rocking_runs(records, quantity)
-    away, shares = (each.reshape(-1, len(PARTS)) for each in _differences_from_mdof(_fit(im, table)))
+    away, shares = (each.reshape(-1, len(PARTS)) for each in _differences_from_mdof(_fitted_cloud_quantiles(im, table)))
     names = [f"{name}, {model}" for name in STRUCTURES for model in MODELS[1:]]
     columns = ["median", "quantile", "median_relative", "quantile_relative"]
     return pd.DataFrame(np.column_stack((away, shares)), names, columns)
 
 
-def largest(records: Records, quantity: str, rows: Iterable[tuple[str, str, str, str, str]]) -> list[Number]:
-    """Compare some `differences`, and note where they are largest.
+def largest_model_differences(
+    records: PaperRecords, quantity: str, rows: Iterable[tuple[str, str, str, str, str]]
+) -> list[PublishedNumber]:
+    """Compare some `differences_between_models`, and note where they are largest.
 
-    Each row has the name, the printed value and its unit, the name of the difference, and the column of `places` whose
-    largest value tells where it is.
+    Each row has the name, the printed value and its unit, the name of the difference, and the column of
+    `cases_of_differences` whose largest value tells where it is.
     """
-    found, at = differences(records, quantity), places(records, quantity).idxmax()
+    found, at = differences_between_models(records, quantity), cases_of_differences(records, quantity).idxmax()
     return [
-        statistic(name, AT_PGV, printed, found[key].times(100.0 if unit == "%" else 1.0), unit, note=str(at[column]))
+        compared_statistic(
+            name, AT_PGV, printed, found[key].times(100.0 if unit == "%" else 1.0), unit, note=str(at[column])
+        )
         for name, printed, unit, key, column in rows
     ]
 
 
-def _rocking_runs(records: Records, quantity: str) -> tuple[Array, Array, "NDArray[np.str_]"]:
+def _rocking_runs(records: PaperRecords, quantity: str) -> tuple[Array, Array, "NDArray[np.str_]"]:
     """Return PGV, a code of the case with the response, and the recording, of the runs that rock and stand."""
-    runs = cloud(records)
+    runs = run_cloud_of_paper(records)
     kept = runs[(runs["status"] == "rocking") & (runs["max_rotation"] > THRESHOLD)]
-    table = np.column_stack((codes_of(kept), kept[quantity].to_numpy(dtype=float)))
+    table = np.column_stack((case_codes(kept), kept[quantity].to_numpy(dtype=float)))
     return kept["pgv"].to_numpy(dtype=float), table, kept["group"].astype(str).to_numpy(dtype=np.str_)
 
 
-def codes_of(runs: "pd.DataFrame") -> Array:
+def case_codes(runs: "pd.DataFrame") -> Array:
     """Return the number of the case, a structure with a model, of each run."""
     code = {name + model: float(number) for number, (name, model) in enumerate(product(STRUCTURES, MODELS))}
     return np.array([code[name] for name in runs["structure"].astype(str) + runs["model"].astype(str)], dtype=float)
 
 
-def _fit(im: Array, rows: Array) -> Array:
+def _fitted_cloud_quantiles(im: Array, rows: Array) -> Array:
     """Median and 84 % quantile by structure and model."""
     shape = (len(STRUCTURES), len(MODELS), len(PARTS))
     every = (rows[:, 0] == i for i in range(shape[0] * shape[1]))
@@ -237,8 +241,8 @@ def _differences_from_mdof(fits: Array) -> tuple[Array, Array]:
     return np.abs(fits[:, 1:] - fits[:, :1]), np.abs(fits[:, 1:] / fits[:, :1] - 1.0)
 
 
-def _compare(fits: Array) -> Mapping[str, float]:
-    """Return the values of `differences` for one set of fits."""
+def _compared_cloud_fits(fits: Array) -> Mapping[str, float]:
+    """Return the values of `differences_between_models` for one set of fits."""
     away, shares = _differences_from_mdof(fits)
     found: dict[str, float] = {}
     for place, part in enumerate(PARTS):
@@ -255,21 +259,21 @@ def _compare(fits: Array) -> Mapping[str, float]:
     }
 
 
-def figure_5(records: Records) -> Result:
+def figure_5(records: PaperRecords) -> ReproducedResult:
     """Fit the curves, and find the largest differences between the models."""
-    runs = cloud(records)
-    shear, flexure, more = _gaps(runs)
+    runs = run_cloud_of_paper(records)
+    shear, flexure, more = _largest_probability_gaps(runs)
     words = "the curves agree well"
     numbers = (
-        tendency(
+        compared_tendency(
             "largest difference of P between MDOF-S and a 2DOF model, shear", PLACE, words, shear, AGREE,
             note="0.1 is our reading",
         ),
-        tendency(
+        compared_tendency(
             "largest difference of P between MDOF-S and a 2DOF model, flexure", PLACE, words, flexure, AGREE,
             note=f"0.1 is our reading; {_runs_without_rocking(runs)}",
         ),
-        tendency(
+        compared_tendency(
             "largest difference of P between MDOF-S and a 2DOF model, flexure less shear", PLACE,
             "largest differences for flexure-dominant structures", more, "> 0",
         ),
@@ -279,18 +283,18 @@ def figure_5(records: Records) -> Result:
         "stronger than those of the paper: if (almost) all runs rock, a curve is flat or depends on a few runs. "
         "Intervals are over resampled records."
     )
-    return Result("figure-5", FIGURE_5, numbers, {"figure-5": lambda: rf.plot_fragility(runs)}, note)
+    return ReproducedResult("figure-5", FIGURE_5, numbers, {"figure-5": lambda: rf.plot_fragility(runs)}, note)
 
 
-def _gaps(runs: "pd.DataFrame") -> list[Interval]:
+def _largest_probability_gaps(runs: "pd.DataFrame") -> list[ResampledInterval]:
     """Return the largest difference of P from MDOF-S: for shear, for flexure, and flexure minus shear."""
     pgv, rocks = runs["pgv"].to_numpy(dtype=float), (runs["max_rotation"] > THRESHOLD).to_numpy(dtype=bool)
     grid = np.geomspace(pgv.min(), pgv.max(), POINTS)
-    rows = np.column_stack((codes_of(runs), rocks))
+    rows = np.column_stack((case_codes(runs), rocks))
 
     def fit(im: Array, drawn: Array) -> Array:
         every = (drawn[:, 0] == i for i in range(SHEAR.size * len(MODELS)))
-        curves = np.array([_curve(im[mine], drawn[mine, 1] > 0.0, grid) for mine in every])
+        curves = np.array([_rocking_probability_curve(im[mine], drawn[mine, 1] > 0.0, grid) for mine in every])
         of = curves.reshape(SHEAR.size, len(MODELS), -1)
         gaps = np.abs(of[:, 1:] - of[:, :1]).max(axis=(1, 2))
         shear, flexure = gaps[SHEAR].max(), gaps[~SHEAR].max()
@@ -305,10 +309,10 @@ def _gaps(runs: "pd.DataFrame") -> list[Interval]:
         n=CURVE_RESAMPLES,
         curve=lambda found, _: found,
     )
-    return intervals_of(band)
+    return bootstrap_intervals(band)
 
 
-def _curve(pgv: Array, rocks: Bools, grid: Array) -> Array:
+def _rocking_probability_curve(pgv: Array, rocks: Bools, grid: Array) -> Array:
     """Return the probability on the grid; constant if all runs have the same outcome."""
     if rocks.all() or not rocks.any():
         return np.full(grid.size, float(rocks[0]))
@@ -324,28 +328,28 @@ def _runs_without_rocking(runs: "pd.DataFrame") -> str:
     return f"the curves of #2 depend on the runs that do not rock: {each}, of {of}"
 
 
-def figure_6(records: Records) -> Result:
+def figure_6(records: PaperRecords) -> ReproducedResult:
     """Run the cloud, and compare the models' regressions."""
-    runs = cloud(records)
+    runs = run_cloud_of_paper(records)
     note = (
         "Differences of 2DOF-C or 2DOF-S from MDOF-S, for the structure and model where they are largest in rad. We "
         "interpret the text so: 0.002 rad are 15 % of a median of 0.013 rad, where the differences are not "
         "relatively largest. Intervals are over resampled recordings, with all of their runs."
     )
     figures = {"figure-6": lambda: rf.plot_clouds(runs, ROTATION)}
-    return Result(
+    return ReproducedResult(
         "figure-6",
         FIGURE_6,
-        largest(records, ROTATION, ROTATION_ROWS),
+        largest_model_differences(records, ROTATION, ROTATION_ROWS),
         figures,
         note,
-        remarking=(partial(_readings, records),),
+        remarking=(partial(_readings_of_differences, records),),
     )
 
 
-def _readings(records: Records) -> Remark:
+def _readings_of_differences(records: PaperRecords) -> Remark:
     """Show the differences where they are largest, absolutely and relatively."""
-    at = places(records, ROTATION)
+    at = cases_of_differences(records, ROTATION)
     where = {part: str(place) for part, place in at.idxmax().items()}
     reasons = {
         "median": "largest of the medians, in rad",
@@ -359,7 +363,7 @@ def _readings(records: Records) -> Remark:
         cells = [f"{row[part]:.5f} rad ({100.0 * row[part + '_relative']:.1f} %)" for part in ("median", "quantile")]
         rows.append((where[reason], words, *cells))
     return Remark(
-        Kind.BESIDE,
+        RemarkKind.BESIDE,
         "Which difference is the largest",
         "One line for each structure and model. The last two lines interpret the text by the largest relative "
         "difference.",
@@ -368,54 +372,56 @@ def _readings(records: Records) -> Remark:
     )
 
 
-def figure_7(records: Records) -> Result:
+def figure_7(records: PaperRecords) -> ReproducedResult:
     """Run the cloud, and compare the models' regressions."""
-    runs, found = cloud(records), differences(records, DISPLACEMENT)
-    numbers = largest(records, DISPLACEMENT, DISPLACEMENT_ROWS)
+    runs, found = run_cloud_of_paper(records), differences_between_models(records, DISPLACEMENT)
+    numbers = largest_model_differences(records, DISPLACEMENT, DISPLACEMENT_ROWS)
     numbers += [
-        tendency(name, place, words, found[key], bound, note="".join(note))
+        compared_tendency(name, place, words, found[key], bound, note="".join(note))
         for name, place, words, key, bound, *note in DISPLACEMENT_STATEMENTS
     ]
     note = (
         "Differences of 2DOF-C or 2DOF-S from MDOF-S, for the structure and model where they are relatively largest: "
         "the text gives per cent first, and names #3. Intervals are over resampled recordings with all of their runs."
     )
-    return Result("figure-7", FIGURE_7, numbers, {"figure-7": lambda: rf.plot_clouds(runs, DISPLACEMENT)}, note)
+    return ReproducedResult(
+        "figure-7", FIGURE_7, numbers, {"figure-7": lambda: rf.plot_clouds(runs, DISPLACEMENT)}, note
+    )
 
 
-def sliding(records: Records) -> Result:
+def sliding(records: PaperRecords) -> ReproducedResult:
     """Run the structures under every third record, and compare medians of the required friction."""
     found = friction_intervals(_friction_runs(records), MODEL, "printed")
     numbers = [
-        tendency(f"median of the required friction, least ratio: {name}", PLACE, words, found[name], "> 1")
+        compared_tendency(f"median of the required friction, least ratio: {name}", PLACE, words, found[name], "> 1")
         for name, words in WORDS.items()
     ]
-    numbers.append(tendency(ABOVE, PLACE, "cases higher than 1.0", found[ABOVE], "> 0"))
+    numbers.append(compared_tendency(ABOVE, PLACE, "cases higher than 1.0", found[ABOVE], "> 0"))
     note = (
         f"{MODEL}, every third record unscaled ({len(records.suite[::EVERY])} records), runs that rock and stand; "
         "Eqs. 20-22, with Eq. 22 as it is printed. Intervals are over resampled records."
     )
-    return Result(
+    return ReproducedResult(
         "sliding",
         SLIDING,
         numbers,
         note=note,
-        remarking=(partial(_both_signs_of_friction, records), partial(_lifts, records)),
+        remarking=(partial(_both_signs_of_friction, records), partial(_count_of_pivot_lifts, records)),
     )
 
 
 @lru_cache(maxsize=1)
-def _friction_runs(records: Records) -> "pd.DataFrame":
+def _friction_runs(records: PaperRecords) -> "pd.DataFrame":
     """Return the required friction of every run that rocks and stands, with both signs of Eq. 22."""
     import pandas as pd
 
     suite = records.suite[::EVERY]
-    groups = rf.run_cloud(frame_of("#1"), suite, MODEL).set_index("motion")["group"].astype(str).to_dict()
+    groups = rf.run_cloud(table_1_frame("#1"), suite, MODEL).set_index("motion")["group"].astype(str).to_dict()
     rows: list[dict[str, str | float]] = []
     for model in MODELS:
         for name in STRUCTURES:
             for motion in suite:
-                response = rf.simulate(frame_of(name), motion, model)
+                response = rf.simulate(table_1_frame(name), motion, model)
                 if response.status == "rocking":
                     printed = response.required_friction_excluding_impacts(0.0, printed=True)
                     row = {"model": model, "structure": name, "group": groups[motion.name]}
@@ -423,7 +429,7 @@ def _friction_runs(records: Records) -> "pd.DataFrame":
     return pd.DataFrame(rows)
 
 
-def friction_intervals(runs: "pd.DataFrame", model: str, sign: str) -> dict[str, Interval]:
+def friction_intervals(runs: "pd.DataFrame", model: str, sign: str) -> dict[str, ResampledInterval]:
     """Return the smallest ratio of medians of each statement, and the number of runs that need more than 1."""
     mine = runs[runs["model"] == model]
     codes = mine["structure"].map({name: place for place, name in enumerate(STRUCTURES)}).to_numpy(dtype=float)
@@ -441,10 +447,10 @@ def friction_intervals(runs: "pd.DataFrame", model: str, sign: str) -> dict[str,
         fit, friction, codes, mine["group"].to_numpy(), at=np.arange(len(PAIRS) + 1), n=FRICTION_RESAMPLES,
         curve=lambda values, _: values,
     )  # fmt: skip
-    return dict(zip((*PAIRS, ABOVE), intervals_of(band), strict=True))
+    return dict(zip((*PAIRS, ABOVE), bootstrap_intervals(band), strict=True))
 
 
-def _both_signs_of_friction(records: Records) -> Remark:
+def _both_signs_of_friction(records: PaperRecords) -> Remark:
     """Repeat this with the corrected sign of the weight and with the other models."""
     rows: list[tuple[str, ...]] = []
     above: dict[str, list[str]] = {sign: [] for sign in SIGNS}
@@ -455,11 +461,11 @@ def _both_signs_of_friction(records: Records) -> Remark:
             cells = [f"{found[name].estimate:.2f}" for name in PAIRS]
             rows.append((words, model, *cells, f"{found[ABOVE].estimate:.0f}"))
     return Remark(
-        Kind.BESIDE,
+        RemarkKind.BESIDE,
         "Both signs of the weight in Eq. 22",
         "Eq. 22 is printed with −g + z''_i, in which one sign is wrong. As printed, shear-dominant buildings are more "
-        f"prone to sliding than flexural ones with {_listed(above['printed'])}; with the corrected sign, with "
-        f"{_listed(above['mended'])}."
+        f"prone to sliding than flexural ones with {_listed_models(above['printed'])}; with the corrected sign, with "
+        f"{_listed_models(above['mended'])}."
         + " The conclusion of the paper depends on this misprint."
         * (MODEL in above["printed"] and not above["mended"]),
         ("Eq. 22", "model", *(f"least ratio, {name}" for name in PAIRS), ABOVE),
@@ -467,9 +473,9 @@ def _both_signs_of_friction(records: Records) -> Remark:
     )
 
 
-def _lifts(records: Records) -> Remark:
+def _count_of_pivot_lifts(records: PaperRecords) -> Remark:
     """Count the runs in which the pivot would lift."""
-    frames = [frame_of(name) for name in STRUCTURES]
+    frames = [table_1_frame(name) for name in STRUCTURES]
     runs = rf.simulate_many(frames, records.suite[::EVERY], MODELS, scales=SCALES, free_vibration="settle")
     standing = runs[runs["status"] == "rocking"]
     lifted = standing["min_vertical_reaction"] < 0.0
@@ -482,7 +488,7 @@ def _lifts(records: Records) -> Remark:
                 cells.append(f"{int(lifted[chosen].sum())} of {int(chosen.sum())}")
         rows.append((name, *cells))
     return Remark(
-        Kind.BESIDE,
+        RemarkKind.BESIDE,
         "Runs in which the pivot would lift",
         "Of the runs that rock and stand under every third record, those in which the vertical reaction falls below "
         "zero: the model pulls the base down, but the ground cannot, and no friction is enough. The paper does not "
@@ -492,5 +498,5 @@ def _lifts(records: Records) -> Remark:
     )
 
 
-def _listed(models: list[str]) -> str:
+def _listed_models(models: list[str]) -> str:
     return " and ".join(models) or "no model"

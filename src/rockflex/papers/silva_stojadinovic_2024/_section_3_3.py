@@ -8,9 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._comparison import Interval, Kind, check, count_of, statistic, tendency
-from rockflex.papers.silva_stojadinovic_2024._inputs import Records
-from rockflex.report import Remark, Result
+from rockflex.papers.silva_stojadinovic_2024._comparison import (
+    RemarkKind,
+    ResampledInterval,
+    compared_count,
+    compared_statistic,
+    compared_tendency,
+    construction_check,
+)
+from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
+from rockflex.report import Remark, ReproducedResult
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -91,13 +98,19 @@ COMBINED = {
 }
 
 
-def measures_of(pairs: "pd.DataFrame") -> dict[str, float]:
+def population_measures(pairs: "pd.DataFrame") -> dict[str, float]:
     """Return outcomes, agreement and discrepancies of some pairs; NaN where there are too few."""
     found = rf.population_statistics(pairs, n_resamples=1, n_outliers=2 * N_LARGEST)
-    return _outcomes(pairs) | _agreement(found) | _combination(found) | _resting(pairs) | _outliers(pairs, found)
+    return (
+        _outcomes_of_pairs(pairs)
+        | _agreement_of_pairs(found)
+        | _modal_combination_of_pairs(found)
+        | _extremes_of_resting_pairs(pairs)
+        | _outlying_pairs(pairs, found)
+    )
 
 
-def _outcomes(pairs: "pd.DataFrame") -> dict[str, float]:
+def _outcomes_of_pairs(pairs: "pd.DataFrame") -> dict[str, float]:
     every, one = pairs["status_mdof"], pairs["status_2dof"]
     conditions = {
         "no uplift": every == "no_uplift",
@@ -110,7 +123,7 @@ def _outcomes(pairs: "pd.DataFrame") -> dict[str, float]:
     return {name: float(condition.sum()) for name, condition in conditions.items()}
 
 
-def _agreement(found: rf.PopulationStatistics) -> dict[str, float]:
+def _agreement_of_pairs(found: rf.PopulationStatistics) -> dict[str, float]:
     """R² and slopes of Section 3.3, such as ``"r2, rocking, rotation, all"``."""
     rows = found.agreement.to_dict("records")
     return {
@@ -120,7 +133,7 @@ def _agreement(found: rf.PopulationStatistics) -> dict[str, float]:
     }
 
 
-def _combination(found: rf.PopulationStatistics) -> dict[str, float]:
+def _modal_combination_of_pairs(found: rf.PopulationStatistics) -> dict[str, float]:
     """R² and slopes of Section 3.4, such as ``"r2, base_shear, SRSS"``, and the gain in R² by SRSS."""
     rows = found.combination.to_dict("records")
     values = {
@@ -130,7 +143,7 @@ def _combination(found: rf.PopulationStatistics) -> dict[str, float]:
     return values | gains
 
 
-def _resting(pairs: "pd.DataFrame") -> dict[str, float]:
+def _extremes_of_resting_pairs(pairs: "pd.DataFrame") -> dict[str, float]:
     """Return extremes of the pairs in which MDOF-S does not uplift; NaN where there are none."""
     resting = pairs[pairs["status_mdof"] == "no_uplift"]
     if resting.empty:
@@ -146,7 +159,7 @@ def _resting(pairs: "pd.DataFrame") -> dict[str, float]:
     }
 
 
-def _outliers(pairs: "pd.DataFrame", found: rf.PopulationStatistics) -> dict[str, float]:
+def _outlying_pairs(pairs: "pd.DataFrame", found: rf.PopulationStatistics) -> dict[str, float]:
     """Return properties of the rocking pairs with the largest differences in rotation."""
     few = found.outliers[found.outliers["share"].notna()].head(N_LARGEST)  # none, if all overturned
     return {
@@ -157,7 +170,7 @@ def _outliers(pairs: "pd.DataFrame", found: rf.PopulationStatistics) -> dict[str
 
 
 @lru_cache(maxsize=1)
-def pool(records: Records) -> "pd.DataFrame":
+def population_pool(records: PaperRecords) -> "pd.DataFrame":
     """Run populations of a thousand random structures, each with MDOF-S and 2DOF-S under a record drawn for it."""
     import pandas as pd
 
@@ -165,38 +178,40 @@ def pool(records: Records) -> "pd.DataFrame":
     return pd.concat([rf.run_population(records.suite, PAIRS, seed) for seed in seeds], ignore_index=True)
 
 
-def population(records: Records) -> "pd.DataFrame":
+def first_thousand_pairs(records: PaperRecords) -> "pd.DataFrame":
     """Return the first thousand pairs, which the figures show."""
-    return pool(records).iloc[:PAIRS]
+    return population_pool(records).iloc[:PAIRS]
 
 
 @lru_cache(maxsize=1)
-def intervals(records: Records) -> dict[str, Interval]:
+def population_intervals(records: PaperRecords) -> dict[str, ResampledInterval]:
     """Return the median of each `measure` over draws of a thousand pairs, and its 5 and 95 % quantiles.
 
     A measure that is missing in more than one draw out of twenty, such as a slope without enough pairs, is NaN.
     """
-    pairs, generator = pool(records), np.random.default_rng(records.seed)
+    pairs, generator = population_pool(records), np.random.default_rng(records.seed)
     drawn = [
-        measures_of(pairs.iloc[np.sort(generator.choice(len(pairs), PAIRS, replace=False))].reset_index(drop=True))
+        population_measures(
+            pairs.iloc[np.sort(generator.choice(len(pairs), PAIRS, replace=False))].reset_index(drop=True)
+        )
         for _ in range(DRAWS)
     ]
-    found: dict[str, Interval] = {}
+    found: dict[str, ResampledInterval] = {}
     for name in drawn[0]:
         values = np.array([each[name] for each in drawn])
         known = values[~np.isnan(values)]
         enough = known.size >= MIN_KNOWN_SHARE * DRAWS
         # Quantiles are values that occur, so that counts remain integers.
         quantiles = np.quantile(known, (0.5, 0.05, 0.95), method="inverted_cdf") if enough else np.full(3, np.nan)
-        found[name] = Interval(*quantiles.tolist())
+        found[name] = ResampledInterval(*quantiles.tolist())
     return found
 
 
-def under_weaker_records(records: Records, rows: Mapping[str, tuple[str, str]]) -> Remark:
+def measures_under_weaker_records(records: PaperRecords, rows: Mapping[str, tuple[str, str]]) -> Remark:
     """Compare some measures, with their printed values, for unscaled and for weaker records."""
-    as_they_are, weaker = intervals(records), measures_of(_pairs(records))
+    as_they_are, weaker = population_intervals(records), population_measures(_pairs_under_weaker_records(records))
     return Remark(
-        Kind.AFTERWARDS,
+        RemarkKind.AFTERWARDS,
         f"All records times {FACTOR}",
         "The factor is chosen so that about as many pairs uplift as in the paper, whose records are not available. "
         f"The sample is one thousand pairs (seed {records.seed}); a count of 300 of them has a standard deviation of "
@@ -210,42 +225,42 @@ def under_weaker_records(records: Records, rows: Mapping[str, tuple[str, str]]) 
 
 
 @lru_cache(maxsize=1)
-def _pairs(records: Records) -> "pd.DataFrame":
+def _pairs_under_weaker_records(records: PaperRecords) -> "pd.DataFrame":
     """Return the measures of the first thousand structures of the population under weaker records."""
     suite = rf.Suite([motion.scaled(FACTOR) for motion in records.suite])
     return rf.run_population(suite, PAIRS, records.seed)
 
 
-def figure_8(records: Records) -> Result:
+def figure_8(records: PaperRecords) -> ReproducedResult:
     """Draw the prototypes, and check that they are within the ranges of the text."""
-    pairs = population(records)
+    pairs = first_thousand_pairs(records)
     place = "Section 3.3"
     columns = {name: (pairs[column], *rest) for name, (column, *rest) in RANGES.items()}
     for behaviour, (name, *rest) in COEFFICIENTS.items():
         columns[name] = (pairs.loc[pairs["behaviour"] == behaviour, "coefficient"], *rest)
     checks = [
-        check(f"{which} {name}", place, printed, float(value), criterion)
+        construction_check(f"{which} {name}", place, printed, float(value), criterion)
         for name, (drawn, printed, low, high) in columns.items()
         for which, value, criterion in (("least", drawn.min(), low), ("largest", drawn.max(), high))
     ]
     note = "The prototypes are drawn from these ranges, so this only checks the library."
     figures = {"figure-8": lambda: rf.plot_population(pairs)}
-    return Result("figure-8", FIGURE_8, figures=figures, note=note, checks=checks)
+    return ReproducedResult("figure-8", FIGURE_8, figures=figures, note=note, checks=checks)
 
 
-def figure_9(records: Records) -> Result:
+def figure_9(records: PaperRecords) -> ReproducedResult:
     """Compare the models pair by pair."""
-    found = intervals(records)
-    numbers = [count_of(name, PLACE, n, found[key]) for key, (name, n) in COUNTS.items()]
+    found = population_intervals(records)
+    numbers = [compared_count(name, PLACE, n, found[key]) for key, (name, n) in COUNTS.items()]
     numbers.append(
-        tendency(
+        compared_tendency(
             "θ_max of 2DOF-S where MDOF-S does not uplift, largest", PLACE, "smaller than 5·10⁻⁵",
             found["largest rotation of 2DOF-S"].times(1e5), "< 5", "10⁻⁵ rad",
         )
     )  # fmt: skip
-    numbers += [statistic(*row, found[key]) for key, row in AGREEMENT.items()]
+    numbers += [compared_statistic(*row, found[key]) for key, row in AGREEMENT.items()]
     numbers += [
-        tendency(name, PLACE, words, found[key], bound, note=note)
+        compared_tendency(name, PLACE, words, found[key], bound, note=note)
         for key, (name, words, bound, note) in DISCREPANCIES.items()
     ]
     note = (
@@ -254,25 +269,25 @@ def figure_9(records: Records) -> Result:
         f"{records.seed + records.seeds - 1}). All draws use the same records, so the intervals do not include the "
         "effect of other records. The figure shows the first thousand."
     )
-    pairs = population(records)
-    return Result(
+    pairs = first_thousand_pairs(records)
+    return ReproducedResult(
         "figure-9", FIGURE_9, numbers, {"figure-9": lambda: rf.plot_agreement(pairs)}, note,
-        remarking=(partial(_seeds, records), partial(under_weaker_records, records, WEAKER_ROWS)),
+        remarking=(partial(_measures_by_seed, records), partial(measures_under_weaker_records, records, WEAKER_ROWS)),
     )  # fmt: skip
 
 
-def _seeds(records: Records) -> Remark:
+def _measures_by_seed(records: PaperRecords) -> Remark:
     """Show the result of each seed by itself."""
-    pairs = pool(records)
-    found = [measures_of(pairs.iloc[i : i + PAIRS].reset_index(drop=True)) for i in range(0, len(pairs), PAIRS)]
+    pairs = population_pool(records)
+    found = [population_measures(pairs.iloc[i : i + PAIRS].reset_index(drop=True)) for i in range(0, len(pairs), PAIRS)]
     rows: list[tuple[str, ...]] = []
     for key, (name, _, printed) in AGREEMENT.items():
         values = [each[key] for each in found]
-        drawn = intervals(records)[key]
+        drawn = population_intervals(records)[key]
         of_seeds = (f"{value:.3f}" for value in (np.min(values), np.median(values), np.max(values)))
         rows.append((name, printed, *of_seeds, f"{drawn.low:.3f} to {drawn.high:.3f}"))
     return Remark(
-        Kind.BESIDE,
+        RemarkKind.BESIDE,
         f"Each of {len(found)} seeds by itself",
         "How far apart draws of a thousand lie, of which the paper has one. R² of θ_max hangs on a few outliers, which "
         "a draw meets or does not.",
@@ -281,15 +296,18 @@ def _seeds(records: Records) -> Remark:
     )
 
 
-def figure_13(records: Records) -> Result:
+def figure_13(records: PaperRecords) -> ReproducedResult:
     """Compare the estimates with the peaks of MDOF-S."""
-    found, pairs = intervals(records), population(records)
+    found, pairs = population_intervals(records), first_thousand_pairs(records)
     slope = found["slope, top_displacement, SRSS"]
     numbers = (
-        *(statistic(name, SECTION_3_4, text, found[key]) for key, (name, text) in COMBINATION.items()),
-        *(tendency(name, SECTION_3_4, words, found[key], bound) for key, (name, words, bound) in COMBINED.items()),
-        tendency(
-            "u_top,max over SRSS, slope less 1", SECTION_3_4, "no systematic trend", _size(slope), "< 0.02",
+        *(compared_statistic(name, SECTION_3_4, text, found[key]) for key, (name, text) in COMBINATION.items()),
+        *(
+            compared_tendency(name, SECTION_3_4, words, found[key], bound)
+            for key, (name, words, bound) in COMBINED.items()
+        ),
+        compared_tendency(
+            "u_top,max over SRSS, slope less 1", SECTION_3_4, "no systematic trend", _slope_minus_one(slope), "< 0.02",
             note="2 % is our reading; in magnitude",
         ),
     )  # fmt: skip
@@ -297,14 +315,14 @@ def figure_13(records: Records) -> Result:
         "R² refers to the line of equality, as in the paper; the blue line is y = c_1 x. Our value is the median, with "
         f"the 90 % interval, of {DRAWS} draws of a thousand from {records.seeds * PAIRS} pairs, as for Figure 9."
     )
-    return Result(
+    return ReproducedResult(
         "figure-13", FIGURE_13, numbers, {"figure-13": lambda: rf.plot_modal_combination(pairs)}, note,
-        remarking=(partial(under_weaker_records, records, COMBINATION),),
+        remarking=(partial(measures_under_weaker_records, records, COMBINATION),),
     )  # fmt: skip
 
 
-def _size(slope: Interval) -> Interval:
+def _slope_minus_one(slope: ResampledInterval) -> ResampledInterval:
     """Return the magnitude of a slope minus 1."""
     estimate, *ends = (value - 1.0 for value in slope)
     low, high = sorted(map(abs, ends))
-    return Interval(abs(estimate), 0.0 if min(ends) < 0.0 < max(ends) else low, high)
+    return ResampledInterval(abs(estimate), 0.0 if min(ends) < 0.0 < max(ends) else low, high)

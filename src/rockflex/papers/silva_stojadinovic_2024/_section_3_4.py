@@ -7,9 +7,9 @@ import numpy as np
 
 import rockflex as rf
 from rockflex._arrays import Array
-from rockflex.papers.silva_stojadinovic_2024._comparison import check, stated
-from rockflex.papers.silva_stojadinovic_2024._inputs import BEHAVIOURS, MARK, Records, frame_of, tall_frame
-from rockflex.report import Number, Result
+from rockflex.papers.silva_stojadinovic_2024._comparison import compared_statement, construction_check
+from rockflex.papers.silva_stojadinovic_2024._inputs import BEHAVIOURS, MARK, PaperRecords, table_1_frame, tall_frame
+from rockflex.report import PublishedNumber, ReproducedResult
 
 TABLE_2 = "Formulas of the eight parameters of 2DOF-S"
 GRAVITY = 9.81
@@ -36,11 +36,11 @@ STATEMENTS = (
 )
 
 
-def table_2(_: Records) -> Result:
+def table_2(_: PaperRecords) -> ReproducedResult:
     """Compare the sums of the table with the parameters of structure #1, and some with those of the chimney."""
-    frame = frame_of("#1")
+    frame = table_1_frame("#1")
     p, damping = frame.rocking(), 0.02
-    omega, shape = _first_mode(frame)
+    omega, shape = _shear_building_first_mode(frame)
     height = frame.story_height * np.arange(1, frame.n_stories + 1)
     mass, b = np.full(frame.n_stories, frame.story_mass), p.half_width
     first, total = float(mass @ shape), float(mass @ shape**2)
@@ -57,7 +57,7 @@ def table_2(_: Records) -> Result:
         "ζ": (damping, float(p.zeta[0]), "given"),
     }  # fmt: skip
     checks = [
-        check(
+        construction_check(
             f"#1: {name}, formula over ours, less 1", "Table 2", formula, 1e9 * abs(value / ours - 1.0), "< 1", "10⁻⁹"
         )
         for name, (value, ours, formula) in formulas.items()
@@ -66,10 +66,10 @@ def table_2(_: Records) -> Result:
         "The table has formulas and no numbers: that our parameters follow them is a check of the library, and nothing "
         "of the paper's is reproduced by it."
     )
-    return Result("table-2", TABLE_2, note=note, checks=checks)
+    return ReproducedResult("table-2", TABLE_2, note=note, checks=checks)
 
 
-def _first_mode(frame: rf.Frame) -> tuple[float, Array]:
+def _shear_building_first_mode(frame: rf.Frame) -> tuple[float, Array]:
     """Return first frequency and shape of the shear building in closed form, sin((2i − 1)…); T_1 is given."""
     n = frame.n_stories
     turn = math.pi / (2 * n + 1)
@@ -79,20 +79,20 @@ def _first_mode(frame: rf.Frame) -> tuple[float, Array]:
 
 
 @lru_cache
-def ratio(behaviour: str, model: str, mode: int, aspect_ratio: float) -> float:
+def uplifted_frequency_ratio(behaviour: str, model: str, mode: int, aspect_ratio: float) -> float:
     """Return ω*_n/ω_n of 2DOF-S, 3DOF-S or MDOF-S."""
     kept = {"2DOF-S": 1, "3DOF-S": 2, "MDOF-S": None}[model]
     modes = rf.uplifted_modes(tall_frame(behaviour, aspect_ratio).rocking(), kept)
     return float(modes.ratio[mode - 1])
 
 
-def errors(behaviour: str, model: str, mode: int, aspect_ratio: float) -> float:
+def frequency_ratio_error(behaviour: str, model: str, mode: int, aspect_ratio: float) -> float:
     """Return the error of this ratio relative to MDOF-S, in per cent."""
-    mine, every = (ratio(behaviour, each, mode, aspect_ratio) for each in (model, "MDOF-S"))
+    mine, every = (uplifted_frequency_ratio(behaviour, each, mode, aspect_ratio) for each in (model, "MDOF-S"))
     return 100.0 * (mine / every - 1.0)
 
 
-def figure_10(_: Records) -> Result:
+def figure_10(_: PaperRecords) -> ReproducedResult:
     """Compare the models at low aspect ratios, at the gray line of the figure and at its right end."""
 
     def figure() -> object:
@@ -100,36 +100,39 @@ def figure_10(_: Records) -> Result:
         limits = {"shear": rf.pinned_beam("shear"), "flexure": rf.pinned_beam("flexure")}
         return rf.plot_frequency_ratios(tables, limits, mark=MARK)
 
-    numbers = [number for behaviour in BEHAVIOURS for number in _of(behaviour)]
+    numbers = [number for behaviour in BEHAVIOURS for number in _numbers_of_behaviour(behaviour)]
     numbers.append(
-        stated(
+        compared_statement(
             "shear: error of ω*_1 of 2DOF-S, h*_1/B = 5", PLACE, "likely satisfactory below 5",
-            errors("shear", "2DOF-S", 1, 5.0), "< 20", "%", note="20 % is our reading; for flexure see Figure 12",
+            frequency_ratio_error("shear", "2DOF-S", 1, 5.0), "< 20", "%",
+            note="20 % is our reading; for flexure see Figure 12",
         )
     )  # fmt: skip
-    return Result("figure-10", FIGURE_10, numbers, {"figure-10": figure}, NOTE)
+    return ReproducedResult("figure-10", FIGURE_10, numbers, {"figure-10": figure}, NOTE)
 
 
-def _of(behaviour: str) -> list[Number]:
+def _numbers_of_behaviour(behaviour: str) -> list[PublishedNumber]:
     beam = rf.pinned_beam("shear" if behaviour == "shear" else "flexure").ratio
-    growth = min(errors(behaviour, *few, MARK) - errors(behaviour, *few, 1.0) for few in FEW)
+    growth = min(
+        frequency_ratio_error(behaviour, *few, MARK) - frequency_ratio_error(behaviour, *few, 1.0) for few in FEW
+    )
     bounds = [
-        stated(
+        compared_statement(
             f"{behaviour}: ω*_n/ω_n of {model} over the pinned beam's, largest, h*_1/B = {NARROW:g}", PLACE,
             f"the pinned beam bounds {model} from above",
-            max(ratio(behaviour, model, n, NARROW) / float(beam[n - 1]) for n in modes), "≤ 1",
-            note=_why(behaviour, model),
+            max(uplifted_frequency_ratio(behaviour, model, n, NARROW) / float(beam[n - 1]) for n in modes), "≤ 1",
+            note=_reason_for_excess(behaviour, model),
         )
         for model, modes in MODES.items()
     ]  # fmt: skip
-    first, second = (ratio(behaviour, "MDOF-S", n, MARK) - 1.0 for n in (1, 2))
+    first, second = (uplifted_frequency_ratio(behaviour, "MDOF-S", n, MARK) - 1.0 for n in (1, 2))
     return [
-        *_low(behaviour),
-        stated(
+        *_numbers_at_low_aspect_ratios(behaviour),
+        compared_statement(
             f"{behaviour}: growth of the error of 2DOF-S and 3DOF-S from h*_1/B = 1 to 10, least", PLACE,
             "degrades with the aspect ratio", growth, "> 0", "%",
         ),
-        stated(
+        compared_statement(
             f"{behaviour}: rise of ω_1 over that of ω_2, MDOF-S, h*_1/B = {MARK:g}", PLACE,
             "uplift affects the first mode much more", first / second, "> 1",
         ),
@@ -137,31 +140,34 @@ def _of(behaviour: str) -> list[Number]:
     ]  # fmt: skip
 
 
-def _low(behaviour: str) -> list[Number]:
+def _numbers_at_low_aspect_ratios(behaviour: str) -> list[PublishedNumber]:
     """Check the text on lower aspect ratios at 1 and 2, since buildings do not have lower ones."""
     rise = {
-        n: [max(abs(ratio(behaviour, m, n, x) - 1.0) for m, modes in MODES.items() if n in modes) for x in LOW]
+        n: [
+            max(abs(uplifted_frequency_ratio(behaviour, m, n, x) - 1.0) for m, modes in MODES.items() if n in modes)
+            for x in LOW
+        ]
         for n in (1, 2)
     }
-    miss = max(abs(errors(behaviour, *few, x)) for few in FEW for x in LOW)
+    miss = max(abs(frequency_ratio_error(behaviour, *few, x)) for few in FEW for x in LOW)
     at = " and ".join(f"{x:g}" for x in LOW)
     return [
         *(
-            stated(
+            compared_statement(
                 f"{behaviour}: ω*_{n}/ω_{n} less 1, largest of all models, h*_1/B = {at}", PLACE,
                 "about 1 for lower aspect ratios", max(rise[n]), "< 0.1",
                 note=f"0.1 is our reading; at h*_1/B = {LOW[0]:g} it is {rise[n][0]:.3f}",
             )
             for n in (1, 2)
         ),
-        stated(
+        compared_statement(
             f"{behaviour}: error of 2DOF-S and 3DOF-S, largest, h*_1/B = {at}", PLACE,
             "all models predict them well at lower aspect ratios", miss, "< 5", "%", note="5 % is our reading",
         ),
     ]  # fmt: skip
 
 
-def _why(behaviour: str, model: str) -> str:
+def _reason_for_excess(behaviour: str, model: str) -> str:
     if model != "MDOF-S":
         return "the highest mode included represents all modes above it, and is too stiff"
     return "masses lumped at 15 floors are not uniform; the excess decreases with more floors" * (
@@ -169,7 +175,7 @@ def _why(behaviour: str, model: str) -> str:
     )
 
 
-def figure_11(_: Records) -> Result:
+def figure_11(_: PaperRecords) -> ReproducedResult:
     """Measure the stiffness of the rocking base in a static equilibrium of the shear building."""
     frame = tall_frame("shear")
     p = frame.rocking()
@@ -181,25 +187,27 @@ def figure_11(_: Records) -> Result:
     moment = -free * float(response.rotation_acceleration[0])
     slope = (moment - p.resisting_moment) / float(response.rotation[0]) / (p.l0r * 9.81)
     checks = (
-        check(
+        construction_check(
             "slope of the resisting moment of MDOF-S over L_0^r g", "Section 3.4", "negative rotational stiffness",
             slope, "< 0",
             note="by construction: M = m_tot g B − L_0^r g θ has slope −1; from the first instant of a free motion",
         ),
     )  # fmt: skip
     figures = {"figure-11": lambda: rf.plot_moment_rotation_laws(frame)}
-    return Result("figure-11", FIGURE_11, figures=figures, checks=checks)
+    return ReproducedResult("figure-11", FIGURE_11, figures=figures, checks=checks)
 
 
-def figure_12(_: Records) -> Result:
+def figure_12(_: PaperRecords) -> ReproducedResult:
     """Compare the zeros with those of MDOF-S."""
     numbers = tuple(
-        stated(
-            f"{behaviour}: error of ω*_{mode} of {model}", "Section 3.4", words, errors(behaviour, model, mode, MARK),
-            criterion, "%",
+        compared_statement(
+            f"{behaviour}: error of ω*_{mode} of {model}", "Section 3.4", words,
+            frequency_ratio_error(behaviour, model, mode, MARK), criterion, "%",
         )
         for behaviour, model, mode, words, criterion in STATEMENTS
     )  # fmt: skip
     frames = {behaviour: tall_frame(behaviour) for behaviour in BEHAVIOURS}
     note = "Errors relative to MDOF-S. The text uses words; the limits in per cent are our interpretation."
-    return Result("figure-12", FIGURE_12, numbers, {"figure-12": lambda: rf.plot_frequency_equation(frames)}, note)
+    return ReproducedResult(
+        "figure-12", FIGURE_12, numbers, {"figure-12": lambda: rf.plot_frequency_equation(frames)}, note
+    )

@@ -8,9 +8,14 @@ import numpy as np
 
 import rockflex as rf
 from rockflex._arrays import Array
-from rockflex.papers.silva_stojadinovic_2024._comparison import Kind, compared, range_of, stated
-from rockflex.papers.silva_stojadinovic_2024._inputs import TOWER, Records, frame_of
-from rockflex.report import Number, Remark, Result
+from rockflex.papers.silva_stojadinovic_2024._comparison import (
+    RemarkKind,
+    compared_number,
+    compared_statement,
+    printed_range,
+)
+from rockflex.papers.silva_stojadinovic_2024._inputs import TOWER, PaperRecords, table_1_frame
+from rockflex.report import PublishedNumber, Remark, ReproducedResult
 
 FIGURE_14 = "Geometry of the chimney, I_θ, L_0^r and M_r"
 FUNCTIONS = 5  # of Eq. 36
@@ -46,18 +51,18 @@ TRIED: list[float] = np.linspace(0.02, STRONG, 23).tolist()  # m
 FIGURE_17 = "Structure #1 with a yield displacement of 0.075 m, rocking and fixed, El Centro"
 
 
-def figure_14(_: Records) -> Result:
+def figure_14(_: PaperRecords) -> ReproducedResult:
     """Compare the three integrals."""
     p, unit = TOWER.rocking(), math.pi * TOWER.density
     numbers = (
-        compared("I_θ", "Eq. 33", "24'178'750", p.i_theta / unit, "π ρ_c m⁵"),
-        compared("L_0^r", "Eq. 34", "580000/3", p.l0r / unit, "π ρ_c m⁴"),
-        compared("M_r", "Eq. 35", "17'600", p.resisting_moment / (9.81 * unit), "π ρ_c g m⁴"),
+        compared_number("I_θ", "Eq. 33", "24'178'750", p.i_theta / unit, "π ρ_c m⁵"),
+        compared_number("L_0^r", "Eq. 34", "580000/3", p.l0r / unit, "π ρ_c m⁴"),
+        compared_number("M_r", "Eq. 35", "17'600", p.resisting_moment / (9.81 * unit), "π ρ_c g m⁴"),
     )
-    return Result("figure-14", FIGURE_14, numbers, {"figure-14": lambda: rf.plot_tower(TOWER)})
+    return ReproducedResult("figure-14", FIGURE_14, numbers, {"figure-14": lambda: rf.plot_tower(TOWER)})
 
 
-def ritz_of_slices(slices: int) -> dict[str, Array]:
+def ritz_modes_with_slices(slices: int) -> dict[str, Array]:
     """Return ω (rad/s), m* (10⁶ kg), h* (m) and Γ of a Ritz solution with sums over slices instead of integrals.
 
     The functions are those of Eq. 36. What the stiffness matrix integrates, EI φ_i'' φ_j'', is taken at the upper end
@@ -71,9 +76,9 @@ def ritz_of_slices(slices: int) -> dict[str, Array]:
     ends[[0, -1]] *= 0.5
     turn = math.pi / (2.0 * TOWER.height) * (1.0 + 2.0 * np.arange(FUNCTIONS))[:, None]
     shape, bend = 1.0 - np.cos(turn * z), turn**2 * np.cos(turn * z[1:])
-    weight = _mass(z) * ends
+    weight = _chimney_mass(z) * ends
     mass = (shape * weight) @ shape.T
-    squares, modes = eigh((bend * (_stiffness(z[1:]) * width[1:])) @ bend.T, mass)
+    squares, modes = eigh((bend * (_chimney_stiffness(z[1:]) * width[1:])) @ bend.T, mass)
     share = modes.T @ shape @ weight
     return {
         "ω": np.sqrt(squares),
@@ -83,7 +88,7 @@ def ritz_of_slices(slices: int) -> dict[str, Array]:
     }
 
 
-def first_frequency(elements: int, place: float) -> float:
+def first_frequency_by_elements(elements: int, place: float) -> float:
     """Return ω_1 in rad/s by cubic elements, with dense matrices and without precautions against rounding.
 
     Parameters
@@ -102,7 +107,7 @@ def first_frequency(elements: int, place: float) -> float:
     m = np.array([[156, 22 * a, 54, -13 * a], [22 * a, 4 * a**2, 13 * a, -3 * a**2],
                   [54, 13 * a, 156, -22 * a], [-13 * a, -3 * a**2, -22 * a, 4 * a**2]]) * a / 420  # fmt: skip
     stiffness, mass = (np.zeros((2 * elements + 2, 2 * elements + 2)) for _ in range(2))
-    for e, (ei, mu) in enumerate(zip(_stiffness(low + place * a), _mass(low + 0.5 * a), strict=True)):
+    for e, (ei, mu) in enumerate(zip(_chimney_stiffness(low + place * a), _chimney_mass(low + 0.5 * a), strict=True)):
         own = slice(2 * e, 2 * e + 4)
         stiffness[own, own] += ei * k
         mass[own, own] += mu * m
@@ -110,38 +115,40 @@ def first_frequency(elements: int, place: float) -> float:
     return float(np.sqrt(np.abs(least[0])))
 
 
-def _radii(z: Array) -> tuple[Array, Array]:
+def _chimney_radii(z: Array) -> tuple[Array, Array]:
     outer = TOWER.base_radius - (TOWER.base_radius - TOWER.top_radius) * z / TOWER.height
     return outer, outer - TOWER.wall
 
 
-def _stiffness(z: Array) -> Array:
+def _chimney_stiffness(z: Array) -> Array:
     """Return EI in N m²."""
-    outer, inner = _radii(z)
+    outer, inner = _chimney_radii(z)
     return TOWER.elastic_modulus * 0.25 * math.pi * (outer**4 - inner**4)
 
 
-def _mass(z: Array) -> Array:
+def _chimney_mass(z: Array) -> Array:
     """Return the mass per length in kg/m."""
-    outer, inner = _radii(z)
+    outer, inner = _chimney_radii(z)
     return TOWER.density * math.pi * (outer**2 - inner**2)
 
 
-def table_3(_: Records) -> Result:
+def table_3(_: PaperRecords) -> ReproducedResult:
     """Compute both sets of modes."""
     note = (
         "The table rounds some values and cuts others off, as noted in each line. The Ritz values are from one "
         "solution with the five functions of Eq. 36; iterations would approach the finite element values."
     )
-    numbers = (*_ritz(), *_elements())
-    return Result("table-3", TABLE_3, numbers, note=note, remarking=(_thin_slices, _rounding))
+    numbers = (*_numbers_of_ritz_modes(), *_numbers_of_finite_elements())
+    return ReproducedResult(
+        "table-3", TABLE_3, numbers, note=note, remarking=(_remark_on_thin_slices, _remark_on_rounding)
+    )
 
 
-def _ritz() -> list[Number]:
+def _numbers_of_ritz_modes() -> list[PublishedNumber]:
     p = TOWER.rocking()
     ours = {"ω": p.omega, "m*": p.effective_mass / 1e6, "h*": p.effective_height, "Γ": p.top_ordinate}
     return [
-        compared(
+        compared_number(
             f"{name}_{n}", f"Table 3, mode {n}", printed, ours[name][n - 1], unit, truncated=True,
         )
         for n in range(1, 6)
@@ -150,7 +157,7 @@ def _ritz() -> list[Number]:
     ]  # fmt: skip
 
 
-def _elements() -> list[Number]:
+def _numbers_of_finite_elements() -> list[PublishedNumber]:
     p = replace(TOWER, method="fe").rocking()
     mass, height, lever = p.effective_mass, p.effective_height, p.effective_mass * p.effective_height
     own = "Table 3 has 1.66 by Ritz, from above: so many finite elements cannot give more"
@@ -169,25 +176,25 @@ def _elements() -> list[Number]:
         ("(m*_1 h*_1 + m*_2 h*_2)/L_0^r", "0.94", lever[:2].sum() / p.l0r, "", ""),
     )
     return [
-        compared(f"{name}, finite elements", "Section 4.1.1", printed, float(value), unit, note=note)
+        compared_number(f"{name}, finite elements", "Section 4.1.1", printed, float(value), unit, note=note)
         for name, printed, value, unit, note in found
     ]
 
 
-def _thin_slices() -> Remark:
+def _remark_on_thin_slices() -> Remark:
     """Count the entries of the table that a Ritz solution with slices meets by rounding."""
     rows: list[tuple[str, ...]] = []
     for slices in SLICES:
-        ours = ritz_of_slices(slices)
+        ours = ritz_modes_with_slices(slices)
         met = sum(
-            float(value) in range_of(text)
+            float(value) in printed_range(text)
             for name, (row, _) in RITZ.items()
             for text, value in zip(row, ours[name], strict=True)
         )
         rows.append((str(slices), f"{TOWER.height / slices:.4f}", f"{met} of 20", f"{ours['h*'][1]:.3f}"))
-    exact = sum(line.ours in range_of(line.printed) for line in _ritz())
+    exact = sum(line.ours in printed_range(line.printed) for line in _numbers_of_ritz_modes())
     return Remark(
-        Kind.AFTERWARDS,
+        RemarkKind.AFTERWARDS,
         "Sums over thin slices in place of integrals",
         "The five functions of Eq. 36, with stiffness taken at the upper end of each slice and mass by the trapezoidal "
         f"rule. With slices of about 0.03 m every entry of the table rounds to what is printed, h*_2 too; with the "
@@ -197,13 +204,13 @@ def _thin_slices() -> Remark:
     )
 
 
-def _rounding() -> Remark:
+def _remark_on_rounding() -> Remark:
     """Show how much rounding errors change ω_1 of finite elements."""
-    found = {n: [first_frequency(n, place) for place in PLACES.values()] for n in ELEMENTS}
+    found = {n: [first_frequency_by_elements(n, place) for place in PLACES.values()] for n in ELEMENTS}
     robust = float(replace(TOWER, method="fe").rocking().omega[0])
     low, high = min(found[ELEMENTS[-1]]), max(found[ELEMENTS[-1]])
     return Remark(
-        Kind.BESIDE,
+        RemarkKind.BESIDE,
         "ω_1 of finite elements without precautions against rounding",
         "Cubic elements in plain double precision, with dense matrices and a general eigenvalue solver; the stiffness "
         "of an element is sampled at one place, which by itself changes ω_1 by less than 0.1 % from 1000 elements on. "
@@ -215,7 +222,7 @@ def _rounding() -> Remark:
     )
 
 
-def figure_15(records: Records) -> Result:
+def figure_15(records: PaperRecords) -> ReproducedResult:
     """Run the models with the Ritz modes of Table 3."""
     motion = records.el_centro.scaled(2.0)
     runs = {model: rf.simulate(TOWER, motion, model) for model in CHIMNEY_MODELS}
@@ -226,16 +233,16 @@ def figure_15(records: Records) -> Result:
         "Errors are relative to 6DOF-S. If the text does not give their sign, magnitudes are compared. The text calls "
         f"the number of uplift events small without giving it; here 6DOF-S lifts {runs['6DOF-S'].n_uplifts} times."
     )
-    remarking = (partial(_at_samples, runs, motion.dt), partial(_missing_mass, motion))
-    return Result("figure-15", FIGURE_15, _numbers(runs), figures, note, remarking=remarking)
+    remarking = (partial(_remark_on_sampled_peaks, runs, motion.dt), partial(_remark_on_missing_mass, motion))
+    return ReproducedResult("figure-15", FIGURE_15, _numbers_of_figure_15(runs), figures, note, remarking=remarking)
 
 
-def _numbers(runs: dict[str, rf.Response]) -> list[Number]:
+def _numbers_of_figure_15(runs: dict[str, rf.Response]) -> list[PublishedNumber]:
     def error(model: str, quantity: str, against: str = "6DOF-S") -> float:
-        return _error(runs[model], runs[against], quantity)
+        return _peak_error(runs[model], runs[against], quantity)
 
     lines = [
-        compared(
+        compared_number(
             f"{SYMBOLS[quantity]}, reduction by rocking",
             CHIMNEY,
             printed,
@@ -244,44 +251,44 @@ def _numbers(runs: dict[str, rf.Response]) -> list[Number]:
         )
         for quantity, printed in (("base_moment", "about 44"), ("base_shear", "about 24"))
     ]
-    lines.append(compared("θ_max of 6DOF-S", CHIMNEY, "≤ 3.2", 1e3 * runs["6DOF-S"].max_rotation, "10⁻³ rad"))
+    lines.append(compared_number("θ_max of 6DOF-S", CHIMNEY, "≤ 3.2", 1e3 * runs["6DOF-S"].max_rotation, "10⁻³ rad"))
     for model, quantity, printed in ERRORS:
         found, signed = error(model, quantity), quantity == "base_moment"
-        note = "" if signed else f"ours is {_signed(found, 2)}"
+        note = "" if signed else f"ours is {_signed_percent(found, 2)}"
         name = f"{SYMBOLS[quantity]}, error of {model}"
-        lines.append(compared(name, CHIMNEY, printed, found if signed else abs(found), "%", note=note))
+        lines.append(compared_number(name, CHIMNEY, printed, found if signed else abs(found), "%", note=note))
     further = abs(error("4DOF-S", "base_shear")) / abs(error("3DOF-S", "base_shear"))
     words = "4DOF-S would further improve the base shear"
-    lines.append(stated("V_b,max, error of 4DOF-S over that of 3DOF-S", CHIMNEY, words, further, "< 1"))
+    lines.append(compared_statement("V_b,max, error of 4DOF-S over that of 3DOF-S", CHIMNEY, words, further, "< 1"))
     top, moment, shear = (abs(error("2DOF-S", q)) for q in ("top_displacement", "base_moment", "base_shear"))
     general = "Section 3.4"
     words = "higher modes have less effect on displacements than on forces"
-    lines.append(stated("error of 2DOF-S, u_top,max over M_b,max", general, words, top / moment, "< 1"))
+    lines.append(compared_statement("error of 2DOF-S, u_top,max over M_b,max", general, words, top / moment, "< 1"))
     words = "less effect on the base moment than on the base shear"
-    lines.append(stated("error of 2DOF-S, M_b,max over V_b,max", general, words, moment / shear, "< 1"))
+    lines.append(compared_statement("error of 2DOF-S, M_b,max over V_b,max", general, words, moment / shear, "< 1"))
     return lines
 
 
-def _error(run: rf.Response, reference: rf.Response, quantity: str) -> float:
+def _peak_error(run: rf.Response, reference: rf.Response, quantity: str) -> float:
     """Return the error of a peak in per cent."""
     return 100.0 * (getattr(run, f"max_{quantity}") / getattr(reference, f"max_{quantity}") - 1.0)
 
 
-def _signed(error: float, digits: int) -> str:
+def _signed_percent(error: float, digits: int) -> str:
     return f"{error:+.{digits}f} %".replace("-", "−")
 
 
-def _missing_mass(motion: rf.GroundMotion) -> Remark:
+def _remark_on_missing_mass(motion: rf.GroundMotion) -> Remark:
     """Compute the reaction of the ground, and base shear and moment with the mass of the modes left out."""
     quantities = {"base_shear": "V_b,max", "base_moment": "M_b,max", "horizontal_reaction": "ΣF_x,max"}
     models = ("2DOF-S", "2DOF-S-R", "3DOF-S", "3DOF-S-R", "6DOF-S-R")
     reference, *runs = (rf.simulate(TOWER, motion, model, "peaks") for model in ("6DOF-S", *models))
     rows: list[tuple[str, ...]] = []
     for run in runs:
-        rows.append((run.model, *(_signed(_error(run, reference, name), 1) for name in quantities)))
+        rows.append((run.model, *(_signed_percent(_peak_error(run, reference, name), 1) for name in quantities)))
     held = f"{reference.max_horizontal_reaction / 1e6:.1f}"
     return Remark(
-        Kind.BESIDE,
+        RemarkKind.BESIDE,
         "The mass that few modes leave out",
         "V_b and M_b are the elastic forces of the modes included. Models that end in -R add the mass of the other "
         f"modes, as if it moved with the base; so does ΣF_x, the reaction of the ground ({held} MN with 6DOF-S). The "
@@ -292,7 +299,7 @@ def _missing_mass(motion: rf.GroundMotion) -> Remark:
     )
 
 
-def _at_samples(runs: dict[str, rf.Response], dt: float) -> Remark:
+def _remark_on_sampled_peaks(runs: dict[str, rf.Response], dt: float) -> Remark:
     """Compute the errors from the largest sample instead of the peak between samples."""
 
     def peak(model: str, quantity: str) -> float:
@@ -304,10 +311,10 @@ def _at_samples(runs: dict[str, rf.Response], dt: float) -> Remark:
     rows: list[tuple[str, ...]] = []
     for model, quantity, printed in ERRORS:
         at_sample = 100.0 * (peak(model, quantity) / peak("6DOF-S", quantity) - 1.0)
-        cells = (_signed(value, 2) for value in (at_sample, _error(runs[model], runs["6DOF-S"], quantity)))
+        cells = (_signed_percent(value, 2) for value in (at_sample, _peak_error(runs[model], runs["6DOF-S"], quantity)))
         rows.append((f"{SYMBOLS[quantity]}, error of {model}", f"{printed} %", *cells))
     return Remark(
-        Kind.AFTERWARDS,
+        RemarkKind.AFTERWARDS,
         "Peaks at the samples of the record",
         "Ours are peaks of the continuous motion. By the largest sample, the error of 3DOF-S in θ_max rounds to the "
         "printed 2.2 % too, and so do the others.",
@@ -316,10 +323,10 @@ def _at_samples(runs: dict[str, rf.Response], dt: float) -> Remark:
     )
 
 
-def run(records: Records, model: str, yield_displacement: float | None = None) -> rf.Response:
+def run_yielding_structure(records: PaperRecords, model: str, yield_displacement: float | None = None) -> rf.Response:
     """Run structure #1, which is elastic if no yield displacement is given."""
     law = None if yield_displacement is None else rf.BoucWen(yield_displacement)
-    return rf.simulate(frame_of("#1"), records.el_centro, model, bouc_wen=law)
+    return rf.simulate(table_1_frame("#1"), records.el_centro, model, bouc_wen=law)
 
 
 def largest_yielding(response: rf.Response) -> float:
@@ -327,20 +334,20 @@ def largest_yielding(response: rf.Response) -> float:
     return float(np.abs(response.yielding).max())
 
 
-def figure_16(records: Records) -> Result:
+def figure_16(records: PaperRecords) -> ReproducedResult:
     """Run the elastic structure, and the weak one with two yield displacements."""
-    elastic = run(records, "2DOF-S")
-    weak, stronger = (run(records, "2DOF-S-BW", value) for value in (WEAK, STRONGER))
+    elastic = run_yielding_structure(records, "2DOF-S")
+    weak, stronger = (run_yielding_structure(records, "2DOF-S-BW", value) for value in (WEAK, STRONGER))
     assumed = f"D_1,y = {WEAK} m is assumed"
     numbers = (
-        stated(
+        compared_statement(
             "largest |z| of the weak structure", PLACE, "clearly yields", largest_yielding(weak), YIELDS, note=assumed,
         ),
-        stated(
+        compared_statement(
             "θ_max of the weak structure over the elastic one", PLACE, "barely rocks",
             weak.max_rotation / elastic.max_rotation, BARELY, note=f"{assumed}; 0.4 is our reading",
         ),
-        compared("u_top,max of the weak structure", PLACE, TOP, weak.max_top_displacement, "m", note=assumed),
+        compared_number("u_top,max of the weak structure", PLACE, TOP, weak.max_top_displacement, "m", note=assumed),
     )  # fmt: skip
     names = ["2DOF-S", *(f"2DOF-S-BW, $D_y$ = {value} m" for value in (WEAK, STRONGER))]
     text = (
@@ -348,16 +355,18 @@ def figure_16(records: Records) -> Result:
         f"{STRONGER} m, also shown, it has the printed top displacement, and rocks."
     )
     figures = {"figure-16": lambda: rf.plot_yielding([elastic, weak, stronger], names)}
-    return Result("figure-16", FIGURE_16, numbers, figures, text, remarking=(partial(_yield_displacements, records),))
+    return ReproducedResult(
+        "figure-16", FIGURE_16, numbers, figures, text, remarking=(partial(_remark_on_yield_displacements, records),)
+    )
 
 
-def _yield_displacements(records: Records) -> Remark:
+def _remark_on_yield_displacements(records: PaperRecords) -> Remark:
     """Find which of four statements on this figure hold, depending on the yield displacement (not in the paper)."""
-    wanted = [range_of(text) for text in (YIELDS, BARELY, TOP, SAME)]
-    elastic, strong = run(records, "2DOF-S"), run(records, "2DOF-S-BW", STRONG)
+    wanted = [printed_range(text) for text in (YIELDS, BARELY, TOP, SAME)]
+    elastic, strong = run_yielding_structure(records, "2DOF-S"), run_yielding_structure(records, "2DOF-S-BW", STRONG)
 
     def judged(value: float) -> list[tuple[float, bool]]:
-        weak = run(records, "2DOF-S-BW", value)
+        weak = run_yielding_structure(records, "2DOF-S-BW", value)
         top, rotation = weak.max_top_displacement, weak.max_rotation / elastic.max_rotation
         found = (largest_yielding(weak), rotation, top, top / strong.max_top_displacement)
         return [(ours, ours in each) for ours, each in zip(found, wanted, strict=True)]
@@ -368,7 +377,7 @@ def _yield_displacements(records: Records) -> Remark:
         for value in (WEAK, STRONGER)
     ]
     return Remark(
-        Kind.AFTERWARDS,
+        RemarkKind.AFTERWARDS,
         "The yield displacement of the weak structure",
         f"Four statements of Section 4.2 depend on it. With {len(TRIED)} values from {TRIED[0]:g} to {TRIED[-1]:g} m, "
         f"at most {most} of the four hold.",
@@ -383,22 +392,27 @@ def _yield_displacements(records: Records) -> Remark:
     )
 
 
-def figure_17(records: Records) -> Result:
+def figure_17(records: PaperRecords) -> ReproducedResult:
     """Run both structures."""
-    fixed, rocking = run(records, "1DOF-fixed-BW", STRONG), run(records, "2DOF-S-BW", STRONG)
-    weak = run(records, "2DOF-S-BW", WEAK)
+    fixed, rocking = (
+        run_yielding_structure(records, "1DOF-fixed-BW", STRONG),
+        run_yielding_structure(records, "2DOF-S-BW", STRONG),
+    )
+    weak = run_yielding_structure(records, "2DOF-S-BW", WEAK)
     top = rocking.max_top_displacement
     numbers = (
-        compared("θ_max, rocking", PLACE, "≈ 0.01", rocking.max_rotation, "rad"),
-        compared("u_top,max, rocking", PLACE, "≈ 0.05", top, "m"),
-        compared("u_top,max, fixed over rocking", PLACE, "approximately 2", fixed.max_top_displacement / top),
-        stated("largest |z|, rocking", PLACE, "barely yields", largest_yielding(rocking), "< 0.7",
+        compared_number("θ_max, rocking", PLACE, "≈ 0.01", rocking.max_rotation, "rad"),
+        compared_number("u_top,max, rocking", PLACE, "≈ 0.05", top, "m"),
+        compared_number("u_top,max, fixed over rocking", PLACE, "approximately 2", fixed.max_top_displacement / top),
+        compared_statement("largest |z|, rocking", PLACE, "barely yields", largest_yielding(rocking), "< 0.7",
                note="0.7 is our reading"),
-        stated("largest |z|, fixed", PLACE, "the fixed base yields", largest_yielding(fixed), "> 0.99"),
-        stated(
+        compared_statement("largest |z|, fixed", PLACE, "the fixed base yields", largest_yielding(fixed), "> 0.99"),
+        compared_statement(
             "u_top,max of Fig. 16's weak structure over Fig. 17's", PLACE, "approximately the same",
             weak.max_top_displacement / top, SAME, note=f"with D_1,y = {WEAK} m for Fig. 16; 1.1 is our interpretation",
         ),
     )  # fmt: skip
     names = [f"fixed base, $D_y$ = {STRONG} m", f"2DOF-S-BW, $D_y$ = {STRONG} m"]
-    return Result("figure-17", FIGURE_17, numbers, {"figure-17": lambda: rf.plot_yielding([fixed, rocking], names)})
+    return ReproducedResult(
+        "figure-17", FIGURE_17, numbers, {"figure-17": lambda: rf.plot_yielding([fixed, rocking], names)}
+    )

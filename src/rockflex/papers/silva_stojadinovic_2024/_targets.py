@@ -5,10 +5,10 @@ from difflib import get_close_matches
 
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024 import _section_3_1, _section_3_2, _section_3_3, _section_3_4, _section_4
-from rockflex.papers.silva_stojadinovic_2024._inputs import Records
-from rockflex.report import Result
+from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
+from rockflex.report import ReproducedResult
 
-_TARGETS: dict[str, tuple[str, Callable[[Records], Result]]] = {
+_TARGETS: dict[str, tuple[str, Callable[[PaperRecords], ReproducedResult]]] = {
     "figure-3": (_section_3_1.FIGURE_3, _section_3_1.figure_3),
     "figure-4": (_section_3_1.FIGURE_4, _section_3_1.figure_4),
     "table-1": (_section_3_2.TABLE_1, _section_3_2.table_1),
@@ -32,7 +32,7 @@ _TARGETS: dict[str, tuple[str, Callable[[Records], Result]]] = {
 TARGETS = tuple(_TARGETS)
 
 
-def title_of(target: str) -> str:
+def target_title(target: str) -> str:
     """Return the title of a target.
 
     Raises
@@ -40,14 +40,14 @@ def title_of(target: str) -> str:
     InputError
         If there is no such target.
     """
-    return _TARGETS[_known(target)][0]
+    return _TARGETS[_known_target(target)][0]
 
 
-def reproduce(
+def reproduce_targets(
     targets: Sequence[str] = TARGETS,
-    records: Records | None = None,
+    records: PaperRecords | None = None,
     progress: Callable[[str], None] | None = None,
-) -> list[Result]:
+) -> list[ReproducedResult]:
     """Reproduce targets, in the order of the paper.
 
     Parameters
@@ -69,12 +69,14 @@ def reproduce(
     InputError
         If a target is unknown, or the records cannot be read or are too few for a target.
     """
-    wanted = [_known(name) for name in targets] or list(TARGETS)
-    given = Records() if records is None else records
-    return list(_results(wanted, given, progress or (lambda _: None)))
+    wanted = [_known_target(name) for name in targets] or list(TARGETS)
+    given = PaperRecords() if records is None else records
+    return list(_results_of_targets(wanted, given, progress or (lambda _: None)))
 
 
-def _results(wanted: Sequence[str], records: Records, tell: Callable[[str], None]) -> Iterator[Result]:
+def _results_of_targets(
+    wanted: Sequence[str], records: PaperRecords, tell: Callable[[str], None]
+) -> Iterator[ReproducedResult]:
     for name in (target for target in TARGETS if target in wanted):
         try:
             yield _TARGETS[name][1](records)
@@ -83,7 +85,7 @@ def _results(wanted: Sequence[str], records: Records, tell: Callable[[str], None
         tell(name)
 
 
-def _known(target: str) -> str:
+def _known_target(target: str) -> str:
     if target in TARGETS:
         return target
     near = get_close_matches(target.lower().replace("_", "-").replace(" ", "-"), TARGETS, n=3, cutoff=0.5)

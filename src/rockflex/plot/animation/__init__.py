@@ -1,6 +1,6 @@
 """Moving pictures of responses."""
 
 from rockflex.plot.animation._animate import animate
-from rockflex.plot.animation._files import file_of
+from rockflex.plot.animation._files import animation_path_and_suffix
 
-__all__ = ["animate", "file_of"]
+__all__ = ["animate", "animation_path_and_suffix"]

@@ -4,16 +4,16 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from rockflex._checks import positive, whole_number
+from rockflex._checks import checked_positive, checked_whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.plot._curves import Curve, curves_of
-from rockflex.plot._history import default_panels, quantities_of
-from rockflex.plot.animation._files import GIF, MP4, file_of, write_gif, write_video
-from rockflex.plot.animation._poses import default_amplification, outline_of, poses_of, timing_of
+from rockflex.plot._history import default_history_panels, panel_quantities
+from rockflex.plot._response_curves import ResponseCurve, response_curves
+from rockflex.plot.animation._files import GIF, MP4, animation_path_and_suffix, write_gif, write_video
+from rockflex.plot.animation._poses import default_amplification, frame_timing, structure_outline, structure_poses
 from rockflex.plot.animation._scene import AnimatedFigure
 from rockflex.response import Response
-from rockflex.study.progress import ProgressChoice, reporting
+from rockflex.study.progress import ProgressChoice, reporting_progress
 
 MIN_WIDTH, MAX_WIDTH = 320, 3840  # pixels
 MAX_RESPONSES = 6
@@ -104,22 +104,23 @@ def animate(
     >>> rf.animate(response, file, frames_per_second=10, width=480).name
     'pulse.gif'
     """
-    target, suffix = file_of(path)
-    curves = curves_of(responses, labels)
+    target, suffix = animation_path_and_suffix(path)
+    curves = response_curves(responses, labels)
     if len(curves) > MAX_RESPONSES:
         raise InputError(
             f"An animation shows up to {MAX_RESPONSES} responses, but {len(curves)} were given. Show fewer at a time."
         )
-    quantities = quantities_of(_default_panels(curves) if panels is None else panels)
-    timing = timing_of(curves, suffix, speed, frames_per_second, start, stop)
-    pixels = whole_number("width", width, MIN_WIDTH, MAX_WIDTH)
-    structures = _structures(structure, len(curves))
+    quantities = panel_quantities(_default_animation_panels(curves) if panels is None else panels)
+    timing = frame_timing(curves, suffix, speed, frames_per_second, start, stop)
+    pixels = checked_whole_number("width", width, MIN_WIDTH, MAX_WIDTH)
+    structures = _animated_structures(structure, len(curves))
     outlines = [
-        outline_of(curve.history, each, i) for i, (curve, each) in enumerate(zip(curves, structures, strict=True))
+        structure_outline(curve.history, each, i)
+        for i, (curve, each) in enumerate(zip(curves, structures, strict=True))
     ]
-    poses = [poses_of(curve, o, timing.times, timing.speed) for curve, o in zip(curves, outlines, strict=True)]
-    factor = default_amplification(curves, poses) if amplification is None else _factor(amplification)
-    with reporting(progress, timing.times.size, "frames") as advance:
+    poses = [structure_poses(curve, o, timing.times, timing.speed) for curve, o in zip(curves, outlines, strict=True)]
+    factor = default_amplification(curves, poses) if amplification is None else _checked_amplification(amplification)
+    with reporting_progress(progress, timing.times.size, "frames") as advance:
         picture = AnimatedFigure(curves, poses, quantities, timing, factor, title, pixels)
         try:
             return _WRITERS[suffix](target, picture, timing, advance)
@@ -128,7 +129,7 @@ def animate(
             raise InputError(f"{target} cannot be written ({reason}). Give another path.", field="path") from error
 
 
-def _structures(given: Any | Sequence[Any] | None, count: int) -> list[Any]:
+def _animated_structures(given: Any | Sequence[Any] | None, count: int) -> list[Any]:
     if not isinstance(given, list | tuple):
         return [given] * count
     if len(given) != count:
@@ -139,8 +140,8 @@ def _structures(given: Any | Sequence[Any] | None, count: int) -> list[Any]:
     return list(given)
 
 
-def _factor(given: float) -> float:
-    factor = positive("amplification", given, "")
+def _checked_amplification(given: float) -> float:
+    factor = checked_positive("amplification", given, "")
     if not 0.01 <= factor <= 1e4:
         raise InputError(
             f"amplification must be from 0.01 to 10000, but {shown(given)} was given. Leave it out for one that suits.",
@@ -149,9 +150,9 @@ def _factor(given: float) -> float:
     return factor
 
 
-def _default_panels(curves: list[Curve]) -> list[str]:
+def _default_animation_panels(curves: list[ResponseCurve]) -> list[str]:
     """Return a few of the panels of a history; the total displacement of the top rather than the relative one."""
-    available = default_panels(curves)
+    available = default_history_panels(curves)
     left_out = {"top_displacement"} if "total_top_displacement" in available else set[str]()
     if not any(curve.lifts for curve in curves):
         left_out.add("rotation")

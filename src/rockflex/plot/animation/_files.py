@@ -12,9 +12,9 @@ from PIL import GifImagePlugin, Image
 from scipy.spatial import KDTree
 
 from rockflex._errors import InputError
-from rockflex._files import path_of, writing
+from rockflex._files import checked_file_path, writing_atomically
 from rockflex._shown import shown
-from rockflex.plot.animation._poses import Timing
+from rockflex.plot.animation._poses import FrameTiming
 from rockflex.plot.animation._scene import AnimatedFigure, Picture
 
 GIF, MP4 = ".gif", ".mp4"
@@ -28,7 +28,7 @@ Indices = NDArray[np.uint8]
 _OPTIONS = ["-crf", "20", "-preset", "veryfast", "-tune", "animation", "-movflags", "+faststart"]
 
 
-def file_of(path: str | Path) -> tuple[Path, str]:
+def animation_path_and_suffix(path: str | Path) -> tuple[Path, str]:
     """Return the path of an animation and its suffix in small letters.
 
     Raises
@@ -36,7 +36,7 @@ def file_of(path: str | Path) -> tuple[Path, str]:
     InputError
         If the suffix is another one, the path is that of a folder, or what writes such files is not installed.
     """
-    target = path_of("path", path)
+    target = checked_file_path("path", path)
     suffix = target.suffix.lower()
     if suffix not in (GIF, MP4):
         raise InputError(
@@ -55,58 +55,62 @@ def file_of(path: str | Path) -> tuple[Path, str]:
     return target, suffix
 
 
-def write_gif(target: Path, figure: AnimatedFigure, timing: Timing, advance: Callable[[int], None]) -> Path:
+def write_gif(target: Path, figure: AnimatedFigure, timing: FrameTiming, advance: Callable[[int], None]) -> Path:
     """Write the frames of a scene to a GIF that repeats; return its path."""
     count = timing.times.size
-    palette, table = _palette([figure.picture(int(each)) for each in np.linspace(0, count - 1, _SAMPLES)])
+    palette, table = _gif_palette([figure.picture(int(each)) for each in np.linspace(0, count - 1, _SAMPLES)])
     shown_for = timing.hundredths
     shown_for[-1] += LAST_FRAME
-    with writing(target) as temporary, temporary.open("wb") as file:
+    with writing_atomically(target) as temporary, temporary.open("wb") as file:
         before: Indices | None = None
         for place, picture in enumerate(figure.pictures(count)):
-            indices = table[_packed(picture)]
+            indices = table[_packed_colors(picture)]
             if before is None:
-                _write(file, GifImagePlugin.getheader(_image(indices, palette), info={"loop": 0})[0])
-            _write_change(file, indices, before, palette, int(shown_for[place]))
+                _write_gif_blocks(
+                    file, GifImagePlugin.getheader(_image_of_palette(indices, palette), info={"loop": 0})[0]
+                )
+            _write_changed_gif_rectangle(file, indices, before, palette, int(shown_for[place]))
             before = indices
             advance(1)
         file.write(b";")
     return target
 
 
-def _palette(samples: list[Picture]) -> tuple[bytes, Indices]:
-    """Return the colours of some frames, and which of them is nearest to each colour of `_packed`."""
-    present, often = np.unique(np.concatenate([_packed(each).ravel() for each in samples]), return_counts=True)
+def _gif_palette(samples: list[Picture]) -> tuple[bytes, Indices]:
+    """Return the colours of some frames, and which of them is nearest to each colour of `_packed_colors`."""
+    present, often = np.unique(np.concatenate([_packed_colors(each).ravel() for each in samples]), return_counts=True)
     # Letters and thin lines matter as much as the ground behind them: each colour counts by the root of its pixels.
     weighted = np.repeat(present, np.ceil(np.sqrt(often)).astype(int))
-    few = Image.fromarray(_colors(weighted)[None]).quantize(MAX_COLORS, Image.Quantize.MAXCOVERAGE, kmeans=1)
+    few = Image.fromarray(_unpacked_colors(weighted)[None]).quantize(MAX_COLORS, Image.Quantize.MAXCOVERAGE, kmeans=1)
     colors = np.array(few.getpalette("RGB"), np.uint8).reshape(-1, 3)[:MAX_COLORS]
-    nearest = KDTree(colors.astype(float)).query(_colors(np.arange(1 << (3 * _BITS))).astype(float))[1]
+    nearest = KDTree(colors.astype(float)).query(_unpacked_colors(np.arange(1 << (3 * _BITS))).astype(float))[1]
     palette = np.zeros((MAX_COLORS + 1, 3), np.uint8)
     palette[: colors.shape[0]] = colors
     return palette.tobytes(), np.asarray(nearest, np.uint8)
 
 
-def _packed(picture: Picture) -> NDArray[np.uint32]:
+def _packed_colors(picture: Picture) -> NDArray[np.uint32]:
     """Return the colours of pixels as one number each, shape (height, width)."""
     few = (picture >> (8 - _BITS)).astype(np.uint32)
     packed = (few[..., 0] << (2 * _BITS)) | (few[..., 1] << _BITS) | few[..., 2]
     return packed.astype(np.uint32, copy=False)
 
 
-def _colors(packed: NDArray[np.integer]) -> Picture:
+def _unpacked_colors(packed: NDArray[np.integer]) -> Picture:
     """Return the colours of such numbers, shape (n, 3)."""
     parts = [packed >> (2 * _BITS), (packed >> _BITS) & _LEVELS, packed & _LEVELS]
     return np.round(np.stack(parts, axis=-1) * (255.0 / _LEVELS)).astype(np.uint8)
 
 
-def _image(indices: Indices, palette: bytes) -> Image.Image:
+def _image_of_palette(indices: Indices, palette: bytes) -> Image.Image:
     image = Image.fromarray(indices, "P")
     image.putpalette(palette)
     return image
 
 
-def _write_change(file: IO[bytes], indices: Indices, before: Indices | None, palette: bytes, hundredths: int) -> None:
+def _write_changed_gif_rectangle(
+    file: IO[bytes], indices: Indices, before: Indices | None, palette: bytes, hundredths: int
+) -> None:
     """Write the smallest rectangle that changed, with its unchanged pixels transparent."""
     offset, part = (0, 0), indices
     if before is not None:
@@ -119,20 +123,20 @@ def _write_change(file: IO[bytes], indices: Indices, before: Indices | None, pal
             np.where(differs[where], indices[where], MAX_COLORS).astype(np.uint8),
         )
     more = {"duration": 10 * hundredths, "disposal": 1, "transparency": MAX_COLORS, "interlace": 0}
-    _write(file, GifImagePlugin.getdata(_image(part, palette), offset, **more))
+    _write_gif_blocks(file, GifImagePlugin.getdata(_image_of_palette(part, palette), offset, **more))
 
 
-def _write(file: IO[bytes], blocks: list[bytes]) -> None:
+def _write_gif_blocks(file: IO[bytes], blocks: list[bytes]) -> None:
     for block in blocks:
         file.write(block)
 
 
-def write_video(target: Path, figure: AnimatedFigure, timing: Timing, advance: Callable[[int], None]) -> Path:
+def write_video(target: Path, figure: AnimatedFigure, timing: FrameTiming, advance: Callable[[int], None]) -> Path:
     """Write the frames of a scene to an MP4; return its path."""
     from imageio_ffmpeg import count_frames_and_secs, write_frames
 
     count, still = timing.times.size, round(0.01 * LAST_FRAME * timing.frames_per_second)
-    with writing(target, ".mp4") as temporary:  # ffmpeg chooses the format by it
+    with writing_atomically(target, ".mp4") as temporary:  # ffmpeg chooses the format by it
         style: dict[str, Any] = {"pix_fmt_in": "rgb24", "pix_fmt_out": "yuv420p", "codec": "libx264"}
         style |= {
             "macro_block_size": 1,

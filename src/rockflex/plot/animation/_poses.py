@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import finite, positive, real_or_nan
+from rockflex._checks import checked_finite, checked_positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
-from rockflex.plot._curves import Curve
+from rockflex.plot._response_curves import ResponseCurve
 from rockflex.response import History
 from rockflex.structure import CantileverWithTipMass, Eccentric, FishBone, Frame, LumpedStructure, Restrained
 
@@ -34,7 +34,7 @@ MAX_DRAWN_MOTION = 0.15  # drawn displacement of the top over the size of the st
 
 
 @dataclass(frozen=True, eq=False)
-class Timing:
+class FrameTiming:
     """The instants of the response in s that the frames show, shape (k,), and the frames per second."""
 
     times: Array
@@ -48,14 +48,14 @@ class Timing:
         return np.diff(ends).astype(int)
 
 
-def timing_of(
-    curves: Sequence[Curve],
+def frame_timing(
+    curves: Sequence[ResponseCurve],
     suffix: str,
     speed: float,
     frames_per_second: float,
     start: float | None,
     stop: float | None,
-) -> Timing:
+) -> FrameTiming:
     """Return the frames of an animation in a file with some suffix; the arguments are those of `animate`.
 
     Raises
@@ -63,7 +63,7 @@ def timing_of(
     InputError
         If one is out of range, or there would be too many frames.
     """
-    ratio = positive("speed", speed, "seconds of the response per second of the animation")
+    ratio = checked_positive("speed", speed, "seconds of the response per second of the animation")
     low, high = RATES[suffix]
     rate = real_or_nan(frames_per_second)
     if not low <= rate <= high:
@@ -75,8 +75,8 @@ def timing_of(
         )
     first = min(float(curve.history.time[0]) for curve in curves)
     last = max(float(curve.history.time[-1]) for curve in curves)
-    begin = first if start is None else finite("start", start, "s")
-    end = last if stop is None else finite("stop", stop, "s")
+    begin = first if start is None else checked_finite("start", start, "s")
+    end = last if stop is None else checked_finite("stop", stop, "s")
     if not first <= begin < end <= last:
         raise InputError(
             f"start and stop must be times within the responses, from {first:g} to {last:g} s, start before stop, but "
@@ -95,11 +95,11 @@ def timing_of(
     if end - times[-1] > 0.25 * step:
         times = np.append(times, end)
     times[-1] = end  # where a fall ends
-    return Timing(times, ratio, rate)
+    return FrameTiming(times, ratio, rate)
 
 
 @dataclass(frozen=True, eq=False)
-class Outline:
+class StructureOutline:
     """Lines of a structure at rest, in m from the axis of its masses and from the base.
 
     Attributes
@@ -131,7 +131,7 @@ class Outline:
         return max(self.top, self.right - self.left)
 
 
-def outline_of(history: History, structure: Any | None, place: int) -> Outline:
+def structure_outline(history: History, structure: Any | None, place: int) -> StructureOutline:
     """Return the outline of the structure of a response, number `place` of those given.
 
     Without the structure itself, floors are drawn where its properties have them, and otherwise a straight line.
@@ -145,17 +145,19 @@ def outline_of(history: History, structure: Any | None, place: int) -> Outline:
     edges = -p.pivot(-1).arm, p.pivot(1).arm
     if not p.n_modes:
         heights = np.array([0.0, p.top_height or 2.0 * p.l0r / p.m_tot])
-        return Outline("block", heights, np.zeros((2, 0)), *edges)
+        return StructureOutline("block", heights, np.zeros((2, 0)), *edges)
     if structure is not None and not isinstance(structure, RockingProperties):
-        return Outline(_kind(structure), *_modal(structure, p, place), *edges)
+        return StructureOutline(_outline_kind(structure), *_outline_from_modes(structure, p, place), *edges)
     if p.floors is not None:
         stories = p.floors.heights.size > 1
-        return Outline("frame" if stories else "mast", *_with_base(p.floors.heights, p.floors.displacement), *edges)
+        return StructureOutline(
+            "frame" if stories else "mast", *_outline_with_base(p.floors.heights, p.floors.displacement), *edges
+        )
     top = p.top_height or 1.25 * float(np.abs(p.effective_height).max())
-    return Outline("column", *_with_base(np.array([top]), p.top_ordinate[None, :]), *edges)
+    return StructureOutline("column", *_outline_with_base(np.array([top]), p.top_ordinate[None, :]), *edges)
 
 
-def _kind(structure: Any) -> Kind:
+def _outline_kind(structure: Any) -> Kind:
     while isinstance(structure, Restrained | Eccentric):
         structure = structure.structure
     if isinstance(structure, CantileverWithTipMass):
@@ -163,7 +165,7 @@ def _kind(structure: Any) -> Kind:
     return "frame" if isinstance(structure, _STORIES) else "column"
 
 
-def _modal(structure: Any, p: RockingProperties, place: int) -> tuple[Array, Array]:
+def _outline_from_modes(structure: Any, p: RockingProperties, place: int) -> tuple[Array, Array]:
     """Return heights and shapes from the modes of the structure."""
     if not hasattr(structure, "modal"):
         raise InputError(
@@ -179,10 +181,10 @@ def _modal(structure: Any, p: RockingProperties, place: int) -> tuple[Array, Arr
             "each response if they differ, or leave it out.",
             field="structure",
         )
-    return _with_base(modes.heights, (modes.shapes * modes.participation)[:, : p.n_modes])
+    return _outline_with_base(modes.heights, (modes.shapes * modes.participation)[:, : p.n_modes])
 
 
-def _with_base(heights: Array, shapes: Array) -> tuple[Array, Array]:
+def _outline_with_base(heights: Array, shapes: Array) -> tuple[Array, Array]:
     """Add the base, order the points by height, and leave some out where there are very many."""
     order = np.argsort(heights, kind="stable")
     kept = order[np.unique(np.linspace(0, order.size - 1, min(MAX_POINTS, order.size)).astype(int))]
@@ -190,7 +192,7 @@ def _with_base(heights: Array, shapes: Array) -> tuple[Array, Array]:
 
 
 @dataclass(frozen=True, eq=False)
-class Poses:
+class StructurePoses:
     """The motion of one response at the instants of the frames, shape (k,) each; after its end as at its end.
 
     Attributes
@@ -211,7 +213,7 @@ class Poses:
         Whether the base can lift, and whether it is on springs.
     """
 
-    outline: Outline
+    outline: StructureOutline
     springs: Array
     rotation: Array
     slip: Array
@@ -246,7 +248,7 @@ class Poses:
         return self.place(frame, edges, np.zeros(2), amplification)
 
 
-def poses_of(curve: Curve, outline: Outline, times: Array, speed: float) -> Poses:
+def structure_poses(curve: ResponseCurve, outline: StructureOutline, times: Array, speed: float) -> StructurePoses:
     """Return the poses of a response at some instants in s; `speed` is in seconds of the response per second."""
     history = curve.history
     model, springs = history.model, history.model.springs
@@ -258,7 +260,7 @@ def poses_of(curve: Curve, outline: Outline, times: Array, speed: float) -> Pose
     struck = history.impact_times
     last = np.searchsorted(struck, times, side="right") - 1
     since = np.where(last >= 0, times - struck[last], np.inf) if struck.size else np.full(times.size, np.inf)
-    return Poses(
+    return StructurePoses(
         outline=outline,
         springs=np.empty(0) if springs is None else springs.positions,
         rotation=at.rotation if model.lifts else still,
@@ -274,19 +276,19 @@ def poses_of(curve: Curve, outline: Outline, times: Array, speed: float) -> Pose
     )
 
 
-def default_amplification(curves: Sequence[Curve], poses: Sequence[Poses]) -> float:
+def default_amplification(curves: Sequence[ResponseCurve], poses: Sequence[StructurePoses]) -> float:
     """Return the largest round number for which no structure is drawn to move by more than 0.15 of its size.
 
     At least 1, and 1 if one falls: a fall shows without it, and could not be told from a large rotation with it.
     """
     if any(curve.falls or curve.overturned for curve in curves):
         return 1.0
-    largest = max(map(_largest_motion, poses))
+    largest = max(map(_largest_relative_motion, poses))
     fitting = [each for each in ROUND_FACTORS if each * largest <= MAX_DRAWN_MOTION]
     return fitting[-1] if fitting else 1.0
 
 
-def _largest_motion(poses: Poses) -> float:
+def _largest_relative_motion(poses: StructurePoses) -> float:
     """Return the largest displacement in the frames over the size of the structure."""
     size = poses.outline.size
     turned = np.abs(poses.rotation) * size + np.abs(poses.sway).max(axis=1)

@@ -13,10 +13,16 @@ from matplotlib.patches import Polygon, Rectangle
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex.plot._curves import Curve
-from rockflex.plot._history import Quantity, add_legend, axis_scale, draw_curves, shade_uplifts
-from rockflex.plot._style import BLUE, GRAY, RED, SHADE, SMALL, new_figure, styled
-from rockflex.plot.animation._poses import Poses, Timing
+from rockflex.plot._history import (
+    PanelQuantity,
+    add_response_legend,
+    draw_history_curves,
+    quantity_axis_scale,
+    shade_uplifts,
+)
+from rockflex.plot._response_curves import ResponseCurve
+from rockflex.plot._style import BLUE, GRAY, RED, SHADE, SMALL, new_figure, with_figure_style
+from rockflex.plot.animation._poses import FrameTiming, StructurePoses
 
 Polyline = Sequence[tuple[float, float]]
 
@@ -47,14 +53,14 @@ INCHES = 9.6  # width of the figure: letters grow with the number of pixels
 MAX_BESIDE = 2  # structures that are drawn to the left of the histories; more are drawn above them
 
 
-def coil(length: float, half: float) -> list[Polyline]:
+def coil_spring_lines(length: float, half: float) -> list[Polyline]:
     """Return a coil spring of a length, `half` wide to either side, as lines of (across, along)."""
     turns = [(0.0 if i in (0, 5) else half * (-1.0) ** i, share * length)
              for i, share in enumerate((0.12, 0.24, 0.4, 0.56, 0.72, 0.88))]  # fmt: skip
     return [[(0.0, 0.0), *turns, (0.0, length)]]
 
 
-def strokes(kind: str, length: float) -> list[Polyline]:
+def element_symbol_lines(kind: str, length: float) -> list[Polyline]:
     """Return the lines of an element of a class and a length, as lines of (across, along) in points."""
     if kind == "YieldingDissipator":  # a bar, thick where it is held and narrow where it yields
         side = [(3.0, 0.0), (3.0, 0.26), (1.0, 0.36), (1.0, 0.64), (3.0, 0.74), (3.0, 1.0)]
@@ -70,16 +76,16 @@ def strokes(kind: str, length: float) -> list[Polyline]:
     return [[(0.0, 0.0), (0.0, length)]]
 
 
-def laid_between(lines: Sequence[Polyline], start: Array, end: Array) -> tuple[Array, Array]:
+def lines_between_points(lines: Sequence[Polyline], start: Array, end: Array) -> tuple[Array, Array]:
     """Return x and y of lines of (across, along) laid from one point to another, with gaps between them."""
     direction = end - start
     along = direction / (float(np.hypot(*direction)) or 1.0)
     across = np.array([along[1], -along[0]])
-    return joined([start + np.outer([u for u, _ in line], across) + np.outer([v for _, v in line], along)
+    return joined_polylines([start + np.outer([u for u, _ in line], across) + np.outer([v for _, v in line], along)
                    for line in lines])  # fmt: skip
 
 
-def joined(lines: Sequence[Array]) -> tuple[Array, Array]:
+def joined_polylines(lines: Sequence[Array]) -> tuple[Array, Array]:
     """Return x and y of several lines, each of shape (k, 2), with gaps between them."""
     if not lines:
         return np.empty(0), np.empty(0)
@@ -88,7 +94,7 @@ def joined(lines: Sequence[Array]) -> tuple[Array, Array]:
     return points[:, 0], points[:, 1]
 
 
-def state_text(curve: Curve, poses: Poses, frame: int, time: float) -> tuple[str, str]:
+def structure_state_text(curve: ResponseCurve, poses: StructurePoses, frame: int, time: float) -> tuple[str, str]:
     """Return the state of a structure in a frame, such as "uplifted", and the colour of the words."""
     end = float(curve.history.time[-1])
     if curve.overturned and time >= end:
@@ -107,7 +113,7 @@ def state_text(curve: Curve, poses: Poses, frame: int, time: float) -> tuple[str
     return (", ".join(texts), BLUE) if texts else ("in contact", GRAY)
 
 
-class ToPoints(NamedTuple):
+class MetresToStagePoints(NamedTuple):
     """From metres to the points of the stage: middle of the cell, level of the base at rest, ground, points per m."""
 
     middle: float
@@ -123,24 +129,28 @@ class ToPoints(NamedTuple):
 class StructureArtists:
     """The artists of one structure; `show` moves them to a frame."""
 
-    def __init__(self, axes: Axes, poses: Poses, curve: Curve, here: ToPoints, amplification: float) -> None:
+    def __init__(
+        self, axes: Axes, poses: StructurePoses, curve: ResponseCurve, here: MetresToStagePoints, amplification: float
+    ) -> None:
         self._poses, self._here, self._by = poses, here, amplification
         self._elements = curve.history.model.properties.elements if poses.lifts else ()
         color = curve.style.color
         block = poses.outline.kind == "block"
         self._draw_at_rest(axes)
-        self._gap = _area(axes, facecolor=RED, alpha=0.25, linewidth=0.0)
-        self._free = _line(axes, SPRING_FREE, 1.0)
-        self._pressed = _line(axes, SPRING, 1.2)
-        self._block = _area(axes, facecolor=SHADE, edgecolor=color, linewidth=2.0, visible=block)
+        self._gap = _animated_area(axes, facecolor=RED, alpha=0.25, linewidth=0.0)
+        self._free = _animated_line(axes, SPRING_FREE, 1.0)
+        self._pressed = _animated_line(axes, SPRING, 1.2)
+        self._block = _animated_area(axes, facecolor=SHADE, edgecolor=color, linewidth=2.0, visible=block)
         thick = 3.6 if poses.outline.kind == "column" else 2.0
-        self._columns = _line(axes, color, thick)
-        self._floors = _line(axes, color, 1.0 if poses.outline.heights.size > _MAX_THICK_FLOORS else 2.6)
-        self._base = _line(axes, color, 4.0, capstyle="butt")
-        self._mass = _line(axes, color, 0.0, marker="s", markersize=11.0)
+        self._columns = _animated_line(axes, color, thick)
+        self._floors = _animated_line(axes, color, 1.0 if poses.outline.heights.size > _MAX_THICK_FLOORS else 2.6)
+        self._base = _animated_line(axes, color, 4.0, capstyle="butt")
+        self._mass = _animated_line(axes, color, 0.0, marker="s", markersize=11.0)
         kinds = sorted({type(each).__name__ for each in self._elements})
-        self._element_lines = {kind: _line(axes, ELEMENT_COLORS.get(kind, LAW_COLOR), 1.3) for kind in kinds}
-        self._impacts = _line(axes, RED, 0.0, marker="o", markersize=11.0, markerfacecolor="none", markeredgewidth=1.8)
+        self._element_lines = {kind: _animated_line(axes, ELEMENT_COLORS.get(kind, LAW_COLOR), 1.3) for kind in kinds}
+        self._impacts = _animated_line(
+            axes, RED, 0.0, marker="o", markersize=11.0, markerfacecolor="none", markeredgewidth=1.8
+        )
 
     @property
     def moving(self) -> list[Artist]:
@@ -188,8 +198,8 @@ class StructureArtists:
         if self._poses.outline.kind == "block":
             self._block.set_xy(columns[0])
             return
-        self._columns.set_data(*joined(columns))
-        self._floors.set_data(*joined(floors))
+        self._columns.set_data(*joined_polylines(columns))
+        self._floors.set_data(*joined_polylines(floors))
         if self._poses.outline.kind == "mast":
             self._mass.set_data(top[:1], top[1:])
 
@@ -197,7 +207,7 @@ class StructureArtists:
         """Draw the structure at rest, faintly."""
         columns, floors, _ = self._lines(None)
         closed = [np.vstack((line, line[:1])) for line in columns] if self._poses.outline.kind == "block" else columns
-        axes.plot(*joined([*closed, *floors]), color=_AT_REST, linewidth=0.8)
+        axes.plot(*joined_polylines([*closed, *floors]), color=_AT_REST, linewidth=0.8)
 
     def _show_springs(self, frame: int) -> None:
         """Draw the springs from the ground to the base; without contact they have their full length and are lighter."""
@@ -208,10 +218,10 @@ class StructureArtists:
         lines: dict[bool, list[Array]] = {False: [], True: []}
         for x, y in zip(across, up, strict=True):
             free = bool(y > rest)
-            (turns,) = coil(max((rest if free else y) - ground, 1.0), half)
+            (turns,) = coil_spring_lines(max((rest if free else y) - ground, 1.0), half)
             lines[free].append(np.array(turns) + np.array([x, ground]))
-        self._pressed.set_data(*joined(lines[False]))
-        self._free.set_data(*joined(lines[True]))
+        self._pressed.set_data(*joined_polylines(lines[False]))
+        self._free.set_data(*joined_polylines(lines[True]))
 
     def _show_elements(self, frame: int) -> None:
         """Draw tendons from below the ground into the structure, and the others up to a bracket on the base."""
@@ -225,12 +235,12 @@ class StructureArtists:
             start = np.concatenate(here((x, np.array([-below]))))
             end = np.concatenate(here(poses.place(frame, x, np.array([reach]), self._by)))
             length = float(np.hypot(*(end - start)))
-            parts[kind].append(np.column_stack(laid_between(strokes(kind, length), start, end)))
+            parts[kind].append(np.column_stack(lines_between_points(element_symbol_lines(kind, length), start, end)))
         for kind, lines in parts.items():
-            self._element_lines[kind].set_data(*joined(lines))
+            self._element_lines[kind].set_data(*joined_polylines(lines))
 
 
-def _line(axes: Axes, color: str, width: float, *, capstyle: Any = "round", **more: Any) -> Line2D:
+def _animated_line(axes: Axes, color: str, width: float, *, capstyle: Any = "round", **more: Any) -> Line2D:
     """Return an empty line that is drawn anew in each frame."""
     style: dict[str, Any] = {
         "solid_capstyle": capstyle,
@@ -241,7 +251,7 @@ def _line(axes: Axes, color: str, width: float, *, capstyle: Any = "round", **mo
     return line
 
 
-def _area(axes: Axes, **style: Any) -> Polygon:
+def _animated_area(axes: Axes, **style: Any) -> Polygon:
     """Return an area that is drawn anew in each frame."""
     area = Polygon(np.zeros((4, 2)), animated=True, **style)
     axes.add_patch(area)
@@ -252,21 +262,28 @@ class StructurePanel:
     """One cell for each response over a common ground; the axes' coordinates are points of 1/72 inch."""
 
     def __init__(
-        self, axes: Axes, curves: Sequence[Curve], poses: Sequence[Poses], timing: Timing, amplification: float
+        self,
+        axes: Axes,
+        curves: Sequence[ResponseCurve],
+        poses: Sequence[StructurePoses],
+        timing: FrameTiming,
+        amplification: float,
     ) -> None:
         self._timing, self._curves, self._poses = timing, curves, poses
         width, height = np.asarray(axes.get_window_extent().size) * (72.0 / axes.figure.dpi)
         axes.set(xlim=(0.0, width), ylim=(0.0, height))
         cell = width / len(curves)
-        extents = [_extent(each, amplification) for each in poses]
+        extents = [_structure_extent(each, amplification) for each in poses]
         sprung = any(each.sprung for each in poses)
-        zoom, depth = _zoom(extents, cell - 2.0 * EDGE, height - HEAD - FOOT, sprung=sprung)
+        zoom, depth = _stage_zoom(extents, cell - 2.0 * EDGE, height - HEAD - FOOT, sprung=sprung)
         self._structures: list[StructureArtists] = []
         self._texts: list[tuple[Artist, Artist]] = []
         for place, (curve, each, extent) in enumerate(zip(curves, poses, extents, strict=True)):
             middle = cell * (place + 0.5)
-            _draw_ground(axes, middle - 0.5 * cell + EDGE, middle + 0.5 * cell - EDGE)
-            here = ToPoints(middle - zoom * extent.middle, FOOT + (depth if each.sprung else 0.0), FOOT, zoom)
+            _draw_stage_ground(axes, middle - 0.5 * cell + EDGE, middle + 0.5 * cell - EDGE)
+            here = MetresToStagePoints(
+                middle - zoom * extent.middle, FOOT + (depth if each.sprung else 0.0), FOOT, zoom
+            )
             self._structures.append(StructureArtists(axes, each, curve, here, amplification))
             axes.text(
                 middle, height - HEAD + 8.0, curve.label, color=curve.style.color, ha="center", weight="bold",
@@ -277,7 +294,12 @@ class StructurePanel:
             self._texts.append((state, number))
         self._time = axes.text(EDGE, height - 10.0, "", fontsize=9.0, color="black", animated=True)
         axes.text(
-            width - EDGE, height - 10.0, _scales(amplification, timing.speed), ha="right", fontsize=8.0, color=_INK
+            width - EDGE,
+            height - 10.0,
+            _animation_scales_text(amplification, timing.speed),
+            ha="right",
+            fontsize=8.0,
+            color=_INK,
         )
 
     @property
@@ -294,19 +316,19 @@ class StructurePanel:
             self._structures, self._curves, self._poses, self._texts, strict=True
         ):
             structure.show(frame)
-            text, color = state_text(curve, poses, frame, time)
+            text, color = structure_state_text(curve, poses, frame, time)
             state.set(text=text, color=color)
             rotation = f"{1e3 * poses.rotation[frame]:.2f}".replace("-", "−")
             number.set(text=f"θ = {rotation} mrad" if poses.lifts else "")
 
 
-def _scales(amplification: float, speed: float) -> str:
+def _animation_scales_text(amplification: float, speed: float) -> str:
     """Say how displacements and time are enlarged."""
     size = "true displacements" if amplification == 1.0 else f"displacements × {amplification:g}"
     return size if speed == 1.0 else f"{size}, speed × {speed:g}"
 
 
-class _Extent(NamedTuple):
+class _StructureExtent(NamedTuple):
     """Extent of a structure in m: to the left and right of its axis, upwards, and below its unloaded springs."""
 
     left: float
@@ -326,7 +348,9 @@ class _Extent(NamedTuple):
         return 2.0 * max(self.right - self.middle, self.left + self.middle)
 
 
-def _zoom(extents: Sequence[_Extent], width: float, height: float, *, sprung: bool) -> tuple[float, float]:
+def _stage_zoom(
+    extents: Sequence[_StructureExtent], width: float, height: float, *, sprung: bool
+) -> tuple[float, float]:
     """Return the points per metre that keep everything in its cell, and the points below the unloaded springs."""
     up = max(extent.up for extent in extents)
     zoom = min(width / max(extent.width for extent in extents), height / up)
@@ -336,7 +360,7 @@ def _zoom(extents: Sequence[_Extent], width: float, height: float, *, sprung: bo
     return min(zoom, (height - depth) / up), depth
 
 
-def _extent(poses: Poses, amplification: float) -> _Extent:
+def _structure_extent(poses: StructurePoses, amplification: float) -> _StructureExtent:
     """Return the room that a structure needs in all frames."""
     o, frames = poses.outline, np.unique(np.linspace(0, poses.rotation.size - 1, _MAX_FRAMES_SEARCHED).astype(int))
     extreme = [int(each) for each in (poses.rotation.argmax(), poses.rotation.argmin())]
@@ -349,10 +373,10 @@ def _extent(poses: Poses, amplification: float) -> _Extent:
             across += [*there, *beside]
             up.append(float(above.max()))
     sunk = float(np.maximum(-poses.rise, 0.0).max()) * amplification
-    return _Extent(-1.05 * float(min(across)), 1.05 * float(max(across)), 1.03 * float(max(up)), sunk)
+    return _StructureExtent(-1.05 * float(min(across)), 1.05 * float(max(across)), 1.03 * float(max(up)), sunk)
 
 
-def _draw_ground(axes: Axes, left: float, right: float) -> None:
+def _draw_stage_ground(axes: Axes, left: float, right: float) -> None:
     axes.plot([left, right], [FOOT - 1.5] * 2, color=GRAY, linewidth=1.0)
     for x in np.arange(left + 6.0, right, 7.0):
         axes.plot([x, x - 4.0], [FOOT - 2.0, FOOT - 6.5], color=GRAY, linewidth=0.7)
@@ -361,24 +385,26 @@ def _draw_ground(axes: Axes, left: float, right: float) -> None:
 class HistoryPanels:
     """One panel for each quantity; times after the cursor are faded, and dots mark the values at it."""
 
-    def __init__(self, grid: list[Axes], quantities: Sequence[Quantity], curves: list[Curve], timing: Timing) -> None:
+    def __init__(
+        self, grid: list[Axes], quantities: Sequence[PanelQuantity], curves: list[ResponseCurve], timing: FrameTiming
+    ) -> None:
         self._timing = timing
         self.handles: list[Artist] = []
         self.names = [curve.label for curve in curves]
         for axes, quantity in zip(grid, quantities, strict=True):
-            self.handles, _ = draw_curves(axes, quantity, curves)
+            self.handles, _ = draw_history_curves(axes, quantity, curves)
         uplifts = shade_uplifts(grid, curves)
         self.handles, self.names = [*self.handles, *uplifts.values()], [*self.names, *uplifts]
         grid[-1].set_xlabel("time [s]")
         self._end = float(timing.times[-1])
         grid[-1].set_xlim(float(timing.times[0]), self._end)
-        self._future = [_fading(axes) for axes in grid]
+        self._future = [_fading_rectangle(axes) for axes in grid]
         self._cursors = [axes.axvline(0.0, color="black", linewidth=0.9, animated=True) for axes in grid]
         self._dots: list[tuple[Line2D, Array]] = []
         for axes, quantity in zip(grid, quantities, strict=True):
-            factor, _, _ = axis_scale(quantity, curves)
+            factor, _, _ = quantity_axis_scale(quantity, curves)
             for curve in curves:
-                self._dots.append(_dot(axes, curve, _values(quantity, curve, timing) / factor))
+                self._dots.append(_cursor_dot(axes, curve, _quantity_at_frames(quantity, curve, timing) / factor))
 
     @property
     def moving(self) -> list[Artist]:
@@ -396,14 +422,14 @@ class HistoryPanels:
             dot.set_data(np.full(values.shape[1], time), values[frame])
 
 
-def _values(quantity: Quantity, curve: Curve, timing: Timing) -> Array:
+def _quantity_at_frames(quantity: PanelQuantity, curve: ResponseCurve, timing: FrameTiming) -> Array:
     """Return a quantity at the frames, shape (k, n); after the end of the response it has no value."""
     known = curve.history.time
     values = quantity.of(curve.history.at(np.clip(timing.times, known[0], known[-1])))
     return np.where((timing.times <= known[-1])[:, None], values.reshape(timing.times.size, -1), np.nan)
 
 
-def _fading(axes: Axes) -> Rectangle:
+def _fading_rectangle(axes: Axes) -> Rectangle:
     shape = Rectangle(
         (0.0, 0.0), 1.0, 1.0, transform=axes.get_xaxis_transform(), facecolor="white", alpha=_FADING, linewidth=0.0,
         animated=True,
@@ -412,7 +438,7 @@ def _fading(axes: Axes) -> Rectangle:
     return shape
 
 
-def _dot(axes: Axes, curve: Curve, values: Array) -> tuple[Line2D, Array]:
+def _cursor_dot(axes: Axes, curve: ResponseCurve, values: Array) -> tuple[Line2D, Array]:
     (dot,) = axes.plot([], [], "o", color=curve.style.color, markersize=4.5, markeredgecolor="white",
                        markeredgewidth=0.6, animated=True)  # fmt: skip
     return dot, values
@@ -422,20 +448,20 @@ class AnimatedFigure:
     """The figure of an animation, with its still and its moving artists."""
 
     def __init__(
-        self, curves: list[Curve], poses: Sequence[Poses], quantities: Sequence[Quantity], timing: Timing,
-        amplification: float, title: str | None, width: int,
+        self, curves: list[ResponseCurve], poses: Sequence[StructurePoses], quantities: Sequence[PanelQuantity],
+        timing: FrameTiming, amplification: float, title: str | None, width: int,
     ) -> None:  # fmt: skip
-        with styled():
-            self._figure, axes, grid = _layout(len(curves), len(quantities), width)
+        with with_figure_style():
+            self._figure, axes, grid = _animation_layout(len(curves), len(quantities), width)
             histories = HistoryPanels(grid, quantities, curves, timing)
-            add_legend(self._figure, curves, histories.handles, histories.names, title)
+            add_response_legend(self._figure, curves, histories.handles, histories.names, title)
             self._canvas = FigureCanvasAgg(self._figure)
             self._figure.draw_without_rendering()  # so that the places are known
             self._figure.set_layout_engine("none")
             structures = StructurePanel(axes, curves, poses, timing, amplification)
             self._parts = structures, histories
             self._moving: list[tuple[Axes, Artist]] = [
-                (_axes(each), each) for part in self._parts for each in part.moving
+                (_axes_of_artist(each), each) for part in self._parts for each in part.moving
             ]
             self._canvas.draw()
             self._still = self._canvas.copy_from_bbox(self._figure.bbox)
@@ -448,7 +474,7 @@ class AnimatedFigure:
 
     def picture(self, frame: int) -> Picture:
         """Return a frame."""
-        with styled():
+        with with_figure_style():
             self._canvas.restore_region(self._still)
             for part in self._parts:
                 part.show(frame)
@@ -462,13 +488,13 @@ class AnimatedFigure:
             yield self.picture(frame)
 
 
-def _axes(artist: Artist) -> Axes:
+def _axes_of_artist(artist: Artist) -> Axes:
     axes = artist.axes
     assert isinstance(axes, Axes)  # everything that moves was added to axes
     return axes
 
 
-def _layout(models: int, panels: int, width: int) -> tuple[Figure, Axes, list[Axes]]:
+def _animation_layout(models: int, panels: int, width: int) -> tuple[Figure, Axes, list[Axes]]:
     """Return a figure, the axes of the structures and of the panels; width and height in pixels are even, for H.264."""
     beside = models <= MAX_BESIDE
     inches = max(4.8, 1.35 * panels + 1.1) if beside else 3.3 + 1.2 * panels + 0.9

@@ -1,27 +1,27 @@
 """Structures in TOML files."""
 
-from rockflex.structure.file._entry import (
+from rockflex.structure.file._structure_entry import (
     ELEMENTS,
     KINDS,
     ElementTable,
     StructureEntry,
     TendonTable,
-    build_in,
+    build_structure_in_file,
     read_structure,
-    read_toml,
+    read_toml_file,
 )
-from rockflex.structure.file._table import (
-    Table,
-    checked,
-    expected,
-    inner_table,
-    key_of,
-    label_of,
-    parts,
-    problems,
-    spot_of,
+from rockflex.structure.file._structure_tables import Built, PartTable, Structure, StructureTable
+from rockflex.structure.file._toml_table import (
+    TomlTable,
+    first_table_in_annotation,
+    members_of_annotation,
+    parse_toml_table,
+    schema_key_of_field,
+    toml_key_label,
+    toml_problem_place,
+    toml_problem_sentences,
+    valid_value_description,
 )
-from rockflex.structure.file._tables import Built, PartTable, Structure, StructureTable
 
 __all__ = [
     "ELEMENTS",
@@ -32,17 +32,17 @@ __all__ = [
     "Structure",
     "StructureEntry",
     "StructureTable",
-    "Table",
     "TendonTable",
-    "build_in",
-    "checked",
-    "expected",
-    "inner_table",
-    "key_of",
-    "label_of",
-    "parts",
-    "problems",
+    "TomlTable",
+    "build_structure_in_file",
+    "first_table_in_annotation",
+    "members_of_annotation",
+    "parse_toml_table",
     "read_structure",
-    "read_toml",
-    "spot_of",
+    "read_toml_file",
+    "schema_key_of_field",
+    "toml_key_label",
+    "toml_problem_place",
+    "toml_problem_sentences",
+    "valid_value_description",
 ]

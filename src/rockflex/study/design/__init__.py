@@ -1,40 +1,40 @@
 """Design of a base: its width, its tendons and its dissipators (Section 4.1)."""
 
-from rockflex.study.design._best import BestDesign, Interpolated, best_design, trade_off
-from rockflex.study.design._designs import DesignSearch, Scaling, TendonLevel, factors_of
-from rockflex.study.design._requirements import DesignCost, Requirement, check_requirements, margins_of
-from rockflex.study.design._search import SearchPlan, search_design
-from rockflex.study.design._study import (
+from rockflex.study.design._best_design import BestDesign, InterpolatedMargins, best_design, trade_off
+from rockflex.study.design._design_search import DesignSearchPlan, search_design
+from rockflex.study.design._design_study import (
     DesignPlan,
     DesignStudy,
-    design_tables,
+    design_tables_by_limit,
     run_design,
-    stored_limits,
-    stored_search,
+    stored_design_limits,
+    stored_design_search,
 )
-from rockflex.study.design._table import design_table, smallest_width
+from rockflex.study.design._design_table import design_table, smallest_width
+from rockflex.study.design._designs import DesignSearch, Scaling, TendonLevel, checked_design_factors
+from rockflex.study.design._requirements import DesignCost, Requirement, checked_requirements, requirement_margins
 
 __all__ = [
     "BestDesign",
     "DesignCost",
     "DesignPlan",
     "DesignSearch",
+    "DesignSearchPlan",
     "DesignStudy",
-    "Interpolated",
+    "InterpolatedMargins",
     "Requirement",
     "Scaling",
-    "SearchPlan",
     "TendonLevel",
     "best_design",
-    "check_requirements",
+    "checked_design_factors",
+    "checked_requirements",
     "design_table",
-    "design_tables",
-    "factors_of",
-    "margins_of",
+    "design_tables_by_limit",
+    "requirement_margins",
     "run_design",
     "search_design",
     "smallest_width",
-    "stored_limits",
-    "stored_search",
+    "stored_design_limits",
+    "stored_design_search",
     "trade_off",
 ]

@@ -9,13 +9,13 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._checks import instance, one_of, positive, real_or_nan, whole_number
+from rockflex._checks import checked_instance, checked_positive, checked_whole_number, is_one_of, real_or_nan
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import BaseElement, FrictionDamper, RockingProperties, Tendon, YieldingDissipator
-from rockflex.study._arguments import described, positive_numbers
-from rockflex.study._run_matrix import check_different
+from rockflex.study._arguments import checked_positive_numbers, type_description
+from rockflex.study._run_matrix import check_different_values
 
 RANGE = ("smallest", "largest", "count")
 MAX_BASES = 10_000  # bases
@@ -64,13 +64,13 @@ class TendonLevel:
     name: str = ""
 
     def __post_init__(self) -> None:
-        force = positive("prestress_ratio", self.prestress_ratio, "W", zero=True)
-        stiffness = positive("stiffness_ratio", self.stiffness_ratio, "L_0^r g/B²", zero=True)
-        instance("name", self.name, str)
+        force = checked_positive("prestress_ratio", self.prestress_ratio, "W", zero=True)
+        stiffness = checked_positive("stiffness_ratio", self.stiffness_ratio, "L_0^r g/B²", zero=True)
+        checked_instance("name", self.name, str)
         words = f"F₀ = {force:.6g} W, k = {stiffness:.6g} L₀ʳg/B²" if force or stiffness else "no tendon"
         vars(self).update(prestress_ratio=force, stiffness_ratio=stiffness, name=self.name or words)
         if self.yield_ratio is not None:
-            limit = positive("yield_ratio", self.yield_ratio, "W")
+            limit = checked_positive("yield_ratio", self.yield_ratio, "W")
             vars(self).update(yield_ratio=limit)
             if force > limit:
                 raise InputError(
@@ -90,7 +90,7 @@ class TendonLevel:
         return replace(properties, elements=(tendon, *others))
 
 
-class Design(NamedTuple):
+class BaseDesign(NamedTuple):
     """A structure on one base with one tendon; `tendon` is the name of its level."""
 
     name: str
@@ -98,9 +98,9 @@ class Design(NamedTuple):
     properties: RockingProperties
 
 
-def designs_of(
+def designs_of_structure(
     properties: RockingProperties, half_widths: Any, levels: Sequence[TendonLevel], base_mass_per_width: float
-) -> list[Design]:
+) -> list[BaseDesign]:
     """The structure on every base with every tendon, tendons outermost, the narrowest base first.
 
     Without levels the structure keeps its own tendons, with their forces in N and stiffnesses in N/m.
@@ -111,32 +111,32 @@ def designs_of(
         If a half width is not positive or occurs twice, levels share a name or are added to the structure's own
         tendons, a tendon would be outside a base, or a base would have no mass left.
     """
-    widths = half_widths_of(half_widths)
-    per_width = positive("base_mass_per_width", base_mass_per_width, "kg/m", zero=True)
+    widths = checked_half_widths(half_widths)
+    per_width = checked_positive("base_mass_per_width", base_mass_per_width, "kg/m", zero=True)
     for place, level in enumerate(levels):
         if not isinstance(level, TendonLevel):  # pyright: ignore[reportUnnecessaryIsInstance]
-            raise InputError(f"tendons[{place}] is {described(level)}. Expected a TendonLevel.")
-    check_different("tendons", [level.name for level in levels])
+            raise InputError(f"tendons[{place}] is {type_description(level)}. Expected a TendonLevel.")
+    check_different_values("tendons", [level.name for level in levels])
     if levels and properties.tendons:
         raise InputError(
             "The structure has its own tendons, and levels of tendons are given too. Leave out one or the other: "
             "levels replace the structure's tendons."
         )
-    found: list[Design] = []
+    found: list[BaseDesign] = []
     for level in levels or (None,):
         for width in widths:
             name = f"B = {width:.6g} m" + (f", {level.name}" if level and len(levels) > 1 else "")
             try:
-                widened = on_base(properties, width, per_width)
+                widened = structure_on_base_width(properties, width, per_width)
                 widened = widened if level is None else level.held(widened)
             except InputError as error:
                 raise InputError(f"{name}: {error}") from error
             own = "no tendon" if not properties.tendons else "its own tendons"
-            found.append(Design(name, own if level is None else level.name, widened))
+            found.append(BaseDesign(name, own if level is None else level.name, widened))
     return found
 
 
-def on_base(properties: RockingProperties, half_width: float, per_width: float) -> RockingProperties:
+def structure_on_base_width(properties: RockingProperties, half_width: float, per_width: float) -> RockingProperties:
     """The structure on another base, which gains `per_width` in kg for each metre of its width 2 B.
 
     The mass of the base has no height, so it changes neither L_0^r nor the modes.
@@ -149,7 +149,7 @@ def on_base(properties: RockingProperties, half_width: float, per_width: float) 
     )
 
 
-def half_widths_of(given: Any) -> list[float]:
+def checked_half_widths(given: Any) -> list[float]:
     """Half widths in m, rising: a sequence, or a mapping with `smallest`, `largest` and `count`, both ends included.
 
     Raises
@@ -168,8 +168,8 @@ def half_widths_of(given: Any) -> list[float]:
                 f"positive numbers in m, 2 to {MAX_BASES} of them, but {shown(given)} was given."
             )
         given = np.linspace(smallest, largest, int(count))
-    widths = sorted(positive_numbers("half_widths", given, "m"))
-    check_different("half_widths", [f"{width:.6g}" for width in widths])
+    widths = sorted(checked_positive_numbers("half_widths", given, "m"))
+    check_different_values("half_widths", [f"{width:.6g}" for width in widths])
     return widths
 
 
@@ -236,15 +236,15 @@ class DesignSearch:
     def __post_init__(self) -> None:
         given: Any = self.half_widths
         vars(self).update(
-            half_widths=tuple(half_widths_of(given)),
-            tendon_factors=factors_of("tendon_factors", self.tendon_factors),
-            dissipator_factors=factors_of("dissipator_factors", self.dissipator_factors),
-            base_mass_per_width=positive("base_mass_per_width", self.base_mass_per_width, "kg/m", zero=True),
-            refinements=whole_number("refinements", self.refinements, 0, MAX_REFINEMENTS),
-            designs_per_refinement=whole_number("designs_per_refinement", self.designs_per_refinement, 1),
+            half_widths=tuple(checked_half_widths(given)),
+            tendon_factors=checked_design_factors("tendon_factors", self.tendon_factors),
+            dissipator_factors=checked_design_factors("dissipator_factors", self.dissipator_factors),
+            base_mass_per_width=checked_positive("base_mass_per_width", self.base_mass_per_width, "kg/m", zero=True),
+            refinements=checked_whole_number("refinements", self.refinements, 0, MAX_REFINEMENTS),
+            designs_per_refinement=checked_whole_number("designs_per_refinement", self.designs_per_refinement, 1),
         )
         for name in ("tendon_scaling", "dissipator_scaling"):
-            if not one_of(getattr(self, name), ("size", "force")):
+            if not is_one_of(getattr(self, name), ("size", "force")):
                 raise InputError(f'{name} must be "size" or "force", but {shown(getattr(self, name))} was given.')
         if self.n_first == 1:
             raise InputError(
@@ -318,9 +318,9 @@ class DesignSearch:
         """
         width, tendons, dissipators = (float(value) for value in self.at(point)[0])
         try:
-            moved = [moved_with(each, properties, width) for each in properties.elements]
+            moved = [element_moved_with_base_edges(each, properties, width) for each in properties.elements]
             scaled = [self._scaled(each, tendons, dissipators) for each in moved]
-            widened = on_base(replace(properties, elements=()), width, self.base_mass_per_width)
+            widened = structure_on_base_width(replace(properties, elements=()), width, self.base_mass_per_width)
             return replace(widened, elements=tuple(each for each in scaled if each is not None))
         except InputError as error:
             raise InputError(
@@ -337,7 +337,7 @@ class DesignSearch:
 
     def _scaled(self, element: BaseElement, tendons: float, dissipators: float) -> BaseElement | None:
         if isinstance(element, Tendon):
-            return tendon_times(element, tendons, self.tendon_scaling)
+            return scaled_tendon(element, tendons, self.tendon_scaling)
         if isinstance(element, YieldingDissipator):
             if dissipators == 0.0:
                 return None
@@ -348,7 +348,7 @@ class DesignSearch:
         return element
 
 
-def tendon_times(tendon: Tendon, factor: float, scaling: Scaling) -> Tendon | None:
+def scaled_tendon(tendon: Tendon, factor: float, scaling: Scaling) -> Tendon | None:
     """The tendon with a factor on its size or on its initial force; None where nothing is left of it."""
     force = tendon.initial_force * factor
     if scaling == "force":
@@ -359,7 +359,9 @@ def tendon_times(tendon: Tendon, factor: float, scaling: Scaling) -> Tendon | No
     return replace(tendon, initial_force=force, stiffness=tendon.stiffness * factor, yield_force=limit)
 
 
-def moved_with(element: BaseElement, properties: RockingProperties, half_width: float) -> BaseElement:
+def element_moved_with_base_edges(
+    element: BaseElement, properties: RockingProperties, half_width: float
+) -> BaseElement:
     """The element at the same place relative to the edges of a base of another width.
 
     The middle of the base is at -e from the axis of the masses, from which positions are measured.
@@ -368,13 +370,13 @@ def moved_with(element: BaseElement, properties: RockingProperties, half_width: 
     return element if ratio == 1.0 else replace(element, position=(element.position + e) * ratio - e)
 
 
-def dissipator_force_of(properties: RockingProperties) -> float:
+def total_dissipator_force(properties: RockingProperties) -> float:
     """ΣF_y of all yielding dissipators and friction dampers in N."""
     forces = [each.yield_force for each in properties.elements if isinstance(each, YieldingDissipator)]
     return sum((each.force for each in properties.elements if isinstance(each, FrictionDamper)), sum(forces))
 
 
-def factors_of(name: str, given: Any) -> tuple[float, ...]:
+def checked_design_factors(name: str, given: Any) -> tuple[float, ...]:
     """Factors, rising: a sequence, or a mapping with `smallest`, `largest` and `count`, both ends included.
 
     Raises

@@ -7,10 +7,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._checks import in_range, positive
+from rockflex._checks import checked_in_range, checked_positive
 from rockflex._errors import InputError, SolverError
-from rockflex.fragility import HazardCurve, limit_label
-from rockflex.study.design._fit import Runs, ShakingLevel, check_limit, check_same_for_all
+from rockflex.fragility import HazardCurve, limit_state_label
+from rockflex.study.design._exceedance_fit import (
+    DesignRuns,
+    ShakingLevel,
+    check_design_limit,
+    check_measure_of_record_alone,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -52,9 +57,9 @@ class DesignCost:
 
     def __post_init__(self) -> None:
         vars(self).update(
-            half_width=positive("half_width", self.half_width, "cost/m", zero=True),
-            prestress=positive("prestress", self.prestress, "cost/N", zero=True),
-            dissipator_force=positive("dissipator_force", self.dissipator_force, "cost/N", zero=True),
+            half_width=checked_positive("half_width", self.half_width, "cost/m", zero=True),
+            prestress=checked_positive("prestress", self.prestress, "cost/N", zero=True),
+            dissipator_force=checked_positive("dissipator_force", self.dissipator_force, "cost/N", zero=True),
         )
         if not (self.half_width or self.prestress or self.dissipator_force):
             raise InputError(
@@ -109,14 +114,14 @@ class Requirement:
     measure: str = "pgv"
 
     def __post_init__(self) -> None:
-        check_limit(self.limit)
-        check_same_for_all(self.measure)
+        check_design_limit(self.limit)
+        check_measure_of_record_alone(self.measure)
         ShakingLevel.of(self.at, self.hazard)
         if self.hazard is None:
-            positive("target", self.target, "probability")
-            in_range("target", self.target, 0.0, 1.0, hint="With a level it is a probability.")
+            checked_positive("target", self.target, "probability")
+            checked_in_range("target", self.target, 0.0, 1.0, hint="With a level it is a probability.")
         else:
-            positive("target", self.target, "1/year")
+            checked_positive("target", self.target, "1/year")
 
     @property
     def level(self) -> ShakingLevel:
@@ -126,11 +131,11 @@ class Requirement:
     @property
     def label(self) -> str:
         """The limit in words, with the level."""
-        return limit_label(self.limit) + ("" if self.at is None else f" at {self.measure} = {self.at:g}")
+        return limit_state_label(self.limit) + ("" if self.at is None else f" at {self.measure} = {self.at:g}")
 
     @property
     def asked(self) -> str:
-        """What `target` is."""
+        """The quantity of `target`."""
         return "P" if self.hazard is None else "annual rate"
 
     def value(self, runs: "pd.DataFrame") -> float:
@@ -139,7 +144,7 @@ class Requirement:
         if not len(solved):
             return np.nan
         try:
-            return self.level.exceedance(Runs.of(solved, self.limit, self.measure).fitted().curve)[0]
+            return self.level.exceedance(DesignRuns.of(solved, self.limit, self.measure).fitted().curve)[0]
         except (InputError, SolverError):
             return np.nan
 
@@ -148,7 +153,7 @@ class Requirement:
         solved = runs[runs["status"].notna()]
         if not len(solved):
             return np.nan, np.nan
-        some = Runs.of(solved, self.limit, self.measure)
+        some = DesignRuns.of(solved, self.limit, self.measure)
         try:
             return some.fitted(banded=True).band(self.level, confidence, len(set(some.groups)))[:2]
         except (InputError, SolverError):
@@ -159,7 +164,7 @@ class Requirement:
         solved = runs[runs["status"].notna()]
         if not len(solved):
             return np.full(n, np.nan)
-        return Runs.of(solved, self.limit, self.measure).resampled(self.level, n, seed)
+        return DesignRuns.of(solved, self.limit, self.measure).resampled(self.level, n, seed)
 
     def margin(self, values: Any) -> Array:
         """How far values are above the target, within ±5: probits of probabilities, logarithms of rates.
@@ -176,7 +181,7 @@ class Requirement:
         )
 
 
-def check_requirements(given: Sequence[Requirement]) -> list[Requirement]:
+def checked_requirements(given: Sequence[Requirement]) -> list[Requirement]:
     """Return requirements as a list.
 
     Raises
@@ -197,12 +202,12 @@ def check_requirements(given: Sequence[Requirement]) -> list[Requirement]:
     return listed
 
 
-def values_of(designs: "Sequence[pd.DataFrame]", requirements: Sequence[Requirement]) -> Array:
+def requirement_values(designs: "Sequence[pd.DataFrame]", requirements: Sequence[Requirement]) -> Array:
     """Value of each requirement for the runs of each design, shape (n_designs, n_requirements)."""
     found = [[each.value(runs) for each in requirements] for runs in designs]
     return np.reshape(np.array(found, dtype=float), (len(designs), len(requirements)))
 
 
-def margins_of(values: Array, requirements: Sequence[Requirement]) -> Array:
+def requirement_margins(values: Array, requirements: Sequence[Requirement]) -> Array:
     """Margins of values whose last axis is that of the requirements; NaN where there is no value."""
     return np.stack([each.margin(values[..., place]) for place, each in enumerate(requirements)], axis=-1)

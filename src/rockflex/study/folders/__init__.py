@@ -2,6 +2,6 @@
 
 from rockflex.study.folders._folder import StudyFolder
 from rockflex.study.folders._manifest import LEVEL
-from rockflex.study.folders._parts import DamagedPart, Part, PartMaker
+from rockflex.study.folders._parts import DamagedPart, PartMaker, StudyPart
 
-__all__ = ["LEVEL", "DamagedPart", "Part", "PartMaker", "StudyFolder"]
+__all__ = ["LEVEL", "DamagedPart", "PartMaker", "StudyFolder", "StudyPart"]

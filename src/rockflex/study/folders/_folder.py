@@ -13,14 +13,24 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self, SupportsIndex, cast
 
-from rockflex._checks import whole_number
+from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError
-from rockflex._files import path_of, sweep, write_whole
+from rockflex._files import checked_file_path, remove_temporary_files, write_file_atomically
 from rockflex._html import html_table
-from rockflex._shown import counted, few, shortened, shown
-from rockflex.study.folders._lock import LOCK, Lock, holder_of
-from rockflex.study.folders._manifest import MANIFEST, SPEC, Manifest, listed
-from rockflex.study.folders._parts import PARTS, DamagedPart, Part, PartError, PartMaker, check, read, schema_at, verify
+from rockflex._shown import few_texts_shown, number_with_noun, shortened, shown
+from rockflex.study.folders._lock import LOCK, FolderLock, lock_holder
+from rockflex.study.folders._manifest import MANIFEST, SPEC, StudyManifest, listed_differences
+from rockflex.study.folders._parts import (
+    PARTS,
+    DamagedPart,
+    PartError,
+    PartMaker,
+    StudyPart,
+    part_schema_at,
+    part_schema_of_content,
+    read_part_table,
+    verified_part_content,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,7 +40,7 @@ if TYPE_CHECKING:
 FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
 
-def refuse_other_columns(path: Path, old: "pa.Schema", new: "pa.Schema", number: int | None = None) -> None:
+def refuse_other_part_columns(path: Path, old: "pa.Schema", new: "pa.Schema", number: int | None = None) -> None:
     """Raise an error if the columns `new`, of the chunk `number` or of the file at `path`, differ from `old`."""
     if old.equals(new):
         return
@@ -40,11 +50,12 @@ def refuse_other_columns(path: Path, old: "pa.Schema", new: "pa.Schema", number:
     what = f"Chunk {number} has" if number is not None else f"{path} and the first part have"
     against = f" other columns than {path}" if number is not None else " other columns"
     raise InputError(
-        f"{what}{against}:{listed(lines or ['the order of the columns'])}\nAll chunks must have the same columns."
+        f"{what}{against}:{listed_differences(lines or ['the order of the columns'])}\nAll chunks must have the same "
+        "columns."
     )
 
 
-def refuse_other_files(folder: Path, own: set[str]) -> None:
+def refuse_foreign_files(folder: Path, own: set[str]) -> None:
     """Raise an error for a file, or a folder with anything but hidden files and the remains of a killed study."""
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder} is a file. Give a folder for the study.")
@@ -58,7 +69,7 @@ def refuse_other_files(folder: Path, own: set[str]) -> None:
 
 
 @contextmanager
-def explained_errors(folder: Path, size: int = 0) -> Generator[None]:
+def explaining_write_errors(folder: Path, size: int = 0) -> Generator[None]:
     """Convert system errors while writing `size` bytes into messages with a remedy."""
     try:
         yield
@@ -77,7 +88,7 @@ def explained_errors(folder: Path, size: int = 0) -> Generator[None]:
         raise InputError(message) from error
 
 
-def in_pandas(table: "pa.Table") -> "pd.DataFrame":
+def arrow_table_to_dataframe(table: "pa.Table") -> "pd.DataFrame":
     """Return a table with a plain index.
 
     Columns from pandas keep their types; in other tables, integers and booleans become nullable types of pandas.
@@ -97,24 +108,24 @@ MAX_PARTS_READ = 500  # parts whose rows are counted, some tenths of a second
 MAX_KEYS = 10  # of the specification
 
 
-def facts(folder: Path, manifest: Manifest) -> dict[str, str]:
+def study_folder_facts(folder: Path, manifest: StudyManifest) -> dict[str, str]:
     """Return what there is to say about a study, by its heading."""
-    parts = list(_parts(folder, manifest.n_chunks))
-    found = {"study": _title(manifest.spec), "state": _state(folder, len(parts), manifest.n_chunks)}
-    found["started"] = _instant(datetime.fromisoformat(manifest.created))
+    parts = list(_parts_in_folder(folder, manifest.n_chunks))
+    found = {"study": _study_title(manifest.spec), "state": _study_state_text(folder, len(parts), manifest.n_chunks)}
+    found["started"] = _instant_text(datetime.fromisoformat(manifest.created))
     if parts:
         seconds = max(when for _, _, when in parts)
-        found["last part"] = _instant(datetime.fromtimestamp(seconds, UTC))
+        found["last part"] = _instant_text(datetime.fromtimestamp(seconds, UTC))
         found["size"] = f"{sum(size for _, size, _ in parts) / 1e6:.3g} MB in {PARTS}/*.parquet"
-        found |= _counts([path for path, _, _ in parts])
+        found |= _row_counts_of_parts([path for path, _, _ in parts])
     if manifest.checksums:
-        found["inputs"] = f"{len(manifest.checksums)} with checksums: {few(list(manifest.checksums))}"
+        found["inputs"] = f"{len(manifest.checksums)} with checksums: {few_texts_shown(list(manifest.checksums))}"
     if manifest.versions:
         found["versions"] = ", ".join(f"{name} {version}" for name, version in manifest.versions.items())
-    return found | dict(list(_specified(manifest.spec))[:MAX_KEYS])
+    return found | dict(list(_specification_items(manifest.spec))[:MAX_KEYS])
 
 
-def _parts(folder: Path, count: int) -> Iterator[tuple[Path, int, float]]:
+def _parts_in_folder(folder: Path, count: int) -> Iterator[tuple[Path, int, float]]:
     """Yield the parts that are there, with their sizes in bytes and their times in s."""
     for path in sorted((folder / PARTS).glob("part-*.parquet"))[:count]:
         try:
@@ -124,24 +135,24 @@ def _parts(folder: Path, count: int) -> Iterator[tuple[Path, int, float]]:
         yield path, state.st_size, state.st_mtime
 
 
-def _title(spec: Mapping[str, Any]) -> str:
+def _study_title(spec: Mapping[str, Any]) -> str:
     return ", ".join(str(spec[key]) for key in ("study", "name") if spec.get(key)) or "without a name"
 
 
-def _state(folder: Path, done: int, total: int) -> str:
-    holder = holder_of(folder / LOCK)
+def _study_state_text(folder: Path, done: int, total: int) -> str:
+    holder = lock_holder(folder / LOCK)
     if done == total:
-        return f"complete: all {counted(total, 'part')}"
+        return f"complete: all {number_with_noun(total, 'part')}"
     if holder is not None:
         return f"running: {done} of {total} parts, by {holder}"
     return f"stopped: {done} of {total} parts" if done else f"planned: none of {total} parts"
 
 
-def _instant(when: datetime) -> str:
+def _instant_text(when: datetime) -> str:
     return f"{when:%Y-%m-%d %H:%M} UTC"
 
 
-def _counts(paths: Sequence[Path]) -> dict[str, str]:
+def _row_counts_of_parts(paths: Sequence[Path]) -> dict[str, str]:
     """Count the rows of some parts, and what their columns of results say."""
     from pyarrow import ArrowException, parquet
 
@@ -162,7 +173,7 @@ def _counts(paths: Sequence[Path]) -> dict[str, str]:
             seen = ["failed"] * len(values) if name == "error" else map(str, values)
             statuses.setdefault(name, Counter()).update(seen)
     some = f" in the first {MAX_PARTS_READ} parts" if len(paths) > MAX_PARTS_READ else ""
-    lost = f"; {counted(unreadable, 'part')} cannot be read, see damaged()" if unreadable else ""
+    lost = f"; {number_with_noun(unreadable, 'part')} cannot be read, see damaged()" if unreadable else ""
     found = {"rows": f"{rows}{some}{lost}"}
     for name, counter in statuses.items():
         if counter:
@@ -171,30 +182,30 @@ def _counts(paths: Sequence[Path]) -> dict[str, str]:
     return found
 
 
-def _specified(spec: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+def _specification_items(spec: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Yield the keys of a specification that say something, shortened."""
     for key, value in spec.items():
         if value is None or value == [] or key in ("study", "name"):
             continue
         if isinstance(value, list):
-            yield key, _text(value)
+            yield key, _specification_text(value)
         elif isinstance(value, Mapping):
-            yield key, "; ".join(f"{name}: {_text(each)}" for name, each in value.items())
+            yield key, "; ".join(f"{name}: {_specification_text(each)}" for name, each in value.items())
         else:
             yield key, str(value)
 
 
-def _text(value: Any) -> str:
+def _specification_text(value: Any) -> str:
     """Write a value; of several also how many they are."""
     if not isinstance(value, list):
         return str(value)
     values = cast("list[Any]", value)
-    return f"{len(values)}: {_names(values)}" if len(values) > 2 else _names(values)
+    return f"{len(values)}: {_specified_names(values)}" if len(values) > 2 else _specified_names(values)
 
 
-def _names(values: Sequence[Any]) -> str:
+def _specified_names(values: Sequence[Any]) -> str:
     """Write the first and the last few of some values, by name where they have one."""
-    return few([str(each.get("name", "a table") if isinstance(each, Mapping) else each) for each in values])
+    return few_texts_shown([str(each.get("name", "a table") if isinstance(each, Mapping) else each) for each in values])
 
 
 @dataclass(frozen=True, repr=False)
@@ -222,18 +233,18 @@ class StudyFolder:
     """
 
     path: Path
-    manifest: Manifest
-    lock: Lock | None = None
+    manifest: StudyManifest
+    lock: FolderLock | None = None
     _known: "dict[int, pa.Schema]" = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __repr__(self) -> str:
-        found = facts(self.path, self.manifest)
+        found = study_folder_facts(self.path, self.manifest)
         width = max(map(len, found))
         lines = [f"  {name:{width}}  {shortened(text, MAX_LINE_WIDTH - width - 4)}" for name, text in found.items()]
         return "\n".join([f"StudyFolder({str(self.path)!r})", *lines])
 
     def _repr_html_(self) -> str:
-        return html_table("StudyFolder", {"folder": str(self.path), **facts(self.path, self.manifest)})
+        return html_table("StudyFolder", {"folder": str(self.path), **study_folder_facts(self.path, self.manifest)})
 
     @classmethod
     def open(
@@ -269,19 +280,19 @@ class StudyFolder:
             If the folder holds another study, other records or another program's files, was started with other
             versions, is in use by another process, or cannot be written.
         """
-        folder = path_of("path", path)
-        given = Manifest.of(spec, n_chunks, versions, checksums or {})
-        with explained_errors(folder):
+        folder = checked_file_path("path", path)
+        given = StudyManifest.of(spec, n_chunks, versions, checksums or {})
+        with explaining_write_errors(folder):
             if not (folder / MANIFEST).exists():
-                refuse_other_files(folder, {PARTS, LOCK, SPEC})
+                refuse_foreign_files(folder, {PARTS, LOCK, SPEC})
             (folder / PARTS).mkdir(parents=True, exist_ok=True)
-            lock = Lock.acquire(folder / LOCK)
+            lock = FolderLock.acquire(folder / LOCK)
             try:
-                sweep(folder, "*.json")
-                sweep(folder / PARTS, "part-*.parquet")
+                remove_temporary_files(folder, "*.json")
+                remove_temporary_files(folder / PARTS, "part-*.parquet")
                 if not (folder / MANIFEST).exists():
                     given.write(folder)
-                stored = Manifest.read(folder)
+                stored = StudyManifest.read(folder)
                 stored.accept(given, folder, any_version=any_version)
                 study = cls(folder, replace(stored, versions=given.versions), lock)
                 study._refuse_strays()
@@ -299,13 +310,13 @@ class StudyFolder:
         InputError
             If there is no study at `path`, or it is damaged.
         """
-        folder = path_of("path", path)
-        with explained_errors(folder):
+        folder = checked_file_path("path", path)
+        with explaining_write_errors(folder):
             if not (folder / MANIFEST).is_file():
                 raise InputError(
                     f"There is no study at {folder}: it has no {MANIFEST}. Give the folder that a study was run in."
                 )
-            study = cls(folder, Manifest.read(folder))
+            study = cls(folder, StudyManifest.read(folder))
             study._refuse_strays()
         return study
 
@@ -331,7 +342,7 @@ class StudyFolder:
             path = self._part(number)
             try:
                 if path.exists():
-                    verify(path, self.manifest.study, number)
+                    verified_part_content(path, self.manifest.study, number)
             except (PartError, OSError) as error:
                 found.append(DamagedPart(number, path, str(error)))
         return found
@@ -359,17 +370,17 @@ class StudyFolder:
         """
         import pyarrow as pa
 
-        place = whole_number("number", number, 0, self.n_chunks - 1)
+        place = checked_whole_number("number", number, 0, self.n_chunks - 1)
         if not isinstance(table, pa.Table):
             raise InputError(f"A chunk must be a pyarrow.Table, but {type(table).__name__} was given.")
         return self.add(self.maker.make(place, table))
 
     @property
     def maker(self) -> PartMaker:
-        """What makes this study's parts from tables, in any process, for `add`."""
+        """The maker of the parts of this study from tables, in any process, for `add`."""
         return PartMaker(self.manifest.study, self.manifest.versions)
 
-    def add(self, part: Part) -> Path:
+    def add(self, part: StudyPart) -> Path:
         """Write a part that `maker` has made, perhaps in another process; otherwise as `write`.
 
         Raises
@@ -377,21 +388,21 @@ class StudyFolder:
         InputError
             If it is no part of this study or was damaged on its way; see also `write`.
         """
-        place = whole_number("number", part.number, 0, self.n_chunks - 1)
+        place = checked_whole_number("number", part.number, 0, self.n_chunks - 1)
         if self.lock is None:
             raise InputError(
                 f"{self.path} was opened for reading. To write, open it by StudyFolder.open with its specification."
             )
         self.lock.check()
         try:
-            schema = check(part.content, self.manifest.study, place)
+            schema = part_schema_of_content(part.content, self.manifest.study, place)
         except PartError as error:
             raise InputError(
                 f"Chunk {place} cannot be stored in {self.path}: {error}. Make it by the maker of this folder."
             ) from error
         self._refuse_other_columns(place, schema)
-        with explained_errors(self.path, len(part.content)):
-            path = write_whole(self._part(place), part.content)
+        with explaining_write_errors(self.path, len(part.content)):
+            path = write_file_atomically(self._part(place), part.content)
         if not self._known:
             self._known[place] = schema
         return path
@@ -417,7 +428,7 @@ class StudyFolder:
             path = self._part(number)
             try:
                 if path.exists():
-                    tables[number] = read(path, self.manifest.study, number)
+                    tables[number] = read_part_table(path, self.manifest.study, number)
             except (PartError, OSError) as error:
                 raise InputError(
                     f"{path} is damaged: {error}. Run the study again in this folder, which computes this part anew "
@@ -431,7 +442,7 @@ class StudyFolder:
             )
         first = next(iter(tables.values())).schema
         for number, table in tables.items():
-            refuse_other_columns(self._part(number), first, table.schema)
+            refuse_other_part_columns(self._part(number), first, table.schema)
         metadata = {key: value for key, value in (first.metadata or {}).items() if not key.startswith(b"rockflex.")}
         parts = [table.replace_schema_metadata(metadata) for table in tables.values()]
         return pa.concat_tables(parts).unify_dictionaries()
@@ -442,7 +453,7 @@ class StudyFolder:
         Columns from pandas keep their types; in other tables, integers and booleans become nullable types of pandas.
         Raises the same errors as `table`.
         """
-        return in_pandas(self.table(partial=partial))
+        return arrow_table_to_dataframe(self.table(partial=partial))
 
     def close(self) -> None:
         """Let another process write into the folder."""
@@ -463,7 +474,8 @@ class StudyFolder:
         strays = sorted(path.name for path in (self.path / PARTS).glob("*.parquet") if path.name not in expected)
         if strays:
             raise InputError(
-                f"{self.path / PARTS} holds files that are not parts of the study:{listed(strays)}\nMove them away."
+                f"{self.path / PARTS} holds files that are not parts of the study:{listed_differences(strays)}\nMove "
+                "them away."
             )
 
     def _refuse_other_columns(self, number: int, schema: "pa.Schema") -> None:
@@ -474,9 +486,9 @@ class StudyFolder:
             path = self._part(other)
             try:
                 if other != number and path.exists():
-                    self._known[other] = schema_at(path, self.manifest.study, other)
+                    self._known[other] = part_schema_at(path, self.manifest.study, other)
                     break
             except (PartError, OSError):
                 continue
         for other, known in self._known.items():
-            refuse_other_columns(self._part(other), known, schema, number)
+            refuse_other_part_columns(self._part(other), known, schema, number)

@@ -19,7 +19,7 @@ MIN_STALE_AGE = 1.0  # s; a file that stays empty for longer was left by a proce
 
 
 @dataclass(frozen=True)
-class Lock:
+class FolderLock:
     """The right to write into a folder; given up by `release`, or when the object or the process ends normally."""
 
     path: Path
@@ -34,7 +34,7 @@ class Lock:
         InputError
             If a running process, or one on another host, holds it, or the path is not a file.
         """
-        me = {"pid": os.getpid(), "start": _start(os.getpid()), "host": platform.node()}
+        me = {"pid": os.getpid(), "start": _process_start(os.getpid()), "host": platform.node()}
         since = datetime.now(UTC).isoformat(timespec="seconds")
         content = json.dumps(me | {"since": since, "token": uuid4().hex})
         begin = time.monotonic()
@@ -42,52 +42,52 @@ class Lock:
             try:
                 descriptor = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644)
             except FileExistsError:
-                _remove_if_stale(path, time.monotonic() - begin)
+                _remove_stale_lock(path, time.monotonic() - begin)
                 continue
             with os.fdopen(descriptor, "w", encoding="utf-8") as file:
                 file.write(content)
             lock = cls(path, content)
-            weakref.finalize(lock, _release, path, content)
+            weakref.finalize(lock, _release_lock, path, content)
             return lock
 
     def check(self) -> None:
         """Raise an `InputError` if the file is no longer this lock's: released, deleted or taken over."""
-        if _text(self.path) != self.content:
+        if _lock_text(self.path) != self.content:
             raise InputError(
                 f"The lock {self.path} is no longer held: the folder was closed, or the file was deleted or taken "
                 "over. The parts already written are kept. Open the study again."
             )
 
     def release(self) -> None:
-        _release(self.path, self.content)
+        _release_lock(self.path, self.content)
 
 
-def holder_of(path: Path) -> str | None:
+def lock_holder(path: Path) -> str | None:
     """Return which process holds a lock, in words; None if none does, or the file cannot be read."""
     try:
-        holder = _parsed(_text(path))
+        holder = _parsed_lock(_lock_text(path))
     except OSError:
         return None
-    if holder is None or _dead(holder):
+    if holder is None or _is_lock_holder_dead(holder):
         return None
-    return _described(holder)
+    return _described_lock_holder(holder)
 
 
-def _described(holder: dict[str, Any]) -> str:
+def _described_lock_holder(holder: dict[str, Any]) -> str:
     return f"process {holder['pid']} on {shortened(holder['host'])} since {shortened(holder['since'])}"
 
 
-def _release(path: Path, content: str) -> None:
+def _release_lock(path: Path, content: str) -> None:
     # A forked child inherits the object, but not the right.
-    if json.loads(content)["pid"] == os.getpid() and _text(path) == content:
+    if json.loads(content)["pid"] == os.getpid() and _lock_text(path) == content:
         path.unlink(missing_ok=True)
 
 
-def _remove_if_stale(path: Path, waited: float) -> None:
+def _remove_stale_lock(path: Path, waited: float) -> None:
     if path.exists() and not path.is_file():
         raise InputError(f"{path} is not a file, but the study's lock belongs there. Move it away and try again.")
-    text = _text(path)
-    holder = _parsed(text)
+    text = _lock_text(path)
+    holder = _parsed_lock(text)
     if holder is None:
         try:
             age = time.time() - path.lstat().st_mtime
@@ -98,9 +98,9 @@ def _remove_if_stale(path: Path, waited: float) -> None:
         if age < MIN_STALE_AGE:
             time.sleep(0.05)
             return
-    elif not _dead(holder):
+    elif not _is_lock_holder_dead(holder):
         raise InputError(
-            f"{path.parent} is in use by {_described(holder)}. "
+            f"{path.parent} is in use by {_described_lock_holder(holder)}. "
             f"Wait until it has finished, or end it. If it no longer runs, delete {path} and try again."
         )
     aside = path.with_name(f".{path.name}.{uuid4().hex}")
@@ -108,21 +108,21 @@ def _remove_if_stale(path: Path, waited: float) -> None:
         path.rename(aside)  # succeeds for one process only
     except FileNotFoundError:
         return
-    taken = _text(aside)
+    taken = _lock_text(aside)
     if taken == text:
         aside.unlink()
     else:  # another was faster and this is its new file
         aside.rename(path)
 
 
-def _text(path: Path) -> str | None:
+def _lock_text(path: Path) -> str | None:
     try:
         return path.read_text("utf-8", errors="surrogateescape")
     except FileNotFoundError:
         return None
 
 
-def _parsed(text: str | None) -> dict[str, Any] | None:
+def _parsed_lock(text: str | None) -> dict[str, Any] | None:
     """The process named in a lock; None if the lock is empty or damaged."""
     try:
         holder = json.loads(text or "")
@@ -132,15 +132,15 @@ def _parsed(text: str | None) -> dict[str, Any] | None:
         return None
 
 
-def _dead(holder: dict[str, Any]) -> bool:
+def _is_lock_holder_dead(holder: dict[str, Any]) -> bool:
     if holder["host"] != platform.node():
         return False
-    start = _start(holder["pid"])
+    start = _process_start(holder["pid"])
     # A number is given to a new process in time; the start tells them apart.
     return start is None or bool(start and holder["start"] and start != holder["start"])
 
 
-def _start(pid: int) -> str | None:
+def _process_start(pid: int) -> str | None:
     """Start of a process in ticks since the host started; empty if unknown, None if the process is dead."""
     try:
         fields = Path(f"/proc/{pid}/stat").read_text("utf-8").rpartition(")")[2].split()

@@ -9,17 +9,17 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Self, SupportsIndex, cast
 
-from rockflex._checks import whole_number
+from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError
-from rockflex._files import check_regular, write_whole
-from rockflex._shown import counted, shortened, shown
+from rockflex._files import check_regular_file, write_file_atomically
+from rockflex._shown import number_with_noun, shortened, shown
 
 MAX_DIFFERENCES = 10  # differences in a message
 MAX_DEPTH = 50  # levels of a specification; those of studies have five
 WIDTH = 60  # characters of a value in a message
 
 
-def plain(name: str, value: object, depth: int = 0) -> Any:
+def plain_json_value(name: str, value: object, depth: int = 0) -> Any:
     """Return `value` as dicts, lists, strings, numbers, booleans and None, as JSON would give it back.
 
     Infinities and NaN are allowed, as in Python's JSON.
@@ -43,17 +43,17 @@ def plain(name: str, value: object, depth: int = 0) -> Any:
         for key in items:
             if not isinstance(key, str):
                 raise InputError(f"The keys of {name} must be strings, but {shown(key)} was given.")
-        return {str(key): plain(f"{name}.{key}", each, depth + 1) for key, each in items.items()}
+        return {str(key): plain_json_value(f"{name}.{key}", each, depth + 1) for key, each in items.items()}
     if isinstance(value, list | tuple):
         entries = cast("Sequence[object]", value)
-        return [plain(f"{name}[{place}]", each, depth + 1) for place, each in enumerate(entries)]
+        return [plain_json_value(f"{name}[{place}]", each, depth + 1) for place, each in enumerate(entries)]
     raise InputError(
         f"{name} is of type {type(value).__name__}, which JSON does not know. Give a number, a string, a list or a "
         "dict; a NumPy array or number by its .tolist()."
     )
 
 
-def differences(old: Any, new: Any, where: str = "") -> list[str]:
+def specification_differences(old: Any, new: Any, where: str = "") -> list[str]:
     """Return a line for each place where two plain values differ, by its dotted path."""
     if isinstance(old, dict) and isinstance(new, dict):
         before, now = cast("dict[str, Any]", old), cast("dict[str, Any]", new)
@@ -61,34 +61,40 @@ def differences(old: Any, new: Any, where: str = "") -> list[str]:
         for key in [*before, *(key for key in now if key not in before)]:
             path = f"{where}.{key}" if where else key
             if key not in now:
-                found.append(f"{path}: {_shown(before[key])} in the folder, not given now")
+                found.append(f"{path}: {_shown_json_value(before[key])} in the folder, not given now")
             elif key not in before:
-                found.append(f"{path}: not in the folder, {_shown(now[key])} now")
+                found.append(f"{path}: not in the folder, {_shown_json_value(now[key])} now")
             else:
-                found += differences(before[key], now[key], path)
+                found += specification_differences(before[key], now[key], path)
         return found
     if isinstance(old, list) and isinstance(new, list):
         first, second = cast("list[Any]", old), cast("list[Any]", new)
         if len(first) != len(second):
-            return [f"{where}: {counted(len(first), 'entry', 'entries')} in the folder, {len(second)} now"]
+            return [f"{where}: {number_with_noun(len(first), 'entry', 'entries')} in the folder, {len(second)} now"]
         pairs = enumerate(zip(first, second, strict=True))
-        return [line for place, (one, two) in pairs for line in differences(one, two, f"{where}[{place}]")]
-    return [] if _same(old, new) else [f"{where}: {_shown(old)} in the folder, {_shown(new)} now"]
+        return [
+            line for place, (one, two) in pairs for line in specification_differences(one, two, f"{where}[{place}]")
+        ]
+    return (
+        []
+        if _same_json_values(old, new)
+        else [f"{where}: {_shown_json_value(old)} in the folder, {_shown_json_value(new)} now"]
+    )
 
 
-def listed(lines: Sequence[str]) -> str:
+def listed_differences(lines: Sequence[str]) -> str:
     """Return the first lines, indented, and how many more there are."""
     more = [f"and {len(lines) - MAX_DIFFERENCES} more"] if len(lines) > MAX_DIFFERENCES else []
     return "".join(f"\n  {line}" for line in [*lines[:MAX_DIFFERENCES], *more])
 
 
-def _same(old: Any, new: Any) -> bool:
+def _same_json_values(old: Any, new: Any) -> bool:
     if isinstance(old, float) and isinstance(new, float) and math.isnan(old) and math.isnan(new):
         return True
     return isinstance(old, bool) is isinstance(new, bool) and old == new
 
 
-def _shown(value: Any) -> str:
+def _shown_json_value(value: Any) -> str:
     text = json.dumps(value, ensure_ascii=False)
     return text if len(text) <= WIDTH else f"{text[: WIDTH - 3]}..."
 
@@ -101,7 +107,7 @@ MAX_PARTS = 100_000  # every part is a file, whose number has five digits
 
 
 @dataclass(frozen=True)
-class Manifest:
+class StudyManifest:
     """Identity and origin of a study.
 
     Parameters
@@ -139,16 +145,18 @@ class Manifest:
             if not isinstance(given, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
                 raise InputError(f"{name} must be a mapping, but {type(given).__name__} was given.")
         count = _part_count(n_chunks)
-        content, sums = plain("spec", spec), plain("checksums", checksums)
+        content, sums = plain_json_value("spec", spec), plain_json_value("checksums", checksums)
         now = datetime.now(UTC).isoformat(timespec="seconds")
-        return cls(content, _digest(content, count, sums), count, plain("versions", versions), sums, now)
+        return cls(
+            content, _study_digest(content, count, sums), count, plain_json_value("versions", versions), sums, now
+        )
 
     def write(self, folder: Path) -> None:
         """Write both files, the manifest last, because its presence marks the folder as a study."""
         origin = {"format": FORMAT, **asdict(self), "seed": self.spec.get("seed")}
         del origin["spec"]
-        write_whole(folder / SPEC, _encoded(self.spec))
-        write_whole(folder / MANIFEST, _encoded(origin))
+        write_file_atomically(folder / SPEC, _encoded_manifest(self.spec))
+        write_file_atomically(folder / MANIFEST, _encoded_manifest(origin))
 
     @classmethod
     def read(cls, folder: Path) -> Self:
@@ -161,10 +169,10 @@ class Manifest:
         """
         path = folder / MANIFEST
         for file in (path, folder / SPEC):
-            check_regular(file)
+            check_regular_file(file)
         try:
             origin = json.loads(path.read_text("utf-8"))
-            spec = plain("spec", json.loads((folder / SPEC).read_text("utf-8")))
+            spec = plain_json_value("spec", json.loads((folder / SPEC).read_text("utf-8")))
             known = origin.pop("format")
             if known == FORMAT:
                 del origin["seed"]
@@ -172,7 +180,7 @@ class Manifest:
                 manifest = cls(spec=spec, **origin)
                 datetime.fromisoformat(manifest.created)
                 dict[str, Any](manifest.versions)
-                intact = manifest.study == _digest(spec, manifest.n_chunks, manifest.checksums)
+                intact = manifest.study == _study_digest(spec, manifest.n_chunks, manifest.checksums)
                 if intact:
                     return manifest
         except (ValueError, TypeError, KeyError, AttributeError, RecursionError, FileNotFoundError) as error:
@@ -191,41 +199,41 @@ class Manifest:
             f"{folder / SPEC} was changed after the study started. Undo the change, or give another folder."
         )
 
-    def accept(self, given: "Manifest", folder: Path, *, any_version: bool) -> None:
+    def accept(self, given: "StudyManifest", folder: Path, *, any_version: bool) -> None:
         """Raise an `InputError` that lists the differences if `given` is not this study."""
-        changed = differences(self.spec, given.spec)
+        changed = specification_differences(self.spec, given.spec)
         if self.n_chunks != given.n_chunks:
             changed.append(f"number of chunks: {self.n_chunks} in the folder, {given.n_chunks} now")
         if changed:
             raise InputError(
-                f"{folder} holds another study. What differs:{listed(changed)}\n"
+                f"{folder} holds another study. What differs:{listed_differences(changed)}\n"
                 "Give another folder for this study, or the folder's own specification to resume it."
             )
-        changed = differences(self.checksums, given.checksums)
+        changed = specification_differences(self.checksums, given.checksums)
         if changed:
             raise InputError(
                 f"{folder} holds this study with another record, matrix or impact law. Checksums that differ:"
-                f"{listed(changed)}\nUse the same files, or give another folder."
+                f"{listed_differences(changed)}\nUse the same files, or give another folder."
             )
-        now = _compared(given.versions)
+        now = _compared_versions(given.versions)
         if LEVEL not in self.versions:
             now.pop(LEVEL, None)
-        changed = differences(_compared(self.versions), now)
+        changed = specification_differences(_compared_versions(self.versions), now)
         if changed and not any_version:
             raise InputError(
                 f"{folder} was started with other versions, whose numbers may differ in the last digits:"
-                f"{listed(changed)}\n"
+                f"{listed_differences(changed)}\n"
                 f"Install those versions (set ROCKFLEX_SIMD for other {LEVEL}), give another folder, or pass "
                 "any_version=True to mix them."
             )
 
 
-def _compared(versions: Mapping[str, Any]) -> dict[str, Any]:
+def _compared_versions(versions: Mapping[str, Any]) -> dict[str, Any]:
     return {name: version for name, version in versions.items() if not name.endswith(COMMIT)}
 
 
 def _part_count(n_chunks: SupportsIndex) -> int:
-    count = whole_number("n_chunks", n_chunks, 1)
+    count = checked_whole_number("n_chunks", n_chunks, 1)
     if count > MAX_PARTS:
         raise InputError(
             f"n_chunks must be at most {MAX_PARTS}, because each chunk is a file, but {shown(count)} was given. "
@@ -234,10 +242,10 @@ def _part_count(n_chunks: SupportsIndex) -> int:
     return count
 
 
-def _encoded(content: dict[str, Any]) -> bytes:
+def _encoded_manifest(content: dict[str, Any]) -> bytes:
     return (json.dumps(content, indent=2, ensure_ascii=False) + "\n").encode()
 
 
-def _digest(spec: dict[str, Any], n_chunks: int, checksums: dict[str, Any]) -> str:
+def _study_digest(spec: dict[str, Any], n_chunks: int, checksums: dict[str, Any]) -> str:
     canonical = json.dumps([spec, n_chunks, checksums], sort_keys=True)
     return hashlib.sha256(canonical.encode()).hexdigest()[:32]

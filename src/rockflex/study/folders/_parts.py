@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from zlib import crc32
 
-from rockflex._files import irregular
+from rockflex._files import irregular_file_kind
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -26,7 +26,7 @@ class PartError(Exception):
 
 
 @dataclass(frozen=True)
-class Part:
+class StudyPart:
     """A chunk as the content of its file: `number` of the chunk, its number of `rows`, and the `content`."""
 
     number: int
@@ -48,7 +48,7 @@ class DamagedPart:
 
 @dataclass(frozen=True)
 class PartMaker:
-    """What makes the parts of a study; small and picklable, so that any process can make them, without the folder.
+    """The maker of the parts of a study: small and picklable, so that any process can make them without the folder.
 
     `study` is the digest of the study, `versions` are those that every part records.
     """
@@ -56,12 +56,12 @@ class PartMaker:
     study: str
     versions: Mapping[str, str]
 
-    def make(self, number: int, table: "pa.Table") -> Part:
+    def make(self, number: int, table: "pa.Table") -> StudyPart:
         """Return the part of a chunk."""
-        return Part(number, table.num_rows, encode(table, self.study, number, self.versions))
+        return StudyPart(number, table.num_rows, encode_part(table, self.study, number, self.versions))
 
 
-def encode(table: "pa.Table", study: str, number: int, versions: Mapping[str, str]) -> bytes:
+def encode_part(table: "pa.Table", study: str, number: int, versions: Mapping[str, str]) -> bytes:
     """Return the content of the part's file."""
     import pyarrow as pa
     from pyarrow import parquet
@@ -72,10 +72,10 @@ def encode(table: "pa.Table", study: str, number: int, versions: Mapping[str, st
         writer.write_table(table)
         writer.add_key_value_metadata({**origin, "rockflex.checksum": (MARKER + BLANK).decode()})
     content = sink.getvalue().to_pybytes()
-    return _with_checksum(content, b"%08x" % crc32(content))
+    return _part_with_checksum(content, b"%08x" % crc32(content))
 
 
-def verify(path: Path, study: str, number: int) -> bytes:
+def verified_part_content(path: Path, study: str, number: int) -> bytes:
     """Return the content of the part's file.
 
     Raises
@@ -83,18 +83,18 @@ def verify(path: Path, study: str, number: int) -> bytes:
     PartError
         If it is truncated, damaged, not a part, or a part of another study or chunk.
     """
-    content = _content(path)
-    check(content, study, number)
+    content = _part_content(path)
+    part_schema_of_content(content, study, number)
     return content
 
 
-def schema_at(path: Path, study: str, number: int) -> "pa.Schema":
-    """Return the columns of a part; raises the same errors as `verify`."""
-    return check(_content(path), study, number)
+def part_schema_at(path: Path, study: str, number: int) -> "pa.Schema":
+    """Return the columns of a part; raises the same errors as `verified_part_content`."""
+    return part_schema_of_content(_part_content(path), study, number)
 
 
-def check(content: bytes, study: str, number: int) -> "pa.Schema":
-    """Return the columns of a part's file; raises the same errors as `verify`."""
+def part_schema_of_content(content: bytes, study: str, number: int) -> "pa.Schema":
+    """Return the columns of a part's file; raises the same errors as `verified_part_content`."""
     from pyarrow import BufferReader, parquet
 
     if content[:4] != b"PAR1" or content[-4:] != b"PAR1" or len(content) < 12:
@@ -103,7 +103,7 @@ def check(content: bytes, study: str, number: int) -> "pa.Schema":
     if place < 0:
         raise PartError("it is a Parquet file that carries no checksum, so that no study wrote it")
     recorded = content[place + len(MARKER) :][:8]
-    if recorded != b"%08x" % crc32(_with_checksum(content, BLANK)):
+    if recorded != b"%08x" % crc32(_part_with_checksum(content, BLANK)):
         raise PartError("its bytes do not agree with their checksum")
     file = parquet.ParquetFile(BufferReader(content))
     origin: dict[bytes, bytes] = file.metadata.metadata or {}
@@ -114,20 +114,20 @@ def check(content: bytes, study: str, number: int) -> "pa.Schema":
     return file.schema_arrow
 
 
-def read(path: Path, study: str, number: int) -> "pa.Table":
-    """Return the table of a part; raises the same errors as `verify`."""
+def read_part_table(path: Path, study: str, number: int) -> "pa.Table":
+    """Return the table of a part; raises the same errors as `verified_part_content`."""
     from pyarrow import BufferReader, parquet
 
-    return parquet.ParquetFile(BufferReader(verify(path, study, number))).read()
+    return parquet.ParquetFile(BufferReader(verified_part_content(path, study, number))).read()
 
 
-def _content(path: Path) -> bytes:
-    kind = irregular(path)
+def _part_content(path: Path) -> bytes:
+    kind = irregular_file_kind(path)
     if kind:
         raise PartError(f"it is {kind}")
     return path.read_bytes()
 
 
-def _with_checksum(content: bytes, checksum: bytes) -> bytes:
+def _part_with_checksum(content: bytes, checksum: bytes) -> bytes:
     place = content.rindex(MARKER) + len(MARKER)
     return content[:place] + checksum + content[place + len(checksum) :]

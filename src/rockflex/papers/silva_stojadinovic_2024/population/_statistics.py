@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, SupportsIndex
 import numpy as np
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import in_range, whole_number
+from rockflex._checks import checked_in_range, checked_whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._values import Value
@@ -74,7 +74,7 @@ class PopulationStatistics(Value):
 
 
 @dataclass(frozen=True, eq=False)
-class _Comparison:
+class _PopulationComparison:
     group: str
     quantity: str
     behaviour: str
@@ -122,9 +122,9 @@ def population_statistics(
     >>> int(found.outcomes.loc["rocking", "rocking"])
     10
     """
-    in_range("confidence", confidence, 1e-9, 1.0)
-    resamples, start = whole_number("n_resamples", n_resamples, 1), whole_number("seed", seed, 0)
-    shown = whole_number("n_outliers", n_outliers, 0)
+    checked_in_range("confidence", confidence, 1e-9, 1.0)
+    resamples, start = checked_whole_number("n_resamples", n_resamples, 1), checked_whole_number("seed", seed, 0)
+    shown = checked_whole_number("n_outliers", n_outliers, 0)
     solved = pairs[pairs["status_mdof"].notna() & pairs["status_2dof"].notna()]
     if not len(solved):
         raise InputError(
@@ -135,10 +135,14 @@ def population_statistics(
     resting = solved[solved["status_mdof"] == "no_uplift"]
     rocking = solved[(solved["status_mdof"] == "rocking") & (solved["status_2dof"] != "overturned")]
     agreeing = [
-        *_compare(_agreement("no_uplift", resting, ("top_displacement",)), confidence, resamples, start),
-        *_compare(_agreement("rocking", rocking, ("top_displacement", "rotation")), confidence, resamples, start),
+        *_comparison_rows(
+            _agreement_comparisons("no_uplift", resting, ("top_displacement",)), confidence, resamples, start
+        ),
+        *_comparison_rows(
+            _agreement_comparisons("rocking", rocking, ("top_displacement", "rotation")), confidence, resamples, start
+        ),
     ]
-    combining = pd.DataFrame(_compare(_combination(rocking), confidence, resamples, start))
+    combining = pd.DataFrame(_comparison_rows(_combination_comparisons(rocking), confidence, resamples, start))
     counts = pd.crosstab(
         pd.Categorical(solved["status_mdof"], STATUSES),
         pd.Categorical(solved["status_2dof"], STATUSES),
@@ -153,28 +157,30 @@ def population_statistics(
         n_nominal_2dof=int(solved["nominal_overturning_2dof"].sum()),
         agreement=pd.DataFrame(agreeing),
         combination=combining.drop(columns=["group", "behaviour"]),
-        outliers=_outliers(solved, rocking, shown),
+        outliers=_outlying_pairs(solved, rocking, shown),
     )
 
 
-def _agreement(group: str, frame: "pd.DataFrame", quantities: tuple[str, ...]) -> list[_Comparison]:
+def _agreement_comparisons(
+    group: str, frame: "pd.DataFrame", quantities: tuple[str, ...]
+) -> list[_PopulationComparison]:
     everything = np.ones(len(frame), dtype=bool)
     shear = (frame["behaviour"] == "shear").to_numpy(dtype=bool)
-    found: list[_Comparison] = []
+    found: list[_PopulationComparison] = []
     for quantity in quantities:
         x, y = (frame[f"max_{quantity}_{model}"].to_numpy(dtype=float) for model in ("2dof", "mdof"))
         for behaviour, kept in (("all", everything), ("shear", shear), ("flexure", ~shear)):
-            found.append(_Comparison(group, quantity, behaviour, "2DOF-S", x, y, kept))
+            found.append(_PopulationComparison(group, quantity, behaviour, "2DOF-S", x, y, kept))
     return found
 
 
-def _combination(frame: "pd.DataFrame") -> list[_Comparison]:
+def _combination_comparisons(frame: "pd.DataFrame") -> list[_PopulationComparison]:
     everything = np.ones(len(frame), dtype=bool)
-    found: list[_Comparison] = []
+    found: list[_PopulationComparison] = []
 
     def compare(quantity: str, estimate: str, x: str, y: str, unit: Array) -> None:
         of_x, of_y = (frame[name].to_numpy(dtype=float) / unit for name in (x, y))
-        found.append(_Comparison("rocking", quantity, "all", estimate, of_x, of_y, everything))
+        found.append(_PopulationComparison("rocking", quantity, "all", estimate, of_x, of_y, everything))
 
     one = np.ones(len(frame))
     weight, moment = frame["structure_mass"].to_numpy(dtype=float) * GRAVITY, frame["l0r_g"].to_numpy(dtype=float)
@@ -185,17 +191,19 @@ def _combination(frame: "pd.DataFrame") -> list[_Comparison]:
     return found
 
 
-def _compare(comparisons: list[_Comparison], confidence: float, resamples: int, seed: int) -> list[dict[str, object]]:
+def _comparison_rows(
+    comparisons: list[_PopulationComparison], confidence: float, resamples: int, seed: int
+) -> list[dict[str, object]]:
     """Return the rows of comparisons over the same pairs, which are resampled together."""
-    terms = np.column_stack([_terms(each) for each in comparisons])
+    terms = np.column_stack([_regression_terms_of_pairs(each) for each in comparisons])
     n = terms.shape[0]
     rng = np.random.Generator(np.random.Philox(seed))
     drawn = np.full((resamples, len(comparisons), 2), np.nan)
     for resample in drawn if n else ():
         weights = np.bincount(rng.integers(n, size=n), minlength=n).astype(float)
-        resample[:] = _estimates((weights @ terms).reshape(-1, N_SUMS))
+        resample[:] = _slopes_and_r2((weights @ terms).reshape(-1, N_SUMS))
     tail = 0.5 * (1.0 - confidence)
-    best = _estimates(terms.sum(axis=0).reshape(-1, N_SUMS))
+    best = _slopes_and_r2(terms.sum(axis=0).reshape(-1, N_SUMS))
     rows: list[dict[str, object]] = []
     for place, each in enumerate(comparisons):
         x, y = each.x[each.kept], each.y[each.kept]
@@ -223,21 +231,21 @@ def _compare(comparisons: list[_Comparison], confidence: float, resamples: int, 
     return rows
 
 
-def _terms(each: _Comparison) -> Array:
+def _regression_terms_of_pairs(each: _PopulationComparison) -> Array:
     """Return the terms of the sums, one row per pair: x², xy, (y - x)², and y, y² about the mean of all y, and 1."""
     x, y, kept = each.x, each.y, each.kept.astype(float)
     away = y - (float(y[each.kept].mean()) if each.kept.any() else 0.0)
     return np.column_stack((x * x, x * y, (y - x) ** 2, away, away**2, np.ones_like(x))) * kept[:, None]
 
 
-def _estimates(sums: Array) -> Array:
+def _slopes_and_r2(sums: Array) -> Array:
     """Return the slope of y = c1 x and R² of y = x, one row per comparison."""
     xx, xy, misses, away, square, count = sums.T
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.column_stack((xy / xx, 1.0 - misses / (square - away**2 / count)))
 
 
-def _outliers(solved: "pd.DataFrame", rocking: "pd.DataFrame", count: int) -> "pd.DataFrame":
+def _outlying_pairs(solved: "pd.DataFrame", rocking: "pd.DataFrame", count: int) -> "pd.DataFrame":
     misses = (solved["max_rotation_mdof"] - solved["max_rotation_2dof"]).abs()
     worst = solved.loc[misses.sort_values(ascending=False, kind="stable").index[:count], list(OUTLIER_COLUMNS)]
     total = float((misses[rocking.index] ** 2).sum())

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 import numpy as np
 from pydantic import Field
 
-from rockflex._checks import whole_number
+from rockflex._checks import checked_whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
@@ -18,27 +18,27 @@ from rockflex.response import Response, respond
 from rockflex.structure import Frame
 from rockflex.study import (
     WORK_LIMIT,
-    Case,
     ChunkedPlan,
     Columns,
     Motions,
+    PreparedCase,
     Row,
     SecondMode,
-    combine,
+    checked_motions,
+    checked_work_limit,
+    columns_of_kind,
+    combine_modal_peaks,
     free_vibration_time,
-    kinds_of,
-    motions_of,
     record_columns,
     record_facts,
     result_columns,
-    results_of,
+    result_row,
     run_plan,
-    second_mode,
-    solutions_of,
-    work_limit_of,
+    second_mode_peaks,
+    solutions_of_runs,
 )
 from rockflex.study.progress import ProgressChoice
-from rockflex.study.spec import FreeVibration, Spec
+from rockflex.study.spec import FreeVibration, StudySpec
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -128,28 +128,28 @@ def draw_prototype(seed: int, number: int, n_records: int) -> Prototype:
     >>> drawn.n_stories, drawn.aspect_ratio, drawn.record
     (14, 10, 35)
     """
-    start, place = whole_number("seed", seed, 0), whole_number("number", number, 0, 2**32 - 1)
-    records = whole_number("n_records", n_records, 1, 10**9)
+    start, place = checked_whole_number("seed", seed, 0), checked_whole_number("number", number, 0, 2**32 - 1)
+    records = checked_whole_number("n_records", n_records, 1, 10**9)
     bits = np.random.Philox(np.random.SeedSequence(start, spawn_key=(place,)))
     draws = np.random.Generator(bits).random(6).tolist()
     shear = draws[3] < 0.5
     low, high = SHEAR_COEFFICIENTS if shear else FLEXURE_COEFFICIENTS
     return Prototype(
-        n_stories=_whole(draws[0], *STORIES),
-        aspect_ratio=_whole(draws[1], *ASPECT_RATIOS),
-        base_mass_ratio=BASE_MASSES[_whole(draws[2], 0, len(BASE_MASSES) - 1)],
+        n_stories=_whole_number_of_draw(draws[0], *STORIES),
+        aspect_ratio=_whole_number_of_draw(draws[1], *ASPECT_RATIOS),
+        base_mass_ratio=BASE_MASSES[_whole_number_of_draw(draws[2], 0, len(BASE_MASSES) - 1)],
         stiffness_ratio=math.inf if shear else 0.0,
         coefficient=low + (high - low) * draws[4],
-        record=_whole(draws[5], 0, records - 1),
+        record=_whole_number_of_draw(draws[5], 0, records - 1),
     )
 
 
-def _whole(draw: float, low: int, high: int) -> int:
+def _whole_number_of_draw(draw: float, low: int, high: int) -> int:
     """The whole number from `low` to `high` for a draw from [0, 1)."""
     return low + int(draw * (high - low + 1))
 
 
-class PopulationStudy(Spec):
+class PopulationStudy(StudySpec):
     """Random structures under random records, each with MDOF-S and 2DOF-S (Section 3.3).
 
     The table has one row per pair; its columns are those of `run_population`.
@@ -183,7 +183,7 @@ class PopulationStudy(Spec):
             self.seed,
             free,
             max(1, self.runs_per_chunk // 2),
-            work_limit_of(self.work_limit),
+            checked_work_limit(self.work_limit),
         )
 
 
@@ -216,11 +216,16 @@ class PopulationPlan(ChunkedPlan):
     @property
     def columns(self) -> Columns:
         """Columns of every chunk's table."""
-        found: dict[str, Any] = {"pair": int, "n_stories": int, "behaviour": BEHAVIOURS, **kinds_of(DRAWN, float)}
+        found: dict[str, Any] = {
+            "pair": int,
+            "n_stories": int,
+            "behaviour": BEHAVIOURS,
+            **columns_of_kind(DRAWN, float),
+        }
         found |= record_columns(self.motions)
-        found |= kinds_of("pga pgv", float) | kinds_of(STRUCTURE, float) | kinds_of(SECOND, float)
+        found |= columns_of_kind("pga pgv", float) | columns_of_kind(STRUCTURE, float) | columns_of_kind(SECOND, float)
         found |= result_columns(suffix="_mdof") | result_columns(suffix="_2dof")
-        return found | kinds_of(COMBINED, float) | {"error": str}
+        return found | columns_of_kind(COMBINED, float) | {"error": str}
 
     def rows(self, units: Sequence[int]) -> list[Row]:
         """Draw a structure a unit, and simulate it with both models; some at a time."""
@@ -233,16 +238,20 @@ class PopulationPlan(ChunkedPlan):
         drawn = [draw_prototype(self.seed, unit, len(self.motions)) for unit in units]
         motions = [self.motions[each.record] for each in drawn]
         structures = [each.frame().rocking() for each in drawn]
-        seconds = [second_mode(*each) for each in zip(structures, motions, strict=True)]
+        seconds = [second_mode_peaks(*each) for each in zip(structures, motions, strict=True)]
         cases = [self._cases(properties) for properties in structures]
         runs = [(case, motion, 1.0) for both, motion in zip(cases, motions, strict=True) for case in both]
-        solved = solutions_of(runs)
+        solved = solutions_of_runs(runs)
         rows = list[Row]()
         pairs = zip(solved[::2], solved[1::2], strict=True)
         given = zip(units, drawn, motions, structures, seconds, cases, pairs, strict=True)
         for unit, prototype, motion, properties, second, both, solutions in given:
             row: Row = {"pair": unit, "pga": motion.pga, "pgv": motion.pgv}
-            row |= _facts_of(prototype, properties) | self._facts[prototype.record] | _second_mode(properties, second)
+            row |= (
+                _prototype_facts(prototype, properties)
+                | self._facts[prototype.record]
+                | _second_mode_columns(properties, second)
+            )
             errors = [each for each in (*both, *solutions) if isinstance(each, Exception)]
             if errors:
                 rows.append(row | {"error": str(errors[0])})
@@ -251,26 +260,26 @@ class PopulationPlan(ChunkedPlan):
                 respond(case.model, motion.name, solution, case.tracked)
                 for case, solution in zip(both, solutions, strict=True)
             )
-            row |= results_of(all_modes, "_mdof")
+            row |= result_row(all_modes, "_mdof")
             row["max_second_displacement_mdof"] = both[0].tracked.peaks.named(solutions[0].peaks)["second_mode"].item()
-            row |= results_of(one_mode, "_2dof")
-            rows.append(row | _combined(one_mode, second))
+            row |= result_row(one_mode, "_2dof")
+            rows.append(row | _combined_peak_columns(one_mode, second))
         return rows
 
-    def _cases(self, properties: RockingProperties) -> Sequence[Case | InputError]:
+    def _cases(self, properties: RockingProperties) -> Sequence[PreparedCase | InputError]:
         """Return the cases of both models, with the peak of the second mode (of the first, if there is only one)."""
         models = LinearModel("MDOF-S", properties), LinearModel("2DOF-S", properties.truncated(1))
         extra = [modal_displacement(model, min(model.properties.n_modes, 2) - 1) for model in models]
         try:
             return [
-                Case(model, self.free_vibration, work_limit=self.work_limit, extra={"second_mode": each})
+                PreparedCase(model, self.free_vibration, work_limit=self.work_limit, extra={"second_mode": each})
                 for model, each in zip(models, extra, strict=True)
             ]
         except InputError as error:
             return error, error
 
 
-def _facts_of(drawn: Prototype, properties: RockingProperties) -> Row:
+def _prototype_facts(drawn: Prototype, properties: RockingProperties) -> Row:
     return {
         "n_stories": drawn.n_stories,
         "behaviour": BEHAVIOURS.index("shear" if math.isinf(drawn.stiffness_ratio) else "flexure"),
@@ -289,7 +298,7 @@ def _facts_of(drawn: Prototype, properties: RockingProperties) -> Row:
     }
 
 
-def _second_mode(properties: RockingProperties, second: SecondMode) -> Row:
+def _second_mode_columns(properties: RockingProperties, second: SecondMode) -> Row:
     omega = float(properties.omega[1])
     return {
         "period_2": 2.0 * math.pi / omega,
@@ -301,9 +310,9 @@ def _second_mode(properties: RockingProperties, second: SecondMode) -> Row:
     }
 
 
-def _combined(rocking: Response, second: SecondMode) -> Row:
+def _combined_peak_columns(rocking: Response, second: SecondMode) -> Row:
     """Return the combined peaks of 2DOF-S and the second mode on a fixed base (Section 3.4)."""
-    peaks = combine(rocking, second)
+    peaks = combine_modal_peaks(rocking, second)
     return {f"srss_{name}": getattr(peaks, f"max_{name}") for name in ("top_displacement", "base_shear", "base_moment")}
 
 
@@ -362,7 +371,7 @@ def run_population(
     1     1          4   flexure     rocking     rocking
     2     2          3   flexure     rocking     rocking
     """
-    count, start = whole_number("pairs", pairs, 1, MAX_PAIRS), whole_number("seed", seed, 0)
-    suite = motions if isinstance(motions, Suite) else Suite(motions_of(motions))
-    free, limit = free_vibration_time(free_vibration), work_limit_of(work_limit)
+    count, start = checked_whole_number("pairs", pairs, 1, MAX_PAIRS), checked_whole_number("seed", seed, 0)
+    suite = motions if isinstance(motions, Suite) else Suite(checked_motions(motions))
+    free, limit = free_vibration_time(free_vibration), checked_work_limit(work_limit)
     return run_plan(PopulationPlan(suite, count, start, free, 128, limit), workers, progress)

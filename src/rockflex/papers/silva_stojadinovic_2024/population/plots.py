@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex.plot._study_tables import MARKERS, check_columns, measure_name
+from rockflex.plot._study_tables import MARKERS, check_table_columns, measure_axis_name
 from rockflex.plot._style import (
     BLUE,
     GRAY,
@@ -25,12 +25,12 @@ from rockflex.plot._style import (
     RED,
     SMALL,
     Size,
-    font_size,
-    is_narrow,
+    add_legend_above,
+    is_narrow_figure,
     label_panel,
-    legend_above,
     new_figure,
-    styled,
+    scaled_font_size,
+    with_figure_style,
 )
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ _CHARACTERISTICS = {
     "base_mass_ratio": r"$m_0/m_i$",
     "period": r"$T_1$ [s]",
     "height": r"$H$ [m]",
-    "pgv": measure_name("pgv"),
+    "pgv": measure_axis_name("pgv"),
 }
 _COLORS = {"shear": RED, "flexure": BLUE}
 _MAX_BARS = 20  # largest number of values for which each has a bar
@@ -69,7 +69,7 @@ _SYMBOLS = {"shear": ("o", ORANGE), "flexure": ("^", GREEN)}
 
 
 @dataclass(frozen=True, eq=False)
-class Groups:
+class OutcomeGroups:
     """Pairs by outcome, as in `population_statistics`; `left_out` gives the number of other pairs, and the reason."""
 
     resting: "pd.DataFrame"
@@ -77,7 +77,7 @@ class Groups:
     left_out: str
 
 
-def groups_of(pairs: "pd.DataFrame", columns: tuple[str, ...]) -> Groups:
+def outcome_groups(pairs: "pd.DataFrame", columns: tuple[str, ...]) -> OutcomeGroups:
     """Divide the pairs into those without uplift and those that rock, according to MDOF-S.
 
     Raises
@@ -85,7 +85,7 @@ def groups_of(pairs: "pd.DataFrame", columns: tuple[str, ...]) -> Groups:
     InputError
         If the table lacks a column, or no pair was solved.
     """
-    check_columns(pairs, (*_STATUSES, *columns), "what run_population returned")
+    check_table_columns(pairs, (*_STATUSES, *columns), "what run_population returned")
     solved = pairs[pairs["status_mdof"].notna() & pairs["status_2dof"].notna()]
     if not len(solved):
         raise InputError("No pair was solved. See the column error of the table.")
@@ -93,10 +93,10 @@ def groups_of(pairs: "pd.DataFrame", columns: tuple[str, ...]) -> Groups:
     rocking = solved[(solved["status_mdof"] == "rocking") & (solved["status_2dof"] != "overturned")]
     fallen, failed = len(solved) - len(resting) - len(rocking), len(pairs) - len(solved)
     counts = ((fallen, "overturned"), (failed, "failed"))
-    return Groups(resting, rocking, ", ".join(f"{count} {word}" for count, word in counts if count))
+    return OutcomeGroups(resting, rocking, ", ".join(f"{count} {word}" for count, word in counts if count))
 
 
-def square_panel(axes: Axes, x: Array, y: Array, lines: list[str]) -> float:
+def draw_square_panel(axes: Axes, x: Array, y: Array, lines: list[str]) -> float:
     """Draw equal axes with the line of equality, and lines of text in the lower right corner; return their end."""
     limit = 1.06 * float(max(x.max(initial=0.0), y.max(initial=0.0))) or 1.0
     axes.plot([0.0, limit], [0.0, limit], color=GRAY, linestyle="--", linewidth=0.8, zorder=1.5, label="_equal")
@@ -109,18 +109,18 @@ def square_panel(axes: Axes, x: Array, y: Array, lines: list[str]) -> float:
     return limit
 
 
-def slope(x: Array, y: Array) -> float:
+def slope_of_agreement(x: Array, y: Array) -> float:
     """Return c1 of y = c1 x by least squares; NaN for too few pairs."""
     return float(x @ y / (x @ x)) if x.size >= _MIN_PAIRS and x.any() else math.nan
 
 
-def determination(x: Array, y: Array) -> float:
+def r2_of_agreement(x: Array, y: Array) -> float:
     """Return R² = 1 - Σ(y - x)²/Σ(y - ȳ)² of the line y = x; NaN for too few pairs."""
     spread = float(np.sum((y - y.mean()) ** 2)) if y.size >= _MIN_PAIRS else 0.0
     return 1.0 - float(np.sum((y - x) ** 2)) / spread if spread > 0.0 else math.nan
 
 
-def number(value: float, digits: int = 2) -> str:
+def decimal_or_dash(value: float, digits: int = 2) -> str:
     """Write a number with a number of decimals; a dash if it is not finite."""
     return f"{value:.{digits}f}".replace("-", "−") if np.isfinite(value) else "–"
 
@@ -156,53 +156,53 @@ def plot_population(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figur
     >>> len(rf.plot_population(pairs).axes)
     6
     """
-    check_columns(pairs, ("behaviour", *_CHARACTERISTICS), "what run_population returned")
-    with styled(size=size):
-        figure = new_figure(6.3, 5.6 if is_narrow() else 4.3)
-        panels: list[Axes] = list(figure.subplots(*((3, 2) if is_narrow() else (2, 3))).flat)
+    check_table_columns(pairs, ("behaviour", *_CHARACTERISTICS), "what run_population returned")
+    with with_figure_style(size=size):
+        figure = new_figure(6.3, 5.6 if is_narrow_figure() else 4.3)
+        panels: list[Axes] = list(figure.subplots(*((3, 2) if is_narrow_figure() else (2, 3))).flat)
         for axes, (name, label), mark in zip(panels, _CHARACTERISTICS.items(), "ABCDEF", strict=True):
-            _draw_bars(axes, name, pairs)
+            _draw_population_bars(axes, name, pairs)
             axes.set_xlabel(label)
             axes.grid(visible=False, axis="x")
             axes.locator_params(axis="y", integer=True, nbins=6)
             label_panel(axes, mark)
-        for axes in panels[:: 2 if is_narrow() else 3]:
+        for axes in panels[:: 2 if is_narrow_figure() else 3]:
             axes.set_ylabel("pairs")
         counts = {name: int((pairs["behaviour"] == name).sum()) for name in BEHAVIOURS}
         handles, _ = panels[0].get_legend_handles_labels()
         names = [f"{BEHAVIOURS[name]} ({count})" for name, count in counts.items()]
-        legend_above(figure, handles, names)
+        add_legend_above(figure, handles, names)
     return figure
 
 
-def _draw_bars(axes: Axes, name: str, pairs: "pd.DataFrame") -> None:
+def _draw_population_bars(axes: Axes, name: str, pairs: "pd.DataFrame") -> None:
     values = pairs[name].to_numpy(dtype=float)
-    centres, edges = _bars(values)
+    centres, edges = _histogram_bars(values)
     below = np.zeros(centres.size)
     for behaviour, color in _COLORS.items():
         mine = values[(pairs["behaviour"] == behaviour).to_numpy(dtype=bool)]
         counts = np.histogram(mine, edges)[0]
-        gap = 0.8 if _separate(values) else 1.0
+        gap = 0.8 if _has_few_values(values) else 1.0
         axes.bar(
             centres, counts, gap * np.diff(edges), bottom=below, color=color, edgecolor="white",
             linewidth=0.4, label=behaviour,
         )  # fmt: skip
         below += counts
-    if _separate(values) and name != "height":
-        most = _MAX_TICKS // 2 if is_narrow() else _MAX_TICKS
+    if _has_few_values(values) and name != "height":
+        most = _MAX_TICKS // 2 if is_narrow_figure() else _MAX_TICKS
         axes.set_xticks(centres[:: -(-centres.size // most)])
 
 
-def _separate(values: Array) -> bool:
+def _has_few_values(values: Array) -> bool:
     """Whether there are few values, on a grid with few places, so that each has a bar."""
     different = np.unique(values)
     return different.size <= _MAX_BARS and bool(np.ptp(different) <= _MAX_BARS * np.diff(different).min(initial=np.inf))
 
 
-def _bars(values: Array) -> tuple[Array, Array]:
+def _histogram_bars(values: Array) -> tuple[Array, Array]:
     """Return centres and edges of the bars: one for each value if there are few, a fixed number otherwise."""
     different = np.unique(values)
-    if not _separate(values):
+    if not _has_few_values(values):
         edges = np.linspace(different[0], different[-1], _BINS + 1)
     else:
         half = 0.5 * float(np.diff(different).min()) if different.size > 1 else 0.5
@@ -245,13 +245,13 @@ def plot_agreement(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figure
     >>> [axes.get_title() for axes in figure.axes[:3]]
     ['no uplift', 'rocking', 'rocking']
     """
-    groups = groups_of(pairs, _PEAKS)
-    markers = _markers(pairs)
+    groups = outcome_groups(pairs, _PEAKS)
+    markers = _markers_by_aspect_ratio(pairs)
     periods = pairs["period"].to_numpy(dtype=float)
     scale = Normalize(float(periods.min()), float(periods.max()))
-    with styled(size=size):
-        figure = new_figure(6.3, 9.8 if is_narrow() else 6.0)
-        if is_narrow():
+    with with_figure_style(size=size):
+        figure = new_figure(6.3, 9.8 if is_narrow_figure() else 6.0)
+        if is_narrow_figure():
             panels: list[Axes] = list(figure.subplots(4, 1, height_ratios=(1.0, 1.0, 1.0, 0.75)))
         else:
             panels = list(figure.subplots(2, 2).flat)
@@ -260,11 +260,11 @@ def plot_agreement(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figure
             _draw_agreement(axes, rows, quantity, markers, scale)
             axes.set(xlabel=rf"${symbol}$, 2DOF-S [{unit}]", ylabel=rf"${symbol}$, MDOF-S [{unit}]", title=name)
             label_panel(axes, mark)
-        _draw_legends(figure, panels[3], pairs, markers, scale, groups.left_out)
+        _draw_agreement_legends(figure, panels[3], pairs, markers, scale, groups.left_out)
     return figure
 
 
-def _markers(pairs: "pd.DataFrame") -> dict[float, str]:
+def _markers_by_aspect_ratio(pairs: "pd.DataFrame") -> dict[float, str]:
     ratios = [float(ratio) for ratio in np.unique(pairs["aspect_ratio"].to_numpy(dtype=float))]
     if len(ratios) > len(MARKERS):
         raise InputError(
@@ -279,7 +279,7 @@ def _draw_agreement(
     x, y = (rows[f"max_{quantity}_{model}"].to_numpy(dtype=float) for model in ("2dof", "mdof"))
     ratios, behaviours = rows["aspect_ratio"].to_numpy(dtype=float), rows["behaviour"].astype(str).to_numpy()
     size, period = _marker_area(rows["n_stories"].to_numpy(dtype=float)), rows["period"].to_numpy(dtype=float)
-    lines = [f"R² = {number(determination(x, y))}, n = {x.size}"]
+    lines = [f"R² = {decimal_or_dash(r2_of_agreement(x, y))}, n = {x.size}"]
     for behaviour, colors in _MAPS.items():
         of_behaviour = behaviours == behaviour
         for ratio, marker in markers.items():
@@ -289,8 +289,8 @@ def _draw_agreement(
                     x[mine], y[mine], size[mine], c=period[mine], cmap=colors, norm=scale, marker=marker,
                     edgecolors=_EDGE, linewidths=0.25, alpha=0.85, zorder=2.0, label=f"_{behaviour} {ratio:g}",
                 )  # fmt: skip
-        lines.append(f"$c_1$ = {number(slope(x[of_behaviour], y[of_behaviour]))}, {behaviour}")
-    square_panel(axes, x, y, lines)
+        lines.append(f"$c_1$ = {decimal_or_dash(slope_of_agreement(x[of_behaviour], y[of_behaviour]))}, {behaviour}")
+    draw_square_panel(axes, x, y, lines)
 
 
 def _marker_area(stories: Array) -> Array:
@@ -298,7 +298,7 @@ def _marker_area(stories: Array) -> Array:
     return 3.0 + 2.2 * stories
 
 
-def _draw_legends(
+def _draw_agreement_legends(
     figure: Figure, axes: Axes, pairs: "pd.DataFrame", markers: dict[float, str], scale: Normalize, left_out: str
 ) -> None:
     """Draw the legends of symbols and sizes, the two scales of the period, and the number of pairs left out."""
@@ -328,7 +328,7 @@ def _draw_legends(
 
 
 @dataclass(frozen=True)
-class _Panel:
+class _CombinationPanel:
     """Columns of y, of its estimate x, of the estimate by 2DOF-S, and of their common divisor; labels of the axes."""
 
     y: str
@@ -340,18 +340,18 @@ class _Panel:
 
 
 _COMBINATION_PANELS = (
-    _Panel(
+    _CombinationPanel(
         "max_second_displacement_mdof", "sd_2", "", "", r"$D_{2,\mathrm{max}}$, MDOF-S [m]", r"$S_d(ω_2)$ [m]"
     ),
-    _Panel(
+    _CombinationPanel(
         "max_top_displacement_mdof", "srss_top_displacement", "max_top_displacement_2dof", "",
         r"$u_{\mathrm{top,max}}$, MDOF-S [m]", r"$u_{\mathrm{top,max}}$, SRSS [m]",
     ),
-    _Panel(
+    _CombinationPanel(
         "max_base_shear_mdof", "srss_base_shear", "max_base_shear_2dof", "structure_mass",
         r"$V_{b,\mathrm{max}}/(m_s\,g)$, MDOF-S", r"$V_{b,\mathrm{max}}/(m_s\,g)$, SRSS",
     ),
-    _Panel(
+    _CombinationPanel(
         "max_base_moment_mdof", "srss_base_moment", "max_base_moment_2dof", "l0r_g",
         r"$M_{b,\mathrm{max}}/(L_0^r\,g)$, MDOF-S", r"$M_{b,\mathrm{max}}/(L_0^r\,g)$, SRSS",
     ),
@@ -391,12 +391,12 @@ def plot_modal_combination(pairs: "pd.DataFrame", *, size: Size | None = None) -
     4
     """
     needed = {name for panel in _COMBINATION_PANELS for name in (panel.y, panel.x, panel.alone, panel.unit) if name}
-    groups = groups_of(pairs, tuple(sorted(needed)))
+    groups = outcome_groups(pairs, tuple(sorted(needed)))
     rows = groups.rocking
     behaviours = rows["behaviour"].astype(str).to_numpy()
-    with styled(size=size):
-        figure = new_figure(6.3, 9.8 if is_narrow() else 6.4)
-        axes_of: list[Axes] = list(figure.subplots(*((4, 1) if is_narrow() else (2, 2))).flat)
+    with with_figure_style(size=size):
+        figure = new_figure(6.3, 9.8 if is_narrow_figure() else 6.4)
+        axes_of: list[Axes] = list(figure.subplots(*((4, 1) if is_narrow_figure() else (2, 2))).flat)
         for axes, panel, mark in zip(axes_of, _COMBINATION_PANELS, "ABCD", strict=True):
             _draw_combination(axes, panel, rows, behaviours)
             label_panel(axes, mark)
@@ -409,29 +409,31 @@ def plot_modal_combination(pairs: "pd.DataFrame", *, size: Size | None = None) -
             Line2D([], [], color=BLUE, label="$y = c_1 x$"),
         ]
         title = f"{len(rows)} rocking pairs" + (f"; left out: {groups.left_out}" if groups.left_out else "")
-        legend_above(figure, handles, title=title, title_size=font_size(8.0))
+        add_legend_above(figure, handles, title=title, title_size=scaled_font_size(8.0))
     return figure
 
 
-def _draw_combination(axes: Axes, panel: _Panel, rows: "pd.DataFrame", behaviours: NDArray[np.object_]) -> None:
-    unit = np.ones(len(rows)) if not panel.unit else _column(rows, panel.unit)
+def _draw_combination(
+    axes: Axes, panel: _CombinationPanel, rows: "pd.DataFrame", behaviours: NDArray[np.object_]
+) -> None:
+    unit = np.ones(len(rows)) if not panel.unit else _float_column(rows, panel.unit)
     unit = GRAVITY * unit if panel.unit == "structure_mass" else unit
-    x, y = _column(rows, panel.x) / unit, _column(rows, panel.y) / unit
+    x, y = _float_column(rows, panel.x) / unit, _float_column(rows, panel.y) / unit
     for behaviour, (marker, color) in _SYMBOLS.items():
         mine = behaviours == behaviour
         axes.plot(
             x[mine], y[mine], marker, color=color, markersize=2.6, markeredgewidth=0.0, alpha=0.6, zorder=2.0,
             label=f"_{behaviour}",
         )  # fmt: skip
-    c1 = slope(x, y)
-    lines = [f"R² = {number(determination(x, y))}"]
+    c1 = slope_of_agreement(x, y)
+    lines = [f"R² = {decimal_or_dash(r2_of_agreement(x, y))}"]
     if panel.alone:
-        lines.append(f"(2DOF-S alone: {number(determination(_column(rows, panel.alone) / unit, y))})")
-    limit = square_panel(axes, x, y, [*lines, f"$y$ = {number(c1)} $x$"])
+        lines.append(f"(2DOF-S alone: {decimal_or_dash(r2_of_agreement(_float_column(rows, panel.alone) / unit, y))})")
+    limit = draw_square_panel(axes, x, y, [*lines, f"$y$ = {decimal_or_dash(c1)} $x$"])
     if np.isfinite(c1):
         axes.plot([0.0, limit], [0.0, c1 * limit], color=BLUE, linewidth=1.1, zorder=3.0, label="_regression")
     axes.set(xlabel=panel.abscissa, ylabel=panel.ordinate)
 
 
-def _column(rows: "pd.DataFrame", name: str) -> Array:
+def _float_column(rows: "pd.DataFrame", name: str) -> Array:
     return rows[name].to_numpy(dtype=float)

@@ -6,40 +6,46 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, SupportsIndex
 from numpy.typing import ArrayLike
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from rockflex._checks import in_range, positive
+from rockflex._checks import checked_in_range, checked_positive
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.fragility import HazardCurve
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw
-from rockflex.structure.file import StructureEntry, Table
-from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, RockingStructure, described
+from rockflex.structure.file import StructureEntry, TomlTable
+from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, RockingStructure, type_description
 from rockflex.study._plan import run_plan
-from rockflex.study._run_matrix import StudyMatrix, check_lifts, study_matrix
-from rockflex.study._tables import Columns, Row
+from rockflex.study._result_tables import Columns, Row
+from rockflex.study._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
 from rockflex.study.cloud import CloudPlan, Factors
+from rockflex.study.design._design_search import DesignSearchPlan
+from rockflex.study.design._design_table import design_table
 from rockflex.study.design._designs import (
-    Design,
+    BaseDesign,
     DesignSearch,
     Scaling,
     TendonLevel,
-    designs_of,
-    factors_of,
-    half_widths_of,
+    checked_design_factors,
+    checked_half_widths,
+    designs_of_structure,
 )
-from rockflex.study.design._fit import check_damping, check_limit, check_same_for_all, first_damping, state_of
-from rockflex.study.design._requirements import DesignCost, Requirement, check_requirements
-from rockflex.study.design._search import SearchPlan
-from rockflex.study.design._table import design_table
+from rockflex.study.design._exceedance_fit import (
+    check_design_limit,
+    check_hazard_damping,
+    check_measure_of_record_alone,
+    design_limit_state,
+    first_damping_column,
+)
+from rockflex.study.design._requirements import DesignCost, Requirement, checked_requirements
 from rockflex.study.progress import ProgressChoice
-from rockflex.study.spec import FreeVibration, StructuresSpec, checked_by
+from rockflex.study.spec import FreeVibration, StructuresStudySpec, validator_of_check
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-def design_tables(
+def design_tables_by_limit(
     runs: "pd.DataFrame", spec: Mapping[str, Any], confidence: float | None = 0.9
 ) -> "Iterator[tuple[float | str, pd.DataFrame]]":
     """Yield each limit of a study with its `design_table`.
@@ -53,11 +59,11 @@ def design_tables(
     confidence
         As in `design_table`.
     """
-    for limit, at, _, hazard in stored_limits(spec):
+    for limit, at, _, hazard in stored_design_limits(spec):
         yield limit, design_table(runs, limit, measure=spec["measure"], at=at, hazard=hazard, confidence=confidence)
 
 
-def stored_limits(
+def stored_design_limits(
     spec: Mapping[str, Any],
 ) -> "Iterator[tuple[float | str, float | None, float | None, HazardCurve | None]]":
     """Yield limit, level, target and hazard curve of each limit of a study, from its document."""
@@ -70,7 +76,7 @@ def stored_limits(
         yield limit, level, target, hazard
 
 
-def stored_search(spec: Mapping[str, Any]) -> tuple[list[Requirement], DesignCost]:
+def stored_design_search(spec: Mapping[str, Any]) -> tuple[list[Requirement], DesignCost]:
     """Return the requirements and the unit costs of a study with a search, from its document.
 
     Raises
@@ -80,16 +86,16 @@ def stored_search(spec: Mapping[str, Any]) -> tuple[list[Requirement], DesignCos
     """
     found = [
         Requirement(limit, target, at, hazard, spec["measure"])  # pyright: ignore[reportArgumentType]
-        for limit, at, target, hazard in stored_limits(spec)
+        for limit, at, target, hazard in stored_design_limits(spec)
     ]
-    return check_requirements(found), DesignCost(**spec["search"]["cost"])
+    return checked_requirements(found), DesignCost(**spec["search"]["cost"])
 
 
 _FACTORS = "a list of factors on the {} of the structure, or a range {{smallest = 0.5, largest = 2.0, count = 4}}"
 _SCALING = '"size" (force and stiffness) or "force"'
 
 
-class TendonLevelTable(Table):
+class TendonLevelTable(TomlTable):
     """The arguments of `TendonLevel`."""
 
     prestress_ratio: float = Field(0.0, description="the initial force over the weight m_tot g, a number")
@@ -98,7 +104,7 @@ class TendonLevelTable(Table):
     name: str = Field("", description="a name, in quotes")
 
 
-class HazardTable(Table):
+class HazardCurveTable(TomlTable):
     """The arguments of `HazardCurve`."""
 
     im: list[float] = Field(description="a list of levels of the measure, in SI units, rising")
@@ -106,7 +112,7 @@ class HazardTable(Table):
     damping: float = Field(0.05, description="the damping ratio of a spectral measure, a number")
 
 
-class CostTable(Table):
+class DesignCostTable(TomlTable):
     """The arguments of `DesignCost`."""
 
     half_width: float = Field(0.0, description="the cost of each metre of the half width B, a number")
@@ -116,10 +122,12 @@ class CostTable(Table):
     )
 
 
-class SearchTable(Table):
+class DesignSearchTable(TomlTable):
     """The arguments of `DesignSearch` other than those of the study itself, and the unit costs."""
 
-    cost: CostTable = Field(description="a table of half_width, prestress and dissipator_force, in cost/m and cost/N")
+    cost: DesignCostTable = Field(
+        description="a table of half_width, prestress and dissipator_force, in cost/m and cost/N"
+    )
     tendon_factors: list[float] = Field([1.0], description=_FACTORS.format("tendons"))
     dissipator_factors: list[float] = Field([1.0], description=_FACTORS.format("dissipators"))
     tendon_scaling: Scaling = Field("size", description=_SCALING)
@@ -130,10 +138,10 @@ class SearchTable(Table):
     @field_validator("tendon_factors", "dissipator_factors", mode="before")
     @classmethod
     def _factors(cls, given: object, info: ValidationInfo) -> object:
-        return list(factors_of(str(info.field_name), given)) if isinstance(given, list | dict) else given
+        return list(checked_design_factors(str(info.field_name), given)) if isinstance(given, list | dict) else given
 
 
-class DesignStudy(StructuresSpec):
+class DesignStudy(StructuresStudySpec):
     """One structure on bases of many half widths B, with tendons of a few levels, under all records.
 
     The table has one row per run and the columns of `run_design`. `limits`, `measure`, `level` or `hazard`, and
@@ -167,29 +175,29 @@ class DesignStudy(StructuresSpec):
         0.0, description="the mass that the base gains for each metre of its width 2 B, a number in kg/m"
     )
     scales: Factors = Field([1.0])
-    limits: Annotated[list[float | str], checked_by(lambda limits: [*map(check_limit, limits)])] = Field(
+    limits: Annotated[list[float | str], validator_of_check(lambda limits: [*map(check_design_limit, limits)])] = Field(
         ["overturning"], min_length=1, description='a list of limits, such as [0.02, "0.5 nominal", "overturning"]'
     )
-    measure: Annotated[str, checked_by(check_same_for_all)] = Field(
+    measure: Annotated[str, validator_of_check(check_measure_of_record_alone)] = Field(
         "pgv", description='the intensity measure, such as "pga", "pgv" or "sa_t1_5"'
     )
     level: float | list[float] | None = Field(
         None, description="the level of the measure in SI units, a number, or a list of one for each limit"
     )
-    hazard: HazardTable | None = Field(None, description="a table of the lists im and rate, and damping")
+    hazard: HazardCurveTable | None = Field(None, description="a table of the lists im and rate, and damping")
     target: float | list[float] | None = Field(
         None,
         description="the probability, or with a hazard the annual rate, that a design must not exceed, a number, or a "
         "list of one for each limit",
     )
-    search: SearchTable | None = Field(
+    search: DesignSearchTable | None = Field(
         None, description="a table of a search for the cheapest design, under the heading [search]"
     )
 
     @field_validator("half_widths", mode="before")
     @classmethod
     def _widths(cls, given: object) -> object:
-        return half_widths_of(given) if isinstance(given, list | dict) else given
+        return checked_half_widths(given) if isinstance(given, list | dict) else given
 
     @model_validator(mode="after")
     def _question(self) -> "DesignStudy":
@@ -206,10 +214,10 @@ class DesignStudy(StructuresSpec):
                 )
             for each in self._for_each(name):
                 if each is not None:
-                    positive(name, each, unit)
+                    checked_positive(name, each, unit)
         for each in self._for_each("target"):
             if each is not None and self.hazard is None:
-                in_range("target", each, 0.0, 1.0, hint="With a level it is a probability.")
+                checked_in_range("target", each, 0.0, 1.0, hint="With a level it is a probability.")
         return self
 
     @model_validator(mode="after")
@@ -225,7 +233,7 @@ class DesignStudy(StructuresSpec):
                 "A search varies the elements of the structure itself by factors. Leave out the levels [[tendons]], "
                 "and give the structure its tendons as [[structures.elements]]."
             )
-        stored_search(self.document())
+        stored_design_search(self.document())
         self._space(self.search)
         return self
 
@@ -233,11 +241,11 @@ class DesignStudy(StructuresSpec):
         given: Any = getattr(self, name)
         return given if isinstance(given, list) else [given] * len(self.limits)
 
-    def _space(self, search: SearchTable) -> DesignSearch:
+    def _space(self, search: DesignSearchTable) -> DesignSearch:
         given: dict[str, Any] = search.model_dump(exclude={"cost"})
         return DesignSearch(self.half_widths, base_mass_per_width=self.base_mass_per_width, **given)  # pyright: ignore[reportArgumentType]
 
-    def plan(self) -> "DesignPlan | SearchPlan":
+    def plan(self) -> "DesignPlan | DesignSearchPlan":
         """Build the designs, load the records, and cut the study into chunks.
 
         Raises
@@ -248,17 +256,21 @@ class DesignStudy(StructuresSpec):
         """
         matrix = self.matrix()
         if self.search is not None:
-            requirements, cost = stored_search(self.document())
-            return SearchPlan(matrix, self._space(self.search), requirements, cost, self.scales, self.runs_per_chunk)
+            requirements, cost = stored_design_search(self.document())
+            return DesignSearchPlan(
+                matrix, self._space(self.search), requirements, cost, self.scales, self.runs_per_chunk
+            )
         levels = [TendonLevel(**each.model_dump()) for each in self.tendons]
         (properties,) = matrix.structures
         if self.hazard is not None:
-            check_damping(HazardCurve(**self.hazard.model_dump()), first_damping(properties), self.measure)
-        designs = designs_of(properties, self.half_widths, levels, self.base_mass_per_width)
+            check_hazard_damping(
+                HazardCurve(**self.hazard.model_dump()), first_damping_column(properties), self.measure
+            )
+        designs = designs_of_structure(properties, self.half_widths, levels, self.base_mass_per_width)
         for design in designs:
             for limit in self.limits:
                 try:
-                    state_of(limit, design.properties.nominal_overturning_rotation)
+                    design_limit_state(limit, design.properties.nominal_overturning_rotation)
                 except InputError as error:
                     raise InputError(f"{design.name}: {error}") from error
         return DesignPlan(matrix, designs, self.scales, self.runs_per_chunk)
@@ -267,14 +279,16 @@ class DesignStudy(StructuresSpec):
 class DesignPlan(CloudPlan):
     """The cross product of designs, records, models and scales, cut into chunks."""
 
-    def __init__(self, matrix: StudyMatrix, designs: Sequence[Design], scales: Sequence[float], per_chunk: int) -> None:
-        check_lifts(matrix, "a fixed base, so the base width has no effect")
+    def __init__(
+        self, matrix: StudyMatrix, designs: Sequence[BaseDesign], scales: Sequence[float], per_chunk: int
+    ) -> None:
+        check_base_can_lift(matrix, "a fixed base, so the base width has no effect")
         self._tendons = list(dict.fromkeys(design.tendon for design in designs))
         self._facts = [self._facts_of(design) for design in designs]
         made = StudyMatrix({each.name: each.properties for each in designs}, matrix.motions, matrix.options)
         super().__init__(made, scales, per_chunk)
 
-    def _facts_of(self, design: Design) -> Row:
+    def _facts_of(self, design: BaseDesign) -> Row:
         p = design.properties
         height = float(p.effective_height[0]) if p.n_modes else p.l0r / p.m_tot
         return {
@@ -362,9 +376,11 @@ def run_design(
     """
     given: Any = scales
     if not isinstance(tendons, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise InputError(f"tendons must be a sequence of TendonLevel objects, but {described(tendons)} was given.")
+        raise InputError(
+            f"tendons must be a sequence of TendonLevel objects, but {type_description(tendons)} was given."
+        )
     matrix = study_matrix(
         [structure], motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground
     )
-    designs = designs_of(matrix.structures[0], half_widths, list(tendons), base_mass_per_width)
+    designs = designs_of_structure(matrix.structures[0], half_widths, list(tendons), base_mass_per_width)
     return run_plan(DesignPlan(matrix, designs, given, per_chunk=64), workers, progress)

@@ -13,26 +13,32 @@ from typing import Any
 import numpy as np
 
 from rockflex._errors import InputError
-from rockflex._files import path_of, write_whole
-from rockflex._shown import counted, shortened, shown
-from rockflex._versions import versions_of
+from rockflex._files import checked_file_path, write_file_atomically
+from rockflex._shown import number_with_noun, shortened, shown
+from rockflex._versions import package_versions
 from rockflex.motion import GroundMotion
-from rockflex.report._write import inline, templates_in
-from rockflex.report.run._checks import check_table, ground_friction, has_bearing_area, legend, long_runs
-from rockflex.report.run._runs import ReportedRuns, checked_runs
-from rockflex.report.run._tables import (
+from rockflex.report._publication_files import inline_svg, jinja_templates_in
+from rockflex.report.run._report_tables import (
     DAGGER,
-    Fact,
-    Record,
-    Table,
+    ReportedRecord,
+    ReportFact,
+    ReportTable,
     assumption_lines,
     element_table,
-    follows_law,
-    kind_of,
+    follows_impact_law,
     mode_table,
     peak_table,
-    record_of,
+    reported_record,
     structure_facts,
+    structure_kind_text,
+)
+from rockflex.report.run._reported_runs import ReportedRuns, checked_reported_runs
+from rockflex.report.run._run_checks import (
+    ground_friction_range,
+    has_bearing_area,
+    labels_of_long_runs,
+    run_check_legend,
+    run_check_table,
 )
 from rockflex.response import Response, friction_coefficient, warnings_of
 
@@ -51,12 +57,12 @@ SUFFIXES = (".html", ".htm")
 MAX_NOTES = 800  # letters of all notes
 
 
-def rows_of(text: str) -> int:
+def line_count_of_text(text: str) -> int:
     """Return about how many lines a text takes."""
     return math.ceil(len(text) / ROW_LETTERS)
 
 
-def table_rows(table: Table | None) -> int:
+def line_count_of_table(table: ReportTable | None) -> int:
     """Return about how many lines a table takes with its heading."""
     if table is None:
         return 0
@@ -66,19 +72,19 @@ def table_rows(table: Table | None) -> int:
 
 
 @dataclass(frozen=True, eq=False)
-class Page:
+class RunReportPage:
     """Contents of a page, in the order of the template."""
 
     title: str
     date: str
     kind: str
-    facts: Sequence[Fact]
-    modes: Table | None
-    record: Record
+    facts: Sequence[ReportFact]
+    modes: ReportTable | None
+    record: ReportedRecord
     lines: Sequence[tuple[str, str]]
-    elements: Table | None
-    peaks: Table
-    checks: Table
+    elements: ReportTable | None
+    peaks: ReportTable
+    checks: ReportTable
     legend: Sequence[str]
     warnings: Sequence[str]
     notes: Sequence[str]
@@ -90,10 +96,10 @@ class Page:
         """About the height in mm of all but the figure: the browser makes the layout, and the figure takes the rest."""
         structure = len(self.facts) / 2 + (0 if self.modes is None else 2 + len(self.modes.rows))
         record = 8 + len(self.record.facts)
-        lines = sum(rows_of(f"{head} {text}") for head, text in self.lines)
-        tables = table_rows(self.elements) + table_rows(self.peaks) + table_rows(self.checks)
-        texts = rows_of(" ".join(self.legend)) + sum(map(rows_of, (*self.warnings, *self.notes)))
-        return ROW * (8 + rows_of(self.title) + max(structure, record) + lines + tables + texts)
+        lines = sum(line_count_of_text(f"{head} {text}") for head, text in self.lines)
+        tables = line_count_of_table(self.elements) + line_count_of_table(self.peaks) + line_count_of_table(self.checks)
+        texts = line_count_of_text(" ".join(self.legend)) + sum(map(line_count_of_text, (*self.warnings, *self.notes)))
+        return ROW * (8 + line_count_of_text(self.title) + max(structure, record) + lines + tables + texts)
 
     @property
     def scale(self) -> float:
@@ -107,7 +113,7 @@ class Page:
         return min(max(HEIGHT / self.scale - self.height, low), high)
 
 
-def page_of(
+def run_report_page(
     report: ReportedRuns,
     *,
     title: str | None,
@@ -116,23 +122,23 @@ def page_of(
     warnings: Sequence[str],
     notes: Sequence[str],
     omitted: Collection[str] = (),
-) -> Page:
+) -> RunReportPage:
     """Collect the contents of a page, without energies and friction of the labels in `omitted`."""
-    left_out = long_runs(report).union(omitted)
+    left_out = labels_of_long_runs(report).union(omitted)
     known = report.properties if report.structure is None else report.structure
-    record, kind = record_of(report), kind_of(known)
+    record, kind = reported_record(report), structure_kind_text(known)
     if not title:
         title = f"{kind} under {record.name or 'a ground motion'}"
     fell = any(run.status == "overturned" for run in report.responses)
     own = [f"{DAGGER} The values of a run that overturned include its fall."] * fell
-    sliding = [ground_friction(each.model) is not None for each in report.histories]
-    texts = legend(
+    sliding = [ground_friction_range(each.model) is not None for each in report.histories]
+    texts = run_check_legend(
         friction, sided=report.properties.eccentricity != 0.0, slides=any(sliding), stays=not all(sliding),
         omitted=bool(left_out), held=bool(report.properties.elements),
         bedded=any(map(has_bearing_area, report.histories)),
-        impacts=any(follows_law(each.model) for each in report.histories),
+        impacts=any(follows_impact_law(each.model) for each in report.histories),
     )  # fmt: skip
-    return Page(
+    return RunReportPage(
         title=shortened(title, MAX_LETTERS["title"]),
         date=date,
         kind=kind,
@@ -142,34 +148,34 @@ def page_of(
         lines=assumption_lines(report),
         elements=element_table(report),
         peaks=peak_table(report),
-        checks=check_table(report, friction, left_out),
+        checks=run_check_table(report, friction, left_out),
         legend=[*own, *texts],
-        warnings=_first_warnings([*warnings, *_warnings(report, left_out)]),
-        notes=_run_together(notes),
-        versions=", ".join(f"{name} {version}" for name, version in _versions().items()),
-        inputs=fingerprint(report, record),
+        warnings=_first_warnings_of_report([*warnings, *_warnings_of_runs(report, left_out)]),
+        notes=_joined_notes(notes),
+        versions=", ".join(f"{name} {version}" for name, version in _report_versions().items()),
+        inputs=report_fingerprint(report, record),
     )
 
 
-def html_of(page: Page, report: ReportedRuns) -> str:
+def run_report_page_as_html(page: RunReportPage, report: ReportedRuns) -> str:
     """Return a page as HTML with its figures."""
     from markupsafe import Markup
 
-    from rockflex.plot import record_strip, run_sheet, svg_of
+    from rockflex.plot import draw_record_strip, draw_run_sheet, figure_as_svg
 
-    sheet = run_sheet(report.responses, report.labels, width=WIDTH / page.scale, height=page.figure_height)
-    strip = record_strip(page.record.time, page.record.acceleration, width=_STRIP[0], height=_STRIP[1])
+    sheet = draw_run_sheet(report.responses, report.labels, width=WIDTH / page.scale, height=page.figure_height)
+    strip = draw_record_strip(page.record.time, page.record.acceleration, width=_STRIP[0], height=_STRIP[1])
     drawings = {
-        "sheet": Markup(inline(svg_of(sheet), "sheet", "Histories and loops of all models")),
-        "strip": Markup(inline(svg_of(strip), "strip", "Ground acceleration")),
+        "sheet": Markup(inline_svg(figure_as_svg(sheet), "sheet", "Histories and loops of all models")),
+        "strip": Markup(inline_svg(figure_as_svg(strip), "strip", "Ground acceleration")),
     }
-    templates = templates_in(TEMPLATES)
-    templates.filters |= {"symbols": _symbols, "shortened": shortened}
+    templates = jinja_templates_in(TEMPLATES)
+    templates.filters |= {"symbols": _symbols_as_html, "shortened": shortened}
     template = templates.get_template("run.html.jinja")
     return template.render(page=page, max_letters=MAX_LETTERS, **drawings)
 
 
-def _warnings(report: ReportedRuns, omitted: Collection[str]) -> list[str]:
+def _warnings_of_runs(report: ReportedRuns, omitted: Collection[str]) -> list[str]:
     """Return the warnings of the runs, each with its models; of the peaks only for the labels in `omitted`."""
     found: dict[str, list[str]] = {}
     for label, run in zip(report.labels, report.responses, strict=True):
@@ -178,27 +184,27 @@ def _warnings(report: ReportedRuns, omitted: Collection[str]) -> list[str]:
     return [f"{', '.join(labels)}: {text}" for text, labels in found.items()]
 
 
-def _run_together(notes: Sequence[str]) -> list[str]:
+def _joined_notes(notes: Sequence[str]) -> list[str]:
     """Return the notes without breaks of lines; many of them as one paragraph."""
     texts = [text for text in (" ".join(note.split()) for note in notes) if text]
     return texts if len(texts) <= _MAX_NOTE_LINES else [" • ".join(texts)]
 
 
-def _first_warnings(texts: Sequence[str]) -> list[str]:
+def _first_warnings_of_report(texts: Sequence[str]) -> list[str]:
     rest = len(texts) - MAX_WARNINGS
     return [
         *(shortened(text, MAX_LETTERS["warning"]) for text in texts[:MAX_WARNINGS]),
-        *([f"and {counted(rest, 'more warning')}; see the responses"] if rest > 0 else []),
+        *([f"and {number_with_noun(rest, 'more warning')}; see the responses"] if rest > 0 else []),
     ]
 
 
-def _versions() -> dict[str, str]:
-    found = versions_of(("rockflex", "numpy"))
+def _report_versions() -> dict[str, str]:
+    found = package_versions(("rockflex", "numpy"))
     python = found.pop("python")
     return found | {"Python": python}
 
 
-def _symbols(text: str) -> str:
+def _symbols_as_html(text: str) -> str:
     """Write "_" as a subscript and "^" as a superscript."""
     from markupsafe import Markup, escape
 
@@ -274,19 +280,19 @@ def write_report(
     >>> rf.write_report(runs, folder / "report.html", structure=frame, motion=pulse, friction=0.5).name
     'report.html'
     """
-    target = checked_path("path", path)
-    text = report_html(
+    target = checked_report_path("path", path)
+    text = run_report_as_html(
         responses, structure=structure, motion=motion, title=title, date=date, friction=friction, notes=notes
     )
     try:
-        return write_whole(target, text.encode())
+        return write_file_atomically(target, text.encode())
     except OSError as error:
         raise InputError(
             f"Cannot write to {target}: {error.strerror or error}. Give a path that can be written to.", field="path"
         ) from error
 
 
-def report_html(
+def run_report_as_html(
     responses: Response | Iterable[Response],
     *,
     structure: Any = None,
@@ -298,11 +304,11 @@ def report_html(
     omitted: Collection[str] = (),
 ) -> str:
     """Return the page of `write_report` as text; no energies and no friction of the models in `omitted`."""
-    heading, day = _heading(title), _day(date)
-    coefficient = None if friction is None else _coefficient(friction)
-    texts = _notes(notes)
-    report = checked_runs(responses, structure, motion)
-    page = page_of(
+    heading, day = _checked_report_title(title), _checked_report_date(date)
+    coefficient = None if friction is None else _checked_friction_coefficient(friction)
+    texts = _checked_report_notes(notes)
+    report = checked_reported_runs(responses, structure, motion)
+    page = run_report_page(
         report,
         title=heading,
         date=day,
@@ -311,10 +317,10 @@ def report_html(
         notes=texts,
         omitted=omitted,
     )
-    return html_of(page, report)
+    return run_report_page_as_html(page, report)
 
 
-def checked_path(name: str, path: str | Path) -> Path:
+def checked_report_path(name: str, path: str | Path) -> Path:
     """Return the path of a report.
 
     Raises
@@ -322,7 +328,7 @@ def checked_path(name: str, path: str | Path) -> Path:
     InputError
         If it is a folder, or has another suffix than .html.
     """
-    target = path_of(name, path)
+    target = checked_file_path(name, path)
     if target.is_dir():
         raise InputError(
             f"{name} {target} is a folder. Give a file in it, such as {target / 'report.html'}.", field="path"
@@ -336,13 +342,13 @@ def checked_path(name: str, path: str | Path) -> Path:
     return target
 
 
-def _heading(title: Any) -> str | None:
+def _checked_report_title(title: Any) -> str | None:
     if title is None or isinstance(title, str):
         return title
     raise InputError(f"title must be a text, but {shown(title)} was given.", field="title")
 
 
-def _day(date: Any) -> str:
+def _checked_report_date(date: Any) -> str:
     if isinstance(date, str):
         return date
     if date is None or isinstance(date, Date):
@@ -350,14 +356,14 @@ def _day(date: Any) -> str:
     raise InputError(f"date must be a text or a datetime.date, but {shown(date)} was given.", field="date")
 
 
-def _coefficient(friction: float) -> float:
+def _checked_friction_coefficient(friction: float) -> float:
     try:
         return friction_coefficient(friction)
     except InputError as error:
         raise InputError(str(error).replace("mu must", "friction must"), field="friction") from None
 
 
-def _notes(notes: Any) -> list[str]:
+def _checked_report_notes(notes: Any) -> list[str]:
     texts: list[Any] = [notes] if isinstance(notes, str) else list(notes) if isinstance(notes, Iterable) else [notes]
     for text in texts:
         if not isinstance(text, str):
@@ -376,7 +382,7 @@ def _structure_warnings(structure: Any) -> tuple[str, ...]:
     return structure_warnings(structure)
 
 
-def fingerprint(report: ReportedRuns, record: Record) -> str:
+def report_fingerprint(report: ReportedRuns, record: ReportedRecord) -> str:
     """Return a hash of structure, ground and record, and of the assumptions and the initial state of each run."""
     p = report.properties
     numbers: list[Any] = [record.time, record.acceleration, record.vertical]
@@ -386,20 +392,20 @@ def fingerprint(report: ReportedRuns, record: Record) -> str:
     for history in report.histories:
         model = history.model
         # Initial states that follow from the input, such as rest on springs, have rounding errors.
-        numbers += [[float(f"{value:.6g}") for value in history.states[0].tolist()], *_ground_numbers(model)]
-        texts += [_law_text(model), repr(model.bouc_wen), f"{float(history.time[-1]):.6g}"]
+        numbers += [[float(f"{value:.6g}") for value in history.states[0].tolist()], *_fingerprint_of_ground(model)]
+        texts += [_fingerprint_of_impact_law(model), repr(model.bouc_wen), f"{float(history.time[-1]):.6g}"]
     content = b"".join(np.asarray(each, dtype=np.float64).tobytes() for each in numbers)
     return hashlib.sha256(content + "\n".join(texts).encode()).hexdigest()[:12]
 
 
-def _ground_numbers(model: Any) -> list[Any]:
+def _fingerprint_of_ground(model: Any) -> list[Any]:
     friction = getattr(model, "friction", None)
     known = [] if friction is None else [friction]
     springs = model.springs
     return known if springs is None else [*known, springs.positions, springs.stiffness, springs.damping, model.inertia]
 
 
-def _law_text(model: Any) -> str:
+def _fingerprint_of_impact_law(model: Any) -> str:
     # An object that is no dataclass is written with its address, which no two sessions share.
     law = model.law
     return repr(law) if dataclasses.is_dataclass(law) else type(law).__name__

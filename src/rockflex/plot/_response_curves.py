@@ -18,14 +18,14 @@ from rockflex.plot._style import (
     RED,
     SKY,
     LineStyle,
-    literal,
-    recoloured,
+    literal_text,
+    recoloured_line_styles,
 )
 from rockflex.response import History, Response
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class ResponseCurve:
     """One response with its history, label and line style."""
 
     response: Response
@@ -94,7 +94,7 @@ class Curve:
         return float(np.max(np.abs(self.history.rotation[: contact[-1] + 1]))) if contact.size else 0.0
 
 
-def rotation_limit(curves: list[Curve]) -> float:
+def rotation_axis_limit(curves: list[ResponseCurve]) -> float:
     """Largest |θ| in rad on an axis, including the rotation of balance if all that rock fall."""
     finished = max(curve.finished_rotation for curve in curves)
     fallen = [curve.balance_rotation for curve in curves if curve.falls]
@@ -102,21 +102,23 @@ def rotation_limit(curves: list[Curve]) -> float:
     return finished if standing else max(finished, *fallen, 0.0)
 
 
-def time_limits(curves: list[Curve]) -> tuple[float, float]:
+def time_axis_limits(curves: list[ResponseCurve]) -> tuple[float, float]:
     """First and last time of all curves in s."""
     times = [curve.history.time for curve in curves]
     return min(float(time[0]) for time in times), max(float(time[-1]) for time in times)
 
 
-def title_of(curves: list[Curve], title: str | None) -> str:
+def response_figure_title(curves: list[ResponseCurve], title: str | None) -> str:
     """The title given, or the name of the motion if there is only one."""
     if title is not None:
         return title
     motions = {curve.response.motion for curve in curves}
-    return literal(motions.pop()) if len(motions) == 1 else ""
+    return literal_text(motions.pop()) if len(motions) == 1 else ""
 
 
-def curves_of(responses: Response | Iterable[Response], labels: Sequence[str] | None = None) -> list[Curve]:
+def response_curves(
+    responses: Response | Iterable[Response], labels: Sequence[str] | None = None
+) -> list[ResponseCurve]:
     """Check the responses, and give each a label and a line style.
 
     Raises
@@ -127,13 +129,13 @@ def curves_of(responses: Response | Iterable[Response], labels: Sequence[str] | 
     everything: list[Response] = [responses] if hasattr(responses, "history") else list(responses)  # pyright: ignore
     if not everything:
         raise InputError('There is no response to plot. Give at least one from simulate(..., output="history").')
-    histories = [_history(i, response) for i, response in enumerate(everything)]
-    names = _names(everything, labels)
-    styles = _line_styles(histories)
-    return [Curve(*parts) for parts in zip(everything, histories, names, styles, strict=True)]
+    histories = [_history_of_response(i, response) for i, response in enumerate(everything)]
+    names = _response_labels(everything, labels)
+    styles = _response_line_styles(histories)
+    return [ResponseCurve(*parts) for parts in zip(everything, histories, names, styles, strict=True)]
 
 
-def _history(index: int, response: Response) -> History:
+def _history_of_response(index: int, response: Response) -> History:
     if not hasattr(response, "history"):
         raise InputError(
             f"responses[{index}] must be a Response, but {type(response).__name__} was given. "
@@ -147,12 +149,12 @@ def _history(index: int, response: Response) -> History:
     return response.history
 
 
-def _names(responses: list[Response], labels: Sequence[str] | None) -> list[str]:
+def _response_labels(responses: list[Response], labels: Sequence[str] | None) -> list[str]:
     if labels is None:
         models = [response.model for response in responses]
         if len(set(models)) == len(models):
-            return [literal(model) for model in models]
-        return [literal(f"{response.model}, {response.motion}") for response in responses]
+            return [literal_text(model) for model in models]
+        return [literal_text(f"{response.model}, {response.motion}") for response in responses]
     if isinstance(labels, str) or len(labels) != len(responses):
         given = f"the string {shown(labels)}" if isinstance(labels, str) else f"{len(labels)}"
         raise InputError(
@@ -161,10 +163,10 @@ def _names(responses: list[Response], labels: Sequence[str] | None) -> list[str]
     return list(labels)
 
 
-def _line_styles(histories: list[History]) -> list[LineStyle]:
+def _response_line_styles(histories: list[History]) -> list[LineStyle]:
     """Line styles of Silva & Stojadinović 2024, Fig. 15, for fixed base, most modes, one and two, and others."""
     max_modes = max((h.model.properties.n_modes for h in histories if h.model.lifts), default=0)
-    wanted = [_usual_style(history, max_modes) for history in histories]
+    wanted = [_usual_line_style(history, max_modes) for history in histories]
     spare, styles = [style for style in LINE_STYLES if style not in wanted], list[LineStyle]()
     for own in wanted:
         if own is None or own in styles:
@@ -174,10 +176,10 @@ def _line_styles(histories: list[History]) -> list[LineStyle]:
                 )
             own = spare.pop(0)
         styles.append(own)
-    return recoloured(styles)
+    return recoloured_line_styles(styles)
 
 
-def _usual_style(history: History, max_modes: int) -> LineStyle | None:
+def _usual_line_style(history: History, max_modes: int) -> LineStyle | None:
     model = history.model
     n = model.properties.n_modes
     if not model.lifts:

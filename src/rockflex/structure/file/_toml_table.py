@@ -11,56 +11,58 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
 
 from rockflex._errors import InputError
-from rockflex._schema import PLAIN, Key
+from rockflex._schema import PLAIN, SchemaKey
 
-AnyTable = TypeVar("AnyTable", bound="Table")
+AnyTable = TypeVar("AnyTable", bound="TomlTable")
 
 
-class Table(BaseModel):
+class TomlTable(BaseModel):
     """A table of a file: known keys only, and no silent conversion.
 
-    Each field has a `Key` in its annotation, or a description that completes the sentence "it must be ...".
+    Each field has a `SchemaKey` in its annotation, or a description that completes the sentence "it must be ...".
     """
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=True)
 
 
-def key_of(field: FieldInfo) -> Key:
+def schema_key_of_field(field: FieldInfo) -> SchemaKey:
     """Return the key of a field; one without it has its description alone."""
-    return next((part for part in field.metadata if isinstance(part, Key)), Key(field.description or "", form=PLAIN))
+    return next(
+        (part for part in field.metadata if isinstance(part, SchemaKey)), SchemaKey(field.description or "", form=PLAIN)
+    )
 
 
-def expected(field: FieldInfo) -> str:
+def valid_value_description(field: FieldInfo) -> str:
     """Return the description of a valid value, and how it is written."""
-    return key_of(field).expected
+    return schema_key_of_field(field).expected
 
 
-def parts(annotation: Any) -> list[Any]:
+def members_of_annotation(annotation: Any) -> list[Any]:
     """Return the kinds of value that an annotation accepts: the members of a union, or itself."""
     if get_origin(annotation) is Annotated:
-        return parts(get_args(annotation)[0])
+        return members_of_annotation(get_args(annotation)[0])
     if get_origin(annotation) in (Union, UnionType):
-        return [part for member in get_args(annotation) for part in parts(member)]
+        return [part for member in get_args(annotation) for part in members_of_annotation(member)]
     return [annotation]
 
 
-def inner_tables(annotation: Any) -> list[type["Table"]]:
+def tables_in_annotation(annotation: Any) -> list[type["TomlTable"]]:
     """Return the kinds of table that a field holds, one or a list of them; none if it holds other values."""
-    inner = [get_args(part)[0] if get_origin(part) is list else part for part in parts(annotation)]
+    inner = [get_args(part)[0] if get_origin(part) is list else part for part in members_of_annotation(annotation)]
     return [
         kind
         for part in inner
-        for kind in parts(part)
-        if isinstance(kind, type) and not isinstance(kind, GenericAlias) and issubclass(kind, Table)
+        for kind in members_of_annotation(part)
+        if isinstance(kind, type) and not isinstance(kind, GenericAlias) and issubclass(kind, TomlTable)
     ]
 
 
-def inner_table(annotation: Any) -> type["Table"] | None:
+def first_table_in_annotation(annotation: Any) -> type["TomlTable"] | None:
     """Return the kind of table that a field holds, the first of several; None if it holds another value."""
-    return next(iter(inner_tables(annotation)), None)
+    return next(iter(tables_in_annotation(annotation)), None)
 
 
-def checked(model: type[AnyTable], content: Mapping[str, Any], place: str = "") -> AnyTable:
+def parse_toml_table(model: type[AnyTable], content: Mapping[str, Any], place: str = "") -> AnyTable:
     """Return the content of a file as a table; `place` names the file in messages.
 
     Raises
@@ -71,11 +73,11 @@ def checked(model: type[AnyTable], content: Mapping[str, Any], place: str = "") 
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        message = " ".join(problems(error, content, model))
+        message = " ".join(toml_problem_sentences(error, content, model))
         raise InputError(f"{place}: {message}" if place else message) from error
 
 
-def problems(error: ValidationError, content: Mapping[str, Any], model: type[Table]) -> list[str]:
+def toml_problem_sentences(error: ValidationError, content: Mapping[str, Any], model: type[TomlTable]) -> list[str]:
     """Return a sentence for each wrong key, with a description of valid values; the branches of a union count once.
 
     All unknown keys of a table are in one sentence.
@@ -83,30 +85,30 @@ def problems(error: ValidationError, content: Mapping[str, Any], model: type[Tab
     sentences: dict[tuple[str | int, ...], str] = {}
     unknown: dict[tuple[str | int, ...], list[str]] = {}
     for problem in error.errors():
-        spot = spot_of(problem["loc"], content, model)
+        spot = toml_problem_place(problem["loc"], content, model)
         key = str(spot.path[-1]) if spot.path and not spot.of_table else ""
-        label = label_of(spot.path) if key else _header(spot.path).removesuffix(",")
+        label = toml_key_label(spot.path) if key else _toml_table_heading(spot.path).removesuffix(",")
         known = spot.table.model_fields
         if problem["type"] == "extra_forbidden":
             table = spot.path[:-1]
             others = unknown.setdefault(table, [])
             others += [key] * (key not in others)
-            sentences[(*table, "")] = _unknown(table, others, list(known))
+            sentences[(*table, "")] = _unknown_key_sentence(table, others, list(known))
             continue
         if problem["type"] == "value_error":  # raised by a check of the whole table
             said = ": ".join(filter(None, (label, str(problem["ctx"]["error"]) if "ctx" in problem else "")))
         elif problem["type"] in ("missing", "union_tag_not_found"):
-            said = f"{label} is missing: {expected(known[key])}."
+            said = f"{label} is missing: {valid_value_description(known[key])}."
         elif key:
-            said = f"{label} must be {expected(known[key])}, but {reprlib.repr(spot.value)} was given."
+            said = f"{label} must be {valid_value_description(known[key])}, but {reprlib.repr(spot.value)} was given."
         else:
             said = f"{label or 'It'} must be a table, but {reprlib.repr(spot.value)} was given."
         sentences[spot.path] = said
     return list(sentences.values())
 
 
-def _unknown(table: tuple[str | int, ...], keys: list[str], known: list[str]) -> str:
-    label = " ".join(filter(None, (_header(table), ", ".join(keys))))
+def _unknown_key_sentence(table: tuple[str | int, ...], keys: list[str], known: list[str]) -> str:
+    label = " ".join(filter(None, (_toml_table_heading(table), ", ".join(keys))))
     near = {key: found[0] for key in keys if (found := get_close_matches(key, known, n=1))}
     meant = [each if len(keys) == 1 else f"{each} for {key}" for key, each in near.items()]
     hint = f" Did you mean {', '.join(meant)}?" if meant else ""
@@ -114,7 +116,7 @@ def _unknown(table: tuple[str | int, ...], keys: list[str], known: list[str]) ->
 
 
 @dataclass(frozen=True)
-class Spot:
+class TomlProblemPlace:
     """The place of a problem: the keys, and the numbers of tables in lists, down to the last that a file names.
 
     Attributes
@@ -130,7 +132,7 @@ class Spot:
     """
 
     path: tuple[str | int, ...]
-    table: type[Table]
+    table: type[TomlTable]
     field: FieldInfo | None
     value: Any
 
@@ -141,15 +143,15 @@ class Spot:
             return True
         if self.field is None or not isinstance(self.value, Mapping):
             return False
-        return inner_table(self.field.annotation) in parts(self.field.annotation)
+        return first_table_in_annotation(self.field.annotation) in members_of_annotation(self.field.annotation)
 
 
-def spot_of(location: Sequence[str | int], content: Any, model: type[Table]) -> Spot:
+def toml_problem_place(location: Sequence[str | int], content: Any, model: type[TomlTable]) -> TomlProblemPlace:
     """Follow the location of a problem, without the parts that unions and lists of values add.
 
     Of a table whose `kind` is missing or unknown, it is that key.
     """
-    spot, inner, tags = Spot((), model, None, content), model, dict[str, type[Table]]()
+    spot, inner, tags = TomlProblemPlace((), model, None, content), model, dict[str, type[TomlTable]]()
     for key in location:
         if inner is None:
             break
@@ -158,34 +160,34 @@ def spot_of(location: Sequence[str | int], content: Any, model: type[Table]) -> 
             continue
         path, value = (*spot.path, key), spot.value
         if isinstance(key, int):
-            spot = Spot(path, inner, spot.field, value[key] if isinstance(value, list) else None)
-            tags = {} if spot.field is None else _tags(spot.field)
+            spot = TomlProblemPlace(path, inner, spot.field, value[key] if isinstance(value, list) else None)
+            tags = {} if spot.field is None else _tables_by_kind(spot.field)
             continue
         field = inner.model_fields.get(key)
-        spot = Spot(path, inner, field, value.get(key) if isinstance(value, Mapping) else None)
-        inner = None if field is None else inner_table(field.annotation)
+        spot = TomlProblemPlace(path, inner, field, value.get(key) if isinstance(value, Mapping) else None)
+        inner = None if field is None else first_table_in_annotation(field.annotation)
     if tags and isinstance(spot.value, Mapping):
         kind = spot.table.model_fields["kind"]
-        return Spot((*spot.path, "kind"), spot.table, kind, spot.value.get("kind"))
+        return TomlProblemPlace((*spot.path, "kind"), spot.table, kind, spot.value.get("kind"))
     return spot
 
 
-def _tags(field: FieldInfo) -> dict[str, type[Table]]:
+def _tables_by_kind(field: FieldInfo) -> dict[str, type[TomlTable]]:
     """Return the tables of a field by their kinds; none if it has one kind of table at most."""
-    tables = inner_tables(field.annotation)
+    tables = tables_in_annotation(field.annotation)
     if len(tables) < 2:
         return {}
     return {word: table for table in tables for word in get_args(table.model_fields["kind"].annotation)}
 
 
-def label_of(path: Sequence[str | int]) -> str:
+def toml_key_label(path: Sequence[str | int]) -> str:
     """Return the words for a key of a file: the heading of its table, and its name; places in its list do not count."""
     while isinstance(path[-1], int):
         path = path[:-1]
-    return " ".join(filter(None, (_header(path[:-1]), path[-1])))
+    return " ".join(filter(None, (_toml_table_heading(path[:-1]), path[-1])))
 
 
-def _header(path: Sequence[str | int]) -> str:
+def _toml_table_heading(path: Sequence[str | int]) -> str:
     """The heading of a table in a file; in a list, with its number."""
     names, words = list[str](), list[str]()
     for part in path:

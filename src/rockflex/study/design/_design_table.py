@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._checks import positive
+from rockflex._checks import checked_positive
 from rockflex._errors import InputError
 from rockflex.fragility import HazardCurve
-from rockflex.study.design._fit import (
+from rockflex.study.design._exceedance_fit import (
     ShakingLevel,
     check_confidence,
-    check_damping,
-    check_limit,
-    check_same_for_all,
+    check_design_limit,
+    check_hazard_damping,
+    check_measure_of_record_alone,
     design_row,
 )
 
@@ -87,16 +87,16 @@ def design_table(
     >>> table["probability"].round(3).tolist()
     [1.0, 0.999]
     """
-    check_same_for_all(measure)
+    check_measure_of_record_alone(measure)
     lacking = [name for name in ("structure", "model", *FACTS, *RESULTS, measure) if name not in runs]
     if lacking or not len(runs):
         lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
         raise InputError(f"The table {lacks}. Give what run_design returned.")
     level = ShakingLevel.of(at, hazard)
-    check_damping(hazard, runs, measure)
+    check_hazard_damping(hazard, runs, measure)
     if confidence is not None:
         check_confidence(confidence)
-    check_limit(limit)
+    check_design_limit(limit)
     import pandas as pd
 
     rows: list[dict[str, Any]] = []
@@ -158,19 +158,19 @@ def smallest_width(table: "pd.DataFrame", target: float) -> "pd.DataFrame":
     if lacking or not len(table):
         lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
         raise InputError(f"The table {lacks}. Give what design_table returned.")
-    wanted = positive("target", target, "1/year" if value == "rate" else "probability")
+    wanted = checked_positive("target", target, "1/year" if value == "rate" else "probability")
     rows: list[dict[str, Any]] = []
     for (model, tendon), group in table.groupby(["model", "tendon"], observed=True, sort=False):
         designs = group.sort_values("half_width")
         widths = designs["half_width"].to_numpy(float)
-        found = _least(widths, designs[value].to_numpy(float), wanted)
-        upper = _least(widths, designs["high"].to_numpy(float), wanted)
+        found = _least_width(widths, designs[value].to_numpy(float), wanted)
+        upper = _least_width(widths, designs["high"].to_numpy(float), wanted)
         rows.append(
             {
                 "model": str(model),
                 "tendon": str(tendon),
-                "prestress_ratio": _common(designs["prestress_ratio"]),
-                "stiffness_ratio": _common(designs["stiffness_ratio"]),
+                "prestress_ratio": _common_value(designs["prestress_ratio"]),
+                "stiffness_ratio": _common_value(designs["stiffness_ratio"]),
                 "target": wanted,
                 "half_width": found.half_width,
                 "half_width_upper": upper.half_width,
@@ -182,19 +182,19 @@ def smallest_width(table: "pd.DataFrame", target: float) -> "pd.DataFrame":
     return pd.DataFrame(rows)
 
 
-class _Least(NamedTuple):
+class _LeastWidth(NamedTuple):
     half_width: float
     outcome: str
     monotone: bool
     note: str
 
 
-def _common(column: "pd.Series[Any]") -> float:
+def _common_value(column: "pd.Series[Any]") -> float:
     first = float(column.iloc[0])
     return first if np.allclose(column, first, rtol=1e-9, atol=0.0) else math.nan
 
 
-def _least(widths: Array, values: Array, target: float) -> _Least:
+def _least_width(widths: Array, values: Array, target: float) -> _LeastWidth:
     """Least width, outcome and notes, from values at rising widths."""
     known = np.isfinite(values)
     notes = [] if known.all() else [f"{int((~known).sum())} of {known.size} bases have no value and were left out."]
@@ -211,7 +211,7 @@ def _least(widths: Array, values: Array, target: float) -> _Least:
         notes.append(f"Every base meets it; a base below B = {b[0]:.4g} m might do.")
     elif b.size and meets[-1]:
         last = int(np.flatnonzero(~meets)[-1])
-        width, outcome = _between(b[last : last + 2], y[last : last + 2], target), "met"
+        width, outcome = _interpolated_width(b[last : last + 2], y[last : last + 2], target), "met"
         if meets[:last].any():
             outcome = "met more than once"
             notes.append(f"Narrower bases meet it too, from B = {b[meets][0]:.4g} m, but {b[last]:.4g} m does not.")
@@ -219,10 +219,10 @@ def _least(widths: Array, values: Array, target: float) -> _Least:
         notes.append(f"The widest base, B = {b[-1]:.4g} m, has {y[-1]:.3g}.")
         if meets.any():
             notes.append(f"Narrower bases meet it, from B = {b[meets][0]:.4g} m.")
-    return _Least(width, outcome, not rises, " ".join(notes))
+    return _LeastWidth(width, outcome, not rises, " ".join(notes))
 
 
-def _between(b: Array, y: Array, target: float) -> float:
+def _interpolated_width(b: Array, y: Array, target: float) -> float:
     """Width at which a line through two values, the second at most the target, reaches it."""
     if y[1] > 0.0:
         y, target = np.log(y), math.log(target)

@@ -8,13 +8,19 @@ from typing import TYPE_CHECKING, Any, SupportsIndex
 import numpy as np
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import whole_number
+from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError
 from rockflex._values import Value
+from rockflex.study.design._design_search import MarginSurface
 from rockflex.study.design._designs import VARIABLES
-from rockflex.study.design._fit import check_confidence, check_damping
-from rockflex.study.design._requirements import DesignCost, Requirement, check_requirements, margins_of, values_of
-from rockflex.study.design._search import Surface
+from rockflex.study.design._exceedance_fit import check_confidence, check_hazard_damping
+from rockflex.study.design._requirements import (
+    DesignCost,
+    Requirement,
+    checked_requirements,
+    requirement_margins,
+    requirement_values,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -133,18 +139,18 @@ def best_design(
     """
     import pandas as pd
 
-    wanted, times = check_requirements(requirements), whole_number("n_resamples", n_resamples, MIN_RESAMPLES)
+    wanted, times = checked_requirements(requirements), checked_whole_number("n_resamples", n_resamples, MIN_RESAMPLES)
     check_confidence(confidence)
     lacking = [name for name in (*FACTS, "structure", "round", "group") if name not in runs]
     if lacking or not len(runs):
         lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
         raise InputError(f"The table {lacks}. Give what search_design returned.")
     for each in wanted:
-        check_damping(each.hazard, runs, each.measure)
+        check_hazard_damping(each.hazard, runs, each.measure)
     groups = [rows for _, rows in runs.groupby("structure", observed=True, sort=False)]
-    values = values_of(groups, wanted)
+    values = requirement_values(groups, wanted)
     drawn = np.stack(
-        [_drawn(rows, wanted, times, seed) for rows in groups], axis=1
+        [_resampled_requirement_values(rows, wanted, times, seed) for rows in groups], axis=1
     )  # (resamples, designs, requirements)
     table = pd.DataFrame([rows.iloc[0][["structure", "round", *FACTS]] for rows in groups]).infer_objects()
     table = table.reset_index(drop=True).assign(structure=[str(rows["structure"].iloc[0]) for rows in groups])
@@ -154,44 +160,44 @@ def best_design(
     for place, each in enumerate(wanted):
         ends = values[:, place], low[:, place], high[:, place]
         table[each.label], table[f"{each.label}, low"], table[f"{each.label}, high"] = ends
-    meets, targets = _met(values, wanted), np.array([each.target for each in wanted])
+    meets, targets = _requirements_met(values, wanted), np.array([each.target for each in wanted])
     labels = [each.label for each in wanted]
-    closest = np.nan_to_num(margins_of(values, wanted), nan=-np.inf).argmax(axis=1)
-    choices = [_cheapest(costs, each) for each in _met(drawn, wanted)]
+    closest = np.nan_to_num(requirement_margins(values, wanted), nan=-np.inf).argmax(axis=1)
+    choices = [_cheapest_design(costs, each) for each in _requirements_met(drawn, wanted)]
     table["governs"] = [labels[place] for place in closest]
     table["meets"] = meets
-    table["confidence"] = _met(drawn, wanted).mean(axis=0)
+    table["confidence"] = _requirements_met(drawn, wanted).mean(axis=0)
     table["chosen"] = [choices.count(place) / len(choices) for place in range(len(groups))]
     table["n_runs"] = [int(rows["status"].notna().sum()) for rows in groups]
     table["n_failed"] = [int(rows["status"].isna().sum()) for rows in groups]
-    best = _cheapest(costs, meets)
+    best = _cheapest_design(costs, meets)
     return BestDesign(
         designs=table,
         best=best,
-        cautious=_cheapest(costs, meets & (np.fmax(values, high) <= targets).all(axis=1)),
-        limits=_limits(table, best, wanted, values, costs),
-        interval=_interval(table, best, choices, confidence),
+        cautious=_cheapest_design(costs, meets & (np.fmax(values, high) <= targets).all(axis=1)),
+        limits=_requirement_limits_table(table, best, wanted, values, costs),
+        interval=_variable_intervals_table(table, best, choices, confidence),
         governs="" if best is None else labels[closest[best]],
         requirements=tuple(wanted),
         cost=cost,
-        notes=tuple(_notes(table, best, choices, values)),
+        notes=tuple(_best_design_notes(table, best, choices, values)),
     )
 
 
-def _drawn(rows: "pd.DataFrame", wanted: list[Requirement], n: int, seed: int) -> Array:
+def _resampled_requirement_values(rows: "pd.DataFrame", wanted: list[Requirement], n: int, seed: int) -> Array:
     return np.column_stack([each.resampled(rows, n, seed) for each in wanted])
 
 
-def _met(values: Array, wanted: list[Requirement]) -> Bools:
+def _requirements_met(values: Array, wanted: list[Requirement]) -> Bools:
     """Whether all targets are met, for values whose last axis is that of the requirements; NaN meets none."""
     return np.all(values <= np.array([each.target for each in wanted]), axis=-1)
 
 
-def _cheapest(costs: Array, meets: Bools) -> int | None:
+def _cheapest_design(costs: Array, meets: Bools) -> int | None:
     return int(np.where(meets, costs, np.inf).argmin()) if meets.any() else None
 
 
-def _limits(
+def _requirement_limits_table(
     table: "pd.DataFrame", best: int | None, wanted: list[Requirement], values: Array, costs: Array
 ) -> "pd.DataFrame":
     import pandas as pd
@@ -201,7 +207,7 @@ def _limits(
         if best is None:
             continue
         others = [other for other in range(len(wanted)) if other != place]
-        free = _met(values[:, others], [wanted[other] for other in others])
+        free = _requirements_met(values[:, others], [wanted[other] for other in others])
         row = table.iloc[best]
         rows.append(
             {
@@ -217,7 +223,9 @@ def _limits(
     return pd.DataFrame(rows, columns=["limit", "target", "value", "low", "high", "used", "cost_without"])
 
 
-def _interval(table: "pd.DataFrame", best: int | None, choices: list[int | None], confidence: float) -> "pd.DataFrame":
+def _variable_intervals_table(
+    table: "pd.DataFrame", best: int | None, choices: list[int | None], confidence: float
+) -> "pd.DataFrame":
     import pandas as pd
 
     places = [place for place in choices if place is not None]
@@ -233,7 +241,7 @@ def _interval(table: "pd.DataFrame", best: int | None, choices: list[int | None]
     return pd.DataFrame(rows)
 
 
-def _notes(table: "pd.DataFrame", best: int | None, choices: list[int | None], values: Array) -> list[str]:
+def _best_design_notes(table: "pd.DataFrame", best: int | None, choices: list[int | None], values: Array) -> list[str]:
     notes: list[str] = []
     lost = int((~np.isfinite(values)).any(axis=1).sum())
     if lost:
@@ -261,7 +269,7 @@ MAX_PARTS_OF_STEP = 16  # parts of a step between two values given
 
 
 @dataclass(frozen=True)
-class Interpolated:
+class InterpolatedMargins:
     """Margins of a search as functions of its variables.
 
     Attributes
@@ -275,13 +283,13 @@ class Interpolated:
         Force in N for a factor of 1, of the tendons and of the dissipators.
     """
 
-    surface: Surface
+    surface: MarginSurface
     given: dict[str, Array]
     fixed: dict[str, float]
     forces: dict[str, float]
 
     @classmethod
-    def of(cls, found: BestDesign) -> "Interpolated":
+    def of(cls, found: BestDesign) -> "InterpolatedMargins":
         """Interpolate between the designs of a search.
 
         Raises
@@ -294,7 +302,9 @@ class Interpolated:
         given = {name: np.unique(first[name].to_numpy(float)) for name in VARIABLES}
         fixed = {name: float(values[0]) for name, values in given.items() if values.size == 1}
         given = {name: values for name, values in given.items() if values.size > 1}
-        margins = margins_of(table[[each.label for each in found.requirements]].to_numpy(float), found.requirements)
+        margins = requirement_margins(
+            table[[each.label for each in found.requirements]].to_numpy(float), found.requirements
+        )
         forces = {}
         for factor, force in FORCES.items():
             place = int(table[factor].to_numpy(float).argmax())
@@ -302,11 +312,11 @@ class Interpolated:
             forces[force] = float(table[force].iloc[place]) / top if top else 0.0
         if not given:
             raise InputError("All designs are the same, so there is no trade-off.")
-        return cls(Surface(_steps(table, given), margins), given, fixed, forces)
+        return cls(MarginSurface(_trade_off_steps(table, given), margins), given, fixed, forces)
 
     def at(self, table: "pd.DataFrame") -> Array:
         """Margins of designs with columns of the variables, shape (n, n_requirements)."""
-        return self.surface.margins(_steps(table, self.given))
+        return self.surface.margins(_trade_off_steps(table, self.given))
 
     def designs(self, values: dict[str, Array]) -> "pd.DataFrame":
         """All combinations of values of the variables, with their forces in N."""
@@ -367,7 +377,7 @@ def trade_off(found: BestDesign, variable: str = "half_width") -> "pd.DataFrame"
     >>> curve.columns.tolist()
     ['half_width', 'tendon_factor', 'dissipator_factor', 'prestress', 'dissipator_force', 'cost', 'governs']
     """
-    between = Interpolated.of(found)
+    between = InterpolatedMargins.of(found)
     if variable not in between.given:
         raise InputError(f"variable must be one that the search varied, {', '.join(between.given)}, not {variable!r}.")
     table = between.designs(between.fine())
@@ -379,6 +389,6 @@ def trade_off(found: BestDesign, variable: str = "half_width") -> "pd.DataFrame"
     return met.sort_values([variable, "cost"], kind="stable").groupby(variable).head(1).reset_index(drop=True)
 
 
-def _steps(table: "pd.DataFrame", given: dict[str, Array]) -> Array:
+def _trade_off_steps(table: "pd.DataFrame", given: dict[str, Array]) -> Array:
     columns = [np.interp(table[name].to_numpy(float), values, np.arange(values.size)) for name, values in given.items()]
     return np.column_stack(columns)

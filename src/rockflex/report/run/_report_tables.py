@@ -11,7 +11,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
-from rockflex._numbers import moment_unit, rounded
+from rockflex._number_format import moment_unit, rounded_number
 from rockflex._shown import shown
 from rockflex.modal import (
     BaseElement,
@@ -26,7 +26,7 @@ from rockflex.modal import (
 )
 from rockflex.models import Restitution, RockingModel, SidedRestitution
 from rockflex.motion import GroundMotion
-from rockflex.report.run._runs import ReportedRuns
+from rockflex.report.run._reported_runs import ReportedRuns
 from rockflex.response import History, Response
 
 MAX_MODES = 4  # modes
@@ -39,7 +39,7 @@ DAGGER = "†"
 
 
 @dataclass(frozen=True)
-class Cell:
+class ReportCell:
     """A text of the page, and the value that it shows, if it shows one.
 
     Attributes
@@ -61,34 +61,34 @@ class Cell:
 
 
 @dataclass(frozen=True)
-class Fact:
+class ReportFact:
     """A named value: "T_1", with its cell and its unit."""
 
     name: str
-    cell: Cell
+    cell: ReportCell
     unit: str = ""
 
 
 @dataclass(frozen=True)
-class Table:
+class ReportTable:
     """Headings, each with its unit, and rows of cells; the first column has names."""
 
     heads: Sequence[tuple[str, str]]
-    rows: Sequence[Sequence[Cell]]
+    rows: Sequence[Sequence[ReportCell]]
 
 
-def value_cell(value: float | None, of: str, size: float = 1.0, digits: int = 3, *, wrong: bool = False) -> Cell:
+def value_cell(value: float | None, of: str, size: float = 1.0, digits: int = 3, *, wrong: bool = False) -> ReportCell:
     """Return the cell of a value in units of `size`."""
-    return Cell(rounded(None if value is None else value / size, digits), value, of, wrong)
+    return ReportCell(rounded_number(None if value is None else value / size, digits), value, of, wrong)
 
 
-def fact(name: str, value: float, unit: str, of: str, size: float = 1.0, digits: int = 3) -> Fact:
+def value_fact(name: str, value: float, unit: str, of: str, size: float = 1.0, digits: int = 3) -> ReportFact:
     """Return a fact with a value in units of `size`, whose name is `unit`."""
-    return Fact(name, value_cell(value, of, size, digits), unit)
+    return ReportFact(name, value_cell(value, of, size, digits), unit)
 
 
 @dataclass(frozen=True, eq=False)
-class Record:
+class ReportedRecord:
     """The ground acceleration of the runs.
 
     Attributes
@@ -106,17 +106,17 @@ class Record:
     time: Array
     acceleration: Array
     vertical: Array
-    facts: list[Fact]
+    facts: list[ReportFact]
 
 
-def record_of(report: ReportedRuns) -> Record:
+def reported_record(report: ReportedRuns) -> ReportedRecord:
     """Return the record of the runs: from the motion if it is known, otherwise from the longest history."""
     name = report.responses[0].motion
     longest = max(range(len(report.histories)), key=lambda place: float(report.histories[place].time[-1]))
     history, run = report.histories[longest], report.responses[longest]
-    ends = fact("Length of the run", float(history.time[-1]), "s", "end_time")
+    ends = value_fact("Length of the run", float(history.time[-1]), "s", "end_time")
     pva = float(np.max(np.abs(history.vertical_ground_acceleration), initial=0.0))
-    vertical = [fact("PVA, vertical", pva, "g", "pva", GRAVITY)] if pva > 0.0 else []
+    vertical = [value_fact("PVA, vertical", pva, "g", "pva", GRAVITY)] if pva > 0.0 else []
     if report.motion is None:
         time, acceleration = history.time, history.ground_acceleration
         steps = 0.5 * (acceleration[1:] + acceleration[:-1]) * np.diff(time)
@@ -124,24 +124,29 @@ def record_of(report: ReportedRuns) -> Record:
         pga = float(np.max(np.abs(acceleration)))
         # All runs overturned, and nothing is known of the ground after the last of them did.
         cut = " during the run" if run.status == "overturned" else ""
-        facts = [fact(f"PGA{cut}", pga, "g", "pga", GRAVITY), fact(f"PGV{cut}", pgv, "m/s", "pgv"), *vertical, ends]
-        return Record(name, "", time, acceleration, history.vertical_ground_acceleration, facts)
+        facts = [
+            value_fact(f"PGA{cut}", pga, "g", "pga", GRAVITY),
+            value_fact(f"PGV{cut}", pgv, "m/s", "pgv"),
+            *vertical,
+            ends,
+        ]
+        return ReportedRecord(name, "", time, acceleration, history.vertical_ground_acceleration, facts)
     motion = report.motion.scaled(report.scale)
     scale = report.scale if motion.metadata is None or motion.metadata.scale is None else motion.metadata.scale
     facts = [
-        Fact("Scale", Cell(f"{scale:.6g}", scale, "scale")),
-        fact("PGA", motion.pga, "g", "pga", GRAVITY),
-        fact("PGV", motion.pgv, "m/s", "pgv"),
+        ReportFact("Scale", ReportCell(f"{scale:.6g}", scale, "scale")),
+        value_fact("PGA", motion.pga, "g", "pga", GRAVITY),
+        value_fact("PGV", motion.pgv, "m/s", "pgv"),
         *vertical,
-        fact("Length of the record", motion.duration, "s", "duration"),
-        fact("Significant duration D_5–95", motion.d5_95, "s", "d5_95"),
+        value_fact("Length of the record", motion.duration, "s", "duration"),
+        value_fact("Significant duration D_5–95", motion.d5_95, "s", "d5_95"),
         ends,
     ]
     upwards = np.zeros_like(motion.time) if motion.vertical is None else motion.vertical
-    return Record(name, _source(motion), motion.time, motion.acceleration, upwards, facts)
+    return ReportedRecord(name, _record_source_text(motion), motion.time, motion.acceleration, upwards, facts)
 
 
-def _source(motion: GroundMotion) -> str:
+def _record_source_text(motion: GroundMotion) -> str:
     """Return event, station and vertical component in a line."""
     info = motion.metadata
     if info is None:
@@ -152,74 +157,76 @@ def _source(motion: GroundMotion) -> str:
     return ", ".join(each for each in (event, size, info.station or "", info.component or "", vertical) if each)
 
 
-def kind_of(structure: Any) -> str:
+def structure_kind_text(structure: Any) -> str:
     """Return the kind of a structure in words: "Frame", "Cantilever with tip mass, restrained"."""
     if isinstance(structure, RockingProperties):
         return "Structure given by its rocking properties" if structure.n_modes else "Rigid block"
     around: list[str] = []
     while hasattr(structure, "structure"):  # restrained or eccentric
-        around.append(_class_name(structure).lower())
+        around.append(_class_name_in_words(structure).lower())
         structure = structure.structure
-    return ", ".join([_class_name(structure), *around])
+    return ", ".join([_class_name_in_words(structure), *around])
 
 
-def structure_facts(p: RockingProperties) -> list[Fact]:
+def structure_facts(p: RockingProperties) -> list[ReportFact]:
     """Return the parameters of a structure."""
     size, unit = moment_unit(p.resisting_moment)
     height = float(p.effective_height[0]) if p.n_modes else p.l0r / p.m_tot
     pivot = p.weaker_pivot
     slope = "h*_1/B" if p.n_modes else "h/B"
-    base = [] if p.base_mass is None else [fact("Mass of the base m_0", p.base_mass, "t", "base_mass", 1e3)]
-    top = [] if p.top_height is None else [fact("Height of the top", p.top_height, "m", "top_height")]
-    shift = [fact("Eccentricity e", p.eccentricity, "m", "eccentricity")] if p.eccentricity else []
-    held = [fact("Prestress of the tendons", p.prestress, "kN", "prestress", 1e3)] if p.tendons else []
+    base = [] if p.base_mass is None else [value_fact("Mass of the base m_0", p.base_mass, "t", "base_mass", 1e3)]
+    top = [] if p.top_height is None else [value_fact("Height of the top", p.top_height, "m", "top_height")]
+    shift = [value_fact("Eccentricity e", p.eccentricity, "m", "eccentricity")] if p.eccentricity else []
+    held = [value_fact("Prestress of the tendons", p.prestress, "kN", "prestress", 1e3)] if p.tendons else []
     return [
-        Fact("Modes", Cell(str(p.n_modes) if p.n_modes else "none (rigid)", p.n_modes, "n_modes")),
-        fact("Total mass m_tot", p.m_tot, "t", "m_tot", 1e3, 4),
+        ReportFact("Modes", ReportCell(str(p.n_modes) if p.n_modes else "none (rigid)", p.n_modes, "n_modes")),
+        value_fact("Total mass m_tot", p.m_tot, "t", "m_tot", 1e3, 4),
         *base,
         *top,
-        fact("Half width of the base B", p.half_width, "m", "half_width"),
+        value_fact("Half width of the base B", p.half_width, "m", "half_width"),
         *shift,
-        fact(f"Slenderness {slope}", height / p.half_width, "", "slenderness"),
-        *_limits(p),
-        fact("Inertia about a pivot I_θ", pivot.i_theta, "t m²", "i_theta", 1e3, 4),
+        value_fact(f"Slenderness {slope}", height / p.half_width, "", "slenderness"),
+        *_rotation_limit_facts(p),
+        value_fact("Inertia about a pivot I_θ", pivot.i_theta, "t m²", "i_theta", 1e3, 4),
         *held,
-        fact("Resisting moment M_r", p.resisting_moment, unit, "resisting_moment", size, 4),
-        fact("Uplift at a_lift = M_r/L_0", p.uplift_acceleration, "g", "uplift_acceleration", GRAVITY),
+        value_fact("Resisting moment M_r", p.resisting_moment, unit, "resisting_moment", size, 4),
+        value_fact("Uplift at a_lift = M_r/L_0", p.uplift_acceleration, "g", "uplift_acceleration", GRAVITY),
     ]
 
 
-def _limits(p: RockingProperties) -> list[Fact]:
+def _rotation_limit_facts(p: RockingProperties) -> list[ReportFact]:
     """Return θ_nom, and α where the static moment vanishes at all; about both edges if they differ."""
-    height, found = "h*_1" if p.n_modes else "h", list[Fact]()
+    height, found = "h*_1" if p.n_modes else "h", list[ReportFact]()
     for pivot, name, width in zip(p.pivots, ("right", "left"), ("B − e", "B + e"), strict=False):
         one = p.symmetric
         label = "θ_nom" if one else f"θ_nom {name}"
         arm = "B" if not p.eccentricity else f"({width})"
         nominal, end = pivot.nominal_overturning_rotation, "" if one else f"_{name}"
-        found.append(fact(f"{label} = 0.7 atan({arm}/{height})", nominal, "mrad", f"nominal{end}", 1e-3))
+        found.append(value_fact(f"{label} = 0.7 atan({arm}/{height})", nominal, "mrad", f"nominal{end}", 1e-3))
         if math.isfinite(pivot.balance_rotation):
             slope = "(L_0 g)" if not p.tendons else "(L_0 g − k_t)"
             found.append(
-                fact(f"α{'' if one else f' {name}'} = M_r/{slope}", pivot.balance_rotation, "mrad", f"alpha{end}", 1e-3)
+                value_fact(
+                    f"α{'' if one else f' {name}'} = M_r/{slope}", pivot.balance_rotation, "mrad", f"alpha{end}", 1e-3
+                )
             )
     return found
 
 
-def mode_table(p: RockingProperties) -> Table | None:
+def mode_table(p: RockingProperties) -> ReportTable | None:
     """Return the first modes, on a fixed base and while uplifted; None for a rigid block."""
     if not p.n_modes:
         return None
-    uplifted = _uplifted(p)
+    uplifted = _uplifted_modes_of_structure(p)
     above = p.m_tot if p.base_mass is None else p.m_tot - p.base_mass
     shares = p.effective_mass / above
-    rows: list[list[Cell]] = []
+    rows: list[list[ReportCell]] = []
     for n in range(min(p.n_modes, MAX_MODES)):
         beyond = None if uplifted is None else 2.0 * math.pi / float(uplifted.omega[n])
         damped = None if uplifted is None else float(uplifted.damping_ratio[n])
         rows.append(
             [
-                Cell(str(n + 1)),
+                ReportCell(str(n + 1)),
                 value_cell(2.0 * math.pi / float(p.omega[n]), "period"),
                 value_cell(beyond, "uplifted_period"),
                 value_cell(float(shares[n]), "mass_share", 0.01),
@@ -228,28 +235,28 @@ def mode_table(p: RockingProperties) -> Table | None:
                 value_cell(damped, "uplifted_damping_ratio", 0.01),
             ]
         )
-    total = Cell(f"1–{p.n_modes}" if p.n_modes > MAX_MODES else "Σ")
+    total = ReportCell(f"1–{p.n_modes}" if p.n_modes > MAX_MODES else "Σ")
     if p.n_modes > 1:
-        empty = Cell("")
+        empty = ReportCell("")
         rows.append([total, empty, empty, value_cell(float(np.sum(shares)), "mass_share", 0.01), empty, empty, empty])
     share = "m*_n/m_tot" if p.base_mass is None else "m*_n/Σm"
     heads = [("mode", ""), ("T_n", "s"), ("T*_n", "s"), (share, "%"), ("h*_n", "m"), ("ζ_n", "%"), ("ζ*_n", "%")]
-    return Table(heads, rows)
+    return ReportTable(heads, rows)
 
 
-def _uplifted(p: RockingProperties) -> UpliftedModes | None:
+def _uplifted_modes_of_structure(p: RockingProperties) -> UpliftedModes | None:
     try:
         return uplifted_modes(p) if p.n_modes <= _MOST_UPLIFTED else None
     except (InputError, SolverError):
         return None
 
 
-def _class_name(structure: Any) -> str:
+def _class_name_in_words(structure: Any) -> str:
     """Return the name of a class in words."""
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(structure).__name__).capitalize()
 
 
-def initial_state(history: History) -> str:
+def initial_state_text(history: History) -> str:
     """Return the rotation, the modal displacements and their velocities at the start, as far as they are not zero."""
     layout, state = history.model.layout, history.states[:1]
     # On springs the base may rest at an angle, from which the rotation of an initial state counts.
@@ -261,7 +268,7 @@ def initial_state(history: History) -> str:
         *((f"D_{k + 1}", 1e3 * layout.of(state, k)[0], "mm") for k in range(n)),
         *((f"D′_{k + 1}", layout.of(state, n + k)[0], "m/s") for k in range(n)),
     ]
-    shown = [f"{name} = {rounded(float(value))} {unit}" for name, value, unit in values if np.abs(value) > 1e-12]
+    shown = [f"{name} = {rounded_number(float(value))} {unit}" for name, value, unit in values if np.abs(value) > 1e-12]
     return ", ".join([*shown[: 2 + MAX_COORDINATES], *(["…"] if len(shown) > 2 + MAX_COORDINATES else [])])
 
 
@@ -277,7 +284,7 @@ def assumption_lines(report: ReportedRuns) -> list[tuple[str, str]]:
     """
     found: dict[str, dict[str, list[str]]] = {head: {} for head in (_LAW, "Hysteresis", "Ground", "Friction", _INITIAL)}
     for label, history in zip(report.labels, report.histories, strict=True):
-        for head, text in _lines_of(history):
+        for head, text in _assumption_lines_of_run(history):
             found[head].setdefault(text, []).append(label)
     lines: list[tuple[str, str]] = []
     for head, texts in found.items():
@@ -287,57 +294,59 @@ def assumption_lines(report: ReportedRuns) -> list[tuple[str, str]]:
     return lines
 
 
-def _lines_of(history: History) -> list[tuple[str, str]]:
+def _assumption_lines_of_run(history: History) -> list[tuple[str, str]]:
     """Return the assumptions of one run."""
     model = history.model
-    lines = [(_LAW, _law(model.law))] if follows_law(model) else []
+    lines = [(_LAW, _impact_law_text(model.law))] if follows_impact_law(model) else []
     if model.bouc_wen is not None:
-        lines.append(("Hysteresis", _hysteresis(model.bouc_wen)))
-    lines += _ground(model)
-    start = initial_state(history)
+        lines.append(("Hysteresis", _hysteresis_text(model.bouc_wen)))
+    lines += _ground_lines(model)
+    start = initial_state_text(history)
     return [*lines, *([(_INITIAL, start)] if start else [])]
 
 
-def follows_law(model: Any) -> bool:
+def follows_impact_law(model: Any) -> bool:
     """Whether an impact law ends the rocking of a model: on springs none does."""
     return model.lifts and model.springs is None
 
 
-def _law(law: Any) -> str:
+def _impact_law_text(law: Any) -> str:
     if isinstance(law, Restitution):
-        return f"Restitution, e = {rounded(law.e)}"
+        return f"Restitution, e = {rounded_number(law.e)}"
     if isinstance(law, SidedRestitution):
-        right, left = rounded(law.right.e), rounded(law.left.e)
+        right, left = rounded_number(law.right.e), rounded_number(law.left.e)
         return f"Restitution, e = {right} from the right and {left} from the left edge"
     return getattr(law, "description", type(law).__name__)
 
 
-def _hysteresis(b: Any) -> str:
+def _hysteresis_text(b: Any) -> str:
     return (
-        f"Bouc–Wen, D_y = {rounded(1e3 * b.yield_displacement)} mm, post-yield ratio {b.post_yield_ratio:g}, "
+        f"Bouc–Wen, D_y = {rounded_number(1e3 * b.yield_displacement)} mm, post-yield ratio {b.post_yield_ratio:g}, "
         f"γ = {b.gamma:g}, β = {b.beta:g}, n = {b.exponent:g}"
     )
 
 
-def _ground(model: Any) -> list[tuple[str, str]]:
+def _ground_lines(model: Any) -> list[tuple[str, str]]:
     """Return the ground of a model; nothing for rigid ground on which it does not slide."""
     lines: list[tuple[str, str]] = []
     springs, mass = model.springs, model.properties.m_tot
     if springs is not None:
         ratio = 0.5 * springs.total_damping / math.sqrt(springs.total_stiffness * mass)
         inertia = model.inertia - model.properties.translational_inertia
-        turns = f", I_b = {rounded(inertia / 1e3)} t m²" if inertia > 1e-9 * model.inertia else ""
+        turns = f", I_b = {rounded_number(inertia / 1e3)} t m²" if inertia > 1e-9 * model.inertia else ""
         lines.append(
             (
                 "Ground",
-                f"{springs.n} springs without tension, x = {rounded(float(springs.positions[0]))} to "
-                f"{rounded(float(springs.positions[-1]))} m, Σk = {rounded(springs.total_stiffness / 1e6)} MN/m, "
-                f"Σk x² = {rounded(springs.rotational_stiffness / 1e6)} MN m/rad, Σc = "
-                f"{rounded(springs.total_damping / 1e3)} kN s/m ({rounded(100.0 * ratio)} % of critical in heave)"
+                f"{springs.n} springs without tension, x = {rounded_number(float(springs.positions[0]))} to "
+                f"{rounded_number(float(springs.positions[-1]))} m, Σk = "
+                f"{rounded_number(springs.total_stiffness / 1e6)} MN/m, "
+                f"Σk x² = {rounded_number(springs.rotational_stiffness / 1e6)} MN m/rad, Σc = "
+                f"{rounded_number(springs.total_damping / 1e3)} kN s/m ({rounded_number(100.0 * ratio)} % of critical "
+                "in heave)"
                 f"{turns}",
             )
         )
-    friction = ground_friction(model)
+    friction = ground_friction_range(model)
     if friction is not None:
         least, most = friction
         span = f"{least:.4g}" if least == most else f"{least:.4g} to {most:.4g}"
@@ -345,7 +354,7 @@ def _ground(model: Any) -> list[tuple[str, str]]:
     return lines
 
 
-def ground_friction(model: Any) -> tuple[float, float] | None:
+def ground_friction_range(model: Any) -> tuple[float, float] | None:
     """Return the least and the largest finite coefficient at which a base slides, or None if it cannot."""
     friction = getattr(model, "friction", None)
     if friction is None or model.layout.slip < 0:
@@ -354,7 +363,7 @@ def ground_friction(model: Any) -> tuple[float, float] | None:
     return float(values.min()), float(values.max())
 
 
-def element_table(report: ReportedRuns) -> Table | None:
+def element_table(report: ReportedRuns) -> ReportTable | None:
     """Return the elements of the base with their largest forces and elongations among the runs that lift.
 
     Returns None if there are none, or no run lifts.
@@ -364,26 +373,26 @@ def element_table(report: ReportedRuns) -> Table | None:
     if not elements or not runs:
         return None
     heads = [("element", ""), ("x", "m"), ("properties", ""), ("F_max", "kN"), ("δ_max", "mm"), ("state", "")]
-    rows = [_row(k, elements, runs) for k in range(min(len(elements), MAX_ELEMENTS))]
+    rows = [_element_table_row(k, elements, runs) for k in range(min(len(elements), MAX_ELEMENTS))]
     if len(elements) > MAX_ELEMENTS:
-        blank = Cell("")
-        rows.append([Cell(f"and {len(elements) - MAX_ELEMENTS} more"), *[blank] * 5])
-    return Table(heads, rows)
+        blank = ReportCell("")
+        rows.append([ReportCell(f"and {len(elements) - MAX_ELEMENTS} more"), *[blank] * 5])
+    return ReportTable(heads, rows)
 
 
-def _row(place: int, elements: Sequence[BaseElement], runs: Sequence[Response]) -> list[Cell]:
+def _element_table_row(place: int, elements: Sequence[BaseElement], runs: Sequence[Response]) -> list[ReportCell]:
     element = elements[place]
     force = max(float(run.max_element_force[place]) for run in runs)
     elongation = max(float(run.max_element_elongation[place]) for run in runs)
     yielded = any(bool(run.element_yielded[place]) for run in runs)
     name, properties, state = _describe_element(element)
     return [
-        Cell(f"{place + 1} {name}"),
+        ReportCell(f"{place + 1} {name}"),
         value_cell(element.position, "position"),
-        Cell(properties),
+        ReportCell(properties),
         value_cell(force, f"max_element_force_{place + 1}", 1e3),
         value_cell(elongation, f"max_element_elongation_{place + 1}", 1e-3),
-        Cell(state[yielded], None, "", yielded and isinstance(element, Tendon)),
+        ReportCell(state[yielded], None, "", yielded and isinstance(element, Tendon)),
     ]
 
 
@@ -393,16 +402,20 @@ def _describe_element(element: BaseElement) -> tuple[str, str, tuple[str, str]]:
         values = {name: value for name, value in law_parameters(element).items() if name != "position"}
         return element.words, ", ".join(f"{name} = {shown(value)}" for name, value in values.items()), ("", "yielded")
     if isinstance(element, ViscousDamper):
-        return "viscous damper", f"c = {rounded(element.coefficient / 1e3)} kN s/m", ("", "")
+        return "viscous damper", f"c = {rounded_number(element.coefficient / 1e3)} kN s/m", ("", "")
     if isinstance(element, FrictionDamper):
-        return "friction damper", f"F_0 = {rounded(element.force / 1e3)} kN", ("did not slide", "slid")
-    stiffness = f"k = {rounded(element.stiffness / 1e6)} MN/m"
-    limit = "" if element.yield_force is None else f", F_y = {rounded(element.yield_force / 1e3)} kN"
+        return "friction damper", f"F_0 = {rounded_number(element.force / 1e3)} kN", ("did not slide", "slid")
+    stiffness = f"k = {rounded_number(element.stiffness / 1e6)} MN/m"
+    limit = "" if element.yield_force is None else f", F_y = {rounded_number(element.yield_force / 1e3)} kN"
     after = "" if element.post_yield_ratio is None else f", post-yield ratio {element.post_yield_ratio:.4g}"
-    breaks = "" if element.rupture_elongation is None else f", breaks at {rounded(1e3 * element.rupture_elongation)} mm"
+    breaks = (
+        ""
+        if element.rupture_elongation is None
+        else f", breaks at {rounded_number(1e3 * element.rupture_elongation)} mm"
+    )
     if isinstance(element, Tendon):
         state = ("elastic", "beyond F_y" if element.post_yield_ratio is None else "yielded")
-        start = f"F_0 = {rounded(element.initial_force / 1e3)} kN, "
+        start = f"F_0 = {rounded_number(element.initial_force / 1e3)} kN, "
         return "tendon", start + stiffness + limit + after + breaks, state
     only = ", tension only" if element.tension_only else ""
     return "yielding dissipator", stiffness + limit + after + breaks + only, ("elastic", "yielded")
@@ -418,7 +431,7 @@ def largest_rotations(run: Response, history: History) -> dict[int, float]:
     return found
 
 
-def nominal_share(p: RockingProperties, run: Response, history: History) -> float:
+def nominal_rotation_share(p: RockingProperties, run: Response, history: History) -> float:
     """Return the largest |θ| over the nominal limit θ_nom = 0.7 atan(b/h*_1), to the side on which it is larger."""
     sides = largest_rotations(run, history).items()
     return max(value / p.pivot(side).nominal_overturning_rotation for side, value in sides)
@@ -426,12 +439,12 @@ def nominal_share(p: RockingProperties, run: Response, history: History) -> floa
 
 def overturning_margin(p: RockingProperties, run: Response, history: History) -> float:
     """Return the smaller of the nominal limits over the rotation to the same side; infinite without rotation."""
-    share = nominal_share(p, run, history)
+    share = nominal_rotation_share(p, run, history)
     return 1.0 / share if share else math.inf
 
 
 @dataclass(frozen=True)
-class _Column:
+class _PeakColumn:
     """A column of the table: its heading, its unit and the size of that, and the value of a run."""
 
     name: str
@@ -441,22 +454,22 @@ class _Column:
     value: Callable[[Response], float | None]
 
 
-def peak_table(report: ReportedRuns) -> Table:
+def peak_table(report: ReportedRuns) -> ReportTable:
     """Return the largest values of every run, with columns for the motion of its base on the ground."""
-    columns = _columns(report)
-    rows: list[list[Cell]] = []
+    columns = _peak_columns(report)
+    rows: list[list[ReportCell]] = []
     for label, run, history in zip(report.labels, report.responses, report.histories, strict=True):
         fell = run.status == "overturned"
         passed = run.nominal_overturning
         words = STATUS[run.status] if history.model.lifts else "fixed base"
-        status = Cell(f"{words} {DAGGER}" if fell else words, None, "status", passed)
+        status = ReportCell(f"{words} {DAGGER}" if fell else words, None, "status", passed)
         cells = [value_cell(column.value(run), column.of, column.size) for column in columns]
-        rows.append([Cell(label), status, *cells, Cell(str(run.n_uplifts), run.n_uplifts, "n_uplifts")])
+        rows.append([ReportCell(label), status, *cells, ReportCell(str(run.n_uplifts), run.n_uplifts, "n_uplifts")])
     heads = [("model", ""), ("status", ""), *((column.name, column.unit) for column in columns), ("uplifts", "")]
-    return Table(heads, rows)
+    return ReportTable(heads, rows)
 
 
-def _columns(report: ReportedRuns) -> list[_Column]:
+def _peak_columns(report: ReportedRuns) -> list[_PeakColumn]:
     runs = report.responses
     models: list[RockingModel] = [history.model for history in report.histories]
     size, unit = moment_unit(max(run.max_base_moment for run in runs))
@@ -465,39 +478,39 @@ def _columns(report: ReportedRuns) -> list[_Column]:
         return lambda run: float(getattr(run, name))
 
     columns = [
-        _Column("θ_max", "mrad", 1e-3, "max_rotation", peak("max_rotation")),
-        _Column(
+        _PeakColumn("θ_max", "mrad", 1e-3, "max_rotation", peak("max_rotation")),
+        _PeakColumn(
             "θ_max/θ_nom",
             "%",
             0.01,
             "nominal_share",
-            lambda run: _share(report, run),
+            lambda run: _nominal_share_of_run(report, run),
         ),
-        _Column("u_top relative", "mm", 1e-3, "max_top_displacement", peak("max_top_displacement")),
-        _Column("u_top total", "mm", 1e-3, "max_total_top_displacement", peak("max_total_top_displacement")),
-        _Column("V_b", "kN", 1e3, "max_base_shear", peak("max_base_shear")),
-        _Column("M_b", unit, size, "max_base_moment", peak("max_base_moment")),
+        _PeakColumn("u_top relative", "mm", 1e-3, "max_top_displacement", peak("max_top_displacement")),
+        _PeakColumn("u_top total", "mm", 1e-3, "max_total_top_displacement", peak("max_total_top_displacement")),
+        _PeakColumn("V_b", "kN", 1e3, "max_base_shear", peak("max_base_shear")),
+        _PeakColumn("M_b", unit, size, "max_base_moment", peak("max_base_moment")),
     ]
     if any(run.floors is not None for run in runs):
-        columns.append(_Column("a_floor", "g", GRAVITY, "floor_acceleration", _floor_acceleration))
+        columns.append(_PeakColumn("a_floor", "g", GRAVITY, "floor_acceleration", _peak_floor_acceleration))
     columns += [
-        _Column("ΣF_x", "kN", 1e3, "max_horizontal_reaction", peak("max_horizontal_reaction")),
-        _Column("N_min", "kN", 1e3, "min_vertical_reaction", peak("min_vertical_reaction")),
+        _PeakColumn("ΣF_x", "kN", 1e3, "max_horizontal_reaction", peak("max_horizontal_reaction")),
+        _PeakColumn("N_min", "kN", 1e3, "min_vertical_reaction", peak("min_vertical_reaction")),
     ]
     if any(model.layout.slip >= 0 for model in models):
-        columns.append(_Column("slip", "mm", 1e-3, "max_slip", peak("max_slip")))
-        columns.append(_Column("slip left", "mm", 1e-3, "residual_slip", peak("residual_slip")))
+        columns.append(_PeakColumn("slip", "mm", 1e-3, "max_slip", peak("max_slip")))
+        columns.append(_PeakColumn("slip left", "mm", 1e-3, "residual_slip", peak("residual_slip")))
     if any(model.layout.heave >= 0 for model in models):
-        columns.append(_Column("edge up", "mm", 1e-3, "max_edge_uplift", peak("max_edge_uplift")))
-        columns.append(_Column("edge down", "mm", 1e-3, "max_edge_settlement", peak("max_edge_settlement")))
+        columns.append(_PeakColumn("edge up", "mm", 1e-3, "max_edge_uplift", peak("max_edge_uplift")))
+        columns.append(_PeakColumn("edge down", "mm", 1e-3, "max_edge_settlement", peak("max_edge_settlement")))
     return columns
 
 
-def _share(report: ReportedRuns, run: Response) -> float | None:
+def _nominal_share_of_run(report: ReportedRuns, run: Response) -> float | None:
     if run.status == "overturned" or run.history is None:
         return None
-    return nominal_share(report.properties, run, run.history)
+    return nominal_rotation_share(report.properties, run, run.history)
 
 
-def _floor_acceleration(run: Response) -> float | None:
+def _peak_floor_acceleration(run: Response) -> float | None:
     return None if run.floors is None else float(np.max(run.floors.floor_acceleration))

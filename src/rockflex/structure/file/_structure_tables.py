@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias, get_args
 from pydantic import Field, StringConstraints
 
 from rockflex._errors import InputError
-from rockflex._schema import PLAIN, WHOLE, AspectRatio, BaseMass, FrameKeys, Key, Period, each
+from rockflex._schema import PLAIN, WHOLE, AspectRatio, BaseMass, FrameKeys, Period, SchemaKey, one_for_each
 from rockflex.modal import RockingProperties
 from rockflex.structure import (
     Beam,
@@ -25,7 +25,7 @@ from rockflex.structure import (
     rigid_block,
 )
 from rockflex.structure._structure import Structure
-from rockflex.structure.file._table import Table
+from rockflex.structure.file._toml_table import TomlTable
 
 Shape = Literal["rectangle", "box", "circle", "tube"]
 _SIZES: dict[str, tuple[Callable[..., Section], tuple[str, ...]]] = {
@@ -35,29 +35,31 @@ _SIZES: dict[str, tuple[Callable[..., Section], tuple[str, ...]]] = {
     "tube": (Section.tube, ("diameter", "wall")),
 }
 _SHAPES = ", ".join(f'"{shape}"' for shape in get_args(Shape))
-_WIDTH = Key("the width perpendicular to the plane of rocking", "m", low=1e-3, high=500.0)
-_DEPTH = Key("the depth in the plane of rocking", "m", low=1e-3, high=500.0)
-_DIAMETER = Key("the outer diameter", "m", low=1e-3, high=500.0)
-_WALL = Key("the thickness of the wall", "m", low=1e-4, high=100.0)
-_MODULUS = Key("Young's modulus of the material", "N/m²")
-_DENSITY = Key("the density of the material", "kg/m³", low=1.0, high=1e5)
-_FACTOR = Key("the effective over the uncracked bending stiffness", low=1e-3, high=1.0)
+_WIDTH = SchemaKey("the width perpendicular to the plane of rocking", "m", low=1e-3, high=500.0)
+_DEPTH = SchemaKey("the depth in the plane of rocking", "m", low=1e-3, high=500.0)
+_DIAMETER = SchemaKey("the outer diameter", "m", low=1e-3, high=500.0)
+_WALL = SchemaKey("the thickness of the wall", "m", low=1e-4, high=100.0)
+_MODULUS = SchemaKey("Young's modulus of the material", "N/m²")
+_DENSITY = SchemaKey("the density of the material", "kg/m³", low=1.0, high=1e5)
+_FACTOR = SchemaKey("the effective over the uncracked bending stiffness", low=1e-3, high=1.0)
 Vector = list[float]
 Matrix = list[list[float]]
-HalfWidth = Annotated[float, Key("half the width of the base", "m", low=1e-3, high=1000.0)]
-Damping = Annotated[float | Vector, Key("the fraction of critical damping", form=each("mode"), low=0.0, high=0.99)]
-Height = Annotated[float, Key("the height above the base", "m", low=0.01, high=2000.0)]
-Modes = Annotated[int, Key("how many modes to take", form=WHOLE, low=1, high=100, label="Modes")]
+HalfWidth = Annotated[float, SchemaKey("half the width of the base", "m", low=1e-3, high=1000.0)]
+Damping = Annotated[
+    float | Vector, SchemaKey("the fraction of critical damping", form=one_for_each("mode"), low=0.0, high=0.99)
+]
+Height = Annotated[float, SchemaKey("the height above the base", "m", low=0.01, high=2000.0)]
+Modes = Annotated[int, SchemaKey("how many modes to take", form=WHOLE, low=1, high=100, label="Modes")]
 _PROFILES = ("mass", "bending_stiffness", "shear_stiffness", "rotary_inertia")
-_EACH_HEIGHT = each("height in z")
+_EACH_HEIGHT = one_for_each("height in z")
 Index = Annotated[str, StringConstraints(pattern=r"^[0-9]+$")]
 _OR_FILE = "{}, or the path of a .npz, .mtx or .csv file"
 
 
-class PartTable(Table):
+class PartTable(TomlTable):
     """A part of a composite section, and the place of its centroid."""
 
-    shape: Annotated[Shape, Key(f"one of {_SHAPES}", form=PLAIN)]
+    shape: Annotated[Shape, SchemaKey(f"one of {_SHAPES}", form=PLAIN)]
     width: Annotated[float | None, _WIDTH] = None
     depth: Annotated[float | None, _DEPTH] = None
     diameter: Annotated[float | None, _DIAMETER] = None
@@ -66,15 +68,15 @@ class PartTable(Table):
     density: Annotated[float, _DENSITY]
     stiffness_factor: Annotated[float, _FACTOR] = 1.0
     offset: Annotated[
-        float, Key("the distance of its centroid from any axis common to all parts, along the depth", "m")
+        float, SchemaKey("the distance of its centroid from any axis common to all parts, along the depth", "m")
     ] = 0.0
 
 
-class SectionTable(Table):
+class SectionTable(TomlTable):
     """The arguments of one of the constructors of `Section`."""
 
     shape: Annotated[
-        Literal[Shape, "composite"], Key(f'one of {_SHAPES} and "composite" (of several parts)', form=PLAIN)
+        Literal[Shape, "composite"], SchemaKey(f'one of {_SHAPES} and "composite" (of several parts)', form=PLAIN)
     ]
     width: Annotated[float | None, _WIDTH] = None
     depth: Annotated[float | None, _DEPTH] = None
@@ -84,7 +86,7 @@ class SectionTable(Table):
     density: Annotated[float | None, _DENSITY] = None
     stiffness_factor: Annotated[float, _FACTOR] = 1.0
     parts: Annotated[
-        list[PartTable] | None, Key("a list of tables, one of each part of a composite section", form=PLAIN)
+        list[PartTable] | None, SchemaKey("a list of tables, one of each part of a composite section", form=PLAIN)
     ] = None
 
     def build(self) -> Section:
@@ -111,11 +113,11 @@ class SectionTable(Table):
 
 
 SectionKey = Annotated[
-    SectionTable | None, Key("the cross-section in place of bending stiffness and mass", form="a table of {}")
+    SectionTable | None, SchemaKey("the cross-section in place of bending stiffness and mass", form="a table of {}")
 ]
 
 
-def section_of(table: SectionTable | None) -> dict[str, Any]:
+def section_argument(table: SectionTable | None) -> dict[str, Any]:
     """Return the argument `section` of a structure; none without a table."""
     return {} if table is None else {"section": table.build()}
 
@@ -145,7 +147,7 @@ Built: TypeAlias = Structure | RockingProperties
 """The result of building a table."""
 
 
-class StructureTable(Table):
+class StructureTable(TomlTable):
     """A table that is a structure; `title` is its name in the list of a form."""
 
     makes: ClassVar[Callable[..., Built]]
@@ -181,25 +183,26 @@ class FrameTable(FrameKeys, StructureTable):
     title = "Frame of equal stories"
 
 
-class LumpedTable(StructureTable):
+class LumpedStructureTable(StructureTable):
     """The arguments of `LumpedStructure`."""
 
     makes = LumpedStructure
     title = "Lumped masses"
 
     masses: Annotated[
-        Vector | Matrix, Key("a list of masses in kg, from the lowest up, or the mass matrix", "kg", form=PLAIN)
+        Vector | Matrix, SchemaKey("a list of masses in kg, from the lowest up, or the mass matrix", "kg", form=PLAIN)
     ]
-    stiffness: Annotated[Matrix, Key("the stiffness matrix in N/m, a list of rows", "N/m", form=PLAIN)]
+    stiffness: Annotated[Matrix, SchemaKey("the stiffness matrix in N/m, a list of rows", "N/m", form=PLAIN)]
     heights: Annotated[
-        Vector, Key("a list of the heights of the masses above the base in m, from the lowest up", "m", form=PLAIN)
+        Vector,
+        SchemaKey("a list of the heights of the masses above the base in m, from the lowest up", "m", form=PLAIN),
     ]
     base_mass: BaseMass
     half_width: HalfWidth
     damping_ratio: Damping
 
 
-class PropertiesTable(StructureTable):
+class RockingPropertiesTable(StructureTable):
     """The arguments of `RockingProperties`, without its floors."""
 
     makes = RockingProperties
@@ -207,26 +210,32 @@ class PropertiesTable(StructureTable):
 
     omega: Annotated[
         Vector,
-        Key("a list of circular frequencies in rad/s, one a mode", "rad/s", form=PLAIN, low=1e-3, high=1e6, label="ω"),
+        SchemaKey(
+            "a list of circular frequencies in rad/s, one a mode", "rad/s", form=PLAIN, low=1e-3, high=1e6, label="ω"
+        ),
     ]
-    effective_mass: Annotated[Vector, Key("a list of effective masses m*_n in kg", "kg", form=PLAIN)]
-    effective_height: Annotated[Vector, Key("a list of effective heights h*_n in m", "m", form=PLAIN)]
-    top_ordinate: Annotated[Vector, Key("a list of the top's displacement for a unit of each mode", form=PLAIN)]
-    i_theta: Annotated[float, Key("the moment of inertia about a pivot", "kg m²", label="I_θ")]
-    l0r: Annotated[float, Key("the sum of m_i h_i", "kg m", label="L₀ʳ")]
-    m_tot: Annotated[float, Key("the total mass with the base", "kg", label="Total mass")]
+    effective_mass: Annotated[Vector, SchemaKey("a list of effective masses m*_n in kg", "kg", form=PLAIN)]
+    effective_height: Annotated[Vector, SchemaKey("a list of effective heights h*_n in m", "m", form=PLAIN)]
+    top_ordinate: Annotated[Vector, SchemaKey("a list of the top's displacement for a unit of each mode", form=PLAIN)]
+    i_theta: Annotated[float, SchemaKey("the moment of inertia about a pivot", "kg m²", label="I_θ")]
+    l0r: Annotated[float, SchemaKey("the sum of m_i h_i", "kg m", label="L₀ʳ")]
+    m_tot: Annotated[float, SchemaKey("the total mass with the base", "kg", label="Total mass")]
     half_width: HalfWidth
     zeta: Annotated[
         float | Vector,
-        Key("the fraction of critical damping", form=each("mode"), low=0.0, high=0.99, label="Damping ratio"),
+        SchemaKey(
+            "the fraction of critical damping", form=one_for_each("mode"), low=0.0, high=0.99, label="Damping ratio"
+        ),
     ]
     translational_inertia: Annotated[
-        float | None, Key("the sum of m_i h_i² (default: i_theta - m_tot half_width²)", "kg m²")
+        float | None, SchemaKey("the sum of m_i h_i² (default: i_theta - m_tot half_width²)", "kg m²")
     ] = None
     top_height: Annotated[
-        float | None, Key("the height of the top, for its total displacement, in m", "m", form=PLAIN)
+        float | None, SchemaKey("the height of the top, for its total displacement, in m", "m", form=PLAIN)
     ] = None
-    base_mass: Annotated[float | None, Key("the mass of the base, a part of m_tot", "kg", low=0.0, high=1e12)] = None
+    base_mass: Annotated[float | None, SchemaKey("the mass of the base, a part of m_tot", "kg", low=0.0, high=1e12)] = (
+        None
+    )
 
 
 class TaperedTowerTable(StructureTable):
@@ -236,14 +245,15 @@ class TaperedTowerTable(StructureTable):
     title = "Tapered tower"
 
     height: Height
-    base_radius: Annotated[float, Key("the outer radius at the base, half its width", "m", low=1e-2, high=500.0)]
-    top_radius: Annotated[float, Key("the outer radius at the top", "m", low=1e-2, high=500.0)]
-    wall: Annotated[float, Key("the thickness of the wall", "m", low=1e-3, high=100.0)]
-    density: Annotated[float, Key("the density of the material", "kg/m³", low=1.0, high=1e5)]
-    elastic_modulus: Annotated[float, Key("Young's modulus of the material", "N/m²")]
+    base_radius: Annotated[float, SchemaKey("the outer radius at the base, half its width", "m", low=1e-2, high=500.0)]
+    top_radius: Annotated[float, SchemaKey("the outer radius at the top", "m", low=1e-2, high=500.0)]
+    wall: Annotated[float, SchemaKey("the thickness of the wall", "m", low=1e-3, high=100.0)]
+    density: Annotated[float, SchemaKey("the density of the material", "kg/m³", low=1.0, high=1e5)]
+    elastic_modulus: Annotated[float, SchemaKey("Young's modulus of the material", "N/m²")]
     damping_ratio: Damping
     method: Annotated[
-        Literal["ritz", "fe"], Key('"ritz" (shapes over the whole height) or "fe" (2000 finite elements)', form=PLAIN)
+        Literal["ritz", "fe"],
+        SchemaKey('"ritz" (shapes over the whole height) or "fe" (2000 finite elements)', form=PLAIN),
     ] = "ritz"
     n_modes: Modes = 5
 
@@ -254,22 +264,26 @@ class CantileverTable(StructureTable):
     makes = CantileverWithTipMass
     title = "Cantilever with a mass at its tip"
 
-    height: Annotated[float, Key("the height of the body at the tip above the base", "m", low=0.01, high=2000.0)]
-    tip_mass: Annotated[float, Key("the mass of the body at the tip", "kg")]
+    height: Annotated[float, SchemaKey("the height of the body at the tip above the base", "m", low=0.01, high=2000.0)]
+    tip_mass: Annotated[float, SchemaKey("the mass of the body at the tip", "kg")]
     bending_stiffness: Annotated[
-        float | None, Key("EI of the column (unless a section gives it)", "N m²", label="Bending stiffness")
+        float | None, SchemaKey("EI of the column (unless a section gives it)", "N m²", label="Bending stiffness")
     ] = None
     base_mass: BaseMass
     half_width: HalfWidth
     damping_ratio: Damping
-    mass_per_length: Annotated[float, Key("the mass of the column per metre", "kg/m")] = 0.0
-    tip_inertia: Annotated[float, Key("the rotary inertia of the body at the tip about its own axis", "kg m²")] = 0.0
-    n_modes: Annotated[int | None, Key("how many modes to take", form=WHOLE, low=1, high=100, label="Modes")] = None
+    mass_per_length: Annotated[float, SchemaKey("the mass of the column per metre", "kg/m")] = 0.0
+    tip_inertia: Annotated[
+        float, SchemaKey("the rotary inertia of the body at the tip about its own axis", "kg m²")
+    ] = 0.0
+    n_modes: Annotated[int | None, SchemaKey("how many modes to take", form=WHOLE, low=1, high=100, label="Modes")] = (
+        None
+    )
     section: SectionKey = None
 
     def arguments(self, folder: Path) -> dict[str, Any]:
         """Return the arguments with the section built."""
-        return super().arguments(folder) | section_of(self.section)
+        return super().arguments(folder) | section_argument(self.section)
 
 
 class WallFrameTable(StructureTable):
@@ -279,10 +293,10 @@ class WallFrameTable(StructureTable):
     title = "Wall and frame"
 
     height: Height
-    mass: Annotated[float, Key("the mass of wall and frame together, without the base", "kg")]
+    mass: Annotated[float, SchemaKey("the mass of wall and frame together, without the base", "kg")]
     stiffness_parameter: Annotated[
         float,
-        Key(
+        SchemaKey(
             "α = H √(GA/EI), a number from 0 (a wall alone: flexure) to inf (a frame alone: shear)",
             form=PLAIN,
             low=0.0,
@@ -303,18 +317,19 @@ class FishBoneTable(StructureTable):
     title = "Frame of unequal stories"
 
     story_heights: Annotated[
-        Vector, Key("a list of the heights of the stories in m, from the base up", "m", form=PLAIN, low=0.1, high=100.0)
+        Vector,
+        SchemaKey("a list of the heights of the stories in m, from the base up", "m", form=PLAIN, low=0.1, high=100.0),
     ]
-    masses: Annotated[float | Vector, Key("the mass of each floor in kg", "kg", form=each("story"))]
+    masses: Annotated[float | Vector, SchemaKey("the mass of each floor in kg", "kg", form=one_for_each("story"))]
     column_stiffness: Annotated[
-        float | Vector, Key("EI of all columns of a story together in N m²", "N m²", form=each("story"))
+        float | Vector, SchemaKey("EI of all columns of a story together in N m²", "N m²", form=one_for_each("story"))
     ]
     beam_stiffness: Annotated[
         float | Vector,
-        Key(
+        SchemaKey(
             "the rotational stiffness of the beams of a floor in N m/rad (0: no beams, inf: rigid ones)",
             "N m/rad",
-            form=each("story"),
+            form=one_for_each("story"),
             high=math.inf,
         ),
     ]
@@ -323,25 +338,25 @@ class FishBoneTable(StructureTable):
     damping_ratio: Damping
 
 
-class BlockTable(StructureTable):
+class RigidBlockTable(StructureTable):
     """The arguments of `rigid_block`."""
 
     makes = rigid_block
     title = "Rigid block"
 
-    slenderness: Annotated[float, Key("atan(b/h) of the half sides", "rad", low=1e-4, high=1.5)]
-    half_diagonal: Annotated[float, Key("the distance from the corner to the centre", "m", low=1e-3, high=1000.0)]
-    mass: Annotated[float, Key("the mass, which rotations do not depend on", "kg")] = 1.0
+    slenderness: Annotated[float, SchemaKey("atan(b/h) of the half sides", "rad", low=1e-4, high=1.5)]
+    half_diagonal: Annotated[float, SchemaKey("the distance from the corner to the centre", "m", low=1e-3, high=1000.0)]
+    mass: Annotated[float, SchemaKey("the mass, which rotations do not depend on", "kg")] = 1.0
 
 
-class LumpedMassesTable(Table):
+class LumpedMassesTable(TomlTable):
     """The arguments of `LumpedMasses`."""
 
-    heights: Annotated[Vector, Key("a list of the heights of the bodies above the base in m", "m", form=PLAIN)]
-    masses: Annotated[Vector, Key("a list of the masses of the bodies in kg", "kg", form=PLAIN)]
+    heights: Annotated[Vector, SchemaKey("a list of the heights of the bodies above the base in m", "m", form=PLAIN)]
+    masses: Annotated[Vector, SchemaKey("a list of the masses of the bodies in kg", "kg", form=PLAIN)]
     rotary: Annotated[
         Vector | None,
-        Key("a list of the rotary inertias of the bodies about their own axes in kg m²", "kg m²", form=PLAIN),
+        SchemaKey("a list of the rotary inertias of the bodies about their own axes in kg m²", "kg m²", form=PLAIN),
     ] = None
 
 
@@ -351,10 +366,10 @@ class BeamTable(StructureTable):
     makes = Beam
     title = "Beam, perhaps tapered"
 
-    height: Annotated[float, Key("the height of the beam above the base", "m", low=0.01, high=2000.0)]
+    height: Annotated[float, SchemaKey("the height of the beam above the base", "m", low=0.01, high=2000.0)]
     z: Annotated[
         Vector | None,
-        Key(
+        SchemaKey(
             "a list of heights in m from 0 to the top, for the lists of values (the same twice: a jump)",
             "m",
             form=PLAIN,
@@ -362,32 +377,33 @@ class BeamTable(StructureTable):
         ),
     ] = None
     mass: Annotated[
-        float | Vector | None, Key("the mass per metre in kg/m (unless a section gives it)", "kg/m", form=_EACH_HEIGHT)
+        float | Vector | None,
+        SchemaKey("the mass per metre in kg/m (unless a section gives it)", "kg/m", form=_EACH_HEIGHT),
     ] = None
     bending_stiffness: Annotated[
-        float | Vector | None, Key("EI in N m² (unless a section gives it)", "N m²", form=_EACH_HEIGHT)
+        float | Vector | None, SchemaKey("EI in N m² (unless a section gives it)", "N m²", form=_EACH_HEIGHT)
     ] = None
     section: SectionKey = None
     shear_stiffness: Annotated[
-        float | Vector | None, Key("GA_s in N (default: no deformation in shear)", "N", form=_EACH_HEIGHT)
+        float | Vector | None, SchemaKey("GA_s in N (default: no deformation in shear)", "N", form=_EACH_HEIGHT)
     ] = None
-    rotary_inertia: Annotated[float | Vector | None, Key("ρI in kg m (default: none)", "kg m", form=_EACH_HEIGHT)] = (
-        None
-    )
-    lumped_masses: Annotated[LumpedMassesTable | None, Key("bodies", form="a table of {}")] = None
+    rotary_inertia: Annotated[
+        float | Vector | None, SchemaKey("ρI in kg m (default: none)", "kg m", form=_EACH_HEIGHT)
+    ] = None
+    lumped_masses: Annotated[LumpedMassesTable | None, SchemaKey("bodies", form="a table of {}")] = None
     half_width: HalfWidth
     damping_ratio: Damping
     base_mass: BaseMass = 0.0
     rotary_in_modes: Annotated[
-        bool, Key("whether the rotary inertia takes part in the modes, or in I_θ only", form="true or false: {}")
+        bool, SchemaKey("whether the rotary inertia takes part in the modes, or in I_θ only", form="true or false: {}")
     ] = True
     method: Annotated[
-        Literal["fe", "ritz"], Key('"fe" (finite elements) or "ritz" (shapes over the whole height)', form=PLAIN)
+        Literal["fe", "ritz"], SchemaKey('"fe" (finite elements) or "ritz" (shapes over the whole height)', form=PLAIN)
     ] = "fe"
     n_modes: Modes = 5
     n_elements: Annotated[
         int | None,
-        Key("how many finite elements to take (default: 1000)", form=WHOLE, low=2, high=2000, label="Elements"),
+        SchemaKey("how many finite elements to take (default: 1000)", form=WHOLE, low=2, high=2000, label="Elements"),
     ] = None
 
     def arguments(self, folder: Path) -> dict[str, Any]:
@@ -408,15 +424,15 @@ class BeamTable(StructureTable):
         given |= {name: (z, given[name]) for name in lists}
         if self.lumped_masses is not None:
             given["lumped_masses"] = LumpedMasses(**given["lumped_masses"])
-        return given | section_of(self.section)
+        return given | section_argument(self.section)
 
 
-class _FromFiles(StructureTable):
+class _MatrixFilesTable(StructureTable):
     """The keys that both kinds share: degrees of freedom above a base."""
 
     mass: Annotated[
         Vector | Matrix | str,
-        Key(
+        SchemaKey(
             "a list of masses in kg, or the mass matrix",
             "kg",
             form=_OR_FILE,
@@ -425,7 +441,7 @@ class _FromFiles(StructureTable):
     ]
     heights: Annotated[
         Vector | dict[Index, float] | str,
-        Key(
+        SchemaKey(
             "a list of the heights of all freedoms in m (nan: does not move sideways), or a table { index = height } "
             "of those that move sideways, counted from 0",
             "m",
@@ -435,13 +451,13 @@ class _FromFiles(StructureTable):
         ),
     ]
     rotations: Annotated[
-        list[int], Key("a list of the indices of rotations in the plane, counted from 0", form=PLAIN)
+        list[int], SchemaKey("a list of the indices of rotations in the plane, counted from 0", form=PLAIN)
     ] = Field(default_factory=list[int])
     base_mass: BaseMass
     half_width: HalfWidth
     damping_ratio: Damping
     n_modes: Annotated[
-        int | None, Key("how many modes to take (default: all)", form=WHOLE, low=1, high=100, label="Modes")
+        int | None, SchemaKey("how many modes to take (default: all)", form=WHOLE, low=1, high=100, label="Modes")
     ] = None
 
     def arguments(self, folder: Path) -> dict[str, Any]:
@@ -456,7 +472,7 @@ class _FromFiles(StructureTable):
         return {name: folder / value for name, value in self.values().items() if isinstance(value, str)}
 
 
-class MatricesTable(_FromFiles):
+class MatricesTable(_MatrixFilesTable):
     """The arguments of `from_matrices`."""
 
     makes = from_matrices
@@ -464,7 +480,7 @@ class MatricesTable(_FromFiles):
 
     stiffness: Annotated[
         Matrix | str,
-        Key(
+        SchemaKey(
             "the stiffness matrix in N/m, a list of rows",
             "N/m",
             form=_OR_FILE,
@@ -473,7 +489,7 @@ class MatricesTable(_FromFiles):
     ]
 
 
-class ModesTable(_FromFiles):
+class ModesTable(_MatrixFilesTable):
     """The arguments of `from_modes`."""
 
     makes = from_modes
@@ -481,7 +497,7 @@ class ModesTable(_FromFiles):
 
     omega: Annotated[
         Vector | str,
-        Key(
+        SchemaKey(
             "a list of circular frequencies in rad/s, one a mode",
             "rad/s",
             form=_OR_FILE,
@@ -493,7 +509,7 @@ class ModesTable(_FromFiles):
     ]
     shapes: Annotated[
         Matrix | str,
-        Key(
+        SchemaKey(
             "the mode shapes, a list of rows, one a freedom with a column for each mode",
             form=_OR_FILE,
             page="the mode shapes, a line for each freedom with a column for each mode",

@@ -6,9 +6,16 @@ from dataclasses import dataclass
 from functools import partial
 
 from rockflex._errors import InputError, SolverError
-from rockflex._numbers import rounded
-from rockflex.report.run._runs import ReportedRuns
-from rockflex.report.run._tables import Cell, Table, ground_friction, overturning_margin, starts_uplifted, value_cell
+from rockflex._number_format import rounded_number
+from rockflex.report.run._report_tables import (
+    ReportCell,
+    ReportTable,
+    ground_friction_range,
+    overturning_margin,
+    starts_uplifted,
+    value_cell,
+)
+from rockflex.report.run._reported_runs import ReportedRuns
 from rockflex.response import BALANCED, IMPACT_WINDOW, History, Response
 
 NOT_COMPUTED = "not computed"
@@ -18,7 +25,7 @@ MAX_WORK = 2_000_000  # states times springs times modes: energies and friction 
 
 
 @dataclass(frozen=True)
-class Run:
+class CheckedRun:
     """A run to check, and the coefficient of friction between base and ground, if it is known."""
 
     label: str
@@ -29,14 +36,16 @@ class Run:
     """Whether to compute its energies and required friction, which may take minutes."""
 
 
-def long_runs(report: ReportedRuns) -> set[str]:
+def labels_of_long_runs(report: ReportedRuns) -> set[str]:
     """Return the labels of runs whose energies and friction would take minutes: runs on many stiff springs."""
     return {
-        label for label, history in zip(report.labels, report.histories, strict=True) if _work_of(history) > MAX_WORK
+        label
+        for label, history in zip(report.labels, report.histories, strict=True)
+        if _work_of_run_check(history) > MAX_WORK
     }
 
 
-def _work_of(history: History) -> int:
+def _work_of_run_check(history: History) -> int:
     springs = history.model.springs
     return 0 if springs is None else history.time.size * springs.n * max(history.model.properties.n_modes, 1)
 
@@ -47,122 +56,128 @@ def has_bearing_area(history: History) -> bool:
     return springs is not None and springs.area is not None
 
 
-def check_table(report: ReportedRuns, friction: float | None, omitted: Collection[str]) -> Table:
+def run_check_table(report: ReportedRuns, friction: float | None, omitted: Collection[str]) -> ReportTable:
     """Return the checks, a row for each run; long ones are left out for the labels in `omitted`."""
     runs = [
-        Run(label, response, history, friction, label not in omitted)
+        CheckedRun(label, response, history, friction, label not in omitted)
         for label, response, history in zip(report.labels, report.responses, report.histories, strict=True)
     ]
     columns = [
-        (("uplift", ""), _uplift),
-        (("overturning", ""), partial(_overturning, report)),
-        (("contact", ""), _contact),
-        (("friction", ""), _friction),
+        (("uplift", ""), _uplift_cell),
+        (("overturning", ""), partial(_overturning_cell, report)),
+        (("contact", ""), _contact_cell),
+        (("friction", ""), _friction_cell),
     ]
     if report.properties.tendons:
-        columns.append((("tendons", ""), _tendons))
+        columns.append((("tendons", ""), _tendon_cell))
     if report.properties.elements:
-        columns.append((("re-centring", ""), partial(_residual, report)))
-    columns.append((("energy balance", ""), _energy))
-    return Table(
+        columns.append((("re-centring", ""), partial(_residual_rotation_cell, report)))
+    columns.append((("energy balance", ""), _energy_balance_cell))
+    return ReportTable(
         [("model", ""), *(head for head, _ in columns)],
-        [[Cell(run.label), *(check(run) for _, check in columns)] for run in runs],
+        [[ReportCell(run.label), *(check(run) for _, check in columns)] for run in runs],
     )
 
 
-def _uplift(run: Run) -> Cell:
+def _uplift_cell(run: CheckedRun) -> ReportCell:
     if not run.history.model.lifts:
-        return Cell("fixed base")
+        return ReportCell("fixed base")
     times = run.history.uplift_times
     start = "starts uplifted" if starts_uplifted(run.history) else ""
     if run.response.n_uplifts == 0 or not times.size:
-        return Cell(start or "none", 0.0, "n_uplifts")
-    first = f"{run.response.n_uplifts}×, {'next' if start else 'first'} at {rounded(float(times[0]))} s"
-    return Cell(f"{start}; {first}" if start else first, float(times[0]), "first_uplift")
+        return ReportCell(start or "none", 0.0, "n_uplifts")
+    first = f"{run.response.n_uplifts}×, {'next' if start else 'first'} at {rounded_number(float(times[0]))} s"
+    return ReportCell(f"{start}; {first}" if start else first, float(times[0]), "first_uplift")
 
 
-def _overturning(report: ReportedRuns, run: Run) -> Cell:
+def _overturning_cell(report: ReportedRuns, run: CheckedRun) -> ReportCell:
     """Compare the rotation to either side with the nominal limit θ_nom of Section 3.3."""
     if not run.history.model.lifts:
-        return Cell("–")
+        return ReportCell("–")
     if run.response.status == "overturned":
-        return Cell(f"overturned at {rounded(run.response.end_time)} s", run.response.end_time, "end_time", True)
+        return ReportCell(
+            f"overturned at {rounded_number(run.response.end_time)} s", run.response.end_time, "end_time", True
+        )
     if run.response.max_rotation == 0.0:
-        return Cell("no rotation", 0.0, "max_rotation")
+        return ReportCell("no rotation", 0.0, "max_rotation")
     margin = overturning_margin(report.properties, run.response, run.history)
     sign = "<" if run.response.nominal_overturning else "≥"
-    return Cell(f"{rounded(margin)} {sign} 1", margin, "overturning_margin", run.response.nominal_overturning)
+    return ReportCell(
+        f"{rounded_number(margin)} {sign} 1", margin, "overturning_margin", run.response.nominal_overturning
+    )
 
 
-def _contact(run: Run) -> Cell:
+def _contact_cell(run: CheckedRun) -> ReportCell:
     least = run.response.min_vertical_reaction
     if run.history.model.springs is not None:
         if not (run.long and has_bearing_area(run.history)):
-            return Cell("springs only push", least, "min_vertical_reaction")
+            return ReportCell("springs only push", least, "min_vertical_reaction")
         bearing, soil = (float(q.max()) for q in (run.history.bearing_pressure, run.history.soil_pressure))
-        words = f"q {rounded(bearing / 1e3)} kPa, {rounded(soil / 1e3)} at a spring"
-        return Cell(words, bearing, "bearing_pressure")
+        words = f"q {rounded_number(bearing / 1e3)} kPa, {rounded_number(soil / 1e3)} at a spring"
+        return ReportCell(words, bearing, "bearing_pressure")
     held = least >= 0.0
-    words = "N ≥ 0" if held else f"N < 0 at {rounded(run.response.time_of_min_vertical_reaction)} s"
-    return Cell(words, least, "min_vertical_reaction", not held)
+    words = "N ≥ 0" if held else f"N < 0 at {rounded_number(run.response.time_of_min_vertical_reaction)} s"
+    return ReportCell(words, least, "min_vertical_reaction", not held)
 
 
-def _friction(run: Run) -> Cell:
+def _friction_cell(run: CheckedRun) -> ReportCell:
     """Compare |ΣF_x|/ΣF_z with the coefficient; a base that slides shows how far."""
-    limits = ground_friction(run.history.model)
+    limits = ground_friction_range(run.history.model)
     if limits is not None:
         moved = run.response.max_slip
-        return Cell(f"slides {rounded(1e3 * moved)} mm" if moved else "does not slide", moved, "max_slip")
+        return ReportCell(f"slides {rounded_number(1e3 * moved)} mm" if moved else "does not slide", moved, "max_slip")
     if not run.long:
-        return Cell(NOT_COMPUTED)
+        return ReportCell(NOT_COMPUTED)
     try:
         whole = run.history.required_friction
         needed = run.history.required_friction_excluding_impacts()
     except InputError:
-        return Cell(NOT_COMPUTED)
-    spikes = "" if math.isclose(whole, needed, rel_tol=5e-3) else f" ({rounded(whole)} with impacts)"
+        return ReportCell(NOT_COMPUTED)
+    spikes = "" if math.isclose(whole, needed, rel_tol=5e-3) else f" ({rounded_number(whole)} with impacts)"
     if run.friction is None:
-        return Cell(f"μ ≥ {rounded(needed)}{spikes}", needed, "required_friction")
+        return ReportCell(f"μ ≥ {rounded_number(needed)}{spikes}", needed, "required_friction")
     holds = needed <= run.friction
     sign = "≤" if holds else ">"
-    return Cell(f"{rounded(needed)}{spikes} {sign} {run.friction:.4g}", needed, "required_friction", not holds)
+    return ReportCell(
+        f"{rounded_number(needed)}{spikes} {sign} {run.friction:.4g}", needed, "required_friction", not holds
+    )
 
 
-def _tendons(run: Run) -> Cell:
+def _tendon_cell(run: CheckedRun) -> ReportCell:
     if not run.history.model.lifts:
-        return Cell("–")
+        return ReportCell("–")
     used, force = run.response.tendon_utilisation, run.response.max_tendon_force
     if math.isnan(used):
-        return Cell(f"{rounded(force / 1e3)} kN", force, "max_tendon_force")
+        return ReportCell(f"{rounded_number(force / 1e3)} kN", force, "max_tendon_force")
     sign = ">" if used > 1.0 else "≤"
     words = ", yields" if run.response.tendon_yield and not run.response.tendon_overload else ""
-    return Cell(f"F/F_y = {rounded(used)} {sign} 1{words}", used, "tendon_utilisation", used > 1.0)
+    return ReportCell(f"F/F_y = {rounded_number(used)} {sign} 1{words}", used, "tendon_utilisation", used > 1.0)
 
 
-def _residual(report: ReportedRuns, run: Run) -> Cell:
+def _residual_rotation_cell(report: ReportedRuns, run: CheckedRun) -> ReportCell:
     """Residual rotation of the base at rest, and λ at |θ| → 0 and at the largest rotation."""
     p, response = report.properties, run.response
     if not run.history.model.lifts or response.status == "overturned":
-        return Cell("–")
+        return ReportCell("–")
     ratios = ""
     if math.isfinite(p.recentring_ratio):
         turned = response.max_rotation
-        ratios = f"; λ = {rounded(p.recentring_ratio)}"
-        ratios += f", {rounded(p.recentring_ratio_at(turned))} at θ_max" if turned > 0.0 else ""
+        ratios = f"; λ = {rounded_number(p.recentring_ratio)}"
+        ratios += f", {rounded_number(p.recentring_ratio_at(turned))} at θ_max" if turned > 0.0 else ""
     left = _settled_rotation(run)
     if left is None:
-        now = rounded(1e3 * response.residual_rotation)
-        return Cell(f"not settled, θ = {now} mrad{ratios}", response.residual_rotation, "residual_rotation")
+        now = rounded_number(1e3 * response.residual_rotation)
+        return ReportCell(f"not settled, θ = {now} mrad{ratios}", response.residual_rotation, "residual_rotation")
     if math.isnan(left):
-        return Cell(f"overturns after the run{ratios}", None, "settled_rotation", True)
+        return ReportCell(f"overturns after the run{ratios}", None, "settled_rotation", True)
     if abs(left) < MAX_CLOSED_ROTATION:
-        return Cell(f"closes{ratios}", left, "settled_rotation")
+        return ReportCell(f"closes{ratios}", left, "settled_rotation")
     # On springs fuses that yielded tilt a base that is closed.
     wrong = abs(left) > MAX_TILT or run.history.model.springs is None
-    return Cell(f"θ = {rounded(1e3 * left)} mrad left{ratios}", left, "settled_rotation", wrong)
+    return ReportCell(f"θ = {rounded_number(1e3 * left)} mrad left{ratios}", left, "settled_rotation", wrong)
 
 
-def _settled_rotation(run: Run) -> float | None:
+def _settled_rotation(run: CheckedRun) -> float | None:
     """Return the rotation that remains in rad; None if it takes too long to find."""
     if run.response.settled:
         return run.response.residual_rotation
@@ -172,25 +187,25 @@ def _settled_rotation(run: Run) -> float | None:
         return None
 
 
-def _energy(run: Run) -> Cell:
+def _energy_balance_cell(run: CheckedRun) -> ReportCell:
     """Show the error of the energy balance over the input."""
     if not run.long:
-        return Cell(NOT_COMPUTED)
+        return ReportCell(NOT_COMPUTED)
     try:
         error = run.history.energy.closing_error
     except InputError:
-        return Cell(NOT_COMPUTED)
+        return ReportCell(NOT_COMPUTED)
     if error <= BALANCED:
-        return Cell(f"closes to {_power(error)}", error, "closing_error")
+        return ReportCell(f"closes to {_power_of_ten_text(error)}", error, "closing_error")
     return value_cell(error, "closing_error", wrong=True)
 
 
-def _power(value: float) -> str:
+def _power_of_ten_text(value: float) -> str:
     """Write a small error as a power of ten that it does not exceed."""
     return "0" if value == 0.0 else f"10^{math.ceil(math.log10(value))}".replace("-", "−")
 
 
-def legend(
+def run_check_legend(
     friction: float | None,
     *,
     sided: bool,

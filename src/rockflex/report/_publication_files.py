@@ -9,8 +9,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockflex._files import write_whole
-from rockflex.report._document import Check, Document, Result
+from rockflex._files import write_file_atomically
+from rockflex.report._document import ConstructionCheck, PublicationReport, ReproducedResult
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -22,7 +22,7 @@ HEAD = ("place", "number", "paper", "rockflex", "unit", "difference", "verdict",
 COLUMNS = ("target", "place", "name", "printed", "rockflex", "unit", "difference", "criterion", "verdict", "note")
 
 
-def inline(drawing: str, stem: str, label: str) -> str:
+def inline_svg(drawing: str, stem: str, label: str) -> str:
     """Turn an SVG file into an element of a page.
 
     The prolog, metadata and namespaces of a separate file are removed. Identifiers get the stem as a prefix, because
@@ -48,7 +48,7 @@ def inline(drawing: str, stem: str, label: str) -> str:
     return f'{head} role="img" aria-label="{label}" class="drawing">{rest}'
 
 
-def to_html(document: Document, drawings: Mapping[str, str]) -> str:
+def report_to_html(document: PublicationReport, drawings: Mapping[str, str]) -> str:
     """Write the document as a page.
 
     Parameters
@@ -60,21 +60,21 @@ def to_html(document: Document, drawings: Mapping[str, str]) -> str:
 
     Examples
     --------
-    >>> from rockflex.report import Document, to_html
-    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> "<h1>A title</h1>" in to_html(document, drawings={})
+    >>> from rockflex.report import PublicationReport, report_to_html
+    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> "<h1>A title</h1>" in report_to_html(document, drawings={})
     True
     """
     from markupsafe import Markup, escape
 
     labels = {stem: str(escape(s.title)) for s in document.sections for stem in s.figures}
-    figures = {stem: Markup(inline(drawings[stem], stem, label)) for stem, label in labels.items()}
+    figures = {stem: Markup(inline_svg(drawings[stem], stem, label)) for stem, label in labels.items()}
     verdicts = list(document.verdicts)
     last = len(verdicts) - 1
     looks = {name: CLASSES[-1 if place == last else min(place, 3)] for place, name in enumerate(verdicts)}
     failing = [line for s in document.sections for line in s.numbers if line.verdict == verdicts[-1]]
     return (
-        templates_in(TEMPLATES)
+        jinja_templates_in(TEMPLATES)
         .get_template("report.html.jinja")
         .render(
             document=document, figures=figures, looks=looks, counts=document.counts, failing=failing, worst=verdicts[-1]
@@ -83,7 +83,7 @@ def to_html(document: Document, drawings: Mapping[str, str]) -> str:
 
 
 @lru_cache(maxsize=2)
-def templates_in(folder: Path) -> "Environment":
+def jinja_templates_in(folder: Path) -> "Environment":
     """Return the templates of a folder; everything is escaped but figures, which are marked as safe."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
@@ -93,39 +93,44 @@ def templates_in(folder: Path) -> "Environment":
     )  # fmt: skip
 
 
-def to_markdown(document: Document) -> str:
+def report_to_markdown(document: PublicationReport) -> str:
     """Write the document as GitHub-flavoured Markdown; figures are links to ``<stem>.svg``.
 
     Examples
     --------
-    >>> from rockflex.report import Document, to_markdown
-    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> to_markdown(document).splitlines()[0]
+    >>> from rockflex.report import PublicationReport, report_to_markdown
+    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> report_to_markdown(document).splitlines()[0]
     '# A title'
     """
     counts = document.counts
     parts = [
-        f"# {_plain(document.title)}",
-        _plain(document.source),
-        f"Records. {_plain(document.records)}",
-        "Versions. " + ", ".join(f"{name} {_plain(version)}" for name, version in document.versions.items()) + ".",
-        _table(
+        f"# {_escaped_markdown(document.title)}",
+        _escaped_markdown(document.source),
+        f"Records. {_escaped_markdown(document.records)}",
+        "Versions. "
+        + ", ".join(f"{name} {_escaped_markdown(version)}" for name, version in document.versions.items())
+        + ".",
+        _table_in_markdown(
             ("verdict", "numbers", "meaning"),
             [(name, str(counts[name]), meaning) for name, meaning in document.verdicts.items()],
         ),
-        _plain(document.checks),
-        "\n".join(f"- *Remark, {_plain(kind)}.* {_plain(meaning)}" for kind, meaning in document.remarks.items()),
-        *(part for section in document.sections for part in _section(section)),
+        _escaped_markdown(document.checks),
+        "\n".join(
+            f"- *Remark, {_escaped_markdown(kind)}.* {_escaped_markdown(meaning)}"
+            for kind, meaning in document.remarks.items()
+        ),
+        *(part for section in document.sections for part in _section_in_markdown(section)),
     ]
     return "\n\n".join(parts) + "\n"
 
 
-def _section(section: Result) -> Iterable[str]:
-    yield f"## {_plain(section.name)}: {_plain(section.title)}"
+def _section_in_markdown(section: ReproducedResult) -> Iterable[str]:
+    yield f"## {_escaped_markdown(section.name)}: {_escaped_markdown(section.title)}"
     if section.note:
-        yield _plain(section.note)
+        yield _escaped_markdown(section.note)
     for stem in section.figures:
-        yield f"![{_plain(section.title)}]({stem}.svg)"
+        yield f"![{_escaped_markdown(section.title)}]({stem}.svg)"
     rows = [
         (
             line.place, line.name, line.printed, line.ours_as_text, line.unit, line.difference_as_text,
@@ -134,40 +139,41 @@ def _section(section: Result) -> Iterable[str]:
         for line in section.numbers
     ]  # fmt: skip
     if rows:
-        yield _table(HEAD, rows)
+        yield _table_in_markdown(HEAD, rows)
     if section.checks:
         yield "Checks of ourselves, not counted:"
-        yield _table(CHECKS, [_check(check) for check in section.checks])
+        yield _table_in_markdown(CHECKS, [_check_row_in_markdown(check) for check in section.checks])
     for remark in section.remarks:
-        yield f"**Remark, {_plain(remark.kind)}: {_plain(remark.title)}.** {_plain(remark.text)}"
+        kind, title, text = map(_escaped_markdown, (remark.kind, remark.title, remark.text))
+        yield f"**Remark, {kind}: {title}.** {text}"
         if remark.head:
-            yield _table(remark.head, remark.rows)
+            yield _table_in_markdown(remark.head, remark.rows)
 
 
-def _check(check: Check) -> tuple[str, ...]:
+def _check_row_in_markdown(check: ConstructionCheck) -> tuple[str, ...]:
     holds = "yes" if check.holds else "**no**"
     return check.place, check.name, check.printed, check.ours_as_text, check.unit, holds, check.remarks
 
 
-def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    lines = [[_plain(cell) for cell in head], ["---"] * len(head)]
-    lines += [[cell if cell.startswith("**") else _plain(cell) for cell in row] for row in rows]
+def _table_in_markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    lines = [[_escaped_markdown(cell) for cell in head], ["---"] * len(head)]
+    lines += [[cell if cell.startswith("**") else _escaped_markdown(cell) for cell in row] for row in rows]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
-def _plain(text: str) -> str:
+def _escaped_markdown(text: str) -> str:
     """Escape characters that Markdown would read as markup."""
     return re.sub(r"([\\`*_\[\]<>|#])", r"\\\1", text)
 
 
-def to_csv(document: Document) -> str:
+def report_numbers_to_csv(document: PublicationReport) -> str:
     """Write one row per number, with a header, in UTF-8; `rockflex` has all digits, or "inf" or "nan".
 
     Examples
     --------
-    >>> from rockflex.report import Document, to_csv
-    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> to_csv(document).split(",")[:3]
+    >>> from rockflex.report import PublicationReport, report_numbers_to_csv
+    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> report_numbers_to_csv(document).split(",")[:3]
     ['target', 'place', 'name']
     """
     out = io.StringIO()
@@ -185,7 +191,9 @@ def to_csv(document: Document) -> str:
     return out.getvalue()
 
 
-def write_document(document: Document, folder: Path, progress: Callable[[str], None] | None = None) -> list[Path]:
+def write_publication_report(
+    document: PublicationReport, folder: Path, progress: Callable[[str], None] | None = None
+) -> list[Path]:
     """Draw every figure, and write ``report.html``, ``report.md``, ``numbers.csv`` and the figures as SVG.
 
     Parameters
@@ -206,9 +214,9 @@ def write_document(document: Document, folder: Path, progress: Callable[[str], N
     --------
     >>> import tempfile
     >>> from pathlib import Path
-    >>> from rockflex.report import Document, write_document
-    >>> document = Document("A title", "A paper, 2024", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> [path.name for path in write_document(document, Path(tempfile.mkdtemp()))]
+    >>> from rockflex.report import PublicationReport, write_publication_report
+    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
+    >>> [path.name for path in write_publication_report(document, Path(tempfile.mkdtemp()))]
     ['report.html', 'report.md', 'numbers.csv']
     """
     from rockflex.plot import save_figure
@@ -221,8 +229,8 @@ def write_document(document: Document, folder: Path, progress: Callable[[str], N
                 progress(stem)
     drawings = {stem: path.read_text("utf-8") for stem, path in figures.items()}
     texts = {
-        "report.html": to_html(document, drawings),
-        "report.md": to_markdown(document),
-        "numbers.csv": to_csv(document),
+        "report.html": report_to_html(document, drawings),
+        "report.md": report_to_markdown(document),
+        "numbers.csv": report_numbers_to_csv(document),
     }
-    return [*figures.values(), *(write_whole(folder / name, text.encode()) for name, text in texts.items())]
+    return [*figures.values(), *(write_file_atomically(folder / name, text.encode()) for name, text in texts.items())]

@@ -9,7 +9,7 @@ from rockflex._errors import InputError
 
 
 @contextmanager
-def computable(what: str | Callable[[], str], field: str | None = None) -> Generator[None]:
+def explaining_overflow(what: str | Callable[[], str], field: str | None = None) -> Generator[None]:
     """Turn an arithmetic failure into an error that states what cannot be computed; a context or a decorator.
 
     Parameters

@@ -6,7 +6,7 @@ _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 _THIN_SPACE = "\u202f"  # between groups of three digits
 
 
-def prefixed(largest: float, unit: str) -> tuple[float, str]:
+def unit_with_prefix(largest: float, unit: str) -> tuple[float, str]:
     """Divisor and name of the largest prefix, G, M, k or none, for which `largest` is at least 1."""
     for factor, prefix in _PREFIXES:
         if abs(largest) >= factor:
@@ -19,12 +19,12 @@ def moment_unit(largest: float) -> tuple[float, str]:
     return (1e6, "MN m") if largest >= 1e7 else (1e3, "kN m")
 
 
-def short(value: float) -> str:
+def short_number(value: float) -> str:
     """Three significant digits without trailing zeros, and without an exponent from 1e-4 up to a million."""
     return f"{float(f'{value:.3g}'):g}".replace("-", "−")
 
 
-def rounded(value: float | None, digits: int = 3) -> str:
+def rounded_number(value: float | None, digits: int = 3) -> str:
     """Write a value with some significant digits and without exponent, if it has a usual size.
 
     Digits before the point are kept: 12 347 is "12 350" with four digits, and "12 300" with three. Unknown values,

@@ -7,24 +7,24 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, SupportsIndex, TypeVar
 
-from rockflex._checks import whole_number
+from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError
-from rockflex._files import path_of
+from rockflex._files import checked_file_path
 from rockflex._shown import shown
-from rockflex._versions import commit_of, versions_of
+from rockflex._versions import git_commit, package_versions
 from rockflex.engine import VECTOR_LEVEL
-from rockflex.kinds._kinds import kind_named
-from rockflex.structure.file import read_toml
-from rockflex.study import ChunkedPlan, Spec, map_chunks, to_frame
-from rockflex.study.folders import LEVEL, Part, PartMaker, StudyFolder
-from rockflex.study.parallel import Chunks, core_count, map_dask
-from rockflex.study.progress import PartProgress, Progress, check_part_progress, reporting_parts
+from rockflex.kinds._study_kinds import study_kind_named
+from rockflex.structure.file import read_toml_file
+from rockflex.study import ChunkedPlan, StudySpec, map_chunks, tables_to_dataframe
+from rockflex.study.folders import LEVEL, PartMaker, StudyFolder, StudyPart
+from rockflex.study.parallel import NumberedChunks, core_count, map_chunks_on_dask
+from rockflex.study.progress import PartProgress, Progress, check_part_progress, reporting_part_progress
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-def load_study(path: str | Path) -> Spec:
+def load_study(path: str | Path) -> StudySpec:
     """Read a study from a TOML file.
 
     Its key `study` is "cloud", "incremental", "stripes", "population", "monte_carlo" or "design"; the other keys are
@@ -63,10 +63,10 @@ def load_study(path: str | Path) -> Spec:
     >>> study.plan().n_runs
     10
     """
-    file = path_of("path", path)
-    content = read_toml(file, "study")
+    file = checked_file_path("path", path)
+    content = read_toml_file(file, "study")
     try:
-        return kind_named(content.get("study")).spec()(**content).read_from(file.parent, file)
+        return study_kind_named(content.get("study")).spec()(**content).read_from(file.parent, file)
     except InputError as error:
         raise InputError(f"{file}: {error}") from error
 
@@ -79,7 +79,7 @@ MAX_SAMPLE_TIME = 2.0  # s after which an estimate stops
 
 
 def run_study(
-    study: "Spec | str | Path",
+    study: "StudySpec | str | Path",
     folder: str | Path | None = None,
     *,
     workers: SupportsIndex | None = None,
@@ -130,22 +130,22 @@ def run_study(
     """
     if folder is not None:
         filled = fill_study(study, folder, workers=workers, dask=dask, any_version=any_version, progress=progress)
-        return to_frame(filled.table())
-    plan, tables = _plan_of(_loaded(study), workers, dask, progress), dict[int, Any]()
+        return tables_to_dataframe(filled.table())
+    plan, tables = _plan_of_study(_loaded_study(study), workers, dask, progress), dict[int, Any]()
 
     def keep(number: int, table: Any) -> int:
         tables[number] = table
         return table.num_rows
 
     def so_far() -> "pd.DataFrame":
-        return to_frame(*(tables[number] for number in sorted(tables)))
+        return tables_to_dataframe(*(tables[number] for number in sorted(tables)))
 
-    _compute(plan, range(plan.n_chunks), lambda each: each, keep, so_far, workers, dask, progress)
+    _compute_chunks(plan, range(plan.n_chunks), lambda each: each, keep, so_far, workers, dask, progress)
     return so_far()
 
 
 def fill_study(
-    study: "Spec | str | Path",
+    study: "StudySpec | str | Path",
     folder: str | Path,
     *,
     share: tuple[SupportsIndex, SupportsIndex] = (1, 1),
@@ -186,55 +186,57 @@ def fill_study(
     [1]
     True
     """
-    spec = _loaded(study)
-    plan = _plan_of(spec, workers, dask, progress)
-    mine = _share_of(plan, share)
+    spec = _loaded_study(study)
+    plan = _plan_of_study(spec, workers, dask, progress)
+    mine = _share_of_chunks(plan, share)
     checksums = plan.checksums | spec.checksums()
     with StudyFolder.open(
-        folder, spec.document(), plan.n_chunks, _versions(spec), checksums, any_version=any_version
+        folder, spec.document(), plan.n_chunks, _versions_of_study(spec), checksums, any_version=any_version
     ) as target:
 
-        def keep(_: int, part: Part) -> int:
+        def keep(_: int, part: StudyPart) -> int:
             target.add(part)
             return part.rows
 
         def so_far() -> "pd.DataFrame":
-            return to_frame(target.table(partial=True))
+            return tables_to_dataframe(target.table(partial=True))
 
-        def stored(plan: "ChunkedPlan") -> _PartPlan:
-            return _PartPlan(plan, target.maker)
+        def stored(plan: "ChunkedPlan") -> _StudyPartPlan:
+            return _StudyPartPlan(plan, target.maker)
 
         numbers = [number for number in target.missing() if number in mine]
-        _compute(plan, numbers, stored, keep, so_far, workers, dask, progress, len(mine))
+        _compute_chunks(plan, numbers, stored, keep, so_far, workers, dask, progress, len(mine))
     return StudyFolder.load(folder)
 
 
 @dataclass(frozen=True)
-class _PartPlan:
+class _StudyPartPlan:
     """A plan whose chunks are the content of files, so that they are made where they are computed."""
 
     plan: "ChunkedPlan"
     maker: PartMaker
 
-    def chunk(self, number: int) -> Part:
+    def chunk(self, number: int) -> StudyPart:
         return self.maker.make(number, self.plan.chunk(number))
 
 
-def _versions(spec: "Spec") -> dict[str, str]:
+def _versions_of_study(spec: "StudySpec") -> dict[str, str]:
     """Return versions of libraries, the level of vector instructions, and commits of rockflex and the study's file."""
     commits = {
-        "rockflex commit": commit_of(Path(__file__), known=True),
-        "study commit": None if spec.file is None else commit_of(spec.file, known=False),
+        "rockflex commit": git_commit(Path(__file__), known=True),
+        "study commit": None if spec.file is None else git_commit(spec.file, known=False),
     }
-    found = versions_of(LIBRARIES) | {LEVEL: VECTOR_LEVEL}
+    found = package_versions(LIBRARIES) | {LEVEL: VECTOR_LEVEL}
     return found | {name: commit for name, commit in commits.items() if commit is not None}
 
 
-def _loaded(study: "Spec | str | Path") -> "Spec":
+def _loaded_study(study: "StudySpec | str | Path") -> "StudySpec":
     return load_study(study) if isinstance(study, str | Path) else study
 
 
-def _plan_of(spec: "Spec", workers: SupportsIndex | None, dask: str | None, progress: PartProgress) -> "ChunkedPlan":
+def _plan_of_study(
+    spec: "StudySpec", workers: SupportsIndex | None, dask: str | None, progress: PartProgress
+) -> "ChunkedPlan":
     check_part_progress(progress)
     if workers is not None and dask is not None:
         raise InputError(
@@ -245,11 +247,11 @@ def _plan_of(spec: "Spec", workers: SupportsIndex | None, dask: str | None, prog
     return plan
 
 
-def _share_of(plan: "ChunkedPlan", share: tuple[SupportsIndex, SupportsIndex]) -> range:
+def _share_of_chunks(plan: "ChunkedPlan", share: tuple[SupportsIndex, SupportsIndex]) -> range:
     if not isinstance(share, tuple) or len(share) != 2:  # pyright: ignore[reportUnnecessaryComparison, reportUnnecessaryIsInstance]
         raise InputError(f"share must be two whole numbers, such as (3, 10), but {shown(share)} was given.")
-    count = whole_number("the number of shares", share[1], 1)
-    place = whole_number("the number of the share", share[0], 1, count)
+    count = checked_whole_number("the number of shares", share[1], 1)
+    place = checked_whole_number("the number of the share", share[0], 1, count)
     if count > 1 and len(plan.rounds) > 1:
         raise InputError(
             "This study cannot be divided into shares, because later parts depend on earlier ones. Run it as a whole, "
@@ -258,10 +260,10 @@ def _share_of(plan: "ChunkedPlan", share: tuple[SupportsIndex, SupportsIndex]) -
     return range(place - 1, plan.n_chunks, count)
 
 
-def _compute(
+def _compute_chunks(
     plan: "ChunkedPlan",
     numbers: Sequence[int],
-    sent: "Callable[[ChunkedPlan], Chunks[Result]]",
+    sent: "Callable[[ChunkedPlan], NumberedChunks[Result]]",
     keep: Callable[[int, Result], int],
     so_far: "Callable[[], pd.DataFrame]",
     workers: SupportsIndex | None,
@@ -273,7 +275,7 @@ def _compute(
     total = plan.n_chunks if parts is None else parts
     done = kept = total - len(numbers)
     runs = 0
-    with reporting_parts(progress) as tell:
+    with reporting_part_progress(progress) as tell:
         tell(Progress(total, done, kept, runs))
         for place, each in enumerate(plan.rounds):
             missing = [number for number in numbers if number in each]
@@ -283,7 +285,9 @@ def _compute(
                 plan = plan.next_round(so_far())
             work = sent(plan)
             # Closed at once if a part cannot be stored, or a cluster would hold the plan until this process ends.
-            coming = map_chunks(work.chunk, missing, workers) if dask is None else map_dask(work, missing, dask)
+            coming = (
+                map_chunks(work.chunk, missing, workers) if dask is None else map_chunks_on_dask(work, missing, dask)
+            )
             with closing(coming):
                 for number, result in coming:
                     runs += keep(number, result)
@@ -291,7 +295,7 @@ def _compute(
                     tell(Progress(total, done, kept, runs))
 
 
-def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:
+def estimate_time(study: "StudySpec", workers: SupportsIndex | None = None) -> float:
     """Estimate from a sample of its runs how long a study takes on this machine.
 
     Parameters
@@ -315,7 +319,7 @@ def estimate_time(study: "Spec", workers: SupportsIndex | None = None) -> float:
     """
     plan = study.plan()
     plan.check_work()
-    threads = core_count() if workers is None else whole_number("workers", workers, 1)
+    threads = core_count() if workers is None else checked_whole_number("workers", workers, 1)
     sample = sorted({round(place * (plan.n_ready - 1) / max(MAX_SAMPLE - 1, 1)) for place in range(MAX_SAMPLE)})
     for unit in sample[:: max(len(sample) // 6, 1)]:  # fill the caches that the study fills once
         plan.rows([unit])

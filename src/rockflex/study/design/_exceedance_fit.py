@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import in_range, positive, real_or_nan
+from rockflex._checks import checked_in_range, checked_positive, real_or_nan
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex.fragility import (
@@ -23,36 +23,36 @@ from rockflex.fragility import (
     RotationFragility,
     UnanimousOutcome,
     annual_rate,
-    beyond,
-    damping_of,
+    bootstrap_weights,
     fit_logistic,
     fit_outcomes,
-    quadrature,
-    resample_weights,
+    hazard_quadrature,
+    measure_damping_of_runs,
     resampled_exceedance,
+    rotation_limit_state,
 )
 from rockflex.modal import RockingProperties
-from rockflex.motion import intensity
-from rockflex.study._tables import RESULTS
+from rockflex.motion import scalable_measure
+from rockflex.study._result_tables import RESULTS
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-def check_limit(limit: float | str) -> None:
-    """Raise an InputError unless a limit is one of those that `state_of` knows."""
-    state_of(limit, 0.1)
+def check_design_limit(limit: float | str) -> None:
+    """Raise an InputError unless a limit is one of those that `design_limit_state` knows."""
+    design_limit_state(limit, 0.1)
 
 
-def check_same_for_all(measure: str) -> None:
+def check_measure_of_record_alone(measure: str) -> None:
     """Raise an InputError unless the measure exists and does not depend on the base."""
-    if intensity(measure).of_what == "base":
+    if scalable_measure(measure).of_what == "base":
         raise InputError(
             f"measure must not depend on the base, as a level of {measure} does. Give pgv, pga or sa_t1_5."
         )
 
 
-def state_of(limit: float | str, nominal: float) -> LimitState:
+def design_limit_state(limit: float | str, nominal: float) -> LimitState:
     """Limit state of a limit, where `nominal` is 0.7 atan(B/h*_1) of the design.
 
     A rotation in rad; a multiple of the nominal one; the name of a limit state; or a result with its bound, such as
@@ -69,16 +69,16 @@ def state_of(limit: float | str, nominal: float) -> LimitState:
     if len(words) == 1 and words[0] in LIMIT_STATES and words[0] != NOMINAL.name:
         return LIMIT_STATES[words[0]]
     if len(words) == 3 and words[1] == ">" and RESULTS.get(words[0]) in (float, int):
-        return _above(words[0], words[2], limit)
-    return beyond(_rotation(limit, nominal, words))
+        return _column_limit_state(words[0], words[2], limit)
+    return rotation_limit_state(_limit_rotation(limit, nominal, words))
 
 
-def is_rotation(state: LimitState) -> bool:
+def is_rotation_limit_state(state: LimitState) -> bool:
     """Whether a state is a rotation whose probability `fit_outcomes` gives."""
     return ROCKED <= state.threshold <= OVERTURNED
 
 
-def _above(column: str, given: str, limit: Any) -> LimitState:
+def _column_limit_state(column: str, given: str, limit: Any) -> LimitState:
     try:
         bound = float(given)
     except ValueError:
@@ -88,7 +88,7 @@ def _above(column: str, given: str, limit: Any) -> LimitState:
             f"limit: the bound of {column} must be zero or a positive number, but {shown(limit)} was given."
         )
     if column == "max_rotation":
-        return beyond(_rotation(bound, math.nan, []))
+        return rotation_limit_state(_limit_rotation(bound, math.nan, []))
 
     def exceeded(runs: Any) -> Any:
         return (runs[column] > bound) | OVERTURNING.exceeded(runs)
@@ -96,7 +96,7 @@ def _above(column: str, given: str, limit: Any) -> LimitState:
     return LimitState(name=column, label=f"{column} > {bound:g}", symbol=f"{column} above {bound:g}", exceeded=exceeded)
 
 
-def _rotation(limit: float | str, nominal: float, words: list[str]) -> float:
+def _limit_rotation(limit: float | str, nominal: float, words: list[str]) -> float:
     rotation = real_or_nan(limit)
     if words and words[-1] == NOMINAL.name and len(words) <= 2:
         try:
@@ -115,16 +115,16 @@ def _rotation(limit: float | str, nominal: float, words: list[str]) -> float:
 
 def check_confidence(confidence: float) -> None:
     """Raise an InputError unless a confidence is in [0, 1)."""
-    in_range("confidence", confidence, 0.0, 1.0, hint="A 90 % band is 0.9.")
+    checked_in_range("confidence", confidence, 0.0, 1.0, hint="A 90 % band is 0.9.")
 
 
-def check_damping(hazard: HazardCurve | None, runs: "pd.DataFrame", measure: str) -> None:
+def check_hazard_damping(hazard: HazardCurve | None, runs: "pd.DataFrame", measure: str) -> None:
     """Raise an InputError if a spectral measure of runs, with the column `zeta_1`, is not at the damping of a curve."""
     if hazard is not None:
-        hazard.check_damping(damping_of(runs, measure))
+        hazard.check_damping(measure_damping_of_runs(runs, measure))
 
 
-def first_damping(structure: RockingProperties) -> "pd.DataFrame":
+def first_damping_column(structure: RockingProperties) -> "pd.DataFrame":
     """The column `zeta_1` that the runs of a structure will have."""
     import pandas as pd
 
@@ -161,12 +161,12 @@ class ShakingLevel:
         if (at is None) == (hazard is None):
             raise InputError("Give either at, a level of the measure, or hazard, a HazardCurve in it.")
         if hazard is None:
-            level = positive("at", at, "the unit of the measure")  # pyright: ignore[reportArgumentType]
+            level = checked_positive("at", at, "the unit of the measure")  # pyright: ignore[reportArgumentType]
             return cls(None, np.array([level]), np.ones(1))
-        return cls(hazard, *quadrature(hazard))
+        return cls(hazard, *hazard_quadrature(hazard))
 
 
-class Runs(NamedTuple):
+class DesignRuns(NamedTuple):
     """The solved runs of one design and model, and which of them exceed the limit."""
 
     im: Array
@@ -178,17 +178,17 @@ class Runs(NamedTuple):
     damping: float | None
 
     @classmethod
-    def of(cls, solved: "pd.DataFrame", limit: float | str, measure: str) -> "Runs":
+    def of(cls, solved: "pd.DataFrame", limit: float | str, measure: str) -> "DesignRuns":
         """Take the runs from the rows of a table that have a status, at least one."""
-        state = state_of(limit, float(solved["nominal_limit"].iloc[0]))
+        state = design_limit_state(limit, float(solved["nominal_limit"].iloc[0]))
         rotation = solved["max_rotation"].to_numpy(dtype=float)
         exceeded, fallen = (
             np.asarray(each.exceeded(solved).fillna(False), dtype=bool) for each in (state, OVERTURNING)
         )
-        damping, groups = damping_of(solved, measure), solved["group"].to_numpy()
+        damping, groups = measure_damping_of_runs(solved, measure), solved["group"].to_numpy()
         return cls(solved[measure].to_numpy(float), rotation, fallen, exceeded, groups, state, damping)
 
-    def fitted(self, *, banded: bool = False) -> "Fitted":
+    def fitted(self, *, banded: bool = False) -> "FittedExceedance":
         """Fit the curve of exceeding the limit; without the covariance of a band it takes less time.
 
         Raises
@@ -199,30 +199,32 @@ class Runs(NamedTuple):
         groups = self.groups if banded else None
         fit = fit_outcomes(self.im, self.rotation, self.fallen, groups, damping=self.damping)
         falls, rocks = fit.overturning, fit.initiation
-        if is_rotation(self.state):
+        if is_rotation_limit_state(self.state):
             limit = self.state.threshold
             sure = isinstance(falls, UnanimousOutcome) and (falls.outcome or limit == OVERTURNED)
             sure |= isinstance(rocks, UnanimousOutcome) and not rocks.outcome
             curve = falls if limit == OVERTURNED else fit.curve(limit)
-            return Fitted(curve, falls, sure, [note for note in fit.notes if note.kind != "initiation"])
+            return FittedExceedance(curve, falls, sure, [note for note in fit.notes if note.kind != "initiation"])
         alike = self.exceeded.all() or not self.exceeded.any()
         found: LogisticFit | UnanimousOutcome = (
             UnanimousOutcome(bool(self.exceeded[0]), self.exceeded.size)
             if alike
             else fit_logistic(self.im, self.exceeded, groups, damping=self.damping)
         )
-        return Fitted(found, falls, bool(alike), [found.note] if found.note else [])
+        return FittedExceedance(found, falls, bool(alike), [found.note] if found.note else [])
 
     def resampled(self, level: ShakingLevel, n: int, seed: int) -> Array:
         """The result for each of `n` resamples of the recordings, NaN where there is no fit."""
         import pandas as pd
 
-        weights = resample_weights(pd.factorize(self.groups)[0], n, seed)
-        outcome, limit = (self.fallen, self.state.threshold) if is_rotation(self.state) else (self.exceeded, OVERTURNED)
+        weights = bootstrap_weights(pd.factorize(self.groups)[0], n, seed)
+        outcome, limit = (
+            (self.fallen, self.state.threshold) if is_rotation_limit_state(self.state) else (self.exceeded, OVERTURNED)
+        )
         return resampled_exceedance(self.im, self.rotation, outcome, weights, level.nodes, limit) @ level.weights
 
 
-class Fitted(NamedTuple):
+class FittedExceedance(NamedTuple):
     """The curves of exceeding a limit and of overturning, and whether all runs had the same outcome."""
 
     curve: LogisticFit | UnanimousOutcome | RotationFragility
@@ -250,15 +252,15 @@ def design_row(
     solved = group[group["status"].notna()]
     found: dict[str, Any]
     if len(solved):
-        runs = Runs.of(solved, limit, measure)
-        bound = runs.state.threshold if is_rotation(runs.state) else math.nan
+        runs = DesignRuns.of(solved, limit, measure)
+        bound = runs.state.threshold if is_rotation_limit_state(runs.state) else math.nan
         found = {"limit": bound, "state": runs.state.label, **_exceedance_columns(runs, level, confidence)}
         counts = int(runs.exceeded.sum()), int(runs.fallen.sum())
     else:
         found = {
             "limit": math.nan,
             "state": "",
-            **_no_values(level),
+            **_empty_exceedance_columns(level),
             "note": "No run was solved: see the column error.",
         }
         counts = 0, 0
@@ -272,17 +274,17 @@ def design_row(
     }
 
 
-def _no_values(level: ShakingLevel) -> dict[str, Any]:
+def _empty_exceedance_columns(level: ShakingLevel) -> dict[str, Any]:
     names = ("probability", "low", "high", "overturning") if level.hazard is None else (
         "rate", "low", "high", "overturning", "beyond",
     )  # fmt: skip
     return dict.fromkeys(names, math.nan)
 
 
-def _exceedance_columns(runs: Runs, level: ShakingLevel, confidence: float | None) -> dict[str, Any]:
+def _exceedance_columns(runs: DesignRuns, level: ShakingLevel, confidence: float | None) -> dict[str, Any]:
     """Value, band, value for overturning, and notes."""
     name = "probability" if level.hazard is None else "rate"
-    found = _no_values(level)
+    found = _empty_exceedance_columns(level)
     try:
         fit = runs.fitted(banded=confidence is not None)
         found["overturning"] = level.exceedance(fit.overturning)[0]

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from rockflex._cases import cases
+from rockflex._cases import runs_by_case
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.response import NAMES, Response, complete_of, leaves_range
-from rockflex.study._case import Peaks
+from rockflex.study._prepared_case import RunPeaks
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,19 +26,19 @@ Row = dict[str, Any]
 TYPES = {float: "float64", int: "int64", bool: "bool", str: "string"}
 
 
-def kinds_of(names: str, kind: type) -> dict[str, type]:
+def columns_of_kind(names: str, kind: type) -> dict[str, type]:
     """Return columns of one kind; blanks separate their names."""
     return dict.fromkeys(names.split(), kind)
 
 
-def tabulate(rows: Sequence[Row], columns: Columns) -> ArrowTable:
+def table_of_rows(rows: Sequence[Row], columns: Columns) -> ArrowTable:
     """Return a table of rows; NaN and the columns that a row lacks are missing values."""
     import pyarrow as pa
 
-    return pa.table({name: _column([row.get(name) for row in rows], kind) for name, kind in columns.items()})
+    return pa.table({name: _arrow_column([row.get(name) for row in rows], kind) for name, kind in columns.items()})
 
 
-def _column(values: list[Any], kind: type | Sequence[str]) -> Any:
+def _arrow_column(values: list[Any], kind: type | Sequence[str]) -> Any:
     import pyarrow as pa
 
     if isinstance(kind, type):
@@ -58,7 +58,7 @@ class ResultColumns:
         Columns of results; those without values stay missing. `error` is a text for each row that has none.
     """
 
-    def __init__(self, peaks: Peaks, columns: Columns) -> None:
+    def __init__(self, peaks: RunPeaks, columns: Columns) -> None:
         self._columns, self.size = columns, peaks.count
         kinds = {
             name: kind if isinstance(kind, type) else np.int32 for name, kind in columns.items() if kind is not str
@@ -73,7 +73,7 @@ class ResultColumns:
 
     @staticmethod
     def joined(sheets: "Sequence[ResultColumns]") -> dict[str, Any]:
-        """Return the columns of all sheets, one after another, for a DataFrame as `to_frame` gives it."""
+        """Return the columns of all sheets, one after another, for a DataFrame as `tables_to_dataframe` gives it."""
         import pandas as pd
 
         missing = np.concatenate([sheet._missing for sheet in sheets])
@@ -96,7 +96,7 @@ class ResultColumns:
         return found
 
 
-def to_frame(*tables: ArrowTable) -> "pd.DataFrame":
+def tables_to_dataframe(*tables: ArrowTable) -> "pd.DataFrame":
     """Join tables into a DataFrame: names become categories; integers, flags and text get types that allow NA."""
     import pandas as pd
     import pyarrow as pa
@@ -111,35 +111,35 @@ OF_ELEMENTS = ("tendon_yield", "tendon_overload", "residual_rotation")
 OF_GROUND = ("max_slip", "residual_slip", "max_edge_uplift", "max_edge_settlement")
 
 
-def results_of(response: Response, suffix: str = "") -> dict[str, Any]:
+def result_row(response: Response, suffix: str = "") -> dict[str, Any]:
     """Return the status of a response, and every number and flag by its name; `suffix` is added to each name."""
-    return dict(zip(_named(suffix), _values_of(response), strict=True))
+    return dict(zip(_suffixed_result_names(suffix), _values_of(response), strict=True))
 
 
 _values_of = attrgetter("status", *RESULTS)
 
 
 @cache
-def _named(suffix: str) -> tuple[str, ...]:
+def _suffixed_result_names(suffix: str) -> tuple[str, ...]:
     return tuple(name + suffix for name in ("status", *RESULTS))
 
 
 def result_columns(
     structures: Iterable[RockingProperties] = (), suffix: str = "", *, with_ground: bool = False
 ) -> dict[str, type]:
-    """Return the kinds of the columns that `results_of` fills in a study of these structures.
+    """Return the kinds of the columns that `result_row` fills in a study of these structures.
 
     Without elements other than elastic tendons the columns of `OF_ELEMENTS` would say nothing, and are left out; so are
     those of `OF_GROUND` on rigid ground on which no base slides, unless the study is `with_ground`.
     """
     left_out: tuple[str, ...] = () if with_ground else OF_GROUND
-    if not any(map(_is_controlled, structures)):
+    if not any(map(_has_dissipating_elements, structures)):
         left_out += OF_ELEMENTS
     kinds = {"status": str, **RESULTS}
     return {name + suffix: kind for name, kind in kinds.items() if name not in left_out}
 
 
-def _is_controlled(properties: RockingProperties) -> bool:
+def _has_dissipating_elements(properties: RockingProperties) -> bool:
     return any(not isinstance(each, Tendon) or each.post_yield_ratio is not None for each in properties.elements)
 
 
@@ -160,7 +160,7 @@ class PivotLifts(NamedTuple):
 
     @property
     def warnings(self) -> list[str]:
-        """What to tell of these runs, a text each."""
+        """Warnings about these runs, one text each."""
         found: list[str] = []
         if self.lifting:
             found.append(
@@ -178,7 +178,7 @@ class PivotLifts(NamedTuple):
         return found
 
 
-def pivot_lifts(runs: "pd.DataFrame") -> list[PivotLifts]:
+def count_pivot_lifts(runs: "pd.DataFrame") -> list[PivotLifts]:
     """Count the runs in which the vertical reaction falls below zero or a simplified θ passes α, by case.
 
     Parameters
@@ -188,7 +188,7 @@ def pivot_lifts(runs: "pd.DataFrame") -> list[PivotLifts]:
     """
     standing = runs[runs["status"] == "rocking"]
     found: list[PivotLifts] = []
-    for structure, model, each in cases(standing):
+    for structure, model, each in runs_by_case(standing):
         past = 0  # where a table of an earlier version does not tell
         if "balance_ratio" in each:
             past = int(leaves_range(each["model"], each["balance_ratio"], each["max_rotation"]).sum())

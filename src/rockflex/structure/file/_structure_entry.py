@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeA
 from pydantic import Field, create_model, model_validator
 
 from rockflex._errors import InputError
-from rockflex._files import check_regular, path_of
+from rockflex._files import check_regular_file, checked_file_path
 from rockflex._registry import registered
-from rockflex._schema import PLAIN, Eccentricity, Key, each
+from rockflex._schema import PLAIN, Eccentricity, SchemaKey, one_for_each
 from rockflex._shown import shortened
 from rockflex.modal import (
     BaseElement,
@@ -26,36 +26,38 @@ from rockflex.modal import (
     YieldingDissipator,
 )
 from rockflex.structure import Eccentric, Restrained
-from rockflex.structure._from_matrices import checksum
-from rockflex.structure.file._table import AnyTable, Table, checked, inner_table
-from rockflex.structure.file._tables import (
+from rockflex.structure._from_matrices import matrix_file_checksum
+from rockflex.structure.file._structure_tables import (
     BeamTable,
-    BlockTable,
     Built,
     CantileverTable,
     FishBoneTable,
     FrameTable,
-    LumpedTable,
+    LumpedStructureTable,
     MatricesTable,
     ModesTable,
-    PropertiesTable,
+    RigidBlockTable,
+    RockingPropertiesTable,
     StructureTable,
     TaperedTowerTable,
     WallFrameTable,
 )
+from rockflex.structure.file._toml_table import AnyTable, TomlTable, first_table_in_annotation, parse_toml_table
 
 _POST_YIELD_RATIO = "the stiffness after yielding over the elastic one"
-_POSITION = Key("the distance to the right of the axis of the masses", "m")
+_POSITION = SchemaKey("the distance to the right of the axis of the masses", "m")
 _ELEMENT_KINDS = (
     *("tendon", "yielding_dissipator", "viscous_damper", "friction_damper"),
     *("flag_shaped_bar", "gap_bar", "multilinear_bar", *registered("elements")),
 )
-_ELEMENT_KIND = Key(", ".join(f'"{kind}"' for kind in _ELEMENT_KINDS[:-1]) + f' or "{_ELEMENT_KINDS[-1]}"', form=PLAIN)
-_TABLE_KEY = Key("a table", form=PLAIN)
+_ELEMENT_KIND = SchemaKey(
+    ", ".join(f'"{kind}"' for kind in _ELEMENT_KINDS[:-1]) + f' or "{_ELEMENT_KINDS[-1]}"', form=PLAIN
+)
+_TABLE_KEY = SchemaKey("a table", form=PLAIN)
 _RUN_KEYS = ("impact", "restitution", "bouc_wen", "ground")  # only for `rockflex run`
 
 
-class ElementTable(Table):
+class ElementTable(TomlTable):
     """A table that is an element; `title` is its name in a list, and a key `kind` is no argument."""
 
     makes: ClassVar[Callable[..., BaseElement]]
@@ -83,18 +85,22 @@ class TendonTable(ElementTable):
     title = "Tendon"
 
     position: Annotated[float, _POSITION] = 0.0
-    initial_force: Annotated[float, Key("the force while the base stands on the ground", "N")]
-    stiffness: Annotated[float, Key("EA/L over the unbonded length", "N/m")]
-    yield_force: Annotated[float | None, Key("the force at which the tendon yields", "N")] = None
-    post_yield_ratio: Annotated[float | None, Key(f"{_POST_YIELD_RATIO} (default: the tendon stays elastic)")] = None
-    rupture_elongation: Annotated[float | None, Key("the elongation at which a tendon that yields breaks", "m")] = None
+    initial_force: Annotated[float, SchemaKey("the force while the base stands on the ground", "N")]
+    stiffness: Annotated[float, SchemaKey("EA/L over the unbonded length", "N/m")]
+    yield_force: Annotated[float | None, SchemaKey("the force at which the tendon yields", "N")] = None
+    post_yield_ratio: Annotated[float | None, SchemaKey(f"{_POST_YIELD_RATIO} (default: the tendon stays elastic)")] = (
+        None
+    )
+    rupture_elongation: Annotated[
+        float | None, SchemaKey("the elongation at which a tendon that yields breaks", "m")
+    ] = None
 
 
-class _TendonKind(Table):
+class _TendonKindKey(TomlTable):
     kind: Annotated[Literal["tendon"], _ELEMENT_KIND]
 
 
-class TendonElementTable(TendonTable, _TendonKind):
+class TendonElementTable(TendonTable, _TendonKindKey):
     """A tendon among the elements."""
 
 
@@ -106,11 +112,11 @@ class YieldingDissipatorTable(ElementTable):
 
     kind: Annotated[Literal["yielding_dissipator"], _ELEMENT_KIND]
     position: Annotated[float, _POSITION] = 0.0
-    stiffness: Annotated[float, Key("the elastic stiffness", "N/m")]
-    yield_force: Annotated[float, Key("the force at which the fuse yields", "N")]
-    post_yield_ratio: Annotated[float, Key(_POST_YIELD_RATIO)] = 0.0
-    tension_only: Annotated[bool, Key("whether the fuse cannot push", form="true or false: {}")] = False
-    rupture_elongation: Annotated[float | None, Key("the elongation at which the fuse breaks", "m")] = None
+    stiffness: Annotated[float, SchemaKey("the elastic stiffness", "N/m")]
+    yield_force: Annotated[float, SchemaKey("the force at which the fuse yields", "N")]
+    post_yield_ratio: Annotated[float, SchemaKey(_POST_YIELD_RATIO)] = 0.0
+    tension_only: Annotated[bool, SchemaKey("whether the fuse cannot push", form="true or false: {}")] = False
+    rupture_elongation: Annotated[float | None, SchemaKey("the elongation at which the fuse breaks", "m")] = None
 
 
 class ViscousDamperTable(ElementTable):
@@ -121,7 +127,7 @@ class ViscousDamperTable(ElementTable):
 
     kind: Annotated[Literal["viscous_damper"], _ELEMENT_KIND]
     position: Annotated[float, _POSITION] = 0.0
-    coefficient: Annotated[float, Key("the force over the velocity", "N s/m")]
+    coefficient: Annotated[float, SchemaKey("the force over the velocity", "N s/m")]
 
 
 class FrictionDamperTable(ElementTable):
@@ -132,7 +138,7 @@ class FrictionDamperTable(ElementTable):
 
     kind: Annotated[Literal["friction_damper"], _ELEMENT_KIND]
     position: Annotated[float, _POSITION] = 0.0
-    force: Annotated[float, Key("the force at which the damper slides", "N")]
+    force: Annotated[float, SchemaKey("the force at which the damper slides", "N")]
 
 
 class FlagShapedBarTable(ElementTable):
@@ -143,11 +149,11 @@ class FlagShapedBarTable(ElementTable):
 
     kind: Annotated[Literal["flag_shaped_bar"], _ELEMENT_KIND]
     position: Annotated[float, _POSITION] = 0.0
-    stiffness: Annotated[float, Key("the elastic stiffness", "N/m")]
-    yield_force: Annotated[float, Key("the force at which the upper plateau begins", "N")]
-    post_yield_ratio: Annotated[float, Key(_POST_YIELD_RATIO)] = 0.0
-    flag_depth: Annotated[float, Key("the height of the loop over the yield force")]
-    tension_only: Annotated[bool, Key("whether the bar cannot push", form="true or false: {}")] = False
+    stiffness: Annotated[float, SchemaKey("the elastic stiffness", "N/m")]
+    yield_force: Annotated[float, SchemaKey("the force at which the upper plateau begins", "N")]
+    post_yield_ratio: Annotated[float, SchemaKey(_POST_YIELD_RATIO)]
+    flag_depth: Annotated[float, SchemaKey("the height of the loop over the yield force")]
+    tension_only: Annotated[bool, SchemaKey("whether the bar cannot push", form="true or false: {}")] = False
 
 
 class GapBarTable(ElementTable):
@@ -158,9 +164,9 @@ class GapBarTable(ElementTable):
 
     kind: Annotated[Literal["gap_bar"], _ELEMENT_KIND]
     position: Annotated[float, _POSITION] = 0.0
-    stiffness: Annotated[float, Key("the stiffness beyond the gap", "N/m")]
-    gap: Annotated[float, Key("the elongation from which the bar is stretched", "m")]
-    both_ways: Annotated[bool, Key("whether it acts when it is shortened, too", form="true or false: {}")] = False
+    stiffness: Annotated[float, SchemaKey("the stiffness beyond the gap", "N/m")]
+    gap: Annotated[float, SchemaKey("the elongation from which the bar is stretched", "m")]
+    both_ways: Annotated[bool, SchemaKey("whether it acts when it is shortened, too", form="true or false: {}")] = False
 
 
 class MultilinearBarTable(ElementTable):
@@ -171,9 +177,9 @@ class MultilinearBarTable(ElementTable):
 
     kind: Annotated[Literal["multilinear_bar"], _ELEMENT_KIND]
     position: Annotated[float, _POSITION] = 0.0
-    elongations: Annotated[list[float], Key("the elongations of the points", "m", form=each("point"))]
-    forces: Annotated[list[float], Key("the forces at these elongations", "N", form=each("point"))]
-    tension_only: Annotated[bool, Key("whether the bar cannot push", form="true or false: {}")] = False
+    elongations: Annotated[list[float], SchemaKey("the elongations of the points", "m", form=one_for_each("point"))]
+    forces: Annotated[list[float], SchemaKey("the forces at these elongations", "N", form=one_for_each("point"))]
+    tension_only: Annotated[bool, SchemaKey("whether the bar cannot push", form="true or false: {}")] = False
 
 
 def registered_table(made: Any, base: type[AnyTable], **more: Any) -> type[AnyTable]:
@@ -181,7 +187,7 @@ def registered_table(made: Any, base: type[AnyTable], **more: Any) -> type[AnyTa
     hints = get_type_hints(made)
     keys: dict[str, Any] = {
         part.name: (
-            Annotated[list[float] if get_origin(hints[part.name]) is tuple else hints[part.name], Key(part.name)],
+            Annotated[list[float] if get_origin(hints[part.name]) is tuple else hints[part.name], SchemaKey(part.name)],
             ... if part.default is MISSING else part.default,
         )
         for part in fields(made)
@@ -210,7 +216,7 @@ AnyElementTable: TypeAlias = Annotated[Union[tuple(ELEMENTS.values())], Field(di
 """The table of any element, chosen by its `kind`."""
 
 
-class _OwnStructures(Table):
+class _OwnStructures(TomlTable):
     """A structure, with its optional name, its place on the base, and the elements that hold the base.
 
     Attributes
@@ -227,24 +233,24 @@ class _OwnStructures(Table):
         None if there are none. They follow the tendons.
     """
 
-    name: Annotated[str, Key("a name, in quotes", form=PLAIN)] = ""
+    name: Annotated[str, SchemaKey("a name, in quotes", form=PLAIN)] = ""
     frame: Annotated[FrameTable | None, _TABLE_KEY] = None
     fish_bone: Annotated[FishBoneTable | None, _TABLE_KEY] = None
     wall_frame: Annotated[WallFrameTable | None, _TABLE_KEY] = None
     tapered_tower: Annotated[TaperedTowerTable | None, _TABLE_KEY] = None
     cantilever: Annotated[CantileverTable | None, _TABLE_KEY] = None
     beam: Annotated[BeamTable | None, _TABLE_KEY] = None
-    lumped: Annotated[LumpedTable | None, _TABLE_KEY] = None
+    lumped: Annotated[LumpedStructureTable | None, _TABLE_KEY] = None
     matrices: Annotated[MatricesTable | None, _TABLE_KEY] = None
     modes: Annotated[ModesTable | None, _TABLE_KEY] = None
-    properties: Annotated[PropertiesTable | None, _TABLE_KEY] = None
-    block: Annotated[BlockTable | None, _TABLE_KEY] = None
+    properties: Annotated[RockingPropertiesTable | None, _TABLE_KEY] = None
+    block: Annotated[RigidBlockTable | None, _TABLE_KEY] = None
     eccentricity: Eccentricity = None
-    tendons: Annotated[list[TendonTable], Key("a list of tables, each under a heading [[tendons]]", form=PLAIN)] = (
-        Field(default_factory=list[TendonTable])
-    )
+    tendons: Annotated[
+        list[TendonTable], SchemaKey("a list of tables, each under a heading [[tendons]]", form=PLAIN)
+    ] = Field(default_factory=list[TendonTable])
     elements: Annotated[
-        list[AnyElementTable] | None, Key("a list of tables, each under a heading [[elements]]", form=PLAIN)
+        list[AnyElementTable] | None, SchemaKey("a list of tables, each under a heading [[elements]]", form=PLAIN)
     ] = None  # not an empty list, which would be new in the documents of stored studies
 
     @model_validator(mode="after")
@@ -333,7 +339,7 @@ class _OwnStructures(Table):
             If a file of numbers cannot be read.
         """
         files = self.table.files(Path(folder))
-        return {f"{self.kind}.{name}": checksum(name, path) for name, path in files.items()}
+        return {f"{self.kind}.{name}": matrix_file_checksum(name, path) for name, path in files.items()}
 
     def describe(self) -> dict[str, Any]:
         """Return the values of the structure's table, with eccentricity, tendons and elements if given."""
@@ -361,7 +367,7 @@ else:
 KINDS: dict[str, type[StructureTable]] = {
     name: table
     for name, field in StructureEntry.model_fields.items()
-    if issubclass(table := inner_table(field.annotation) or Table, StructureTable)
+    if issubclass(table := first_table_in_annotation(field.annotation) or TomlTable, StructureTable)
 }
 """The table of each kind of structure by its name in a file."""
 
@@ -404,14 +410,14 @@ def read_structure(path: str | Path) -> Built:
     >>> round(rf.read_structure("block.toml").resisting_moment)  # m g b in N m
     24362
     """
-    file = path_of("path", path)
-    content = {key: value for key, value in read_toml(file, "structure").items() if key not in _RUN_KEYS}
+    file = checked_file_path("path", path)
+    content = {key: value for key, value in read_toml_file(file, "structure").items() if key not in _RUN_KEYS}
     if "study" in content:
         raise InputError(f"{file} is the file of a study, but one of a structure is expected. Use load_study(path).")
-    return build_in(file, checked(StructureEntry, content, str(path)))
+    return build_structure_in_file(file, parse_toml_table(StructureEntry, content, str(path)))
 
 
-def read_toml(file: Path, kind: str) -> dict[str, Any]:
+def read_toml_file(file: Path, kind: str) -> dict[str, Any]:
     """Return the content of a TOML file; `kind` names its expected content in messages.
 
     Raises
@@ -419,7 +425,7 @@ def read_toml(file: Path, kind: str) -> dict[str, Any]:
     InputError
         If the file cannot be read, is not a regular file, or is not TOML.
     """
-    check_regular(file)
+    check_regular_file(file)
     try:
         return tomllib.loads(file.read_text("utf-8"))
     except FileNotFoundError as error:
@@ -434,7 +440,7 @@ def read_toml(file: Path, kind: str) -> dict[str, Any]:
         ) from error
 
 
-def build_in(file: Path, entry: StructureEntry) -> Built:
+def build_structure_in_file(file: Path, entry: StructureEntry) -> Built:
     """Build the structure of a file, which messages name.
 
     Raises

@@ -52,7 +52,7 @@ class ReportedRuns:
         return max(self.histories, key=lambda h: (h.model.lifts, h.model.properties.n_modes))
 
 
-def checked_runs(responses: Response | Iterable[Response], structure: Any, motion: Any) -> ReportedRuns:
+def checked_reported_runs(responses: Response | Iterable[Response], structure: Any, motion: Any) -> ReportedRuns:
     """Check the input of a report.
 
     Raises
@@ -61,16 +61,16 @@ def checked_runs(responses: Response | Iterable[Response], structure: Any, motio
         If there are no responses or too many, one has no history, they are not of one structure and one record, or
         `structure` or `motion` are not theirs.
     """
-    runs = _runs(responses)
-    histories = tuple(_history(place, run) for place, run in enumerate(runs))
-    differing = _differing([run.motion for run in runs], histories)
+    runs = _checked_responses(responses)
+    histories = tuple(_history_of_run(place, run) for place, run in enumerate(runs))
+    differing = _differing_ground_motions_text([run.motion for run in runs], histories)
     if differing:
         raise InputError(
             f"A report is of one record at one scale, but the responses {differing}. Write a report of each.",
             field="responses",
         )
-    properties = _properties(structure, histories)
-    scale = 1.0 if motion is None else _scale(motion, histories[0], runs[0].motion)
+    properties = _common_rocking_properties(structure, histories)
+    scale = 1.0 if motion is None else _scale_of_record_in_run(motion, histories[0], runs[0].motion)
     counts, seen = Counter(run.model for run in runs), Counter[str]()
     labels: list[str] = []
     for run in runs:
@@ -79,7 +79,7 @@ def checked_runs(responses: Response | Iterable[Response], structure: Any, motio
     return ReportedRuns(runs, histories, tuple(labels), properties, structure, motion, scale)
 
 
-def _runs(responses: Any) -> tuple[Response, ...]:
+def _checked_responses(responses: Any) -> tuple[Response, ...]:
     if isinstance(responses, Response):
         return (responses,)
     if not isinstance(responses, Iterable) or isinstance(responses, str):
@@ -103,7 +103,7 @@ def _runs(responses: Any) -> tuple[Response, ...]:
     return runs
 
 
-def _history(place: int, run: Response) -> History:
+def _history_of_run(place: int, run: Response) -> History:
     if run.history is None:
         raise InputError(
             f"responses[{place}] ({run.model} under {shown(run.motion)}) keeps peaks only, but a report draws the "
@@ -113,52 +113,54 @@ def _history(place: int, run: Response) -> History:
     return run.history
 
 
-def _differing(motions: list[str], histories: tuple[History, ...]) -> str:
+def _differing_ground_motions_text(motions: list[str], histories: tuple[History, ...]) -> str:
     """Return in words how the ground of some runs differs; empty if it does not."""
     names, (first, *others) = set(motions), histories
     if len(names) > 1:
         return f"are of {len(names)} records, {', '.join(shown(name) for name in sorted(names))}"
-    if not all(_same_ground(first, each) for each in others):
+    if not all(_same_ground_acceleration(first, each) for each in others):
         return "are of several scales"
-    if not all(_same_ground(first, each, "vertical_ground_acceleration") for each in others):
+    if not all(_same_ground_acceleration(first, each, "vertical_ground_acceleration") for each in others):
         return "differ in the vertical acceleration of the ground"
     return ""
 
 
-def _same_ground(one: History, other: History, of: str = "ground_acceleration") -> bool:
+def _same_ground_acceleration(one: History, other: History, of: str = "ground_acceleration") -> bool:
     """Whether two runs had the same ground acceleration, or that named by `of`, while both lasted."""
-    jumps = one.time[~_without_jumps(one.time)]
-    compared = (other.time <= one.time[-1]) & _without_jumps(other.time) & ~np.isin(other.time, jumps)
+    jumps = one.time[~_instants_without_jumps(one.time)]
+    compared = (other.time <= one.time[-1]) & _instants_without_jumps(other.time) & ~np.isin(other.time, jumps)
     there: Array = getattr(one, of)
     here: Array = getattr(other, of)
-    return _equal(np.interp(other.time[compared], one.time, there), here[compared], float(np.max(np.abs(there))))
+    return _equal_accelerations(
+        np.interp(other.time[compared], one.time, there), here[compared], float(np.max(np.abs(there)))
+    )
 
 
-def _equal(one: Array, other: Array, largest: float) -> bool:
+def _equal_accelerations(one: Array, other: Array, largest: float) -> bool:
     return bool(np.max(np.abs(one - other), initial=0.0) <= _TOLERANCE * largest)
 
 
-def _without_jumps(time: Array) -> Bools:
+def _instants_without_jumps(time: Array) -> Bools:
     """Return which instants have one row; where there are two, the acceleration may jump, as at the end of a record."""
     double = np.diff(time) == 0.0
     return ~(np.append(double, False) | np.append(False, double))
 
 
-def _properties(structure: Any, histories: tuple[History, ...]) -> RockingProperties:
+def _common_rocking_properties(structure: Any, histories: tuple[History, ...]) -> RockingProperties:
     """Return the properties of the structure, after comparing them with every run."""
     known = max((each.model.properties for each in histories), key=lambda p: p.n_modes)
-    whole = known if structure is None else _rocking(structure)
+    whole = known if structure is None else _rocking_properties_of_structure(structure)
     for history in histories:
         ran = history.model.properties
-        differing = [name for name in _COMPARED if not _close(getattr(ran, name), getattr(whole, name))]
+        differing = [name for name in _COMPARED if not _close_properties(getattr(ran, name), getattr(whole, name))]
         modes = min(ran.n_modes, whole.n_modes)
         if not np.allclose(ran.omega[:modes], whole.omega[:modes], rtol=_TOLERANCE, atol=0.0):
             differing.append("omega")
         if differing:
             first = differing[0]
             values = (
-                f"{history.model.label} was run with {first} = {shown(_plain(getattr(ran, first)))}, not "
-                f"{shown(_plain(getattr(whole, first)))}"
+                f"{history.model.label} was run with {first} = {shown(_plain_property(getattr(ran, first)))}, not "
+                f"{shown(_plain_property(getattr(whole, first)))}"
             )
             if structure is None:
                 message = f"A report is of one structure, but {values}. Write a report of each structure."
@@ -168,22 +170,22 @@ def _properties(structure: Any, histories: tuple[History, ...]) -> RockingProper
     return whole
 
 
-def _rocking(structure: Any) -> RockingProperties:
+def _rocking_properties_of_structure(structure: Any) -> RockingProperties:
     from rockflex.structure import structure_warnings
 
     structure_warnings(structure)  # raises if it is no structure
     return structure if isinstance(structure, RockingProperties) else structure.rocking()
 
 
-def _plain(value: Any) -> Any:
+def _plain_property(value: Any) -> Any:
     return value.tolist() if isinstance(value, np.ndarray) else value
 
 
-def _close(one: float, other: float) -> bool:
+def _close_properties(one: float, other: float) -> bool:
     return bool(np.isclose(one, other, rtol=_TOLERANCE, atol=0.0))
 
 
-def _scale(motion: Any, history: History, name: str) -> float:
+def _scale_of_record_in_run(motion: Any, history: History, name: str) -> float:
     """Return the factor on the record that gives the ground acceleration of a run."""
     if not isinstance(motion, GroundMotion):
         raise InputError(
@@ -191,12 +193,14 @@ def _scale(motion: Any, history: History, name: str) -> float:
             field="motion",
         )
     # At its end a record may jump to zero, and a run that ends there has one side of the jump only.
-    compared = (history.time < (1.0 - _TOLERANCE) * motion.duration) & _without_jumps(history.time)
+    compared = (history.time < (1.0 - _TOLERANCE) * motion.duration) & _instants_without_jumps(history.time)
     time, ran = history.time[compared], history.ground_acceleration[compared]
     record = np.interp(time, motion.time, motion.acceleration)
     size = float(record @ record)
     scale = float(record @ ran) / size if size > 0.0 else 1.0
-    if not _equal(ran, scale * record, float(np.max(np.abs(ran), initial=0.0))) or (size > 0.0 and scale == 0.0):
+    if not _equal_accelerations(ran, scale * record, float(np.max(np.abs(ran), initial=0.0))) or (
+        size > 0.0 and scale == 0.0
+    ):
         raise InputError(
             f"motion is not that of the responses: {shown(motion.name)} at no scale is the ground acceleration of "
             f"{shown(name)} during the run. Give the record that was simulated, scaled or not.",
@@ -204,7 +208,7 @@ def _scale(motion: Any, history: History, name: str) -> float:
         )
     rise = 0.0 * time if motion.vertical is None else scale * np.interp(time, motion.time, motion.vertical)
     shook = history.vertical_ground_acceleration[compared]
-    if not _equal(shook, rise, float(np.max(np.abs(rise), initial=0.0))):
+    if not _equal_accelerations(shook, rise, float(np.max(np.abs(rise), initial=0.0))):
         had, has = ("with" if np.any(each) else "without" for each in (shook, rise))
         raise InputError(
             f"motion is not that of the responses: they were run {had} vertical acceleration, but {shown(motion.name)} "

@@ -27,15 +27,15 @@ from rockflex.study._arguments import (
     WORK_LIMIT,
     GroundChoice,
     InitialState,
-    check_options,
+    check_run_options,
+    checked_work_limit,
     free_vibration_time,
-    ground_under,
-    work_limit_of,
+    ground_under_structure,
 )
 
 
 @dataclass(frozen=True, eq=False)
-class Case:
+class PreparedCase:
     """A model tied to a structure, with the options of its runs. Its engine is built once, for any number of runs.
 
     Attributes
@@ -104,7 +104,7 @@ class Case:
         SolverError
             If the run cannot be solved.
         """
-        return solve_all([(self, motion, scale)]).one(0)
+        return solve_runs_together([(self, motion, scale)]).one(0)
 
     @property
     def start(self) -> Start:
@@ -121,7 +121,7 @@ class Case:
         return respond(self.model, motion.name, self.solve(motion, scale), self.tracked)
 
 
-def has_vertical(motion: GroundMotion) -> bool:
+def has_vertical_motion(motion: GroundMotion) -> bool:
     """Return whether the ground moves vertically in a motion."""
     return motion.vertical is not None and bool(motion.vertical.any())
 
@@ -177,15 +177,15 @@ class RunOptions:
                 f"initial must be an InitialState or None, but {shown(initial)} was given. "
                 "Write InitialState(rotation=...)."
             )
-        free, limit = free_vibration_time(free_vibration), work_limit_of(work_limit)
-        check_options(bouc_wen, impact, ground)
+        free, limit = free_vibration_time(free_vibration), checked_work_limit(work_limit)
+        check_run_options(bouc_wen, impact, ground)
         return cls(
             free_vibration=free, impact=impact, bouc_wen=bouc_wen, ground=ground, initial=initial, work_limit=limit
         )
 
     def among(self, models: Iterable[Model]) -> Self:
         """Return the options for a set of models: if no label ends in -BW, all of them have the hysteresis."""
-        return replace(self, all_yield=not yielding(models))
+        return replace(self, all_yield=not yielding_model_labels(models))
 
     def tied(self, model: Model, properties: RockingProperties) -> RockingModel:
         """Return a model of a structure.
@@ -196,30 +196,34 @@ class RunOptions:
             If the structure cannot have the model, or the model these options.
         """
         bouc_wen = self.bouc_wen if self.all_yield or model.yields else None
-        return model.of(properties, self.impact, bouc_wen, ground_under(properties, self.ground))
+        return model.of(properties, self.impact, bouc_wen, ground_under_structure(properties, self.ground))
 
-    def case(self, model: Model, properties: RockingProperties, *, history: bool = False, floors: bool = False) -> Case:
+    def case(
+        self, model: Model, properties: RockingProperties, *, history: bool = False, floors: bool = False
+    ) -> PreparedCase:
         """Return the runs of a model of a structure.
 
         Raises
         ------
         InputError
-            As `tied`, or as `Case`.
+            As `tied`, or as `PreparedCase`.
         """
         tied = self.tied(model, properties)
-        return Case(tied, self.free_vibration, self.initial, self.work_limit, history=history, floors=floors)
+        return PreparedCase(tied, self.free_vibration, self.initial, self.work_limit, history=history, floors=floors)
 
 
-def yielding(models: Iterable[str | Model]) -> list[str]:
+def yielding_model_labels(models: Iterable[str | Model]) -> list[str]:
     """Return the labels of the models that end in -BW."""
     return [model.label for model in map(parse_model, models) if model.yields]
 
 
-Scaled = tuple[Case | InputError, GroundMotion, float]  # a case or why there is none, a motion, and a factor on it
+Scaled = tuple[
+    PreparedCase | InputError, GroundMotion, float
+]  # a case or why there is none, a motion, and a factor on it
 
 
 @dataclass(frozen=True, eq=False)
-class Peaks:
+class RunPeaks:
     """Results of some runs.
 
     Attributes
@@ -253,7 +257,7 @@ class Peaks:
         return rows
 
 
-def solve_all(runs: Sequence[tuple[Case, GroundMotion, float]]) -> Solutions:
+def solve_runs_together(runs: Sequence[tuple[PreparedCase, GroundMotion, float]]) -> Solutions:
     """Run motions, each at a scale on a case, where all cases are `together` and the motions have one time step.
 
     The ground moves vertically in all runs, or in none. Only a single run can have a history. Runs that cannot be
@@ -265,7 +269,7 @@ def solve_all(runs: Sequence[tuple[Case, GroundMotion, float]]) -> Solutions:
         If the numbers of the model overflow.
     """
     case, motion, _ = runs[0]
-    shaken = has_vertical(motion)
+    shaken = has_vertical_motion(motion)
     return run_all(
         [each.engine for each, *_ in runs],
         [Excitation(motion.acceleration, motion.vertical if shaken else None, scale) for _, motion, scale in runs],
@@ -277,32 +281,32 @@ def solve_all(runs: Sequence[tuple[Case, GroundMotion, float]]) -> Solutions:
     )
 
 
-def gather_cases(cases: Iterable[Case | InputError]) -> None:
+def share_case_preparation(cases: Iterable[PreparedCase | InputError]) -> None:
     """Let those of many cases that differ only in numbers share their preparation."""
-    gather({id(case): case.engine for case in cases if isinstance(case, Case)}.values())
+    gather({id(case): case.engine for case in cases if isinstance(case, PreparedCase)}.values())
 
 
-def solutions_of(runs: Sequence[Scaled]) -> list[Solution | InputError | SolverError]:
+def solutions_of_runs(runs: Sequence[Scaled]) -> list[Solution | InputError | SolverError]:
     """Run motions, each at a scale on a case without history, together where that can be."""
-    gather_cases(case for case, *_ in runs)
+    share_case_preparation(case for case, *_ in runs)
     found = dict[int, Solution | InputError | SolverError]()
     failures = dict[int, InputError | SolverError]()
-    for places, solutions in _solved(runs, failures):
+    for places, solutions in _solutions_by_group(runs, failures):
         for index, place in enumerate(places):
             found[place] = solutions.failures.get(index) or solutions.one(index)
     return [failures.get(place) or found[place] for place in range(len(runs))]
 
 
-def peaks_of(runs: Sequence[Scaled], *, keep: bool = True) -> Peaks:
+def peaks_of_runs(runs: Sequence[Scaled], *, keep: bool = True) -> RunPeaks:
     """Run motions, each at a scale on a case; those that can be are prepared and solved together.
 
     Unless engines are to `keep` their tables for further runs, each releases them as soon as its runs have ended.
     """
-    gather_cases(case for case, *_ in runs)
+    share_case_preparation(case for case, *_ in runs)
     columns, left = dict[str, NDArray[Any]](), Counter(case for case, *_ in runs)
     failures, responses = dict[int, InputError | SolverError](), dict[int, Response]()
-    for places, solutions in _solved(runs, failures):
-        cases = [cast("Case", runs[place][0]) for place in places]
+    for places, solutions in _solutions_by_group(runs, failures):
+        cases = [cast("PreparedCase", runs[place][0]) for place in places]
         failures |= {places[place]: error for place, error in solutions.failures.items()}
         if cases[0].history:
             found = columns_among([None])
@@ -318,10 +322,10 @@ def peaks_of(runs: Sequence[Scaled], *, keep: bool = True) -> Peaks:
         if not keep:
             for case in {id(case): case for case in cases if not left[case]}.values():
                 case.engine.release()
-    return Peaks(len(runs), columns, failures, responses)
+    return RunPeaks(len(runs), columns, failures, responses)
 
 
-def _solved(
+def _solutions_by_group(
     runs: Sequence[Scaled], failures: dict[int, InputError | SolverError]
 ) -> Iterator[tuple[list[int], Solutions]]:
     """Yield the places of runs that are solved together, one by one if there are histories, and their solutions."""
@@ -330,10 +334,15 @@ def _solved(
         if isinstance(case, InputError):
             failures[place] = case
         else:
-            kind = place if case.history else (*case.together, motion.dt, has_vertical(motion))
+            kind = place if case.history else (*case.together, motion.dt, has_vertical_motion(motion))
             alike.setdefault(kind, []).append(place)
     for places in alike.values():
         try:
-            yield places, solve_all(cast("list[tuple[Case, GroundMotion, float]]", [runs[place] for place in places]))
+            yield (
+                places,
+                solve_runs_together(
+                    cast("list[tuple[PreparedCase, GroundMotion, float]]", [runs[place] for place in places])
+                ),
+            )
         except (InputError, SolverError) as error:  # none of them can begin
             failures |= dict.fromkeys(places, error)

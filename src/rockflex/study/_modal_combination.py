@@ -5,12 +5,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 
-from rockflex._checks import dimensions, whole_number
+from rockflex._checks import checked_whole_number, number_of_dimensions
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties, uplifted_modes
 from rockflex.motion import GroundMotion
 from rockflex.response import Response
-from rockflex.study._arguments import WORK_LIMIT, RockingStructure, positive_numbers, properties_of
+from rockflex.study._arguments import WORK_LIMIT, RockingStructure, checked_positive_numbers, rocking_properties_of
 from rockflex.study._simulate import simulate
 
 if TYPE_CHECKING:
@@ -68,14 +68,14 @@ def frequency_ratios(
     0  2DOF-S           2.0   1.85
     1  2DOF-S          10.0   7.67
     """
-    ratios = positive_numbers("aspect_ratios", aspect_ratios, "")
-    properties = properties_of(structure)
+    ratios = checked_positive_numbers("aspect_ratios", aspect_ratios, "")
+    properties = rocking_properties_of(structure)
     if properties.n_modes == 0 or properties.effective_height[0] <= 0.0:
         height = f"h*_1 = {properties.effective_height[0]:g} m" if properties.n_modes else "no modes"
         raise InputError(
             f"An aspect ratio h*_1/B needs a structure whose h*_1 is positive, but one with {height} was given."
         )
-    models = [_labelled(each, properties.n_modes) for each in _as_list(n_modes)]
+    models = [_labelled_mode_count(each, properties.n_modes) for each in _mode_counts_as_list(n_modes)]
     rows: list[dict[str, Any]] = []
     for label, count in models:
         for aspect_ratio in ratios:
@@ -99,17 +99,17 @@ def frequency_ratios(
     return pd.DataFrame(rows)
 
 
-def _as_list(n_modes: Any) -> list[Any]:
-    given = list(n_modes) if dimensions(n_modes) == 1 else [n_modes]
+def _mode_counts_as_list(n_modes: Any) -> list[Any]:
+    given = list(n_modes) if number_of_dimensions(n_modes) == 1 else [n_modes]
     if not given:
         raise InputError("n_modes is empty. Give at least one number of modes, or None for all.")
     return given
 
 
-def _labelled(given: SupportsIndex | None, available: int) -> tuple[str, int]:
+def _labelled_mode_count(given: SupportsIndex | None, available: int) -> tuple[str, int]:
     if given is None:
         return "MDOF-S", available
-    count = whole_number("n_modes", given, 1, available)
+    count = checked_whole_number("n_modes", given, 1, available)
     return f"{count + 1}DOF-S", count
 
 
@@ -174,7 +174,7 @@ class CombinedPeaks:
     max_base_moment: float
 
 
-def second_mode(properties: RockingProperties, motion: GroundMotion) -> SecondMode:
+def second_mode_peaks(properties: RockingProperties, motion: GroundMotion) -> SecondMode:
     """Return the peaks of the second mode, as an oscillator on a fixed base.
 
     Raises
@@ -197,7 +197,7 @@ def second_mode(properties: RockingProperties, motion: GroundMotion) -> SecondMo
     )
 
 
-def combine(rocking: Response, second: SecondMode) -> CombinedPeaks:
+def combine_modal_peaks(rocking: Response, second: SecondMode) -> CombinedPeaks:
     """Return the square root of the sum of the squares of the two peaks, for each quantity."""
     return CombinedPeaks(
         rocking=rocking,
@@ -248,8 +248,8 @@ def modal_combination(
     >>> round(peaks.max_base_shear / peaks.rocking.max_base_shear, 3)
     1.004
     """
-    properties = properties_of(structure)
+    properties = rocking_properties_of(structure)
     rocking = simulate(
         properties, motion, "2DOF-S", output="peaks", free_vibration=free_vibration, work_limit=work_limit
     )
-    return combine(rocking, second_mode(properties, motion))
+    return combine_modal_peaks(rocking, second_mode_peaks(properties, motion))

@@ -9,18 +9,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex._checks import instance
+from rockflex._checks import checked_instance
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
-from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Motions, RockingStructure, factors_of
+from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Motions, RockingStructure, checked_scale_factors
 from rockflex.study._plan import ChunkedPlan, run_plan
-from rockflex.study._run_matrix import StudyMatrix, check_lifts, study_matrix
-from rockflex.study._tables import Columns, Row
-from rockflex.study.design._designs import VARIABLES, DesignSearch, Point, dissipator_force_of
-from rockflex.study.design._fit import check_damping, first_damping, state_of
-from rockflex.study.design._requirements import DesignCost, Requirement, check_requirements, margins_of, values_of
+from rockflex.study._result_tables import Columns, Row
+from rockflex.study._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
+from rockflex.study.design._designs import VARIABLES, DesignSearch, Point, total_dissipator_force
+from rockflex.study.design._exceedance_fit import check_hazard_damping, design_limit_state, first_damping_column
+from rockflex.study.design._requirements import (
+    DesignCost,
+    Requirement,
+    checked_requirements,
+    requirement_margins,
+    requirement_values,
+)
 from rockflex.study.progress import ProgressChoice
 
 if TYPE_CHECKING:
@@ -34,7 +40,7 @@ Costs = Callable[[Array], Array]
 Integer = NDArray[np.intp]
 
 
-class Surface:
+class MarginSurface:
     """Smoothed thin-plate splines through the margins of the designs tried, one for each requirement.
 
     Coordinates are counted in steps between the values that were given, so that the surface does not depend on units.
@@ -66,7 +72,7 @@ class Surface:
             )
         system = np.zeros((n + d + 1, n + d + 1))
         system[:n, n:], system[n:, :n] = tail, tail.T
-        bending = _bending(self._centres, self._centres)
+        bending = _thin_plate_bending(self._centres, self._centres)
         padded = np.vstack((values, np.zeros((d + 1, values.shape[1]))))
         least = np.full(values.shape[1], np.inf)
         self._weights = np.zeros_like(padded)
@@ -83,17 +89,19 @@ class Surface:
         return np.concatenate([self._at(steps[start : start + CHUNK]) for start in range(0, len(steps), CHUNK)])
 
     def _at(self, steps: Array) -> Array:
-        rows = np.column_stack((_bending(steps, self._centres), np.ones(len(steps)), steps))
+        rows = np.column_stack((_thin_plate_bending(steps, self._centres), np.ones(len(steps)), steps))
         return rows @ self._weights
 
 
-def _bending(steps: Array, centres: Array) -> Array:
+def _thin_plate_bending(steps: Array, centres: Array) -> Array:
     """r² log r between two sets of coordinates."""
     squares = ((steps[:, None, :] - centres[None, :, :]) ** 2).sum(axis=2)
     return 0.5 * squares * np.log(np.where(squares > 0.0, squares, 1.0))
 
 
-def next_points(search: DesignSearch, level: int, tried: Sequence[Point], margins: Array, costs: Costs) -> list[Point]:
+def next_search_points(
+    search: DesignSearch, level: int, tried: Sequence[Point], margins: Array, costs: Costs
+) -> list[Point]:
     """Points that a refinement tries, in the order of their number; `costs` are those of values of the variables.
 
     One half are the cheapest designs that are expected to meet all targets, and that are the cheapest for one value of
@@ -106,18 +114,18 @@ def next_points(search: DesignSearch, level: int, tried: Sequence[Point], margin
     scale = 2.0**search.refinements
     seen = np.array(tried)
     try:
-        surface = Surface(seen[:, axes] / scale, margins)
+        surface = MarginSurface(seen[:, axes] / scale, margins)
     except InputError:
         return []
     worst = surface.margins(points[:, axes] / scale).max(axis=1)
     cost = costs(search.at(points))
-    new = ~np.isin(_codes(points), _codes(seen))
+    new = ~np.isin(_search_point_codes(points), _search_point_codes(seen))
     meets = worst <= 0.0
     if not meets.any():
         order = np.lexsort((cost, worst))
-        return _listed(points[order[new[order]][:most]])
+        return _search_point_tuples(points[order[new[order]][:most]])
     front = np.unique(
-        np.concatenate([_cheapest_of_each(points[:, axis], np.where(meets, cost, np.inf)) for axis in axes])
+        np.concatenate([_cheapest_point_of_each(points[:, axis], np.where(meets, cost, np.inf)) for axis in axes])
     )
     front = front[new[front] & meets[front]]
     front = front[np.argsort(cost[front], kind="stable")]
@@ -130,21 +138,21 @@ def next_points(search: DesignSearch, level: int, tried: Sequence[Point], margin
     new[chosen] = False
     nearest = np.lexsort((cost, np.abs(worst)))
     chosen += [int(place) for place in nearest[new[nearest]][: most - len(chosen)]]
-    return _listed(points[chosen])
+    return _search_point_tuples(points[chosen])
 
 
-def _cheapest_of_each(values: Integer, cost: Array) -> Integer:
+def _cheapest_point_of_each(values: Integer, cost: Array) -> Integer:
     """Place of the least cost among the points of each value."""
     order = np.lexsort((cost, values))
     return order[np.unique(values[order], return_index=True)[1]]
 
 
-def _codes(points: Integer) -> Integer:
+def _search_point_codes(points: Integer) -> Integer:
     """A number for each point; no grid reaches 2^20."""
     return points[:, 0] * 2**40 + points[:, 1] * 2**20 + points[:, 2]
 
 
-def _listed(points: Integer) -> list[Point]:
+def _search_point_tuples(points: Integer) -> list[Point]:
     found = [(int(b), int(tendon), int(dissipator)) for b, tendon, dissipator in points]
     return sorted(found)
 
@@ -152,7 +160,7 @@ def _listed(points: Integer) -> list[Point]:
 FACTS = (*VARIABLES, "aspect_ratio", "prestress", "dissipator_force", "prestress_ratio", "resisting_moment")
 
 
-class SearchPlan(ChunkedPlan):
+class DesignSearchPlan(ChunkedPlan):
     """A search in rounds: each unit is a design under all records at all scales.
 
     The number of units is fixed. A unit of a refinement stays empty if there are fewer designs worth trying.
@@ -170,15 +178,15 @@ class SearchPlan(ChunkedPlan):
         scales: Sequence[float],
         runs_per_chunk: int,
     ) -> None:
-        check_lifts(matrix, "a fixed base, so the base width has no effect")
+        check_base_can_lift(matrix, "a fixed base, so the base width has no effect")
         if len(matrix.labels) != 1:
             raise InputError(f"models: a search needs one model, but {', '.join(matrix.labels)} were given.")
         (self.structure,) = matrix.structures
         search.check_elements(self.structure)
         self.search, self.requirements, self.cost = search, list(requirements), cost
         for each in self.requirements:
-            check_damping(each.hazard, first_damping(self.structure), each.measure)
-        self.scales = factors_of(scales, max(matrix.motions, key=lambda motion: motion.pga))
+            check_hazard_damping(each.hazard, first_damping_column(self.structure), each.measure)
+        self.scales = checked_scale_factors(scales, max(matrix.motions, key=lambda motion: motion.pga))
         self._each = len(matrix.motions) * len(self.scales)
         super().__init__(matrix.motions, search.n_designs, max(1, runs_per_chunk // self._each))
         self._empty = matrix
@@ -195,7 +203,7 @@ class SearchPlan(ChunkedPlan):
     def _check_limits(self, point: Point, properties: RockingProperties) -> None:
         for each in self.requirements:
             try:
-                state_of(each.limit, properties.nominal_overturning_rotation)
+                design_limit_state(each.limit, properties.nominal_overturning_rotation)
             except InputError as error:
                 raise InputError(f"B = {self.search.at(point)[0, 0]:.6g} m: {error}") from error
 
@@ -231,16 +239,16 @@ class SearchPlan(ChunkedPlan):
         following = copy(self)
         known = table[table["round"] <= self.round]
         designs = [rows for _, rows in known.groupby("structure", observed=True, sort=False)]
-        margins = margins_of(values_of(designs, self.requirements), self.requirements)
+        margins = requirement_margins(requirement_values(designs, self.requirements), self.requirements)
         values = np.array([rows[[*VARIABLES]].iloc[0].to_numpy(float) for rows in designs])
-        points = next_points(self.search, self.round + 1, self.search.points_of(values), margins, self.costs)
+        points = next_search_points(self.search, self.round + 1, self.search.points_of(values), margins, self.costs)
         following._start_round(self.round + 1, points)
         return following
 
     def costs(self, values: Array) -> Array:
         """Cost of designs from the values of their variables, shape (n, 3)."""
         prestress = self.structure.prestress * values[:, 1]
-        return self.cost.of(values[:, 0], prestress, dissipator_force_of(self.structure) * values[:, 2])
+        return self.cost.of(values[:, 0], prestress, total_dissipator_force(self.structure) * values[:, 2])
 
     @property
     def columns(self) -> Columns:
@@ -269,7 +277,7 @@ class SearchPlan(ChunkedPlan):
             **dict(zip(VARIABLES, map(float, self.search.at(self.points[place])[0]), strict=True)),
             "aspect_ratio": height / p.half_width,
             "prestress": p.prestress,
-            "dissipator_force": dissipator_force_of(p),
+            "dissipator_force": total_dissipator_force(p),
             "prestress_ratio": p.prestress / (p.m_tot * GRAVITY),
             "resisting_moment": p.resisting_moment,
         }
@@ -355,6 +363,6 @@ def search_design(
     matrix = study_matrix(
         [structure], motions, [model], free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground
     )
-    wanted = check_requirements(requirements)
-    space, unit_costs = instance("search", search, DesignSearch), instance("cost", cost, DesignCost)
-    return run_plan(SearchPlan(matrix, space, wanted, unit_costs, given, runs_per_chunk=64), workers, progress)
+    wanted = checked_requirements(requirements)
+    space, unit_costs = checked_instance("search", search, DesignSearch), checked_instance("cost", cost, DesignCost)
+    return run_plan(DesignSearchPlan(matrix, space, wanted, unit_costs, given, runs_per_chunk=64), workers, progress)

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from rockflex._errors import InputError, SolverError
 from rockflex._registry import Catalogue
-from rockflex._shown import counted, shown
+from rockflex._shown import number_with_noun, shown
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from rockflex.fragility import CloudFit
-    from rockflex.study import Spec
+    from rockflex.study import StudySpec
 
 
 Row: TypeAlias = dict[str, Any]
@@ -25,8 +25,8 @@ Figures: TypeAlias = Iterator[tuple[str, Callable[[], Any]]]  # name of the file
 
 
 @dataclass
-class Findings:
-    """What is reported of a study: titled tables, fits that could not be made, and remarks."""
+class StudyFindings:
+    """The report of a study: titled tables, fits that could not be made, and remarks."""
 
     tables: dict[str, list[Row]] = field(default_factory=dict[str, list[Row]])
     unfitted: list[str] = field(default_factory=list[str])
@@ -41,7 +41,7 @@ class Findings:
             return None
 
 
-def _as_they_are(table: Runs) -> Runs:
+def _unchanged_runs(table: Runs) -> Runs:
     return table
 
 
@@ -60,7 +60,7 @@ class StudyKind:
     described_by : str
         The class of such a study, with its package.
     report : callable
-        Takes a study, its table and the `Findings` to fill.
+        Takes a study, its table and the `StudyFindings` to fill.
     figures : callable
         Takes the study's document, its table, an intensity measure and a function for remarks. Yields the name of each
         file and a function that draws it.
@@ -74,20 +74,20 @@ class StudyKind:
     command: str
     summary: str
     described_by: str
-    report: Callable[[Any, Runs, Findings], None]
+    report: Callable[[Any, Runs, StudyFindings], None]
     figures: Callable[[Document, Runs, str, Remark], Figures]
     measured: bool = False
-    runs: Callable[[Runs], Runs] = _as_they_are
+    runs: Callable[[Runs], Runs] = _unchanged_runs
 
-    def spec(self) -> "type[Spec]":
+    def spec(self) -> "type[StudySpec]":
         """Return the class of such a study."""
         package, _, name = self.described_by.rpartition(".")
         return getattr(import_module(package), name)
 
 
-def _report_cloud(_: Any, runs: Runs, found: Findings) -> None:
+def _report_cloud(_: Any, runs: Runs, found: StudyFindings) -> None:
     """Count the outcomes, and fit the regressions."""
-    from rockflex._cases import cases
+    from rockflex._cases import runs_by_case
     from rockflex.fragility import OVERTURNING, ROCKING, LogisticFit, fit_each_cloud
     from rockflex.motion import MEASURES
 
@@ -97,7 +97,7 @@ def _report_cloud(_: Any, runs: Runs, found: Findings) -> None:
     fits_of = {(each.structure, each.model): each for each in fits}
     outcomes = found.tables[f"Outcomes, and P({ROCKING.label}) by logistic regression on log {pgv.label}"] = []
     lines = found.tables[f"log y = c1 + c2 log {pgv.label} of runs that rocked and stand (rad, m, {pgv.unit})"] = []
-    for structure, model, group in cases(runs):
+    for structure, model, group in runs_by_case(runs):
         name = {"structure": structure, "model": model}
         solved, fallen = group["status"].notna(), OVERTURNING.exceeded(group)
         rocked = solved & ~fallen & ROCKING.exceeded(group)
@@ -117,13 +117,13 @@ def _report_cloud(_: Any, runs: Runs, found: Findings) -> None:
             }
         )
         lines += [
-            {**name, "y": "θ_max", **_line(fit and fit.outcomes.rotation)},
-            {**name, "y": "u_top relative to the base", **_line(fit and fit.top_displacement)},
-            {**name, "y": "u_top in total", **_line(fit and fit.total_top_displacement)},
+            {**name, "y": "θ_max", **_cloud_line_row(fit and fit.outcomes.rotation)},
+            {**name, "y": "u_top relative to the base", **_cloud_line_row(fit and fit.top_displacement)},
+            {**name, "y": "u_top in total", **_cloud_line_row(fit and fit.total_top_displacement)},
         ]
 
 
-def _line(fit: "CloudFit | None") -> dict[str, Any]:
+def _cloud_line_row(fit: "CloudFit | None") -> dict[str, Any]:
     return {"c1": fit and fit.c1, "c2": fit and fit.c2, "spread": fit and fit.dispersion, "R²": fit and fit.r2}
 
 
@@ -158,8 +158,8 @@ CLOUD = StudyKind(
 )
 
 
-def _report_incremental(study: Any, runs: Runs, found: Findings) -> None:
-    from rockflex._cases import cases
+def _report_incremental(study: Any, runs: Runs, found: StudyFindings) -> None:
+    from rockflex._cases import runs_by_case
     from rockflex.fragility import LIMIT_STATES, fit_capacities
     from rockflex.motion import MEASURES
     from rockflex.study.incremental import incremental_capacities
@@ -167,7 +167,7 @@ def _report_incremental(study: Any, runs: Runs, found: Findings) -> None:
     rows = []
     for measure in (MEASURES["pga"], MEASURES["pgv"]):
         capacities = incremental_capacities(runs, measure.name).dropna(subset=["capacity"])
-        for structure, model, each in cases(capacities):
+        for structure, model, each in runs_by_case(capacities):
             what = f"{structure} with {model}, {measure.label}"
             fit = found.fitted(lambda each=each: fit_capacities(each["capacity"], each["censored"]), what)
             rows.append(
@@ -202,15 +202,15 @@ INCREMENTAL = StudyKind(
 )
 
 
-def _report_stripes(study: Any, runs: Runs, found: Findings) -> None:
-    from rockflex._cases import cases
+def _report_stripes(study: Any, runs: Runs, found: StudyFindings) -> None:
+    from rockflex._cases import runs_by_case
     from rockflex.fragility import NOMINAL, OVERTURNING, UPLIFT, fit_stripes
     from rockflex.study.stripes import stripe_counts
 
     counts = found.tables[f"Runs beyond the limit at each level of {study.measure}"] = []
     fits = found.tables[f"Fragility by maximum likelihood, lognormal in {study.measure}"] = []
     for limit in (UPLIFT, NOMINAL, OVERTURNING):
-        for structure, model, each in cases(stripe_counts(runs, limit.name)):  # pyright: ignore[reportArgumentType]
+        for structure, model, each in runs_by_case(stripe_counts(runs, limit.name)):  # pyright: ignore[reportArgumentType]
             stripes = each["level"], each["n_exceeding"], each["n_total"]
             what = f"{structure} with {model}, {limit.label}"
             fit = found.fitted(lambda stripes=stripes: fit_stripes(*stripes), what)
@@ -242,7 +242,7 @@ OUTLIER = [
 ]
 
 
-def _report_population(_: Any, pairs: Runs, found: Findings) -> None:
+def _report_population(_: Any, pairs: Runs, found: StudyFindings) -> None:
     from rockflex.papers.silva_stojadinovic_2024.population import population_statistics
 
     said = population_statistics(pairs)
@@ -287,12 +287,12 @@ POPULATION = StudyKind(
 )
 
 
-def _report_monte_carlo(study: Any, runs: Runs, found: Findings) -> None:
+def _report_monte_carlo(study: Any, runs: Runs, found: StudyFindings) -> None:
     structures = runs.drop_duplicates("number")
     lost = int(structures["weight"].isna().sum())
     if lost:
         found.remarks.append(f"{lost} of {len(structures)} structures cannot be built; their runs have an error")
-    found.tables[f"Values of {counted(len(structures), 'random structure')}"] = [
+    found.tables[f"Values of {number_with_noun(len(structures), 'random structure')}"] = [
         {"variable": name, "least": values.min(), "median": values.median(), "largest": values.max()}
         for name in (*study.variables, "recentring_ratio")
         for values in (structures[name],)
@@ -311,9 +311,9 @@ MONTE_CARLO = StudyKind(
 )
 
 
-def _report_design(study: Any, runs: Runs, found: Findings) -> None:
-    from rockflex.fragility import limit_label
-    from rockflex.study.design import design_tables, smallest_width, stored_limits
+def _report_design(study: Any, runs: Runs, found: StudyFindings) -> None:
+    from rockflex.fragility import limit_state_label
+    from rockflex.study.design import design_tables_by_limit, smallest_width, stored_design_limits
 
     if study.search is not None:
         _report_search(study, runs, found)
@@ -322,11 +322,11 @@ def _report_design(study: Any, runs: Runs, found: Findings) -> None:
     at = ", ".join(f"{level:g}" for level in dict.fromkeys(levels) if level is not None)
     asked = "annual rate" if study.hazard else f"P at {study.measure} = {at}"
     value = "rate" if study.hazard else "probability"
-    targets = [target for _, _, target, _ in stored_limits(study.document())]
+    targets = [target for _, _, target, _ in stored_design_limits(study.document())]
     designs: dict[tuple[str, str, float], dict[str, Any]] = {}
     widths: list[dict[str, Any]] = []
-    for target, (limit, table) in zip(targets, design_tables(runs, study.document()), strict=True):
-        word = limit_label(limit)
+    for target, (limit, table) in zip(targets, design_tables_by_limit(runs, study.document()), strict=True):
+        word = limit_state_label(limit)
         for reason, lost in table[table[value].isna()].groupby("note"):
             found.unfitted.append(f"{word}: no {value} of {len(lost)} of {len(table)} designs. {reason}")
         for each in table.to_dict("records"):
@@ -357,21 +357,22 @@ def _report_design(study: Any, runs: Runs, found: Findings) -> None:
         found.tables[f"Least half width from which on the {asked} is at most {most}"] = widths
 
 
-def _report_search(study: Any, runs: Runs, found: Findings) -> None:
-    from rockflex.study.design import best_design, stored_search
+def _report_search(study: Any, runs: Runs, found: StudyFindings) -> None:
+    from rockflex.study.design import best_design, stored_design_search
 
-    requirements, cost = stored_search(study.document())
+    requirements, cost = stored_design_search(study.document())
     best = best_design(runs, requirements, cost)
     found.remarks += best.notes
     found.tables["Designs of the search, in the order in which they were run"] = [
-        _row(row, [each.label for each in requirements]) for row in best.designs.to_dict("records")
+        _searched_design_row(row, [each.label for each in requirements]) for row in best.designs.to_dict("records")
     ]
     if best.best is None:
         return
     chosen = {"best": best.best} | ({} if best.cautious is None else {"cautious": best.cautious})
     names = {"best": "the cheapest that meets all targets", "cautious": "the cheapest whose bands meet them too"}
     found.tables["Cheapest designs"] = [
-        {"which": names[word], **_row(best.designs.iloc[place].to_dict(), [])} for word, place in chosen.items()
+        {"which": names[word], **_searched_design_row(best.designs.iloc[place].to_dict(), [])}
+        for word, place in chosen.items()
     ]
     found.tables[f"Limits of the cheapest design, governed by {best.governs}"] = [
         {
@@ -391,8 +392,8 @@ def _report_search(study: Any, runs: Runs, found: Findings) -> None:
     ]
 
 
-def _row(row: Mapping[Any, Any], labels: list[str]) -> dict[str, Any]:
-    """What is told of a design, with the values of some requirements."""
+def _searched_design_row(row: Mapping[Any, Any], labels: list[str]) -> dict[str, Any]:
+    """Return the row of a design in the report, with the values of some requirements."""
     return {
         "design": row["structure"],
         "governs": row["governs"],
@@ -412,18 +413,18 @@ def _row(row: Mapping[Any, Any], labels: list[str]) -> dict[str, Any]:
 
 def _figures_design(spec: Document, runs: Runs, _: str, __: Remark) -> Figures:
     from rockflex import plot
-    from rockflex.fragility import limit_label
-    from rockflex.study.design import best_design, design_tables, stored_limits, stored_search
+    from rockflex.fragility import limit_state_label
+    from rockflex.study.design import best_design, design_tables_by_limit, stored_design_limits, stored_design_search
 
     if "search" in spec:
-        best = best_design(runs, *stored_search(spec))
+        best = best_design(runs, *stored_design_search(spec))
         themes: dict[str, Literal["light", "dark"]] = {"design_search": "light", "design_search_dark": "dark"}
         for name, theme in themes.items():
             yield name, lambda theme=theme: plot.plot_design_search(best, theme=theme)
         return
-    targets = [target for _, _, target, _ in stored_limits(spec)]
-    for target, (limit, table) in zip(targets, design_tables(runs, spec), strict=True):
-        stem = f"design_{'_'.join(limit_label(limit).split())}"
+    targets = [target for _, _, target, _ in stored_design_limits(spec)]
+    for target, (limit, table) in zip(targets, design_tables_by_limit(runs, spec), strict=True):
+        stem = f"design_{'_'.join(limit_state_label(limit).split())}"
         yield stem, lambda table=table, target=target: plot.plot_design(table, target)
 
 
@@ -448,7 +449,7 @@ DESIGN = StudyKind(
 KINDS = Catalogue[StudyKind]((CLOUD, INCREMENTAL, STRIPES, POPULATION, MONTE_CARLO, DESIGN), "studies")
 
 
-def kind_named(name: object) -> StudyKind:
+def study_kind_named(name: object) -> StudyKind:
     """Return the kind of a name.
 
     Raises
