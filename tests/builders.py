@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 import rockflex as rf
-from rockflex.models import pulls_of
+from rockflex.models import element_force_sums
 from rockflex.models._fields import RockingField
 from rockflex.models._nonlinear import numbers_of
 
@@ -48,7 +48,7 @@ def make_frame(**changes: Any) -> rf.Frame:
 
 def vector_field(model, side, branch=1, kinds=(), levers=None):
     """The compiled vector field of a nonlinear model on one side, with all elements on their first branches."""
-    pulls = pulls_of(model.properties, model.elements, model.start(side))
+    pulls = element_force_sums(model.properties, model.elements, model.start(side))
     return RockingField(numbers_of(model, kinds, levers), side, branch, pulls, [])
 
 

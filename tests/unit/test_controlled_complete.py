@@ -186,7 +186,7 @@ def test_energy_balance(model, case):
             taken += (1.0 - element.post_yield_ratio) * element.yield_force * yielded
             taken += stored(element, float(known[-1, place]))
             place += 1
-    assert place == layout.remembered
+    assert place == layout.n_internal
     ledger = run.energy
     total = ledger.kinetic + ledger.strain + ledger.gravity + ledger.damped + ledger.yielded + ledger.lost
     assert taken > 1e-3 * ledger.input[last]

@@ -8,7 +8,7 @@ import pytest
 from builders import make_frame
 from rockflex import BoucWen, Tendon
 from rockflex.models import Model, Quantities, element_base, linear_system_of, nonlinear_system, system_of
-from rockflex.models._elements import border_of
+from rockflex.models._elements import base_equations_of
 
 GRAVITY = 9.81
 FRAME = make_frame(n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.6, aspect_ratio=9.0, damping_ratio=0.03)
@@ -35,7 +35,7 @@ def test_an_arrow_solved_for_the_rotation_is_its_angular_acceleration(n, name, s
     """Eq. 23 row by row: N oscillators, and the base that borders them."""
     tied = model(name, n)
     p, key = tied.properties, tied.start(side)
-    arrow, pivot = tied.arrow(key), tied.properties.pivot(side)
+    arrow, pivot = tied.bordered_system(key), tied.properties.pivot(side)
     # M [D''; θ''] = right, over [D, D', θ, θ', a, 1]
     mass = np.eye(n + 1)
     mass[:n, n] = p.effective_height
@@ -74,7 +74,7 @@ def reach(p, tendon, side):
 @STRUCTURES
 def test_in_contact_nothing_of_the_base_is_free(name):
     tied = model(name)
-    arrow = tied.arrow(tied.start(0))
+    arrow = tied.bordered_system(tied.start(0))
     assert arrow.freed.tolist() == [False]
     assert not arrow.flexibility.any()
     assert not tied.angular_acceleration(tied.start(0)).any()
@@ -113,7 +113,7 @@ def test_the_border_of_base_and_tendons_is_that_of_the_pivot(name, side):
     tied = model(name)
     p, pivot, key = tied.properties, tied.properties.pivot(side), tied.start(side)
     assert len(p.tendons) == len(key) - 1
-    whole = border_of(p, tied.elements, key)
+    whole = base_equations_of(p, tied.elements, key)
     assert whole.inertia[0, 0] == pivot.i_theta
     assert whole.stiffness[0, 0] == pytest.approx(pivot.rocking_stiffness, rel=1e-12)
     assert whole.constant[0] == pytest.approx(-side * pivot.resisting_moment, rel=1e-14)

@@ -10,7 +10,7 @@ import rockflex as rf
 from builders import frame_values
 from rockflex import InputError, SolverError
 from rockflex.models import parse_model
-from rockflex.solve import Pace, Task, WorkLimitError, pace_of
+from rockflex.solve import CostModel, Task, WorkLimitError, cost_model_of
 from rockflex.study import PreparedCase
 from rockflex.study._arguments import WORK_LIMIT, checked_work_limit
 
@@ -125,12 +125,12 @@ def test_the_fastest_vibration_is_that_of_the_uplifted_structure(label, lifts) -
     p = frame().rocking()
     expected = rf.uplifted_modes(p).omega[-1] if lifts else p.omega[-1]
     model = parse_model(label).of(p)
-    assert 0.999999 * expected <= pace_of(model, 4).fastest <= 1.03 * expected  # a bound
-    assert PreparedCase(model).engine.pace.fastest == pace_of(model, 4).fastest
+    assert 0.999999 * expected <= cost_model_of(model, 4).fastest <= 1.03 * expected  # a bound
+    assert PreparedCase(model).engine.cost_model.fastest == cost_model_of(model, 4).fastest
 
 
 def test_work_grows_with_what_it_is_said_to_grow_with() -> None:
-    known = Pace(modes=5, rows=4, fastest=1e3)
+    known = CostModel(modes=5, rows=4, fastest=1e3)
     usual = known.work(1000, 0.01, history=False).total
     assert known.work(2000, 0.01, history=False).total == pytest.approx(2.0 * usual)
     assert known.work(1000, 0.01, history=True).total > usual

@@ -13,7 +13,7 @@ import rockflex as rf
 from builders import finer
 from random_runs import nonlinear_run
 from rockflex.engine import Run
-from rockflex.models import NonlinearModel, Quantities, nonlinear_system, parse_model, pulls_of
+from rockflex.models import NonlinearModel, Quantities, element_force_sums, nonlinear_system, parse_model
 from rockflex.models import _fields as compiled
 from rockflex.models import _nonlinear_system as systems
 
@@ -138,7 +138,7 @@ def test_fields_and_jumps_are_the_same_as_python(seed, monkeypatch):
             both[1].numbers,
             key[0],
             1,
-            pulls_of(model.properties, model.elements, key),
+            element_force_sums(model.properties, model.elements, key),
             both[1].changes(key, 1)[0] if key[0] else [],
         )
         y = 0.05 * rng.normal(size=n)

@@ -8,7 +8,16 @@ from rockflex.models._element_states import (
     element_forces,
     plastic_stretches,
 )
-from rockflex.models._elements import CLOSED, LEFT, RIGHT, SUMS, arm_of, elements_of, pulls_of, stiffness_of_fuses
+from rockflex.models._elements import (
+    CLOSED,
+    LEFT,
+    RIGHT,
+    SUMS,
+    arm_of,
+    element_force_sums,
+    elements_of,
+    stiffness_of_fuses,
+)
 from rockflex.models._impact import (
     ForgottenLaw,
     ImpactLaw,
@@ -38,11 +47,11 @@ from rockflex.models._named import (
     modal_displacement,
     quantities,
     rotation_by_side,
-    swing_by_side,
+    rotation_rate_by_side,
 )
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._nonlinear_system import key_of, nonlinear_system, with_marks
-from rockflex.models._phase import Arrow, Key
+from rockflex.models._phase import BorderedSystem, Key
 from rockflex.models._quantities import (
     HORIZONTAL,
     LEFT_OUT,
@@ -79,8 +88,8 @@ __all__ = [
     "SWING",
     "TIME",
     "VERTICAL",
-    "Arrow",
     "Bar",
+    "BorderedSystem",
     "BoucWen",
     "Dashpot",
     "Element",
@@ -114,6 +123,7 @@ __all__ = [
     "arm_of",
     "element_base",
     "element_energies",
+    "element_force_sums",
     "element_forces",
     "element_moves",
     "element_speeds",
@@ -133,17 +143,16 @@ __all__ = [
     "phases_at",
     "plastic_stretches",
     "printed_reactions",
-    "pulls_of",
     "quantities",
     "rates_of",
     "reactions",
     "rotation_by_side",
+    "rotation_rate_by_side",
     "rows_of",
     "soil_strain",
     "spring_forces",
     "stiffness_of_fuses",
     "stored_energies",
-    "swing_by_side",
     "system_of",
     "under_more_gravity",
     "values_of",

@@ -1,10 +1,10 @@
 """The motion between the states of a history, in linear phases: matrix exponentials, and power series.
 
 Between two states the accelerations of the ground are linear in time. A vector z = [y, m, a, a', 1] has the states y
-that move, the memories m that act in a phase, the horizontal acceleration of the ground and its slope. Without vertical
-acceleration z' = G z, and the exponentials of G for a step and its halves carry an interval of any length, but for a
-short rest. With it z' = (G + a_v V) z is developed in a power series. Eigenvectors are not used, so that repeated roots
-need no special case.
+that move, the internal variables m that act in a phase, the horizontal acceleration of the ground and its slope.
+Without vertical acceleration z' = G z, and the exponentials of G for a step and its halves carry an interval of any
+length, but for a short rest. With it z' = (G + a_v V) z is developed in a power series. Eigenvectors are not used, so
+that repeated roots need no special case.
 """
 
 import math
@@ -66,10 +66,14 @@ class LinearMotion:
     """
 
     def __init__(self, model: RockingModel, key: Key, longest: float) -> None:
-        layout, accelerations, free = model.layout, model.accelerations(key), np.flatnonzero(model.arrow(key).freed)
+        layout, accelerations, free = (
+            model.layout,
+            model.accelerations(key),
+            np.flatnonzero(model.bordered_system(key).freed),
+        )
         heavier = under_more_gravity(model).accelerations(key) - accelerations
-        n, memories = layout.modes, accelerations[:, layout.core : layout.moving]
-        acting = np.flatnonzero(memories.any(axis=0))
+        n, internal_places = layout.modes, accelerations[:, layout.core : layout.moving]
+        acting = np.flatnonzero(internal_places.any(axis=0))
         self.columns = np.concatenate((np.arange(layout.core), layout.core + acting, [layout.moving]))  # of y, m and a
         size = self.columns.size + 2
         modes, base = np.arange(n), layout.rotation + 2 * free
@@ -264,8 +268,8 @@ class MotionBetween:
         slopes[~lasting] = 0.0
         shaking = Shaking(states[:-1, RISE], slopes[:, 1])
         shaken: Bools = (shaking.rise != 0.0) | (shaking.slope != 0.0)
-        # The branch of an element over an interval is that in its middle, with the memory at its start. An excursion
-        # may begin and end on the border of a branch: a little of its height tells on which side it is.
+        # The branch of an element over an interval is that in its middle, with the internal variable at its start. An
+        # excursion may begin and end on the border of a branch: a little of its height tells on which side it is.
         rotation, spin = layout.of(states, layout.rotation), layout.of(states, layout.spin)
         middle = 0.5 * (rotation[:-1] + rotation[1:]) - ASIDE * steps * np.diff(spin)
         parts, longest = list[Part](), _longest(steps)

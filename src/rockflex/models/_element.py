@@ -13,11 +13,11 @@ from rockflex.modal import Branch, ElementLaw, slow_path
 ELASTIC, UP, DOWN, SLACK, BROKEN = range(5)  # branches of a bar; UP and DOWN: it yields as it is stretched or shortened
 HELD, OUTWARD, INWARD = ELASTIC, UP, DOWN  # branches of a friction damper
 BORDER = 1e-12  # relative: an elongation this close to the end of a branch still belongs to it
-BROKEN_FOR_GOOD = 1e30  # the memory of an element that has broken, m
+BROKEN_FOR_GOOD = 1e30  # the internal variable of an element that has broken, m
 
 
 class Pull(NamedTuple):
-    """Tension of an element on one branch: F = stiffness δ + damping δ' + force + recall m, with its memory m."""
+    """Tension of an element on one branch: F = stiffness δ + damping δ' + force + recall m; m is internal."""
 
     stiffness: float = 0.0
     damping: float = 0.0
@@ -43,7 +43,7 @@ class Element(Protocol):
         ...
 
     @property
-    def memories(self) -> int:
+    def internal_places(self) -> int:
         """How many numbers it remembers: none, its plastic stretch or other internal variable, and its branch."""
         ...
 
@@ -90,15 +90,15 @@ class Element(Protocol):
         ...
 
     def mark(self, branch: int) -> float | None:
-        """Return the last of its memories where that tells the branch; None where it does not."""
+        """Return the last of its internal variables where that tells the branch; None where it does not."""
         ...
 
     def brought(self, elongation: float) -> tuple[int, tuple[float, ...]]:
-        """Return the branch and the memories of an element as built that has been brought to an elongation δ in m."""
+        """Return the branch and the internal variables after an element as built has been brought to δ in m."""
         ...
 
     def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
-        """Return the branch, (n,), at elongations δ in m with the memories at its start, shape (n, memories)."""
+        """Return the branch, (n,), at elongations δ in m with the internal variables at its start, (n, M)."""
         ...
 
     def stored_energy(self, elongation: Array, force: Array, plastic: Array) -> Array:
@@ -127,10 +127,10 @@ class Unbreakable:
 
 
 class WithoutMemory(Unbreakable):
-    """What is common to elements without memory, most of which have one branch."""
+    """What is common to elements without an internal variable, most of which have one branch."""
 
     @property
-    def memories(self) -> int:
+    def internal_places(self) -> int:
         return 0
 
     @property
@@ -216,7 +216,7 @@ class Dashpot(WithoutMemory):
 class Bar:
     """A fuse, or a tendon that yields: F = α k e + (1 - α) z, z = k (e - m) within ± F_y, e = δ + e_0.
 
-    The memory m is the plastic stretch. A bar that cannot push has no compression: F = max(0, ·).
+    The internal variable m is the plastic stretch. A bar that cannot push has no compression: F = max(0, ·).
     """
 
     stiffness: float
@@ -228,7 +228,7 @@ class Bar:
     rupture: float = np.inf  # elongation δ at which it breaks
 
     @property
-    def memories(self) -> int:
+    def internal_places(self) -> int:
         return 1
 
     @property
@@ -321,13 +321,13 @@ class Bar:
 
 @dataclass(frozen=True)
 class Slider(Unbreakable):
-    """A friction damper: F = ± F_0 while it slides, less while it sticks. Its memory is its direction, 1, 0 or -1."""
+    """A friction damper: F = ± F_0 while it slides, less while it sticks. It remembers its direction, 1, 0 or -1."""
 
     force: float
     position: float
 
     @property
-    def memories(self) -> int:
+    def internal_places(self) -> int:
         return 1
 
     @property
@@ -390,7 +390,7 @@ class LawElement:
         return self.law.position
 
     @property
-    def memories(self) -> int:
+    def internal_places(self) -> int:
         return 2
 
     @property

@@ -31,12 +31,12 @@ def element_forces(model: RockingModel, states: Array) -> Array:
 def plastic_stretches(model: RockingModel, states: Array) -> Array:
     """Return the plastic stretch of every element at the states of a history in m, shape (n, E).
 
-    Unlike the memories, which are constant during a phase, it follows the elongation of an element that yields. It is
-    NaN once an element is broken, and zero for elements that have none.
+    Unlike the internal variables, which are constant during a phase, it follows the elongation of an element that
+    yields. It is NaN once an element is broken, and zero for elements that have none.
     """
     layout, delta = model.layout, model.elongations_at(states)
     found = np.zeros(delta.shape)
-    if not layout.remembered:
+    if not layout.n_internal:
         return found
     for chosen, key, vector in by_phase(model, states, acting_side(states)):
         memory = layout.memory
@@ -45,7 +45,7 @@ def plastic_stretches(model: RockingModel, states: Array) -> Array:
                 offset = each.turning(branch)
                 kept = np.nan if each.broken(branch) else vector[:, memory]
                 found[chosen, place] = kept if offset is None else delta[chosen, place] - offset
-            memory += each.memories
+            memory += each.internal_places
     return found
 
 

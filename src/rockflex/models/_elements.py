@@ -15,26 +15,28 @@ from rockflex.modal import (
     YieldingDissipator,
 )
 from rockflex.models._element import HELD, Bar, Dashpot, Element, LawElement, Slider, Spring, Stop
-from rockflex.models._phase import Border, Key
+from rockflex.models._phase import BaseEquations, Key
 
 CLOSED, RIGHT, LEFT = 0, 1, -1  # branches of the base: in contact, or rotating about one pivot; the sign of θ
 QUARTER_TURN = 0.5 * np.pi  # rad: a base that has rotated so far has overturned
 
 # Indices in the sums: Σ f r, Σ k r², Σ c r² for the moment; Σ f, Σ k r, Σ c r for the force. Those with f also have a
-# share g of every memory. The last is 1 if friction dampers hold the base, otherwise 0.
+# share g of every internal variable. The last is 1 if friction dampers hold the base, otherwise 0.
 MOMENT, STIFFNESS, DAMPING, FORCE, PULL, DRAG, HOLD = range(7)
 SUMS = 7
 
 
-def base_border(properties: RockingProperties, side: int, memories: int, gravity: float = GRAVITY) -> Border:
+def weight_equations(
+    properties: RockingProperties, side: int, internal_places: int, gravity: float = GRAVITY
+) -> BaseEquations:
     """Return the inertia about the pivot and the weight, -s m_tot g B + L_0^r (g θ - a): Eq. 23 without the modes."""
     pivot = properties.pivot(side)
-    return Border.on_rotation(
+    return BaseEquations.on_rotation(
         inertia=pivot.i_theta,
         stiffness=-properties.l0r * gravity,
         constant=-side * (properties.m_tot * gravity * pivot.arm),
         ground=-properties.l0r,
-        recall=np.zeros(memories),
+        recall=np.zeros(internal_places),
     )
 
 
@@ -66,49 +68,50 @@ def is_held(properties: RockingProperties, elements: tuple[Element, ...], key: K
     )
 
 
-def memories(elements: tuple[Element, ...]) -> dict[int, int]:
-    """Return the index of the first memory of each element that has some, by its place."""
-    ends = np.cumsum([each.memories for each in elements], dtype=int).tolist()
+def internal_places(elements: tuple[Element, ...]) -> dict[int, int]:
+    """Return the index of the first internal variable of each element that has some, by its place."""
+    ends = np.cumsum([each.internal_places for each in elements], dtype=int).tolist()
     return {
-        place: end - each.memories
+        place: end - each.internal_places
         for place, (each, end) in enumerate(zip(elements, ends, strict=True))
-        if each.memories
+        if each.internal_places
     }
 
 
-def memory_count(elements: tuple[Element, ...]) -> int:
-    """Return the number of memories of all elements."""
-    return sum(each.memories for each in elements)
+def internal_count(elements: tuple[Element, ...]) -> int:
+    """Return the number of internal variables of all elements."""
+    return sum(each.internal_places for each in elements)
 
 
-def border_of(
+def base_equations_of(
     properties: RockingProperties, elements: tuple[Element, ...], key: Key, gravity: float = GRAVITY
-) -> Border:
-    """Return the sum of the borders of the base and of all elements on their branches, about a pivot.
+) -> BaseEquations:
+    """Return the sum of the equations of the base and of all elements on their branches, about a pivot.
 
     An element adds the moment -s F r: -k r² θ - c r² θ' - s r (force + recall m).
     """
-    side, known, count = key[0], memories(elements), memory_count(elements)
-    total = base_border(properties, side, count, gravity)
+    side, known, count = key[0], internal_places(elements), internal_count(elements)
+    total = weight_equations(properties, side, count, gravity)
     for place, (each, branch) in enumerate(zip(elements, key[1:], strict=True)):
         r, pull = arm_of(properties, each, side), each.pull(branch)
         recall = np.zeros(count)
         if place in known:
             recall[known[place]] = -side * pull.recall * r
-        total = total + Border.on_rotation(
+        total = total + BaseEquations.on_rotation(
             damping=pull.damping * r**2, stiffness=pull.stiffness * r**2, constant=-side * pull.force * r, recall=recall
         )
     return total
 
 
-def pulls_of(properties: RockingProperties, elements: tuple[Element, ...], key: Key) -> Array:
-    """Return the sums over the elements on their branches, and what each memory adds to them, shape (7, 1 + M).
+def element_force_sums(properties: RockingProperties, elements: tuple[Element, ...], key: Key) -> Array:
+    """Return the sums over the elements on their branches, with a column for each internal variable, (7, 1 + M).
 
-    An element at the distance r from the pivot is stretched by δ = 2 r sin(|θ|/2). Its tension with its memory m,
-    F = k δ + c δ' + f + g m, adds the moment -s F r cos(θ/2). For small rotations these are δ = r |θ| and -s F r.
+    An element at the distance r from the pivot is stretched by δ = 2 r sin(|θ|/2). Its tension
+    F = k δ + c δ' + f + g m, with an internal variable m, adds the moment -s F r cos(θ/2). For small rotations these
+    are δ = r |θ| and -s F r.
     """
-    known = memories(elements)
-    total = np.zeros((SUMS, 1 + memory_count(elements)))
+    known = internal_places(elements)
+    total = np.zeros((SUMS, 1 + internal_count(elements)))
     terms: list[tuple[float, ...]] = []
     for place, (each, branch) in enumerate(zip(elements, key[1:], strict=True)):
         r = arm_of(properties, each, key[0]) if key[0] != CLOSED else 0.0
@@ -143,8 +146,8 @@ def turning_way(properties: RockingProperties, elements: tuple[Element, ...], ke
 
 def marks_of(elements: tuple[Element, ...], key: Key) -> tuple[tuple[int, float], ...]:
     """Return the memories that have a value of their own on the branches, by index."""
-    known = memories(elements)
-    last = {place: first + elements[place].memories - 1 for place, first in known.items()}
+    known = internal_places(elements)
+    last = {place: first + elements[place].internal_places - 1 for place, first in known.items()}
     marks = ((index, elements[place].mark(key[1 + place])) for place, index in last.items())
     return tuple((index, mark) for index, mark in marks if mark is not None)
 

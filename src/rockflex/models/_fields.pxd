@@ -4,7 +4,7 @@ from rockflex.engine.field cimport Field, Jump
 
 @cython.final
 cdef class RockingField(Field):
-    cdef int n, side, branch, whole, memory, remembered, kinds_count, stops_count
+    cdef int n, side, branch, whole, memory, n_internal, kinds_count, stops_count
     cdef bint complete, hysteretic, viscous, pulled, held
     cdef double[::1] omega2, stiffness, drag, height, mass, lever
     cdef double offset, left, inverse, levers_sum, weight_arm, total_mass, gravity, resting

@@ -93,11 +93,11 @@ class RockingField(Field):
     numbers
         Of the model: see `rockflex.models._nonlinear.Numbers`.
     pulls : ndarray, shape (7, 1 + M)
-        Sums over the elements, see `pulls_of`.
+        Sums over the elements, see `element_force_sums`.
     stops : list
         For each of the first conditions, what the constant states add to it: whether it is a limit from below (1) or
-        above (-1) of |θ|, the index of a memory or -1, and of the elongation per unit distance from the pivot a part
-        and the factor of the memory.
+        above (-1) of |θ|, the index of an internal variable or -1, and of the elongation per unit distance from the
+        pivot a part and the factor of the internal variable.
     """
 
     def __init__(self, numbers, side, branch, pulls, stops):
@@ -119,7 +119,7 @@ class RockingField(Field):
         self.stiffness, self.loading = self.ratio * p.omega**2, 1.0 / self.yields
         self.slip = float(p.omega[0] ** 2) * self.yields * (1.0 - self.ratio) if b is not None else 0.0
         self.whole = int(self.exponent) if float(self.exponent).is_integer() else 0
-        self.pulls, self.memory, self.remembered = np.array(pulls), numbers.memory, pulls.shape[1] - 1
+        self.pulls, self.memory, self.n_internal = np.array(pulls), numbers.memory, pulls.shape[1] - 1
         self.pulled, self.held = bool(pulls[[MOMENT, FORCE]].any()), bool(pulls[HOLD, 0])
         self.kinds, self.levers = np.array(numbers.kinds, dtype=np.intc), np.array(numbers.levers, dtype=float)
         self.kinds_count, self.stops_count = len(numbers.kinds), len(stops)
@@ -129,7 +129,7 @@ class RockingField(Field):
     @property
     def size(self):
         """Number of states."""
-        return self.memory + self.remembered
+        return self.memory + self.n_internal
 
     def rates(self, y, a, a_v, out, counted):
         """Compute the rates of the states; the compiler makes a copy without loops for a single mode."""
@@ -148,10 +148,10 @@ class RockingField(Field):
             self.by_small_rotations(n, y, a, a_v, out, counted)
 
     def pull(self, y, which):
-        """A sum over the elements, with their memories."""
+        """A sum over the elements, with their internal variables."""
         m: cython.int
         total: cython.double = self.pulls[which, 0]
-        for m in range(self.remembered):
+        for m in range(self.n_internal):
             total += self.pulls[which, 1 + m] * y[self.memory + m]
         return total
 
@@ -317,7 +317,7 @@ class RockingField(Field):
         part: cython.double
         moment += fabs(a) * self.weight_arm + self.pulls[P_STIFFNESS, 0] * theta + self.pulls[P_DAMPING, 0] * spin
         moment += fabs(self.pulls[P_MOMENT, 0])
-        for i in range(self.remembered):
+        for i in range(self.n_internal):
             moment += fabs(self.pulls[P_MOMENT, 1 + i] * y[self.memory + i])
         for i in range(n):
             out[i] = fabs(y[n + i])
@@ -395,7 +395,7 @@ class RockingField(Field):
                 )
 
     def enter(self, y, more):
-        """Add to the conditions what the memories of the elements say."""
+        """Add to the conditions what the internal variables of the elements say."""
         k: cython.int
         m: cython.int
         kind: cython.int
@@ -494,7 +494,7 @@ class Change(Jump):
         self.marks = np.array([value for _, value in marks], dtype=float)
 
     def apply(self, y, a, a_v):
-        """Set the memories."""
+        """Set the internal variables."""
         k: cython.int
         stretch: cython.double = fabs(y[self.rotation])
         if self.chords:

@@ -15,7 +15,7 @@ STABLE = 1e-9  # relative: least stiffness of a base against toppling
 SAME = 1e-9  # relative to the half width: positions at the edges may be rounded
 
 
-def grounded(
+def model_on_ground(
     label: str, kept: RockingProperties, ground: Ground, law: ImpactLaw | None, missing_mass: bool
 ) -> LinearModel:
     """Return the model of a structure on springs, without impact law, or of one that slides.

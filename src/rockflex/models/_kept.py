@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex.models._elements import pulls_of
+from rockflex.models._elements import element_force_sums
 from rockflex.models._fields import RockingField
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME
@@ -15,7 +15,7 @@ from rockflex.models._nonlinear import NonlinearModel, Numbers, numbers_of
 from rockflex.models._phase import Key
 from rockflex.models._quantities import LINEAR, Quantities, rows_of
 
-_MOST_CODES = 2**31  # beyond which they are numbered anew, before they overflow
+_MAX_CODES = 2**31  # beyond which they are numbered anew, before they overflow
 
 
 def acting_side(states: Array) -> Array:
@@ -103,7 +103,7 @@ def fields_at(
     layout = model.layout
     backwards = layout.velocities(states)[:, 0] < 0.0 if numbers.bouc_wen is not None else np.zeros(side.size, bool)
     for chosen, key in phases_at(model, side, layout.of(states, layout.rotation), states):
-        pulls = pulls_of(model.properties, model.elements, model.element_key(key))
+        pulls = element_force_sums(model.properties, model.elements, model.element_key(key))
         for branch, part in ((1, chosen & ~backwards), (-1, chosen & backwards)):
             if part.any():
                 yield part, RockingField(numbers, key[0], branch, pulls, [])
@@ -123,7 +123,7 @@ def by_phase(model: RockingModel, states: Array, side: Array) -> list[tuple[Bool
 
 
 def phases_at(model: RockingModel, side: Array, rotation: Array, states: Array) -> list[tuple[Bools, Key]]:
-    """Return for each phase a mask of its states, by sides and rotations, and by the memories of the states."""
+    """Return for each phase a mask of its states, by sides, rotations and internal variables."""
     branches = model.branches_at(side, rotation, states).astype(np.int64)
     _, first, which = np.unique(_codes(branches), return_index=True, return_inverse=True)
     return [(which == k, tuple(branches[place].tolist())) for k, place in enumerate(first)]
@@ -134,6 +134,6 @@ def _codes(rows: NDArray[np.int64]) -> NDArray[np.int64]:
     codes = np.zeros(rows.shape[0], dtype=np.int64)
     for column in rows.T:
         codes = codes * (np.ptp(column) + 1 if column.size else 1) + column - column.min(initial=0)
-        if codes.max(initial=0) > _MOST_CODES:
+        if codes.max(initial=0) > _MAX_CODES:
             codes = np.unique(codes, return_inverse=True)[1]
     return codes

@@ -12,7 +12,7 @@ from rockflex._errors import InputError
 from rockflex._shown import number_with_noun, shown
 from rockflex.modal import FrictionDamper, Ground, RockingProperties
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._ground import check_base, grounded
+from rockflex.models._ground import check_base, model_on_ground
 from rockflex.models._impact import ImpactLaw, VVELComplete, VVELSimplified, housner
 from rockflex.models._modal_model import LinearModel
 from rockflex.models._nonlinear import NonlinearModel
@@ -167,7 +167,7 @@ class Model:
             self._check_ground(label, ground, impact, bouc_wen)
             check_base(kept, ground)
             given = impact if impact is not None or ground.springs is not None else self._law(kept)
-            return grounded(label, kept, ground, given, self.missing_mass)
+            return model_on_ground(label, kept, ground, given, self.missing_mass)
         law = impact if impact is not None else self._law(kept)
         linear = LinearModel(label, kept, self.lifts, law, self.missing_mass)
         if self.complete or bouc_wen is not None:

@@ -14,7 +14,7 @@ class StateLayout(NamedTuple):
     """Indices in the state vector [D_1..D_N, D'_1..D'_N, θ, θ'], for integrated models [.., z, E_d, E_i, E_h].
 
     A base that may slide adds its slip and the rate of it after θ', one on springs its heave and the rate of that.
-    ∫ (δ'/r)² dt follows if an integrated model has viscous dampers, and then the memories of all elements.
+    ∫ (δ'/r)² dt follows if an integrated model has viscous dampers, and then the internal variables of all elements.
 
     A *row* is a linear functional of the first `moving` entries, the ground acceleration and the constant 1.
     An index that the model does not have is -1.
@@ -34,8 +34,8 @@ class StateLayout(NamedTuple):
     swept
         ∫ (δ'/r)² dt over the rocking since the start of the run, in rad²/s: that of cos² (θ/2) θ'² or, for small
         rotations, of θ'². Times c r² it is the energy that a viscous damper dissipates.
-    memory, remembered
-        Index of the first memory of an element, and the number of memories; constant during a phase.
+    memory, n_internal
+        Index of the first internal variable of an element, and the number of all; constant during a phase.
     moving
         Number of entries that rows multiply.
     size
@@ -53,7 +53,7 @@ class StateLayout(NamedTuple):
     yielded: int
     swept: int
     memory: int
-    remembered: int
+    n_internal: int
     moving: int
     size: int
 
@@ -91,21 +91,21 @@ def layout_of(
     *,
     integrated: bool = False,
     viscous: bool = False,
-    remembered: int = 0,
+    n_internal: int = 0,
     slides: bool = False,
     heaves: bool = False,
 ) -> StateLayout:
-    """Return the layout of a model; integrated models also integrate their energies. The memories come last."""
+    """Return the layout of a model, internal variables last; integrated models also integrate their energies."""
     rotation = 2 * modes
     slip = rotation + 2 if slides else -1
     heave = rotation + 2 * (1 + slides) if heaves else -1
     core = rotation + 2 * (1 + slides + heaves)
     base = rotation, rotation + 1, slip, heave
     if not integrated:
-        size = core + remembered
-        return StateLayout(modes, *base, -1, -1, -1, -1, -1, core, remembered, size, size)
+        size = core + n_internal
+        return StateLayout(modes, *base, -1, -1, -1, -1, -1, core, n_internal, size, size)
     memory = core + 4 + viscous
-    size = memory + remembered
-    moving = size if remembered else core + 1
+    size = memory + n_internal
+    moving = size if n_internal else core + 1
     swept = core + 4 if viscous else -1
-    return StateLayout(modes, *base, core, core + 1, core + 2, core + 3, swept, memory, remembered, moving, size)
+    return StateLayout(modes, *base, core, core + 1, core + 2, core + 3, swept, memory, n_internal, moving, size)

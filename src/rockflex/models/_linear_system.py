@@ -15,10 +15,10 @@ from rockflex.models._elements import (
     QUARTER_TURN,
     RIGHT,
     arm_of,
-    border_of,
+    base_equations_of,
+    internal_count,
+    internal_places,
     is_in_reach,
-    memories,
-    memory_count,
     set_off,
     turning_way,
 )
@@ -89,7 +89,7 @@ class ElementBase:
     @cached_property
     def columns(self) -> list[int]:
         """Where the columns of a row are in the rows of the model."""
-        layout, known = self.model.layout, memories(self.model.elements)
+        layout, known = self.model.layout, internal_places(self.model.elements)
         return [*range(layout.core), *(layout.memory + known[place] for place in self.bars), -2, -1]
 
     def taken(self, rows: Array, key: Key) -> Array:
@@ -174,7 +174,7 @@ class ElementBase:
         found = np.zeros((n, n + 2))
         found[np.arange(N), N + np.arange(N)] = 1.0
         found[N : 2 * N] = accelerations[:N]
-        for k, free in enumerate(model.arrow(key).freed):
+        for k, free in enumerate(model.bordered_system(key).freed):
             place = layout.rotation + 2 * k
             if free:
                 found[place, place + 1] = 1.0
@@ -225,8 +225,8 @@ class ElementBase:
         return jump
 
     def state_of(self, key: Key, state: Array) -> Array:
-        """The states from the state of the model, whose memories are those at the start of the branches."""
-        model, known = self.model, memories(self.model.elements)
+        """The states from the state of the model, whose internal variables are those at the start of the branches."""
+        model, known = self.model, internal_places(self.model.elements)
         found = np.concatenate((state[: model.layout.core], np.zeros(len(self.bars))))
         for place, at in self.bars.items():
             memory, offset = state[model.layout.memory + known[place]], self._offset(place, key)
@@ -244,9 +244,9 @@ class ElementBase:
     def states_of_model(self, keys: Sequence[Key], places: Integers, states: Array, *, history: bool = False) -> Array:
         """The states of the model, shape (R, S), from states in phases whose keys are keys[places].
 
-        In a history the memory of a bar is its plastic stretch at the start of its branch.
+        In a history the internal variable of a bar is its plastic stretch at the start of its branch.
         """
-        model, core, known = self.model, self.model.layout.core, memories(self.model.elements)
+        model, core, known = self.model, self.model.layout.core, internal_places(self.model.elements)
         found = np.zeros((len(states), model.layout.size))
         found[:, :core] = states[:, :core]
         met = np.array([model.element_key(key)[1:] for key in keys], dtype=int).reshape(len(keys), -1)[places]
@@ -259,15 +259,15 @@ class ElementBase:
                     begins = np.append(True, branch[1:] != branch[:-1])[: len(column)]
                     column[:] = column[np.maximum.accumulate(np.where(begins, np.arange(len(column)), 0))]
             marks = np.array([each.mark(one) for one in branch.tolist()], dtype=float)  # NaN where there is none
-            last = found[:, model.layout.memory + index + each.memories - 1]
+            last = found[:, model.layout.memory + index + each.internal_places - 1]
             last[:] = np.where(np.isnan(marks), last, marks)
-        if model.layout.remembered > memory_count(model.elements):
+        if model.layout.n_internal > internal_count(model.elements):
             more = np.array([self.marks(key) for key in keys])[places]
-            found[:, model.layout.memory + memory_count(model.elements) :] = more
+            found[:, model.layout.memory + internal_count(model.elements) :] = more
         return found
 
     def marks(self, key: Key) -> tuple[float, ...]:
-        """The memories of the model that tell the branches of the base."""
+        """The internal variables of the model that tell the branches of the base."""
         del key
         return ()
 
@@ -319,16 +319,16 @@ class OnRigidGround(ElementBase):
                 moment + (p.l0r - float(np.sum(p.effective_mass * p.effective_height))) * model.accelerations(key)[-1]
             )
         found, weight = list[Event](), p.m_tot * model.gravity * p.half_width
-        known = memories(model.elements)
+        known = internal_places(model.elements)
         for turn in (RIGHT, LEFT):
             following = set_off(p, model.elements, (side or turn, *base[1:]), turn)
-            border, row = border_of(p, model.elements, following, model.gravity), moment.copy()
+            equations, row = base_equations_of(p, model.elements, following, model.gravity), moment.copy()
             for place in self.bars:
-                row[model.layout.memory + known[place]] -= float(border.recall[0, known[place]])
+                row[model.layout.memory + known[place]] -= float(equations.recall[0, known[place]])
             condition = turn * self.taken(row, key)
-            condition[-1] -= turn * float(border.constant[0])
+            condition[-1] -= turn * float(equations.constant[0])
             if side != CLOSED:
-                condition[model.layout.rotation] += turn * float(border.stiffness[0, 0])
+                condition[model.layout.rotation] += turn * float(equations.stiffness[0, 0])
             name = "uplift" if side == CLOSED else "release"
             found.append(self.event(name, condition, self.along(key, following), weight))
         return found

@@ -20,22 +20,22 @@ from rockflex.models._elements import (
     LEFT,
     RIGHT,
     arm_of,
-    border_of,
+    base_equations_of,
     elements_of,
     first_key,
+    internal_count,
+    internal_places,
     is_held,
-    memories,
-    memory_count,
     set_off,
 )
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._layout import HEADER, SIDE, TIME, StateLayout, layout_of
-from rockflex.models._phase import Arrow, Border, Key
+from rockflex.models._phase import BaseEquations, BorderedSystem, Key
 
 JAMMED = 1e-12  # relative: determinant below which the base has no inertia against a motion
 
 
-MOST_PHASES = 1000  # whose equations of motion are kept
+MAX_PHASES = 1000  # whose equations of motion are kept
 
 
 class Pose(NamedTuple):
@@ -49,7 +49,7 @@ LEVEL = Pose(0.0, 0.0)
 
 
 class ModalModel(Value):
-    """N modes on a base that may uplift: the equations of motion in each phase, as arrows and as rows.
+    """N modes on a base that may uplift: the equations of motion in each phase, as bordered systems and as rows.
 
     A *row* is a linear functional of the state, the ground acceleration and 1: `StateLayout`.
     """
@@ -95,7 +95,7 @@ class ModalModel(Value):
             self.properties.n_modes,
             integrated=self.integrated,
             viscous=any(isinstance(each, Dashpot) for each in self.elements),
-            remembered=memory_count(self.elements),
+            n_internal=internal_count(self.elements),
         )
 
     @cached_property
@@ -114,11 +114,11 @@ class ModalModel(Value):
         if state is not None:
             start[: state.size] = state
         key, memory = self.begin(float(start[layout.rotation]), float(start[layout.spin]))
-        start[layout.memory : layout.memory + layout.remembered] = memory
+        start[layout.memory : layout.memory + layout.n_internal] = memory
         return key, start
 
     def begin(self, rotation: float, spin: float) -> tuple[Key, Array]:
-        """Return the branches and the memories at the start of a run with a rotation in rad and θ' in rad/s.
+        """Return the branches and the internal variables at the start of a run with a rotation in rad and θ' in rad/s.
 
         Elements as built are brought to the rotation, and may yield or break on the way.
         """
@@ -127,9 +127,9 @@ class ModalModel(Value):
         kept, branches = list[float](), list[int]()
         for each in self.elements:
             elongation = np.zeros(1) if side == CLOSED else self.elongations(each, side, np.array([abs(rotation)]))
-            branch, remembered = each.brought(float(elongation[0]))
+            branch, n_internal = each.brought(float(elongation[0]))
             branches.append(branch)
-            kept += remembered
+            kept += n_internal
         key = (side, *branches)
         if side != CLOSED and spin != 0.0:
             key = set_off(self.properties, self.elements, key, 1 if spin > 0.0 else -1)
@@ -144,15 +144,15 @@ class ModalModel(Value):
         return (key[0], *branches, *key[1 + len(branches) :])
 
     def branches_at(self, side: Array, rotation: Array, states: Array) -> NDArray[np.int64]:
-        """Return the branches at the states of a history, by its sides, rotations and memories, shape (n, K)."""
+        """Return the branches at the states of a history, by sides, rotations and internal variables, shape (n, K)."""
         branches = np.empty((side.size, 1 + len(self.elements)), dtype=np.int64)
         branches[:, 0] = side
-        known = memories(self.elements)
+        known = internal_places(self.elements)
         for place, each in enumerate(self.elements):
             right, left = (self.elongations(each, which, np.abs(rotation)) for which in (RIGHT, LEFT))
             elongation = np.where(side < 0.0, left, right)
             first = HEADER + self.layout.memory + known.get(place, 0)
-            found = each.branch_at(elongation, states[:, first : first + each.memories])
+            found = each.branch_at(elongation, states[:, first : first + each.internal_places])
             at_rest = np.array([each.stopped(branch) for branch in range(max(each.branches) + 1)])
             branches[:, 1 + place] = np.where(side == 0.0, at_rest[found], found)
         return branches
@@ -243,37 +243,37 @@ class ModalModel(Value):
         """Possible sides of the base: contact, and both pivots if it can lift."""
         return (CLOSED, RIGHT, LEFT) if self.lifts else (CLOSED,)
 
-    def arrow(self, key: Key) -> Arrow:
+    def bordered_system(self, key: Key) -> BorderedSystem:
         """Return the equations of motion of a linear phase (Eq. 15 or 23)."""
-        known = self._arrows.get(key)
+        known = self._bordered_systems.get(key)
         if known is None:
-            if len(self._arrows) >= MOST_PHASES:
-                self._arrows.clear()
-            known = self._arrows[key] = self._new_arrow(key)
+            if len(self._bordered_systems) >= MAX_PHASES:
+                self._bordered_systems.clear()
+            known = self._bordered_systems[key] = self._new_bordered_system(key)
         return known
 
     @cached_property
-    def _arrows(self) -> dict[Key, Arrow]:
+    def _bordered_systems(self) -> dict[Key, BorderedSystem]:
         return {}
 
-    def _new_arrow(self, key: Key) -> Arrow:
+    def _new_bordered_system(self, key: Key) -> BorderedSystem:
         p = self.properties
         leverage = (p.effective_mass * p.effective_height)[None]
         coupling = p.effective_height[None]
         free = self.is_free(key)
-        border = border_of(p, self.elements, key, self.gravity) if free else Border.on_rotation()
+        equations = base_equations_of(p, self.elements, key, self.gravity) if free else BaseEquations.on_rotation()
         flexibility: Array = np.zeros((1, 1))
         if free:
-            flexibility[:] = np.linalg.inv(border.inertia - leverage @ coupling.T)
-        return Arrow(
+            flexibility[:] = np.linalg.inv(equations.inertia - leverage @ coupling.T)
+        return BorderedSystem(
             coupling=coupling.copy(),
             leverage=leverage,
             flexibility=flexibility,
-            damping=border.damping,
-            stiffness=border.stiffness,
-            constant=border.constant,
-            drive=border.ground + leverage.sum(axis=1) if free else border.ground,
-            recall=border.recall if free else np.zeros((1, self.layout.remembered)),
+            damping=equations.damping,
+            stiffness=equations.stiffness,
+            constant=equations.constant,
+            drive=equations.ground + leverage.sum(axis=1) if free else equations.ground,
+            recall=equations.recall if free else np.zeros((1, self.layout.n_internal)),
             freed=np.array([free]),
         )
 
@@ -325,7 +325,7 @@ class ModalModel(Value):
         """Return D'' of every mode and q'' of the base, θ'' first, in a phase: read-only rows, shape (N + b, C)."""
         known = self._accelerations.get(key)
         if known is None:
-            if len(self._accelerations) >= MOST_PHASES:
+            if len(self._accelerations) >= MAX_PHASES:
                 self._accelerations.clear()
             known = self._accelerations[key] = self._new_accelerations(key)
             known.setflags(write=False)
@@ -343,13 +343,13 @@ class ModalModel(Value):
         rows[modes, n + modes] -= 2.0 * p.zeta * p.omega
         rows[:n, -2] = -1.0
         if self.is_free(key):
-            arrow, turn = self.arrow(key), rows[n]
+            bordered_system, turn = self.bordered_system(key), rows[n]
             turn -= self._moment
-            turn[self.layout.rotation] -= arrow.stiffness[0, 0]
-            turn[self.layout.spin] -= arrow.damping[0, 0]
-            turn[-1] += arrow.constant[0]
-            turn[self.layout.memory : self.layout.memory + self.layout.remembered] += arrow.recall[0]
-            turn *= arrow.flexibility[0, 0]
+            turn[self.layout.rotation] -= bordered_system.stiffness[0, 0]
+            turn[self.layout.spin] -= bordered_system.damping[0, 0]
+            turn[-1] += bordered_system.constant[0]
+            turn[self.layout.memory : self.layout.memory + self.layout.n_internal] += bordered_system.recall[0]
+            turn *= bordered_system.flexibility[0, 0]
             rows[:n] -= np.outer(p.effective_height, turn)
         return rows
 
@@ -381,7 +381,7 @@ class ModalModel(Value):
     def tensions(self, key: Key) -> Array:
         """Return the tension of every element in a phase in N, for small rotations: rows, shape (E, C)."""
         branches, side, layout = self.element_key(key), key[0], self.layout
-        rows, known = np.zeros((len(self.elements), layout.columns)), memories(self.elements)
+        rows, known = np.zeros((len(self.elements), layout.columns)), internal_places(self.elements)
         if is_held(self.properties, self.elements, branches):
             self._hold(key, rows)
         for place, (each, branch) in enumerate(zip(self.elements, branches[1:], strict=True)):
@@ -401,10 +401,10 @@ class ModalModel(Value):
         """
         side, layout, p = key[0], self.layout, self.properties
         moment = -self.overturning_moment()
-        others = border_of(p, self.elements, key, self.gravity)
+        others = base_equations_of(p, self.elements, key, self.gravity)
         moment[layout.rotation] -= others.stiffness[0, 0]
         moment[-1] += others.constant[0]
-        moment[layout.memory : layout.memory + layout.remembered] += others.recall[0]
+        moment[layout.memory : layout.memory + layout.n_internal] += others.recall[0]
         sliders = {k: each for k, each in enumerate(self.elements) if isinstance(each, Slider)}
         capacity = sum(each.force * abs(arm_of(p, each, side)) for each in sliders.values())
         for place, each in sliders.items():
@@ -444,8 +444,8 @@ class LinearModel(ModalModel):
         return self
 
 
-def arrow_of(model: ModalModel, border: Border, freed: Bools) -> Arrow:
-    """Return the equations of motion with the border of the base, of which some degrees of freedom are free.
+def bordered_system_of(model: ModalModel, equations: BaseEquations, freed: Bools) -> BorderedSystem:
+    """Return the equations of motion with the equations of the base, of which some degrees of freedom are free.
 
     The couplings are c = h* for the rotation, 1 for the slip and 0 for the heave.
 
@@ -460,7 +460,7 @@ def arrow_of(model: ModalModel, border: Border, freed: Bools) -> Arrow:
     if layout.slip >= 0:
         coupling[1] = 1.0
     leverage = p.effective_mass * coupling
-    inertia = border.inertia - leverage @ coupling.T
+    inertia = equations.inertia - leverage @ coupling.T
     free = np.flatnonzero(freed)
     flexibility = np.zeros_like(inertia)
     if free.size:
@@ -468,15 +468,15 @@ def arrow_of(model: ModalModel, border: Border, freed: Bools) -> Arrow:
         if not np.linalg.det(kept) > JAMMED * np.prod(np.diag(kept)):
             raise InputError(_jammed(model))
         flexibility[np.ix_(free, free)] = np.linalg.inv(kept)
-    return Arrow(
+    return BorderedSystem(
         coupling=coupling,
         leverage=leverage,
         flexibility=flexibility,
-        damping=border.damping,
-        stiffness=border.stiffness,
-        constant=border.constant,
-        drive=border.ground + leverage.sum(axis=1),
-        recall=border.recall,
+        damping=equations.damping,
+        stiffness=equations.stiffness,
+        constant=equations.constant,
+        drive=equations.ground + leverage.sum(axis=1),
+        recall=equations.recall,
         freed=freed,
     )
 
@@ -494,23 +494,23 @@ def _jammed(model: ModalModel) -> str:
     )
 
 
-def accelerations_of(model: ModalModel, arrow: Arrow) -> Array:
+def accelerations_of(model: ModalModel, bordered_system: BorderedSystem) -> Array:
     """Return D'' of every mode and q'' of the base as rows, shape (N + b, C)."""
     p, layout = model.properties, model.layout
     n, b, modes = p.n_modes, layout.freedoms, np.arange(p.n_modes)
     rows = np.zeros((n + b, layout.columns))
     rows[:n] -= model.restoring
     rows[modes, n + modes] -= 2.0 * p.zeta * p.omega
-    forces = -arrow.leverage @ rows[:n]
+    forces = -bordered_system.leverage @ rows[:n]
     rows[:n, -2] = -1.0
     places = layout.rotation + 2 * np.arange(b)
-    forces[:, places] -= arrow.stiffness
-    forces[:, places + 1] -= arrow.damping
-    forces[:, layout.memory : layout.memory + layout.remembered] += arrow.recall
-    forces[:, -2] += arrow.drive
-    forces[:, -1] += arrow.constant
-    rows[n:] = arrow.flexibility @ forces
-    rows[:n] -= arrow.coupling.T @ rows[n:]
+    forces[:, places] -= bordered_system.stiffness
+    forces[:, places + 1] -= bordered_system.damping
+    forces[:, layout.memory : layout.memory + layout.n_internal] += bordered_system.recall
+    forces[:, -2] += bordered_system.drive
+    forces[:, -1] += bordered_system.constant
+    rows[n:] = bordered_system.flexibility @ forces
+    rows[:n] -= bordered_system.coupling.T @ rows[n:]
     return rows
 
 

@@ -112,7 +112,7 @@ def element_speeds(model: ModalModel) -> Quantities:
     return Quantities.of(places.size, model.properties.n_modes, heaving=1.0, swing=-places)
 
 
-def swing_by_side(model: ModalModel) -> Quantities:
+def rotation_rate_by_side(model: ModalModel) -> Quantities:
     """Return δ'/r, the rate of an element's elongation per unit distance from the pivot, in rad/s, to each side.
 
     That is θ' for small rotations; zero while rotated to the other side. It is one quantity if the sides do not differ.

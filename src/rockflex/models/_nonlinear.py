@@ -65,7 +65,7 @@ class Numbers:
     viscous: bool
     gravity: float
     resting: float  # vertical reaction at rest
-    memory: int  # place of the first memory of an element
+    memory: int  # place of the first internal variable of an element
     kinds: Sequence[int]  # of the outputs
     levers: Array
 

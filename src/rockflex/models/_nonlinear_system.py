@@ -17,11 +17,11 @@ from rockflex.models._elements import (
     QUARTER_TURN,
     RIGHT,
     arm_of,
-    border_of,
+    base_equations_of,
+    element_force_sums,
+    internal_places,
     is_in_reach,
     marks_of,
-    memories,
-    pulls_of,
     set_off,
     turning_way,
 )
@@ -59,7 +59,7 @@ def key_of(model: RockingModel, key: Key, state: Array | None = None) -> Key:
 
 
 def with_marks(model: RockingModel, keys: Sequence[Key], places: Integers, states: Array) -> Array:
-    """Return states in which the memories of friction dampers are those of their phases, at keys[places]."""
+    """Return states in which the internal variables of friction dampers are those of their phases, at keys[places]."""
     marks = [marks_of(model.elements, key[:-1] if model.bouc_wen is not None else key) for key in keys]
     if any(marks):
         states = states.copy()
@@ -164,15 +164,15 @@ class Rocks:
         A limit is the moment at which the forces of the phase that follows would turn the base.
         """
         layout, p = model.layout, model.properties
-        borders = [border_of(p, model.elements, each, model.gravity) for each in following]
+        equations_after = [base_equations_of(p, model.elements, each, model.gravity) for each in following]
         rows = np.zeros((2, layout.size + 2))
-        for row, border, sign in zip(rows, borders, (1.0, -1.0), strict=True):
+        for row, equations, sign in zip(rows, equations_after, (1.0, -1.0), strict=True):
             row[[*range(layout.moving), -2, -1]] = sign * model.overturning_moment()
-            row[layout.memory : layout.memory + layout.remembered] -= sign * border.recall[0]
-            row[-1] -= sign * border.constant[0]
+            row[layout.memory : layout.memory + layout.n_internal] -= sign * equations.recall[0]
+            row[-1] -= sign * equations.constant[0]
             if key[0] != CLOSED:
-                row[layout.rotation] += sign * borders[0].stiffness[0, 0]
-        return rows, [float(each.constant[0]) for each in borders]
+                row[layout.rotation] += sign * equations_after[0].stiffness[0, 0]
+        return rows, [float(each.constant[0]) for each in equations_after]
 
     def rotation(self, factor: float) -> Array:
         """A row that is a factor times θ."""
@@ -181,9 +181,9 @@ class Rocks:
         return found
 
     def changes(self, key: Key, branch: int) -> tuple[list[Any], tuple[Event, ...]]:
-        """The elongations at which an element changes its branch, each a limit of |θ| that its memory moves."""
+        """The elongations at which an element changes its branch: limits of |θ| that its internal variable moves."""
         stops, found = list[Any](), list[Event]()
-        model, known = self.model, memories(self.model.elements)
+        model, known = self.model, internal_places(self.model.elements)
         for place, (each, taken) in enumerate(zip(model.elements, key[1:], strict=True)):
             arm = arm_of(model.properties, each, key[0])
             for stop in each.stops(taken):
@@ -203,8 +203,8 @@ class Rocks:
         return Change(layout.rotation, self.model.complete, stops, self.turnings(key), places)
 
     def turnings(self, key: Key) -> list[tuple[int, float, float]]:
-        """The memories m that are set where elements cease to yield: place, r, and δ - m."""
-        model, known, found = self.model, memories(self.model.elements), list[tuple[int, float, float]]()
+        """The internal variables m that are set where elements cease to yield: place, r, and δ - m."""
+        model, known, found = self.model, internal_places(self.model.elements), list[tuple[int, float, float]]()
         for place, (each, taken) in enumerate(zip(model.elements, key[1:], strict=True)):
             offset = each.turning(taken)
             if offset is not None:
@@ -268,7 +268,7 @@ class Rocks:
 
     def field(self, key: Key, branch: int, stops: Sequence[Any] = ()) -> RockingField:
         """The vector field of a phase, with conditions or without."""
-        pulls = pulls_of(self.model.properties, self.model.elements, key)
+        pulls = element_force_sums(self.model.properties, self.model.elements, key)
         return RockingField(self.numbers, key[0], branch, pulls, list(stops))
 
     def reversal(self, key: Key, branch: int) -> Event:

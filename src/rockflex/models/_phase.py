@@ -1,4 +1,4 @@
-"""The equations of motion of a phase: modes, and the degrees of freedom of the base that borders them."""
+"""The equations of motion of a phase: modes, and the degrees of freedom of the base that equations them."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ Key = tuple[int, ...]  # the branch of every element, the base first
 
 
 @dataclass(frozen=True, eq=False)
-class Border:
+class BaseEquations:
     """Contribution to the equations of the base, M q'' + .. + C q' + K q = f + a g + H m, with b unknowns q.
 
     Attributes
@@ -20,7 +20,7 @@ class Border:
     constant, ground : ndarray, shape (b,)
         f, and the factor g of the ground acceleration.
     recall : ndarray, shape (b, M)
-        H, the factor of the memories m of the elements.
+        H, the factor of the internal variables m of the elements.
     """
 
     inertia: Array
@@ -40,8 +40,8 @@ class Border:
         constant: float = 0.0,
         ground: float = 0.0,
         recall: Array | None = None,
-    ) -> "Border":
-        """Return the border of an element that acts only on the rotation."""
+    ) -> "BaseEquations":
+        """Return the equations of an element that acts only on the rotation."""
         squares, columns = np.zeros((3, 1, 1)), np.zeros((2, 1))
         squares[:, 0, 0] = inertia, damping, stiffness
         columns[:, 0] = constant, ground
@@ -51,15 +51,20 @@ class Border:
         return cls(squares[0], squares[1], squares[2], columns[0], columns[1], factors)
 
     @classmethod
-    def blank(cls, freedoms: int, memories: int) -> "Border":
-        """Return a border without any entry."""
+    def blank(cls, freedoms: int, internal_places: int) -> "BaseEquations":
+        """Return a equations without any entry."""
         b = freedoms
         return cls(
-            np.zeros((b, b)), np.zeros((b, b)), np.zeros((b, b)), np.zeros(b), np.zeros(b), np.zeros((b, memories))
+            np.zeros((b, b)),
+            np.zeros((b, b)),
+            np.zeros((b, b)),
+            np.zeros(b),
+            np.zeros(b),
+            np.zeros((b, internal_places)),
         )
 
-    def __add__(self, other: "Border") -> "Border":
-        return Border(
+    def __add__(self, other: "BaseEquations") -> "BaseEquations":
+        return BaseEquations(
             self.inertia + other.inertia,
             self.damping + other.damping,
             self.stiffness + other.stiffness,
@@ -70,7 +75,7 @@ class Border:
 
 
 @dataclass(frozen=True, eq=False)
-class Arrow:
+class BorderedSystem:
     """The equations of motion of one phase: N oscillators bordered by the b degrees of freedom q of the base.
 
         D''_n + 2 ζ_n ω_n D'_n + ω_n² D_n + c_n · q'' = -a
@@ -91,7 +96,7 @@ class Arrow:
     constant, drive : ndarray, shape (b,)
         f, and g + Σ m* c.
     recall : ndarray, shape (b, M)
-        H, the factor of the memories m of the elements, which are constant during a phase.
+        H, the factor of the internal variables m of the elements, which are constant during a phase.
     freed : ndarray of bool, shape (b,)
         Which are free.
     """

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties
-from rockflex.models._elements import CLOSED, border_of, memory_count
+from rockflex.models._elements import CLOSED, base_equations_of, internal_count
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._layout import HEADER, StateLayout, layout_of
-from rockflex.models._modal_model import LinearModel, accelerations_of, arrow_of
-from rockflex.models._phase import Arrow, Border, Key
+from rockflex.models._modal_model import LinearModel, accelerations_of, bordered_system_of
+from rockflex.models._phase import BaseEquations, BorderedSystem, Key
 
 STICK = 0  # the last branch of a key: it sticks, slips to the right (1) or left (-1), or does so without friction (±2)
 LOST = 2  # magnitude of the branch on which the ground has no pressure to rub against
@@ -24,8 +24,8 @@ LOST = 2  # magnitude of the branch on which the ground has no pressure to rub a
 class SlidingModel(LinearModel):
     """N modes on a base that may uplift and slide: nine phases of contact and rocking, of sticking and slipping.
 
-    An impact keeps all horizontal velocities, also that of the base. The last memory of the state tells whether, and to
-    which side, the base slips.
+    An impact keeps all horizontal velocities, also that of the base. The last internal variable of the state tells
+    whether, and to which side, the base slips.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class SlidingModel(LinearModel):
     @cached_property
     def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Layout of the state vector."""
-        return layout_of(self.properties.n_modes, remembered=memory_count(self.elements) + 1, slides=True)
+        return layout_of(self.properties.n_modes, n_internal=internal_count(self.elements) + 1, slides=True)
 
     @property
     def ground_parameters(self) -> dict[str, Any]:
@@ -62,7 +62,7 @@ class SlidingModel(LinearModel):
         return (*super().start(side), STICK)
 
     def begin(self, rotation: float, spin: float) -> tuple[Key, Array]:
-        """Return the branches and the memories at the start of a run, in which the base does not slip."""
+        """Return the branches and the internal variables at the start of a run, in which the base does not slip."""
         key, kept = super().begin(rotation, spin)
         return (*key, STICK), np.append(kept, STICK)
 
@@ -72,42 +72,42 @@ class SlidingModel(LinearModel):
 
     def branches_at(self, side: Array, rotation: Array, states: Array) -> NDArray[np.int64]:
         """Return the branches at the states of a history, shape (n, K)."""
-        place = HEADER + self.layout.memory + self.layout.remembered - 1
+        place = HEADER + self.layout.memory + self.layout.n_internal - 1
         return np.column_stack((super().branches_at(side, rotation, states), states[:, place].astype(np.int64)))
 
-    def _new_arrow(self, key: Key) -> Arrow:
+    def _new_bordered_system(self, key: Key) -> BorderedSystem:
         side, slip = key[0], key[-1]
-        return arrow_of(self, self._border(key), np.array([side != CLOSED, slip != STICK]))
+        return bordered_system_of(self, self._base_equations(key), np.array([side != CLOSED, slip != STICK]))
 
-    def _border(self, key: Key) -> Border:
+    def _base_equations(self, key: Key) -> BaseEquations:
         """Return the forces on the rotation and the slip; friction is -sign(x') μ N."""
         p, side, slip, elements = self.properties, key[0], key[-1], self.element_key(key)
-        border = Border.blank(2, self.layout.remembered)
-        border.inertia[1, 1], border.ground[1] = p.m_tot, -p.m_tot
-        border.inertia[0, 1] = border.inertia[1, 0] = p.l0r
-        border.ground[0] = -p.l0r
+        equations = BaseEquations.blank(2, self.layout.n_internal)
+        equations.inertia[1, 1], equations.ground[1] = p.m_tot, -p.m_tot
+        equations.inertia[0, 1] = equations.inertia[1, 0] = p.l0r
+        equations.ground[0] = -p.l0r
         if side != CLOSED:
-            turning = border_of(p, self.elements, elements, self.gravity)
-            border.inertia[0, 0] = turning.inertia[0, 0]
-            border.damping[0, 0], border.stiffness[0, 0] = turning.damping[0, 0], turning.stiffness[0, 0]
-            border.constant[0], border.recall[0, :-1] = turning.constant[0], turning.recall[0]
+            turning = base_equations_of(p, self.elements, elements, self.gravity)
+            equations.inertia[0, 0] = turning.inertia[0, 0]
+            equations.damping[0, 0], equations.stiffness[0, 0] = turning.damping[0, 0], turning.stiffness[0, 0]
+            equations.constant[0], equations.recall[0, :-1] = turning.constant[0], turning.recall[0]
         if abs(slip) == 1:
-            self._add_friction(border, key)
-        return border
+            self._add_friction(equations, key)
+        return equations
 
-    def _add_friction(self, border: Border, key: Key) -> None:
+    def _add_friction(self, equations: BaseEquations, key: Key) -> None:
         """Add -sign(x') μ N with N = m_tot (g + s B θ'') + the tensions of the elements."""
         p, side, layout = self.properties, key[0], self.layout
         drag, pull = key[-1] * self.friction, self.tensions(key).sum(axis=0)
-        border.constant[1] -= drag * (p.m_tot * self.gravity + pull[-1])
-        border.recall[1] -= drag * pull[layout.memory : layout.memory + layout.remembered]
+        equations.constant[1] -= drag * (p.m_tot * self.gravity + pull[-1])
+        equations.recall[1] -= drag * pull[layout.memory : layout.memory + layout.n_internal]
         if side != CLOSED:
-            border.inertia[1, 0] += drag * side * p.m_tot * p.pivot(side).arm
-            border.stiffness[1, 0] += drag * pull[layout.rotation]
-            border.damping[1, 0] += drag * pull[layout.spin]
+            equations.inertia[1, 0] += drag * side * p.m_tot * p.pivot(side).arm
+            equations.stiffness[1, 0] += drag * pull[layout.rotation]
+            equations.damping[1, 0] += drag * pull[layout.spin]
 
     def _new_accelerations(self, key: Key) -> Array:
-        return accelerations_of(self, self.arrow(key))
+        return accelerations_of(self, self.bordered_system(key))
 
     def pressure(self, key: Key) -> Array:
         """Return the vertical reaction m_tot (g + s B θ'') and the tensions of the elements in N: a row, shape (C,)."""

@@ -12,11 +12,11 @@ from rockflex._arrays import Array, Bools
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties, Springs
 from rockflex.models._element import Element
-from rockflex.models._elements import CLOSED, memories, memory_count
+from rockflex.models._elements import CLOSED, internal_count, internal_places
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._layout import HEADER, SIDE, TIME, StateLayout, layout_of
-from rockflex.models._modal_model import LEVEL, LinearModel, Pose, accelerations_of, arrow_of
-from rockflex.models._phase import Arrow, Border, Key
+from rockflex.models._modal_model import LEVEL, LinearModel, Pose, accelerations_of, bordered_system_of
+from rockflex.models._phase import BaseEquations, BorderedSystem, Key
 
 # Branches of a spring. RECEDING: still compressed, but unloaded, since its dashpot would have to pull the base.
 LOADED, LIFTED, RECEDING = 0, 1, 2
@@ -33,7 +33,7 @@ class SpringModel(LinearModel):
     """N modes on a base on springs and dashpots that cannot pull: no impact law, and flight as one more phase.
 
     A key has the side, always 0, the branches of the springs, that of the slip, and those of the elements. The state
-    keeps them as the last memories.
+    keeps them as the last internal variables.
 
     Parameters
     ----------
@@ -63,8 +63,8 @@ class SpringModel(LinearModel):
     @cached_property
     def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Layout of the state vector."""
-        remembered = memory_count(self.elements) + codes_for(self._key_size)
-        return layout_of(self.properties.n_modes, remembered=remembered, slides=self.friction is not None, heaves=True)
+        n_internal = internal_count(self.elements) + codes_for(self._key_size)
+        return layout_of(self.properties.n_modes, n_internal=n_internal, slides=self.friction is not None, heaves=True)
 
     @property
     def ground_parameters(self) -> dict[str, Any]:
@@ -100,7 +100,7 @@ class SpringModel(LinearModel):
 
     def branches_at(self, side: Array, rotation: Array, states: Array) -> NDArray[np.int64]:  # noqa: ARG002
         """Return the branches at the states of a history, shape (n, K)."""
-        first = HEADER + self.layout.memory + memory_count(self.elements)
+        first = HEADER + self.layout.memory + internal_count(self.elements)
         codes = states[:, first : HEADER + self.layout.size]
         return np.column_stack((np.zeros(side.size, dtype=np.int64), decoded(codes, self._key_size)))
 
@@ -187,7 +187,7 @@ class SpringModel(LinearModel):
 
     def tension(self, place: int, branch: int) -> Array:
         """Return the tension of an element on a branch in N as a row, shape (C,)."""
-        each, known = self.elements[place], memories(self.elements)
+        each, known = self.elements[place], internal_places(self.elements)
         pull = each.pull(branch)
         row = pull.stiffness * self.stretch(each) + pull.damping * self.risen(each.position)[1]
         row[-1] += pull.force
@@ -208,42 +208,42 @@ class SpringModel(LinearModel):
         row[-1] += self.properties.resting_reaction
         return row
 
-    def _new_arrow(self, key: Key) -> Arrow:
+    def _new_bordered_system(self, key: Key) -> BorderedSystem:
         slips = [] if self.friction is None else [key[self.springs.n + 1] != STICK]
-        return arrow_of(self, self._border(key), np.array([True, *slips, True]))
+        return bordered_system_of(self, self._base_equations(key), np.array([True, *slips, True]))
 
-    def _border(self, key: Key) -> Border:
+    def _base_equations(self, key: Key) -> BaseEquations:
         p, layout = self.properties, self.layout
         b = layout.freedoms
-        border = Border.blank(b, layout.remembered)
+        equations = BaseEquations.blank(b, layout.n_internal)
         z = b - 1
-        border.inertia[0, 0], border.inertia[z, z] = self.inertia, p.m_tot
-        border.stiffness[0, 0] = -p.l0r * self.gravity
-        border.constant[z] = -p.m_tot * self.gravity
-        border.ground[0] = -p.l0r
+        equations.inertia[0, 0], equations.inertia[z, z] = self.inertia, p.m_tot
+        equations.stiffness[0, 0] = -p.l0r * self.gravity
+        equations.constant[z] = -p.m_tot * self.gravity
+        equations.ground[0] = -p.l0r
         if self.friction is not None:
-            border.inertia[0, 1] = border.inertia[1, 0] = p.l0r
-            border.inertia[1, 1], border.ground[1] = p.m_tot, -p.m_tot
+            equations.inertia[0, 1] = equations.inertia[1, 0] = p.l0r
+            equations.inertia[1, 1], equations.ground[1] = p.m_tot, -p.m_tot
         forces = self.spring_forces(key)
-        self._add_to(border, 0, -self.springs.positions @ forces)
-        self._add_to(border, z, forces.sum(axis=0))
+        self._add_to(equations, 0, -self.springs.positions @ forces)
+        self._add_to(equations, z, forces.sum(axis=0))
         for place, branch in enumerate(self.element_key(key)[1:]):
             tension = self.tension(place, branch)
-            self._add_to(border, 0, self.elements[place].position * tension)
-            self._add_to(border, z, -tension)
+            self._add_to(equations, 0, self.elements[place].position * tension)
+            self._add_to(equations, z, -tension)
         if self.friction is not None:
             slip = key[self.springs.n + 1]
-            self._add_to(border, 1, -slip * self.grip(key))
-        return border
+            self._add_to(equations, 1, -slip * self.grip(key))
+        return equations
 
-    def _add_to(self, border: Border, freedom: int, force: Array) -> None:
+    def _add_to(self, equations: BaseEquations, freedom: int, force: Array) -> None:
         """Add a force on one degree of freedom of the base, a row over its state and 1."""
         layout = self.layout
         places = layout.rotation + 2 * np.arange(layout.freedoms)
-        border.stiffness[freedom] -= force[places]
-        border.damping[freedom] -= force[places + 1]
-        border.constant[freedom] += force[-1]
-        border.recall[freedom] += force[layout.memory : layout.memory + layout.remembered]
+        equations.stiffness[freedom] -= force[places]
+        equations.damping[freedom] -= force[places + 1]
+        equations.constant[freedom] += force[-1]
+        equations.recall[freedom] += force[layout.memory : layout.memory + layout.n_internal]
 
     def grip(self, key: Key) -> Array:
         """Return Σ μ_j N_j as a row, shape (C,)."""
@@ -274,9 +274,9 @@ class SpringModel(LinearModel):
         for each in self.elements:
             stretch = self.stretch(each)
             elongation = float(stretch[-1] + stretch[layout.rotation] * rotation + stretch[layout.heave] * heave)
-            branch, remembered = each.brought(elongation)
+            branch, n_internal = each.brought(elongation)
             of_elements.append(branch)
-            kept += remembered
+            kept += n_internal
         key = (CLOSED, *(int(branch) for branch in branches), STICK, *of_elements)
         start[layout.memory :] = (*kept, *code_of(key[1:]))
         return key, start
@@ -287,7 +287,7 @@ class SpringModel(LinearModel):
         return self.properties.m_tot * GRAVITY + sum(each.pull(each.branches[0]).force for each in self.elements)
 
     def _new_accelerations(self, key: Key) -> Array:
-        return accelerations_of(self, self.arrow(key))
+        return accelerations_of(self, self.bordered_system(key))
 
 
 def heave_at(springs: Springs, rotation: float, weight: float) -> float:

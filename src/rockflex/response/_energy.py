@@ -298,7 +298,7 @@ class PhaseWork:
         self._slide, self._held, self._heavier = np.zeros((3, len(unit)))
         if layout.slip >= 0:
             self._push += p.m_tot * unit[layout.slip + 1]
-        if layout.slip >= 0 and model.arrow(key).freed[1]:
+        if layout.slip >= 0 and model.bordered_system(key).freed[1]:
             heavier = under_more_gravity(model)
             self._slide = unit[layout.slip + 1]
             self._held = motion.taken(horizontal_reaction(model, model.accelerations(key)))

@@ -53,9 +53,8 @@ class History(Value):
         the ground (m/s²), D (m), D' (m/s), θ (rad) and θ' (rad/s). An event is two rows at the same time. A base that
         may slide adds its slip (m) and the velocity of it, one on springs its heave and the velocity of that. Nonlinear
         models have four more columns: z of Eq. 38, and the damped, input and hysteretic energy (J), which are known
-        where the motion was integrated. The last columns are the memories of elements that yield or slide, and of the
-        ground: what sticks and what is lifted.
-        Stored as a copy.
+        where the motion was integrated. The last columns are the internal variables of elements that yield or slide,
+        and of the ground: what sticks and what is lifted. Stored as a copy.
 
     Raises
     ------

@@ -22,7 +22,7 @@ from rockflex.models import (
     plastic_stretches,
     quantities,
     rotation_by_side,
-    swing_by_side,
+    rotation_rate_by_side,
     values_of,
 )
 from rockflex.solve import Solution
@@ -108,7 +108,7 @@ def tracked_quantities(
     elif not p.symmetric or any(each.position != 0.0 for each in p.elements):
         parts.append((ROTATIONS, rotation_by_side(model)))
     if model.springs is None and model.lifts and any(isinstance(each, ViscousDamper) for each in p.elements):
-        parts.append(("swing_by_side", swing_by_side(model)))
+        parts.append(("swing_by_side", rotation_rate_by_side(model)))
     if model.layout.slip >= 0:
         parts.append((("slip",), quantities(model, ("slip",))))
     if model.springs is not None:

@@ -96,7 +96,7 @@ def _along(
 
 
 class ElementState(NamedTuple):
-    """The branch of an element, its memory at the start of the branch, and its elongation δ in m."""
+    """The branch of an element, its internal variable at the start of the branch, and its elongation δ in m."""
 
     branch: int
     memory: float
@@ -115,7 +115,7 @@ def tension(element: Element, place: ElementState) -> float:
 
 
 def memory_at(element: Element, place: ElementState) -> float:
-    """Return the memory if the branch ended here: on a branch that yields it follows the elongation."""
+    """Return the internal variable if the branch ended here: on a branch that yields it follows the elongation."""
     offset = element.turning(place.branch)
     return place.memory if offset is None else place.elongation - offset
 

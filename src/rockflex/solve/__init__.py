@@ -3,22 +3,22 @@
 from rockflex.solve._failures import preparing
 from rockflex.solve._solution import Excitation, Solution, Solutions
 from rockflex.solve._work import (
-    Pace,
+    CostModel,
     RunStoppedError,
     Task,
     Work,
     WorkLimitError,
     asked_to_stop,
     check_interruption,
-    pace_of,
+    cost_model_of,
     stopping_when,
 )
 from rockflex.solve.engine import Engine, Start, gather, run_all
 
 __all__ = [
+    "CostModel",
     "Engine",
     "Excitation",
-    "Pace",
     "RunStoppedError",
     "Solution",
     "Solutions",
@@ -28,8 +28,8 @@ __all__ = [
     "WorkLimitError",
     "asked_to_stop",
     "check_interruption",
+    "cost_model_of",
     "gather",
-    "pace_of",
     "preparing",
     "run_all",
     "stopping_when",

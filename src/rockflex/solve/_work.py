@@ -57,7 +57,7 @@ class Work:
 
 
 @dataclass(frozen=True)
-class Pace:
+class CostModel:
     """The properties that determine the work of a model.
 
     Attributes
@@ -123,8 +123,8 @@ class Pace:
         return MICRO * 2.0 * max(turned, 1.0) * (8.0 + 0.01 * self.rows * pairs**2) if self.dense else 0.0
 
 
-def pace_of(model: RockingModel, rows: int) -> Pace:
-    """Return the pace of a model for the given number of rows, including the rotation.
+def cost_model_of(model: RockingModel, rows: int) -> CostModel:
+    """Return the cost model of a model for the given number of rows, including the rotation.
 
     The highest frequency is a bound that needs no eigenvalues and is at most one per cent too high.
     """
@@ -136,7 +136,7 @@ def pace_of(model: RockingModel, rows: int) -> Pace:
         _highest_square(squares, moments, pivot.i_theta, pivot.rocking_stiffness + stiffness_of_fuses(p, pivot.side))
         for pivot in (p.pivots if model.lifts else ())
     )
-    return _pace(model, rows, math.sqrt(max(bounds, default=0.0)))
+    return _cost_model(model, rows, math.sqrt(max(bounds, default=0.0)))
 
 
 def _highest_square(squares: list[float], moments: list[float], inertia: float, stiffness: float) -> float:
@@ -159,9 +159,9 @@ def _highest_square(squares: list[float], moments: list[float], inertia: float, 
     return math.inf if math.isnan(found) else found
 
 
-def _pace(model: RockingModel, rows: int, fastest: float) -> Pace:
+def _cost_model(model: RockingModel, rows: int, fastest: float) -> CostModel:
     highest = max(fastest, max(model.properties.omega.tolist(), default=0.0))
-    known = Pace(model.properties.n_modes, rows, highest, model.integrated)
+    known = CostModel(model.properties.n_modes, rows, highest, model.integrated)
     if model.bouc_wen is None:
         return known
     b = model.bouc_wen
@@ -182,7 +182,7 @@ class Task:
     ----------
     model
         The model.
-    pace
+    cost model
         The properties of the model that determine the work.
     record
         Samples of the ground acceleration in m/s², shape (n,).
@@ -197,7 +197,7 @@ class Task:
     """
 
     model: RockingModel
-    pace: Pace
+    cost_model: CostModel
     record: Array
     dt: float
     free_vibration: float | None = 0.0
@@ -207,13 +207,15 @@ class Task:
     @property
     def size(self) -> tuple[float | None, ...] | None:
         """What the work depends on beside the model; None if it depends on every sample."""
-        return None if self.pace.flow else (self.record.size, self.dt, self.free_vibration, self.history)
+        return None if self.cost_model.flow else (self.record.size, self.dt, self.free_vibration, self.history)
 
     def work(self) -> Work:
         """Estimate the work of the run; the time to settle is taken as the longest period."""
-        speed = float(np.abs(np.cumsum(self.record)).mean()) * abs(self.scale) * self.dt if self.pace.flow else 0.0
+        speed = (
+            float(np.abs(np.cumsum(self.record)).mean()) * abs(self.scale) * self.dt if self.cost_model.flow else 0.0
+        )
         samples = self.record.size + self._free / self.dt
-        return self.pace.work(samples, self.dt, speed, history=self.history, fastest=self.fastest)
+        return self.cost_model.work(samples, self.dt, speed, history=self.history, fastest=self.fastest)
 
     @property
     def fastest(self) -> float:
@@ -221,10 +223,10 @@ class Task:
 
         On a very narrow base the fastest root belongs to a strongly overdamped motion, which needs no work.
         """
-        known = self.pace.fastest
-        if self.pace.integrated or known * self.dt < SWIFT:
+        known = self.cost_model.fastest
+        if self.cost_model.integrated or known * self.dt < SWIFT:
             return known
-        return min(known, pace_of(self.model, self.pace.rows).fastest)
+        return min(known, cost_model_of(self.model, self.cost_model.rows).fastest)
 
     def check(self, limit: float | None) -> None:
         """Raise `WorkLimitError` if the work exceeds `limit` s (None: no limit), or the history is too large."""

@@ -35,18 +35,18 @@ from rockflex.models import (
 )
 from rockflex.solve._failures import Status, failure_of, failure_of_limit, failure_of_step, preparing
 from rockflex.solve._solution import Ends, Excitation, Solution, Solutions
-from rockflex.solve._work import SEARCH, Gate, Pace, Task, check_interruption, pace_of
+from rockflex.solve._work import SEARCH, CostModel, Gate, Task, check_interruption, cost_model_of
 
 SHARE = 0.5  # of the estimated time of a sample that one takes here
 STEP = 12.0  # samples that a step of a nonlinear model counts like
 STACK = 256  # systems in one stack, at most
 MEMORY = 64_000_000  # bytes of the tables of one stack
-MANY = 10_000  # phases that a solver has met, from which on it is given up: their keys take memory, too
+MAX_KEYS = 10_000  # phases that a solver has met, from which on it is given up: their keys take memory, too
 COUNTED = ("uplift", "impact")
 OUTCOMES = np.array(  # for fixed times, and until settled
     [[Status.ENDED, Status.OVERTURNED, Status.SETTLED], [Status.UNSETTLED, Status.OVERTURNED, Status.SETTLED]]
 )
-MOST_SAMPLES = 2.0**62  # of free vibration: more than can ever be computed
+MAX_SAMPLES = 2.0**62  # of free vibration: more than can ever be computed
 _GATHERING = Lock()
 FAILURES = {"accumulation": Status.CHATTER, "growth": Status.INFINITE, "stall": Status.STALLED}
 
@@ -86,7 +86,7 @@ class Stack:
 
     def returned(self, solver: Run) -> None:
         """Keep a solver for the next run."""
-        if solver.counts[0] < MANY:
+        if solver.counts[0] < MAX_KEYS:
             self._solvers[solver.h].append(solver)
 
 
@@ -162,9 +162,9 @@ class Engine:
         return 8 * len(self.model.sides) * (n + 6) * (5 * n + 14 * rows)
 
     @cached_property
-    def pace(self) -> Pace:
+    def cost_model(self) -> CostModel:
         """The properties that determine the work of runs."""
-        p, found = self.model.properties, pace_of(self.model, self.n_peaks + 1)
+        p, found = self.model.properties, cost_model_of(self.model, self.n_peaks + 1)
         if self.model.integrated:
             return found
         levers, drag = p.effective_mass * p.effective_height**2, 2.0 * p.zeta * p.omega
@@ -175,7 +175,7 @@ class Engine:
 
     def task(self, run: Excitation, dt: float, free_vibration: float | None = 0.0, *, history: bool = False) -> Task:
         """Return the task of a run, which estimates its work."""
-        return Task(self.model, self.pace, run.acceleration, dt, free_vibration, history, run.scale)
+        return Task(self.model, self.cost_model, run.acceleration, dt, free_vibration, history, run.scale)
 
     def gather(self, stack: Stack, place: int) -> None:
         """Share a stack with other models."""
@@ -260,7 +260,7 @@ class Engine:
         """The number of samples that a work limit in s allows."""
         if work_limit is None:
             return 2**62
-        sample, look, _, step = self.pace.prices(history=False)
+        sample, look, _, step = self.cost_model.prices(history=False)
         if self.model.integrated:
             return int(min(work_limit / step * STEP, 2.0**62))
         return int(min(work_limit / (SHARE * (sample + SEARCH * look)), 2.0**62))
@@ -303,8 +303,8 @@ def run_all(
 
     There is an engine and a start for every run; starts are as in `Engine.start`, and all at rest by default. The
     ground moves vertically in all runs, or in none. `work_limit` is the limit of the estimated and of the actual work
-    of each run in s, see `Pace`; None means no limit. Some ten times a second the runs can be interrupted by Ctrl-C or
-    `stopping_when`. Only a single run can have a `history`, which keeps every state.
+    of each run in s, see `CostModel`; None means no limit. Some ten times a second the runs can be interrupted by
+    Ctrl-C or `stopping_when`. Only a single run can have a `history`, which keeps every state.
 
     The failures of the result are the errors of single runs: an initial state that does not fit, a run that exceeds its
     work limit (`WorkLimitError` before it begins), a user-defined impact law that fails or a time step that is too long
@@ -366,7 +366,7 @@ def run_all(
 
 def samples_in(time: float, dt: float) -> int:
     """Return the number of samples in some seconds of free vibration."""
-    return math.ceil(min(time / dt, MOST_SAMPLES) - 1e-9)
+    return math.ceil(min(time / dt, MAX_SAMPLES) - 1e-9)
 
 
 def _kept(times: Array, side: Integers) -> Bools:

@@ -39,7 +39,7 @@ MAX_FOLDER_SAMPLES = 8_000_000  # of the records of a folder
 MAX_CACHED_SAMPLES = 30_000_000  # of all folders in memory, 240 MB
 MAX_MODELS = 4  # at once
 MAX_STUDY_RUNS = 20_000  # of a study
-MAX_RUN_COST = 1.5  # s of estimated computing time of one run (`rockflex.solve.Pace`)
+MAX_RUN_COST = 1.5  # s of estimated computing time of one run (`rockflex.solve.CostModel`)
 RUN_WORK_LIMIT = 5.0  # s of computing after which a run is stopped: hard runs take three times their estimate
 MAX_ANSWER_COST = 3.0  # s of estimated computing time of the runs of one answer
 MAX_STUDY_COST = 180.0  # s of estimated computing time of all runs of a study
@@ -150,7 +150,7 @@ def _checked_work_of_run(task: Task, path: str) -> float:
     """Return the estimated computing time of a run in s; refuse one that takes too long."""
     work = task.work().total
     if work > MAX_RUN_COST:
-        modes = number_with_noun(task.pace.modes, "mode")
+        modes = number_with_noun(task.cost_model.modes, "mode")
         message = (
             f"{task.model.label} with {modes} over {task.record.size} samples takes too long for a page. Choose a "
             "model with fewer modes, a wider base or a shorter record, or use the library."

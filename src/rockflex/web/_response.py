@@ -12,7 +12,7 @@ from rockflex.modal import RockingProperties, Tendon, YieldingDissipator
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.response import History, Response, warnings_of, warnings_of_energy
-from rockflex.solve import pace_of
+from rockflex.solve import cost_model_of
 from rockflex.study import PreparedCase
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._encoding import envelope_indices, pack_array_as_base64
@@ -79,7 +79,7 @@ def self_centring_view(p: RockingProperties, rotation: float) -> list[dict[str, 
 MAX_HISTORY_POINTS = 2000  # of a history, events aside
 MAX_EVENT_NODES = 600  # nodes of events that are retained, at most
 CURVES = ("rotation", "top_displacement", "base_moment", "base_shear")
-MAX_ENERGY_COST = 1.0  # s of estimated computing time of the energies, see `rockflex.solve.Pace`
+MAX_ENERGY_COST = 1.0  # s of estimated computing time of the energies, see `rockflex.solve.CostModel`
 
 
 def simulate_state_models(
@@ -244,7 +244,9 @@ def check_work_of_energy(response: Response, motion: GroundMotion, state: PageSt
     assert response.history is not None  # asked for in `simulate_state_models`
     model = response.history.model
     samples = motion.acceleration.size + state.free_vibration / motion.dt
-    work = pace_of(model, 1).energy(samples, motion.dt) * (1.0 + 0.5 * len(model.elements))  # more branches to follow
+    work = cost_model_of(model, 1).energy(samples, motion.dt) * (
+        1.0 + 0.5 * len(model.elements)
+    )  # more branches to follow
     if work > MAX_ENERGY_COST:
         message = "the energy is not computed here for so many or such fast modes over so long a time."
         raise Refusal({"energy": message})
