@@ -4,7 +4,9 @@ On a fixed base the error is that of the largest displacement. The reference is 
 are processor time, the least of several, so that other programs on the machine do not count.
 """
 
+import sys
 import time
+from pathlib import Path
 
 from ode import peak_rotation
 from rich.table import Table
@@ -29,6 +31,27 @@ def table(motion: rf.GroundMotion) -> Table:
     result = Table(*columns, title="nonlinear models, both to 1e-7")
     for label in MODELS:
         result.add_row(label, *measure(label, motion))
+    return result
+
+
+def taylor_table(motion: rf.GroundMotion) -> Table | None:
+    """2DOF-C by Taylor series of the whole field, the twin of the tests; None without heyoka."""
+    sys.path.append(str(Path(__file__).parents[1] / "tests"))
+    try:
+        from twins.taylor_rocking import of_properties
+    except ImportError:
+        return None
+    structure = frame(5)
+    p, samples = structure.rocking(1), motion.acceleration.size - 1
+    twin = of_properties(p)
+    found = twin.run(motion.acceleration, motion.dt)
+    mine = rf.simulate(structure, motion, "2DOF-C", "peaks")
+    call = least(lambda: rf.simulate(structure, motion, "2DOF-C", "peaks"), 200, time.process_time)
+    other = least(lambda: twin.run(motion.acceleration, motion.dt), 5, time.process_time)
+    result = Table("", "ms", "µs a sample", title="2DOF-C, one run after another")
+    result.add_row("simulate", f"{call * 1e3:.2f}", f"{call / samples * 1e6:.2f}")
+    result.add_row("heyoka, driven from Python", f"{other * 1e3:.1f}", f"{other / samples * 1e6:.1f}")
+    result.caption = f"largest rotations differ by {abs(mine.max_rotation / found.max_rotation - 1.0):.0e}"
     return result
 
 

@@ -45,6 +45,8 @@ def main() -> None:
         table.add_row(label, *(column[label] for column in columns))
     console.print(table)
     console.print(nonlinear.table(motion))
+    if (beside := nonlinear.taylor_table(motion)) is not None:
+        console.print(beside)
     console.print(controlled.table(rf.load_suite("fema-p695-far-field")))
     console.print(ground.table(rf.load_suite("fema-p695-far-field")))
     console.print(studies.table())

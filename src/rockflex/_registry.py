@@ -1,7 +1,7 @@
 """What other packages add to this one, by entry points of their distributions."""
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, MutableMapping
 from functools import cache, cached_property
 from importlib.metadata import entry_points
 from typing import Any, Generic, TypeVar
@@ -29,7 +29,7 @@ def registered(group: str) -> dict[str, Any]:
     return found
 
 
-class Catalogue(Mapping[str, Part], Generic[Part]):
+class Catalogue(MutableMapping[str, Part], Generic[Part]):
     """Objects by their names: those of this package, then those of others, which are imported when first asked for.
 
     Parameters
@@ -50,6 +50,14 @@ class Catalogue(Mapping[str, Part], Generic[Part]):
 
     def __getitem__(self, name: str) -> Part:
         return self._own[name] if name in self._own else self._all[name]
+
+    def __setitem__(self, name: str, part: Part) -> None:
+        self._own[name] = part
+        vars(self).pop("_all", None)
+
+    def __delitem__(self, name: str) -> None:
+        del self._own[name]
+        vars(self).pop("_all", None)
 
     def __iter__(self) -> Iterator[str]:
         yield from self._own
