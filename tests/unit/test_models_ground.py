@@ -29,7 +29,7 @@ def made(monkeypatch):
         calls.append((label, ground, law))
         return LinearModel(label, kept, True, law or rf.VVELSimplified(), missing_mass)
 
-    monkeypatch.setattr(_label, "grounded", grounded)
+    monkeypatch.setattr(_label, "model_on_ground", grounded)
     return calls
 
 

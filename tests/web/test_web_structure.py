@@ -218,7 +218,7 @@ def made(monkeypatch):
         grounds.append(ground)
         return LinearModel(label, kept, True, law or rf.VVELSimplified(), missing_mass)
 
-    monkeypatch.setattr(_label, "grounded", grounded)
+    monkeypatch.setattr(_label, "model_on_ground", grounded)
     return grounds
 
 

@@ -108,7 +108,7 @@ def tracked_quantities(
     elif not p.symmetric or any(each.position != 0.0 for each in p.elements):
         parts.append((ROTATIONS, rotation_by_side(model)))
     if model.springs is None and model.lifts and any(isinstance(each, ViscousDamper) for each in p.elements):
-        parts.append(("swing_by_side", rotation_rate_by_side(model)))
+        parts.append(("rotation_rate_by_side", rotation_rate_by_side(model)))
     if model.layout.slip >= 0:
         parts.append((("slip",), quantities(model, ("slip",))))
     if model.springs is not None:
@@ -215,7 +215,7 @@ def element_extremes(model: RockingModel, peaks: Mapping[str, Array]) -> list[El
     """Return the extremes of the elements of a run."""
     if model.springs is not None:
         return _on_springs(model, peaks["element_moves"], peaks["element_speeds"])
-    swing = peaks.get("swing_by_side", np.zeros(1))  # one value if the sides do not differ
+    swing = peaks.get("rotation_rate_by_side", np.zeros(1))  # one value if the sides do not differ
     return extremes_about_pivots(model, largest_rotations(peaks), (float(swing[0]), float(swing[-1])))
 
 
