@@ -578,7 +578,7 @@ def test_a_file_that_is_read_for_ever_does_not_keep_the_server_from_stopping() -
     program = (
         "import time\nimport rockflex.web._app as app\n"
         "def read(*_):\n  print('reading', file=__import__('sys').stderr, flush=True)\n  while True: time.sleep(0.01)\n"
-        "app.read_record = read\nfrom rockflex.cli import main; main()"
+        "app.read_uploaded_record = read\nfrom rockflex.cli import main; main()"
     )
     with served(sys.executable, "-c", program, "serve") as (process, port), ExitStack() as held:
         connection = held.enter_context(socket.create_connection(("127.0.0.1", port)))
@@ -586,8 +586,8 @@ def test_a_file_that_is_read_for_ever_does_not_keep_the_server_from_stopping() -
             b"POST /api/upload?name=a.csv HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/octet-stream\r\n"
             b"Content-Length: 1\r\n\r\n1"
         )
-        while "reading" not in process.stderr.readline():
-            pass
+        while "reading" not in (line := process.stderr.readline()):
+            assert line  # at its end nothing would come any more
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=HANG)
     assert "Traceback" not in said
