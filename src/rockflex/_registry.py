@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Iterator, MutableMapping
-from functools import cache, cached_property
+from functools import cache
 from importlib.metadata import entry_points
 from typing import Any, Generic, TypeVar
 
@@ -44,24 +44,17 @@ class Catalogue(MutableMapping[str, Part], Generic[Part]):
         self._own: dict[str, Part] = {each.name: each for each in own}  # pyright: ignore[reportAttributeAccessIssue]
         self._group = group
 
-    @cached_property
-    def _all(self) -> dict[str, Part]:
-        return registered(self._group) | self._own
-
     def __getitem__(self, name: str) -> Part:
-        return self._own[name] if name in self._own else self._all[name]
+        return self._own[name] if name in self._own else registered(self._group)[name]
 
     def __setitem__(self, name: str, part: Part) -> None:
         self._own[name] = part
-        vars(self).pop("_all", None)
 
     def __delitem__(self, name: str) -> None:
         del self._own[name]
-        vars(self).pop("_all", None)
 
     def __iter__(self) -> Iterator[str]:
-        yield from self._own
-        yield from (name for name in self._all if name not in self._own)
+        return iter(dict.fromkeys((*self._own, *registered(self._group))))
 
     def __len__(self) -> int:
-        return len(self._all)
+        return sum(1 for _ in self)

@@ -246,20 +246,20 @@ class Phases:
                 others[k] += more
 
     def point(self, place: cython.int, which: cython.int):
-        """Take the tables of one system for one phase."""
+        """Take the tables of one system for one phase: those of the first, and then as `turn` does."""
         content, halvings, jumps, rests, _ = self.contents[place]
         offsets: cython.Py_ssize_t[::1] = self.offsets[place]
-        row: cython.double[::1] = content[which]
+        row: cython.double[::1] = content[0]
         first: cython.p_double = cython.address(row[0])
         phase: cython.pointer(Phase) = cython.address(self.phases[place])
         tables: cython.pointer(cython.p_const_double) = cython.address(phase.tables.block)
+        number: cython.const[cython.int][::1] = halvings
         k: cython.int
         for k in range(14):  # from `block` to `most`, as in `march.h`
             tables[k] = first + offsets[k]
         phase.tables.one_sided = cython.address(self.one_sided[0])
-        number: cython.const[cython.int][::1] = halvings
-        phase.scale, phase.halvings_of, phase.halvings = first + offsets[14], cython.address(number[0]), number[which]
-        phase.which, phase.stride = which, row.shape[0]
+        phase.scale, phase.halvings_of = first + offsets[14], cython.address(number[0])
+        phase.which, phase.stride = 0, row.shape[0]
         part: cython.int = 15
         for k in range(2 * phase.events):
             if jumps[k] is not None:
@@ -270,13 +270,14 @@ class Phases:
                 phase.rest[k] = first + offsets[part]
                 part += 1
         if self.shaken[place] is not None:
-            self.point_shaken(place, which)
+            self.point_shaken(place)
+        self.turn(place, which)
 
-    def point_shaken(self, place: cython.int, which: cython.int):
-        """Take what one system has under vertical acceleration in one phase."""
+    def point_shaken(self, place: cython.int):
+        """Take what the first system has under vertical acceleration in one phase."""
         content, bounds, numbers = self.shaken[place]
         offsets: cython.Py_ssize_t[::1] = bounds
-        row: cython.double[::1] = content[which]
+        row: cython.double[::1] = content[0]
         places: cython.int[::1] = numbers
         first: cython.p_double = cython.address(row[0])
         s: cython.pointer(Shaken) = cython.address(self.phases[place].tables.shaken)

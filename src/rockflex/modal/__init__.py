@@ -2,7 +2,7 @@
 
 from rockflex.modal._adequacy import Adequacy, AdequacyTolerance, adequacy
 from rockflex.modal._analysis import FloorModes, ModalProperties, modal_properties
-from rockflex.modal._element_law import Branch, BranchEnd, ElementLaw, law_parameters, slow_path, tension_of
+from rockflex.modal._element_law import Branch, BranchEnd, ElementLaw, law_parameters, slow_path
 from rockflex.modal._elements import (
     BaseElement,
     FrictionDamper,
@@ -51,7 +51,6 @@ __all__ = [
     "pinned_beam",
     "rocking_properties",
     "slow_path",
-    "tension_of",
     "uplifted_modes",
     "winkler_bed",
 ]

@@ -147,8 +147,8 @@ class ElementLaw(ABC):
         def check(self: ElementLaw) -> None:
             if own is not None:
                 own(self)
-            if "law" not in vars(self):  # checked by a class that this one is derived from
-                vars(self).update(position=checked_finite("position", self.position, "m"), law=_computed_law(self))
+            vars(self).update(position=checked_finite("position", self.position, "m"))
+            _ = self.law
 
         cls.__post_init__ = check  # pyright: ignore[reportAttributeAccessIssue]
 
@@ -159,7 +159,8 @@ class ElementLaw(ABC):
     @cached_property
     def law(self) -> Mapping[str, Branch]:
         """The branches, checked."""
-        return checked_law(self)
+        with explaining_overflow(f"The forces and energies of {shown(self)}"):
+            return checked_law(self)
 
     def stored_energy(self, elongation: NDArray[np.float64], internal: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the energy stored at elongations δ with internal variables m in m, in J; zero at δ = m = 0.
@@ -187,7 +188,7 @@ class ElementLaw(ABC):
     @cached_property
     def initial_force(self) -> float:
         """Force in N while the base is in contact, as built."""
-        return first_branch(self).force
+        return next(iter(self.law.values())).force
 
     @cached_property
     def locked_force(self) -> float:
@@ -207,16 +208,6 @@ class ElementLaw(ABC):
         return max(abs(tension_of(self, state)) for state in states), any(
             self.law[state.branch].yields for state in states
         )
-
-
-def _computed_law(law: ElementLaw) -> Mapping[str, Branch]:
-    with explaining_overflow(f"The forces and energies of {shown(law)}"):
-        return checked_law(law)
-
-
-def first_branch(law: ElementLaw) -> Branch:
-    """Return the branch of an element as built."""
-    return next(iter(law.law.values()))
 
 
 def farthest(law: ElementLaw) -> float:

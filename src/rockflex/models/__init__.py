@@ -2,7 +2,7 @@
 
 from rockflex.models._between import LinearMotion, MotionBetween, Part, Shaking, inside
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._element import BROKEN, Bar, Dashpot, Element, LawElement, Slider
+from rockflex.models._element import Element, Slider
 from rockflex.models._element_states import (
     element_energies,
     element_forces,
@@ -70,7 +70,6 @@ from rockflex.models._stored import floor_accelerations, soil_strain, stored_ene
 from rockflex.models._system import may_stack, system_of
 
 __all__ = [
-    "BROKEN",
     "CLOSED",
     "GROUND",
     "HEADER",
@@ -88,17 +87,14 @@ __all__ = [
     "SWING",
     "TIME",
     "VERTICAL",
-    "Bar",
     "BorderedSystem",
     "BoucWen",
-    "Dashpot",
     "Element",
     "ElementBase",
     "ForgottenLaw",
     "GainsEnergyError",
     "ImpactLaw",
     "Key",
-    "LawElement",
     "LinearModel",
     "LinearMotion",
     "Model",

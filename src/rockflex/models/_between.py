@@ -72,8 +72,8 @@ class LinearMotion:
             np.flatnonzero(model.bordered_system(key).freed),
         )
         heavier = under_more_gravity(model).accelerations(key) - accelerations
-        n, internal_places = layout.modes, accelerations[:, layout.core : layout.moving]
-        acting = np.flatnonzero(internal_places.any(axis=0))
+        n, internal = layout.modes, accelerations[:, layout.core : layout.moving]
+        acting = np.flatnonzero(internal.any(axis=0))
         self.columns = np.concatenate((np.arange(layout.core), layout.core + acting, [layout.moving]))  # of y, m and a
         size = self.columns.size + 2
         modes, base = np.arange(n), layout.rotation + 2 * free

@@ -43,7 +43,7 @@ class Element(Protocol):
         ...
 
     @property
-    def internal_places(self) -> int:
+    def n_internal(self) -> int:
         """How many numbers it remembers: none, its plastic stretch or other internal variable, and its branch."""
         ...
 
@@ -105,6 +105,10 @@ class Element(Protocol):
         """Return the energy stored in J, relative to the base in contact as built, shape (n,)."""
         ...
 
+    def lost_energy(self, elongation: Array, force: Array, plastic: Array, stored: Array, sweep: Array) -> Array:
+        """Return the energy in J that is lost between adjacent states, shape (n - 1,), as ∫ δ'² dt is `sweep`."""
+        ...
+
 
 class Unbreakable:
     """What is common to elements without an internal variable."""
@@ -125,12 +129,16 @@ class Unbreakable:
         del force, plastic
         return np.zeros(elongation.shape)
 
+    def lost_energy(self, elongation: Array, force: Array, plastic: Array, stored: Array, sweep: Array) -> Array:
+        del elongation, force, plastic, stored
+        return np.zeros(sweep.shape)
+
 
 class WithoutMemory(Unbreakable):
     """What is common to elements without an internal variable, most of which have one branch."""
 
     @property
-    def internal_places(self) -> int:
+    def n_internal(self) -> int:
         return 0
 
     @property
@@ -211,6 +219,11 @@ class Dashpot(WithoutMemory):
         del branch
         return Pull(damping=self.coefficient)
 
+    def lost_energy(self, elongation: Array, force: Array, plastic: Array, stored: Array, sweep: Array) -> Array:
+        """C ∫ δ'² dt."""
+        del elongation, force, plastic, stored
+        return self.coefficient * sweep
+
 
 @dataclass(frozen=True)
 class Bar:
@@ -228,7 +241,7 @@ class Bar:
     rupture: float = np.inf  # elongation δ at which it breaks
 
     @property
-    def internal_places(self) -> int:
+    def n_internal(self) -> int:
         return 1
 
     @property
@@ -318,6 +331,14 @@ class Bar:
         stored = (force - first) * (force + first) / (2.0 * k) + locked
         return np.where(np.isnan(plastic), -(first**2) / (2.0 * k), stored)
 
+    def lost_energy(self, elongation: Array, force: Array, plastic: Array, stored: Array, sweep: Array) -> Array:
+        """(1 - α) F_y for every metre that it yields, and whatever it stores when it breaks."""
+        del elongation, force, sweep
+        broken = np.isnan(plastic)
+        yielded = np.where(broken[1:], 0.0, np.abs(np.diff(plastic)))
+        lost = (1.0 - self.ratio) * self.yield_force * yielded
+        return np.where(broken[1:] & ~broken[:-1], stored[:-1] - stored[1:], lost)
+
 
 @dataclass(frozen=True)
 class Slider(Unbreakable):
@@ -327,7 +348,7 @@ class Slider(Unbreakable):
     position: float
 
     @property
-    def internal_places(self) -> int:
+    def n_internal(self) -> int:
         return 1
 
     @property
@@ -368,6 +389,11 @@ class Slider(Unbreakable):
         found[memory[:, 0] < 0.0] = INWARD
         return found
 
+    def lost_energy(self, elongation: Array, force: Array, plastic: Array, stored: Array, sweep: Array) -> Array:
+        """F_0 for every metre that it slides."""
+        del force, plastic, stored, sweep
+        return self.force * np.abs(np.diff(elongation))
+
 
 @dataclass(frozen=True)
 class LawElement:
@@ -390,7 +416,7 @@ class LawElement:
         return self.law.position
 
     @property
-    def internal_places(self) -> int:
+    def n_internal(self) -> int:
         return 2
 
     @property
@@ -444,3 +470,8 @@ class LawElement:
     def stored_energy(self, elongation: Array, force: Array, plastic: Array) -> Array:
         del force
         return np.asarray(self.law.stored_energy(elongation, plastic), dtype=float)
+
+    def lost_energy(self, elongation: Array, force: Array, plastic: Array, stored: Array, sweep: Array) -> Array:
+        """The work that is not stored: the force is linear between adjacent states."""
+        del plastic, sweep
+        return 0.5 * (force[1:] + force[:-1]) * np.diff(elongation) - np.diff(stored)

@@ -45,16 +45,32 @@ def plastic_stretches(model: RockingModel, states: Array) -> Array:
                 offset = each.turning(branch)
                 kept = np.nan if each.broken(branch) else vector[:, memory]
                 found[chosen, place] = kept if offset is None else delta[chosen, place] - offset
-            memory += each.internal_places
+            memory += each.n_internal
     return found
 
 
-def element_energies(model: RockingModel, states: Array) -> Array:
-    """Return the energy stored in every element at the states of a history in J, shape (n, E)."""
-    delta, forces = model.elongations_at(states), element_forces(model, states)
-    plastic = plastic_stretches(model, states)
-    found = [
-        each.stored_energy(delta[:, place], forces[:, place], plastic[:, place])
-        for place, each in enumerate(model.elements)
-    ]
-    return np.stack(found, axis=1) if found else np.zeros(delta.shape)
+def element_energies(model: RockingModel, states: Array, sweeps: Array) -> tuple[Array, Array]:
+    """Return the energy that elements store at the states of a history, and that they lose in between, in J.
+
+    Parameters
+    ----------
+    model, states
+        The model, and the states of a history, (n, columns).
+    sweeps : ndarray, shape (n - 1, E)
+        ∫ δ'² dt of each element between adjacent states in m²/s.
+
+    Returns
+    -------
+    stored : ndarray, shape (n, E)
+    lost : ndarray, shape (n - 1, E)
+        Between adjacent states an element yields or slides in one direction only.
+    """
+    stored, lost = np.zeros((len(states), len(model.elements))), np.zeros((len(states) - 1, len(model.elements)))
+    if not model.elements:
+        return stored, lost
+    parts = model.elongations_at(states), element_forces(model, states), plastic_stretches(model, states)
+    for place, each in enumerate(model.elements):
+        delta, force, plastic = (values[:, place] for values in parts)
+        stored[:, place] = each.stored_energy(delta, force, plastic)
+        lost[:, place] = each.lost_energy(delta, force, plastic, stored[:, place], sweeps[:, place])
+    return stored, lost

@@ -27,7 +27,7 @@ SUMS = 7
 
 
 def weight_equations(
-    properties: RockingProperties, side: int, internal_places: int, gravity: float = GRAVITY
+    properties: RockingProperties, side: int, n_internal: int, gravity: float = GRAVITY
 ) -> BaseEquations:
     """Return the inertia about the pivot and the weight, -s m_tot g B + L_0^r (g θ - a): Eq. 23 without the modes."""
     pivot = properties.pivot(side)
@@ -36,7 +36,7 @@ def weight_equations(
         stiffness=-properties.l0r * gravity,
         constant=-side * (properties.m_tot * gravity * pivot.arm),
         ground=-properties.l0r,
-        recall=np.zeros(internal_places),
+        recall=np.zeros(n_internal),
     )
 
 
@@ -70,17 +70,17 @@ def is_held(properties: RockingProperties, elements: tuple[Element, ...], key: K
 
 def internal_places(elements: tuple[Element, ...]) -> dict[int, int]:
     """Return the index of the first internal variable of each element that has some, by its place."""
-    ends = np.cumsum([each.internal_places for each in elements], dtype=int).tolist()
+    ends = np.cumsum([each.n_internal for each in elements], dtype=int).tolist()
     return {
-        place: end - each.internal_places
+        place: end - each.n_internal
         for place, (each, end) in enumerate(zip(elements, ends, strict=True))
-        if each.internal_places
+        if each.n_internal
     }
 
 
 def internal_count(elements: tuple[Element, ...]) -> int:
     """Return the number of internal variables of all elements."""
-    return sum(each.internal_places for each in elements)
+    return sum(each.n_internal for each in elements)
 
 
 def base_equations_of(
@@ -147,7 +147,7 @@ def turning_way(properties: RockingProperties, elements: tuple[Element, ...], ke
 def marks_of(elements: tuple[Element, ...], key: Key) -> tuple[tuple[int, float], ...]:
     """Return the memories that have a value of their own on the branches, by index."""
     known = internal_places(elements)
-    last = {place: first + elements[place].internal_places - 1 for place, first in known.items()}
+    last = {place: first + elements[place].n_internal - 1 for place, first in known.items()}
     marks = ((index, elements[place].mark(key[1 + place])) for place, index in last.items())
     return tuple((index, mark) for index, mark in marks if mark is not None)
 

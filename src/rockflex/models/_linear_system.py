@@ -259,7 +259,7 @@ class ElementBase:
                     begins = np.append(True, branch[1:] != branch[:-1])[: len(column)]
                     column[:] = column[np.maximum.accumulate(np.where(begins, np.arange(len(column)), 0))]
             marks = np.array([each.mark(one) for one in branch.tolist()], dtype=float)  # NaN where there is none
-            last = found[:, model.layout.memory + index + each.internal_places - 1]
+            last = found[:, model.layout.memory + index + each.n_internal - 1]
             last[:] = np.where(np.isnan(marks), last, marks)
         if model.layout.n_internal > internal_count(model.elements):
             more = np.array([self.marks(key) for key in keys])[places]

@@ -127,9 +127,9 @@ class ModalModel(Value):
         kept, branches = list[float](), list[int]()
         for each in self.elements:
             elongation = np.zeros(1) if side == CLOSED else self.elongations(each, side, np.array([abs(rotation)]))
-            branch, n_internal = each.brought(float(elongation[0]))
+            branch, remembered = each.brought(float(elongation[0]))
             branches.append(branch)
-            kept += n_internal
+            kept += remembered
         key = (side, *branches)
         if side != CLOSED and spin != 0.0:
             key = set_off(self.properties, self.elements, key, 1 if spin > 0.0 else -1)
@@ -152,7 +152,7 @@ class ModalModel(Value):
             right, left = (self.elongations(each, which, np.abs(rotation)) for which in (RIGHT, LEFT))
             elongation = np.where(side < 0.0, left, right)
             first = HEADER + self.layout.memory + known.get(place, 0)
-            found = each.branch_at(elongation, states[:, first : first + each.internal_places])
+            found = each.branch_at(elongation, states[:, first : first + each.n_internal])
             at_rest = np.array([each.stopped(branch) for branch in range(max(each.branches) + 1)])
             branches[:, 1 + place] = np.where(side == 0.0, at_rest[found], found)
         return branches

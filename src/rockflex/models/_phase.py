@@ -51,7 +51,7 @@ class BaseEquations:
         return cls(squares[0], squares[1], squares[2], columns[0], columns[1], factors)
 
     @classmethod
-    def blank(cls, freedoms: int, internal_places: int) -> "BaseEquations":
+    def blank(cls, freedoms: int, n_internal: int) -> "BaseEquations":
         """Return a equations without any entry."""
         b = freedoms
         return cls(
@@ -60,7 +60,7 @@ class BaseEquations:
             np.zeros((b, b)),
             np.zeros(b),
             np.zeros(b),
-            np.zeros((b, internal_places)),
+            np.zeros((b, n_internal)),
         )
 
     def __add__(self, other: "BaseEquations") -> "BaseEquations":

@@ -274,9 +274,9 @@ class SpringModel(LinearModel):
         for each in self.elements:
             stretch = self.stretch(each)
             elongation = float(stretch[-1] + stretch[layout.rotation] * rotation + stretch[layout.heave] * heave)
-            branch, n_internal = each.brought(elongation)
+            branch, remembered = each.brought(elongation)
             of_elements.append(branch)
-            kept += n_internal
+            kept += remembered
         key = (CLOSED, *(int(branch) for branch in branches), STICK, *of_elements)
         start[layout.memory :] = (*kept, *code_of(key[1:]))
         return key, start

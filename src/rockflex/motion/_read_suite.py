@@ -34,7 +34,7 @@ MIN_COPY_SAMPLES = 50  # samples; fewer may be the same by chance
 COPY_TOLERANCE = 1e-3  # of the peak: two formats of one record round, or take another value of g
 OnError = Literal["raise", "skip"]
 Vertical = Literal["pair"]
-MAX_REPORTED = 10  # files whose errors are reported in full; beyond these only the names are first_texts_shown
+MAX_REPORTED = 10  # files whose errors are reported in full; beyond these only the names are listed
 MAX_MESSAGE_LENGTH = 50_000  # most characters of a message that lists every file
 
 

@@ -188,10 +188,10 @@ def resisting_moments(history: History) -> tuple[Array, Array]:
 def is_moment_path_independent(properties: RockingProperties) -> bool:
     """Whether the resisting moment depends on the rotation alone: all elements stay elastic."""
     return all(
-        not any(branch.yields for branch in one_for_each.law.values())
-        if isinstance(one_for_each, ElementLaw)
-        else isinstance(one_for_each, Tendon) and one_for_each.post_yield_ratio is None
-        for one_for_each in properties.elements
+        not any(branch.yields for branch in each.law.values())
+        if isinstance(each, ElementLaw)
+        else isinstance(each, Tendon) and each.post_yield_ratio is None
+        for each in properties.elements
     )
 
 

@@ -22,21 +22,15 @@ from rockflex.models import (
     HEADER,
     LOADED,
     SIDE,
-    Bar,
-    Dashpot,
     Key,
-    LawElement,
     LinearMotion,
     MotionBetween,
     Part,
     RockingModel,
     Shaking,
-    Slider,
     element_energies,
-    element_forces,
     horizontal_reaction,
     inside,
-    plastic_stretches,
     soil_strain,
     stored_energies,
     under_more_gravity,
@@ -151,14 +145,15 @@ def energy_ledger(model: RockingModel, states: Array) -> EnergyLedger:
         if model.layout.swept >= 0:
             swept = np.diff(model.layout.of(states, model.layout.swept))
             work = work._replace(swing=np.where(integrated, swept, work.swing))
+    element_strain, element_losses = element_energies(model, states, sweeps_of(model, states, work))
     return EnergyLedger(
         kinetic=kinetic,
         strain=strain,
         gravity=gravity,
-        element_strain=element_energies(model, states).sum(axis=1),
+        element_strain=element_strain.sum(axis=1),
         damped=_summed(damped),
         yielded=_summed(yielded),
-        elements=_summed(element_losses(model, states, sweeps_of(model, states, work))),
+        elements=_summed(element_losses),
         input=_summed(given),
         lost=np.cumsum(lost),
         impact_losses=losses,
@@ -171,37 +166,6 @@ def energy_ledger(model: RockingModel, states: Array) -> EnergyLedger:
 def _summed(parts: Array) -> Array:
     """Return the sums up to each state of what is known between adjacent states."""
     return np.concatenate((np.zeros((1, *parts.shape[1:])), np.cumsum(parts, axis=0)))
-
-
-def element_losses(model: RockingModel, states: Array, sweeps: Array) -> Array:
-    """Return the energy that each element dissipates between adjacent states, in J, shape (n_states - 1, E).
-
-    A bar loses (1 - α) F_y for every metre that it yields, and whatever it stores when it breaks; a viscous damper
-    loses c ∫ δ'² dt, with the integrals `sweeps`, shape (n_states - 1, E); a friction damper loses F_0 for every
-    metre that it slides. Between adjacent states an element yields or slides in one direction only.
-    """
-    found = np.zeros((states.shape[0] - 1, len(model.elements)))
-    if not model.elements:
-        return found
-    delta, forces = model.elongations_at(states), element_forces(model, states)
-    moved = np.abs(np.diff(delta, axis=0))
-    plastic, stored = plastic_stretches(model, states), element_energies(model, states)
-    broken = np.isnan(plastic)
-    breaks = broken[1:] & ~broken[:-1]
-    yielded = np.where(broken[1:], 0.0, np.abs(np.diff(plastic, axis=0)))
-    for place, each in enumerate(model.elements):
-        if isinstance(each, Bar):
-            found[:, place] = (1.0 - each.ratio) * each.yield_force * yielded[:, place]
-            released = stored[:-1, place] - stored[1:, place]
-            found[breaks[:, place], place] = released[breaks[:, place]]
-        elif isinstance(each, LawElement):
-            work = 0.5 * (forces[1:, place] + forces[:-1, place]) * np.diff(delta[:, place])
-            found[:, place] = work - np.diff(stored[:, place])
-        elif isinstance(each, Dashpot):
-            found[:, place] = each.coefficient * sweeps[:, place]
-        elif isinstance(each, Slider):
-            found[:, place] = each.force * moved[:, place]
-    return found
 
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)

@@ -191,8 +191,8 @@ def element_peaks(model: RockingModel, moves: Sequence[ElementExtremes], final_s
     given = model.properties.elements
     if not given:
         return NONE
-    forces = [_largest_force(each, move) for each, move in zip(given, moves, strict=True)]
-    yielded = [_yields(each, move) for each, move in zip(given, moves, strict=True)]
+    extremes = [_force_and_yielding(each, move) for each, move in zip(given, moves, strict=True)]
+    forces, yielded = [force for force, _ in extremes], [beyond for _, beyond in extremes]
     tendons = [
         (each, force, beyond)
         for each, force, beyond in zip(given, forces, yielded, strict=True)
@@ -250,9 +250,17 @@ def _on_springs(model: RockingModel, moves: Array, speeds: Array) -> list[Elemen
     return found
 
 
-def _largest_force(element: BaseElement, move: ElementExtremes) -> float:
+def _force_and_yielding(element: BaseElement, move: ElementExtremes) -> tuple[float, bool]:
+    """Return the largest |F| of an element in N, and whether it yields."""
     if isinstance(element, ElementLaw):
-        return element.extremes(move.low, move.high)[0]
+        return element.extremes(move.low, move.high)
+    return _largest_force(element, move), _yields(element, move)
+
+
+OwnElement = Tendon | YieldingDissipator | ViscousDamper | FrictionDamper
+
+
+def _largest_force(element: OwnElement, move: ElementExtremes) -> float:
     if isinstance(element, ViscousDamper):
         return element.coefficient * move.speed
     if isinstance(element, FrictionDamper):
@@ -272,10 +280,8 @@ def _first_loading(element: Tendon | YieldingDissipator, stretch: float) -> floa
     return elastic if elastic <= limit else max(ratio * elastic + (1.0 - ratio) * limit, limit)
 
 
-def _yields(element: BaseElement, move: ElementExtremes) -> bool:
+def _yields(element: OwnElement, move: ElementExtremes) -> bool:
     """Return whether an element yields or slides; of an elastic tendon, whether it exceeds its yield force."""
-    if isinstance(element, ElementLaw):
-        return element.extremes(move.low, move.high)[1]
     if isinstance(element, ViscousDamper):
         return False
     if isinstance(element, FrictionDamper):

@@ -22,7 +22,7 @@ from rockflex.models import (
 )
 from rockflex.response._moment_rotation import MomentRotation, MomentRotationOnSprings
 
-TOLERANCE = 1e-12  # relative: changes this close to one_for_each other happen at once, and at an end in the next part
+TOLERANCE = 1e-12  # relative: changes this close to each other happen at once, and at an end in the next part
 
 
 def static_path(
@@ -69,7 +69,7 @@ def static_path(
 def _along(
     elements: tuple[Element, ...], path: "Sequence[tuple[ElementState, ...]]", carried: Array | None = None
 ) -> dict[str, Array]:
-    """Return force, elongation, plastic stretch and losses of the elements along a path by name, one_for_each (n, E).
+    """Return force, elongation, plastic stretch and losses of the elements along a path by name, each (n, E).
 
     `carried` is the force in N that an element still carries while it breaks, shape (n, E).
     """

@@ -182,7 +182,7 @@ class Task:
     ----------
     model
         The model.
-    cost model
+    cost_model
         The properties of the model that determine the work.
     record
         Samples of the ground acceleration in m/s², shape (n,).

@@ -408,20 +408,16 @@ def _spread(values: Any, places: Sequence[int], count: int) -> Any:
 def gather(engines: Iterable[Engine]) -> None:
     """Let engines of many models that differ only in numbers share their preparation."""
     with _GATHERING:  # two threads may gather the same engines
-        _gather(engines)
-
-
-def _gather(engines: Iterable[Engine]) -> None:
-    alike = defaultdict[tuple[int, ...], list[Engine]](list)
-    for each in engines:
-        if each.model.integrated or not each.model.has_bare_base:
-            continue
-        if may_stack(each.model) and "stack" not in vars(each):
-            alike[each.model.properties.n_modes, len(each.quantities), each.model.lifts].append(each)
-    for some in alike.values():
-        most = max(1, min(STACK, MEMORY // some[0].size_of_plain))
-        for first in range(0, len(some), most):
-            part = some[first : first + most]
-            stack = Stack([each.model for each in part], [each.quantities for each in part])
-            for place, each in enumerate(part):
-                each.gather(stack, place)
+        alike = defaultdict[tuple[int, ...], list[Engine]](list)
+        for each in engines:
+            if each.model.integrated or not each.model.has_bare_base:
+                continue
+            if may_stack(each.model) and "stack" not in vars(each):
+                alike[each.model.properties.n_modes, len(each.quantities), each.model.lifts].append(each)
+        for some in alike.values():
+            most = max(1, min(STACK, MEMORY // some[0].size_of_plain))
+            for first in range(0, len(some), most):
+                part = some[first : first + most]
+                stack = Stack([each.model for each in part], [each.quantities for each in part])
+                for place, each in enumerate(part):
+                    each.gather(stack, place)

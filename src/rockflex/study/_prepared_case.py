@@ -118,7 +118,11 @@ class PreparedCase:
 
     def run(self, motion: GroundMotion, scale: float = 1.0) -> Response:
         """Run the motion at a scale and return the response; raises the errors of `solve`."""
-        return respond(self.model, motion.name, self.solve(motion, scale), self.tracked)
+        return self.response(motion, self.solve(motion, scale))
+
+    def response(self, motion: GroundMotion, solution: Solution) -> Response:
+        """Return the response to a motion from its solution."""
+        return respond(self.model, motion.name, solution, self.tracked)
 
 
 def has_vertical_motion(motion: GroundMotion) -> bool:
@@ -217,9 +221,9 @@ def yielding_model_labels(models: Iterable[str | Model]) -> list[str]:
     return [model.label for model in map(parse_model, models) if model.yields]
 
 
-Scaled = tuple[
-    PreparedCase | InputError, GroundMotion, float
-]  # a case or why there is none, a motion, and a factor on it
+# A case, a motion, and a factor on it; or in place of the case the reason why there is none.
+PreparedRun = tuple[PreparedCase, GroundMotion, float]
+Scaled = tuple[PreparedCase | InputError, GroundMotion, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -257,7 +261,7 @@ class RunPeaks:
         return rows
 
 
-def solve_runs_together(runs: Sequence[tuple[PreparedCase, GroundMotion, float]]) -> Solutions:
+def solve_runs_together(runs: Sequence[PreparedRun]) -> Solutions:
     """Run motions, each at a scale on a case, where all cases are `together` and the motions have one time step.
 
     The ground moves vertically in all runs, or in none. Only a single run can have a history. Runs that cannot be
@@ -283,7 +287,7 @@ def solve_runs_together(runs: Sequence[tuple[PreparedCase, GroundMotion, float]]
 
 def share_case_preparation(cases: Iterable[PreparedCase | InputError]) -> None:
     """Let those of many cases that differ only in numbers share their preparation."""
-    gather({id(case): case.engine for case in cases if isinstance(case, PreparedCase)}.values())
+    gather(dict.fromkeys(case.engine for case in cases if isinstance(case, PreparedCase)))
 
 
 def solutions_of_runs(runs: Sequence[Scaled]) -> list[Solution | InputError | SolverError]:
@@ -308,19 +312,18 @@ def peaks_of_runs(runs: Sequence[Scaled], *, keep: bool = True) -> RunPeaks:
     for places, solutions in _solutions_by_group(runs, failures):
         cases = [cast("PreparedCase", runs[place][0]) for place in places]
         failures |= {places[place]: error for place, error in solutions.failures.items()}
-        if cases[0].history:
-            found = columns_among([None])
-            if not solutions.failures:
-                motion = runs[places[0]][1]
-                response = respond(cases[0].model, motion.name, solutions.one(0), cases[0].tracked)
-                responses[places[0]], found = response, columns_among([response])
-        else:
+        if not cases[0].history:
             found = columns_of([case.model for case in cases], solutions, cases[0].tracked)
+        elif solutions.failures:
+            found = {}
+        else:
+            response = cases[0].response(runs[places[0]][1], solutions.one(0))
+            responses[places[0]], found = response, columns_among([response])
         for name, values in found.items():
             columns.setdefault(name, np.zeros(len(runs), values.dtype))[places] = values
         left.subtract(cases)
         if not keep:
-            for case in {id(case): case for case in cases if not left[case]}.values():
+            for case in {case for case in cases if not left[case]}:
                 case.engine.release()
     return RunPeaks(len(runs), columns, failures, responses)
 
@@ -338,11 +341,6 @@ def _solutions_by_group(
             alike.setdefault(kind, []).append(place)
     for places in alike.values():
         try:
-            yield (
-                places,
-                solve_runs_together(
-                    cast("list[tuple[PreparedCase, GroundMotion, float]]", [runs[place] for place in places])
-                ),
-            )
+            yield places, solve_runs_together(cast("list[PreparedRun]", [runs[place] for place in places]))
         except (InputError, SolverError) as error:  # none of them can begin
             failures |= dict.fromkeys(places, error)

@@ -192,10 +192,6 @@ class RunMatrix:
         other.structures, other._cases = [structure], {}
         return other
 
-    def cases(self, structure: int) -> list[PreparedCase | InputError]:
-        """Return the cases of a structure with all models, or the reasons why there are none."""
-        return [self.case(structure, model) for model in range(len(self.models))]
-
     def case(self, structure: int, model: int) -> PreparedCase | InputError:
         """Return the case of a structure and a model, which is built once, or the reason why there is none."""
         found = self._cases.get((structure, model))
@@ -207,10 +203,6 @@ class RunMatrix:
                 found = error
             self._cases[structure, model] = found
         return found
-
-    def forget(self) -> None:
-        """Release the engines."""
-        self._cases.clear()
 
     def scaled(self, runs: Iterable[Run]) -> list[Scaled]:
         """Return the case, the motion and the scale of runs."""
