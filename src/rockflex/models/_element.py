@@ -472,6 +472,7 @@ class LawElement:
         return np.asarray(self.law.stored_energy(elongation, plastic), dtype=float)
 
     def lost_energy(self, elongation: Array, force: Array, plastic: Array, stored: Array, sweep: Array) -> Array:
-        """The work that is not stored: the force is linear between adjacent states."""
-        del plastic, sweep
-        return 0.5 * (force[1:] + force[:-1]) * np.diff(elongation) - np.diff(stored)
+        """The work that is not stored where m changes; the force is linear between adjacent states."""
+        del sweep
+        lost = 0.5 * (force[1:] + force[:-1]) * np.diff(elongation) - np.diff(stored)
+        return np.where(np.diff(plastic) == 0.0, 0.0, lost)
