@@ -6,7 +6,7 @@ from PIL import Image
 
 import rockflex as rf
 from builders import PROPERTIES, make_frame
-from rockflex.plot._response_curves import response_curves
+from rockflex.plot._history import response_curves
 from rockflex.plot.animation._poses import (
     MAX_DRAWN_MOTION,
     ROUND_FACTORS,

@@ -5,7 +5,7 @@ import pytest
 
 import rockflex as rf
 from drawing import drawn, notes, uplift_intervals
-from rockflex.plot._response_curves import response_curves
+from rockflex.plot._history import response_curves
 
 PIER = rf.CantileverWithTipMass(
     height=12.0, tip_mass=500e3, mass_per_length=10e3, bending_stiffness=4.0e10, base_mass=120e3, half_width=1.5,

@@ -16,7 +16,7 @@ import rockflex as rf
 from builders import make_frame
 from drawing import drawn, notes, spans, uplift_intervals
 from rockflex.plot import plot_history, plot_spread
-from rockflex.plot._response_curves import response_curves
+from rockflex.plot._history import response_curves
 
 FRAME = make_frame()
 MODELS = ("2DOF-S", "3DOF-S", "MDOF-S", "fixed")

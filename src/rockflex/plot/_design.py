@@ -1,7 +1,7 @@
 """Designs: exceedance over the half width of the base, and the least cost of a search."""
 
 import math
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal
 
 import matplotlib as mpl
 import numpy as np
@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from rockflex._arrays import Array, Bools
 from rockflex._checks import checked_instance, is_one_of
 from rockflex._errors import InputError
 from rockflex._number_format import short_number, unit_with_prefix
@@ -33,29 +34,22 @@ from rockflex.plot._style import (
     LineStyle,
     Size,
     add_legend_above,
+    assign_distinct,
     is_narrow_figure,
     literal_text,
     new_figure,
     recoloured_line_styles,
     with_figure_style,
 )
-from rockflex.study.design import BestDesign, InterpolatedMargins, requirement_margins, trade_off
+from rockflex.study.design import BestDesign, InterpolatedMargins, requirement_margins, smallest_width, trade_off
 
 if TYPE_CHECKING:
     import pandas as pd
 
 _NEEDED = (
-    "model",
-    "tendon",
-    "half_width",
-    "aspect_ratio",
-    "prestress_ratio",
-    "stiffness_ratio",
-    "limit",
-    "low",
-    "high",
+    *("model", "tendon", "half_width", "aspect_ratio", "prestress_ratio", "stiffness_ratio"),
+    *("limit", "low", "high"),
 )
-_SOURCE = "what design_table returned"
 _STYLES = (LineStyle(BLACK, "-"), LineStyle(RED, "--"), LineStyle(GREEN, "-."), *LINE_STYLES)
 _DECADES = 4.0  # of rates below the largest that are shown, or below the target
 _AXES = {
@@ -66,14 +60,6 @@ _AXES = {
 _SEARCH_STYLES = (LineStyle(BLUE, "-"), LineStyle(ORANGE, "--"), LineStyle(GREEN, "-."), *LINE_STYLES)
 _FINE = 81  # points along each side of a plane
 _MARK = 4.0
-
-
-class _PlottedDesignValue(NamedTuple):
-    """The column plotted, its name on the axis, and whether that axis is logarithmic."""
-
-    column: str
-    name: str
-    logarithmic: bool
 
 
 def plot_design(
@@ -93,8 +79,7 @@ def plot_design(
     logarithmic
         Whether the axis of the values is logarithmic, which leaves out zeros. Default: only for rates.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -120,26 +105,22 @@ def plot_design(
     ('half width $B$ [m]', 'P($θ_{\\mathrm{max}}>0.005\\ \\mathrm{rad}$)')
     """
     value = "rate" if "rate" in getattr(table, "columns", ()) else "probability"
-    check_table_columns(table, (*_NEEDED, value), _SOURCE)
+    check_table_columns(table, (*_NEEDED, value), "what design_table returned")
     tendons, models = names_in_column(table["tendon"]), names_in_column(table["model"])
-    if len(tendons) > len(MARKERS):
-        raise InputError(f"{len(tendons)} tendons were given, but there are {len(MARKERS)} symbols. Plot some of them.")
-    found = None if target is None else _smallest_widths(table, target)
-    styles: dict[str, tuple[LineStyle, str]] = dict(
-        zip(tendons, zip(recoloured_line_styles(_STYLES), MARKERS, strict=False), strict=False)
-    )
-    drawn = _PlottedDesignValue(
-        value, _design_value_name(table, value), value == "rate" if logarithmic is None else logarithmic
-    )
+    looks = list(zip(recoloured_line_styles(_STYLES), MARKERS, strict=False))
+    styles: dict[str, tuple[LineStyle, str]] = assign_distinct(tendons, looks, "tendons")
+    found = None if target is None else smallest_width(table, target)
+    logarithms = value == "rate" if logarithmic is None else logarithmic
     with with_figure_style(size=size):
-        figure, panels = structure_panels(models, 2, 2.9, "half width $B$ [m]", drawn.name)
+        figure, panels = structure_panels(models, 2, 2.9, "half width $B$ [m]", _design_value_name(table, value))
         for axes, model in zip(panels, models, strict=True):
             for tendon, (style, marker) in styles.items():
-                _draw_design_curve(axes, _design_rows(table, model, tendon), drawn, style, marker, tendon)
+                rows = _design_rows(table, model, tendon).sort_values("half_width")
+                _draw_design_curve(axes, rows, value, style, marker, tendon, logarithmic=logarithms)
             if found is not None and target is not None:
                 axes.axhline(target, color=BLUE, linewidth=0.8, dashes=(5, 3), label="_target")
                 _draw_smallest_widths(axes, _design_rows(found, model), styles, target)
-        _set_design_limits(panels, table, drawn, target)
+        _set_design_limits(panels[0], table, table[value].to_numpy(float), target, logarithmic=logarithms)
         for axes in panels:
             _draw_slenderness_axis(axes, table)
         handles = model_legend_handles({literal_text(tendon): style for tendon, style in styles.items()})
@@ -151,15 +132,9 @@ def plot_design(
     return figure
 
 
-def _smallest_widths(table: "pd.DataFrame", target: float) -> "pd.DataFrame":
-    from rockflex.study.design import smallest_width
-
-    return smallest_width(table, target)
-
-
 def _design_rows(table: "pd.DataFrame", model: str, tendon: str | None = None) -> "pd.DataFrame":
     rows = table[table["model"].astype(str) == model]
-    return rows if tendon is None else rows[rows["tendon"].astype(str) == tendon].sort_values("half_width")
+    return rows if tendon is None else rows[rows["tendon"].astype(str) == tendon]
 
 
 def _design_value_name(table: "pd.DataFrame", value: str) -> str:
@@ -180,16 +155,16 @@ def _design_value_name(table: "pd.DataFrame", value: str) -> str:
 
 
 def _draw_design_curve(
-    axes: Axes, rows: "pd.DataFrame", drawn: _PlottedDesignValue, style: LineStyle, marker: str, name: str
+    axes: Axes, rows: "pd.DataFrame", value: str, style: LineStyle, marker: str, name: str, *, logarithmic: bool
 ) -> None:
-    b, y, low, high = (rows[column].to_numpy(float) for column in ("half_width", drawn.column, "low", "high"))
-    shown = np.isfinite(y) & ((y > 0.0) | (not drawn.logarithmic))
+    b, y, low, high = (rows[column].to_numpy(float) for column in ("half_width", value, "low", "high"))
+    shown = np.isfinite(y) & ((y > 0.0) | (not logarithmic))
     axes.plot(
-        b[shown], y[shown], color=style.color, linestyle=style.dashes, marker=marker, markersize=3.5,
-        markerfacecolor="none", markeredgewidth=0.7, label=name,
+        b[shown], y[shown], **style.look, marker=marker, markersize=3.5, markerfacecolor="none", markeredgewidth=0.7,
+        label=name,
     )  # fmt: skip
     bounded = np.isfinite(low) & np.isfinite(high)
-    floor = 1e-300 if drawn.logarithmic else 0.0
+    floor = 1e-300 if logarithmic else 0.0
     axes.fill_between(
         b, np.maximum(low, floor), np.maximum(high, floor), where=bounded, color=style.color, alpha=0.13,
         linewidth=0.0, label="_band",
@@ -220,22 +195,19 @@ def _draw_smallest_widths(
         )  # fmt: skip
 
 
-def _set_design_limits(
-    panels: list[Axes], table: "pd.DataFrame", drawn: _PlottedDesignValue, target: float | None
-) -> None:
+def _set_design_limits(axes: Axes, table: "pd.DataFrame", y: Array, target: float | None, *, logarithmic: bool) -> None:
     b = table["half_width"].to_numpy(float)
     margin = 0.04 * float(np.ptp(b)) or 0.1 * float(b[0])
-    panels[0].set_xlim(max(float(b.min()) - margin, 0.5 * float(b.min())), float(b.max()) + margin)
-    values = np.concatenate([table[name].to_numpy(float) for name in (drawn.column, "high")])
+    axes.set_xlim(max(float(b.min()) - margin, 0.5 * float(b.min())), float(b.max()) + margin)
+    values = np.concatenate([y, table["high"].to_numpy(float)])
     values = np.append(values[np.isfinite(values)], target or 0.0)
     top = float(values.max(initial=0.0)) or 1.0
-    if drawn.logarithmic:
-        seen = table[drawn.column].to_numpy(float)
-        seen = np.append(seen[seen > 0.0], target or top)
-        panels[0].set_yscale("log")
-        panels[0].set_ylim(0.5 * max(float(seen.min()), min(top, target or top) * 10.0**-_DECADES), 2.0 * top)
+    if logarithmic:
+        seen = np.append(y[y > 0.0], target or top)
+        axes.set_yscale("log")
+        axes.set_ylim(0.5 * max(float(seen.min()), min(top, target or top) * 10.0**-_DECADES), 2.0 * top)
     else:
-        panels[0].set_ylim(-0.03 * top, 1.05 * top)
+        axes.set_ylim(-0.03 * top, 1.05 * top)
 
 
 def _draw_slenderness_axis(axes: Axes, table: "pd.DataFrame") -> None:
@@ -271,7 +243,7 @@ class _DesignVariableAxis:
         self.divisor, self.unit = unit_with_prefix(float(designs[self.column].max()), unit) if forces else (1.0, unit)
         self.name = f"{words} [{self.unit}]" if unit else words
 
-    def of(self, table: "pd.DataFrame") -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
+    def of(self, table: "pd.DataFrame") -> Array:
         return table[self.column].to_numpy(float) / self.divisor
 
 
@@ -293,8 +265,7 @@ def plot_design_search(
     theme
         ``"light"`` or ``"dark"``.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -326,9 +297,7 @@ def plot_design_search(
     between = InterpolatedMargins.of(found)
     varied = [*between.given]
     labels = [each.label for each in found.requirements]
-    if len(labels) > len(_SEARCH_STYLES):
-        raise InputError(f"{len(labels)} requirements were given, but there are {len(_STYLES)} looks for their lines.")
-    styles = dict(zip(labels, recoloured_line_styles(_SEARCH_STYLES), strict=False))
+    styles = assign_distinct(labels, recoloured_line_styles(_SEARCH_STYLES), "requirements")
     with with_figure_style(theme, size=size):
         count = min(len(varied), 2)
         figure = new_figure(7.2 if count > 1 else 4.2, 0.9 + 3.0 * count if is_narrow_figure() else 3.9)
@@ -338,10 +307,7 @@ def plot_design_search(
             _draw_design_plane(panels[1], found, between, (varied[-2], varied[-1]), styles)
         for axes in panels:
             axes.tick_params(colors=_design_text_color(), grid_color=mpl.rcParams["grid.color"])
-        handles = [
-            Line2D([], [], color=style.color, linestyle=style.dashes, label=literal_text(label))  # pyright: ignore[reportArgumentType]
-            for label, style in styles.items()
-        ]
+        handles = [Line2D([], [], **style.look, label=literal_text(label)) for label, style in styles.items()]
         for name, face in (("run, meets all targets", _design_text_color()), ("run, does not", "none")):
             handles.append(
                 Line2D(
@@ -374,14 +340,13 @@ def _draw_design_costs(axes: Axes, found: BestDesign, variable: str, styles: dic
     curve = trade_off(found, variable)
     for label, style in styles.items():
         cost = np.where(curve["governs"] == label, curve["cost"].to_numpy(float), np.nan)
-        axes.plot(scale.of(curve), cost, color=style.color, linestyle=style.dashes, linewidth=1.6, label=label)
-    _draw_tried_designs(axes, scale.of(found.designs), found.designs["cost"].to_numpy(float), found)
+        axes.plot(scale.of(curve), cost, **style.look, linewidth=1.6, label=label)
+    tried, costs = scale.of(found.designs), found.designs["cost"].to_numpy(float)
+    _draw_tried_designs(axes, tried, costs, found.designs["meets"].to_numpy(bool))
     if found.best is not None:
         bands = {str(row["quantity"]): np.array([row["low"], row["high"]]) for row in found.interval.to_dict("records")}
         across = bands.get(scale.column, np.full(2, np.nan)) / scale.divisor
-        x, y = (
-            float(values[found.best]) for values in (scale.of(found.designs), found.designs["cost"].to_numpy(float))
-        )
+        x, y = float(tried[found.best]), float(costs[found.best])
         for ends in ((across, [y, y]), ([x, x], bands["cost"])):
             axes.plot(*ends, color=_design_text_color(), linewidth=2.0, alpha=0.6, label="_band", solid_capstyle="butt")
         _mark_best_design(axes, x, y)
@@ -393,7 +358,10 @@ def _draw_design_plane(
 ) -> None:
     """Draw the limits over two variables; the others have their values in the best design, or in the nearest to it."""
     designs = found.designs
-    place = found.best if found.best is not None else _nearest_design(found)
+    place = found.best
+    if place is None:
+        margins = requirement_margins(designs[list(styles)].to_numpy(float), found.requirements)
+        place = int(np.nan_to_num(margins, nan=np.inf).max(axis=1).argmin())
     values = {name: np.array([float(designs[name].iloc[place])]) for name in between.given}
     for name in names:
         values[name] = np.linspace(between.given[name][0], between.given[name][-1], _FINE)
@@ -417,7 +385,7 @@ def _draw_design_plane(
     others = [name for name in between.given if name not in names]
     near = np.all([np.isclose(designs[name], values[name][0]) for name in others], axis=0) if others else slice(None)
     there = designs[near] if others else designs
-    _draw_tried_designs(axes, across.of(there), up.of(there), found, there["meets"].to_numpy(bool))
+    _draw_tried_designs(axes, across.of(there), up.of(there), there["meets"].to_numpy(bool))
     if found.best is not None:
         _mark_best_design(axes, float(across.of(designs)[place]), float(up.of(designs)[place]))
     fixed = [_DesignVariableAxis(name, designs) for name in others]
@@ -427,20 +395,13 @@ def _draw_design_plane(
     axes.set(xlabel=across.name, ylabel=up.name, title=", ".join(words))
 
 
-def _nearest_design(found: BestDesign) -> int:
-    labels = [each.label for each in found.requirements]
-    margins = requirement_margins(found.designs[labels].to_numpy(float), found.requirements)
-    return int(np.nan_to_num(margins, nan=np.inf).max(axis=1).argmin())
-
-
-def _draw_tried_designs(axes: Axes, x: object, y: object, found: BestDesign, meets: object = None) -> None:
-    met = found.designs["meets"].to_numpy(bool) if meets is None else np.asarray(meets, dtype=bool)
+def _draw_tried_designs(axes: Axes, x: Array, y: Array, met: Bools) -> None:
     for which, face in ((~met, "none"), (met, _design_text_color())):
         if not which.any():  # an empty line that is not clipped spoils the layout
             continue
         axes.plot(
-            np.asarray(x)[which], np.asarray(y)[which], "o", markersize=_MARK, markerfacecolor=face,
-            markeredgecolor=_design_text_color(), markeredgewidth=0.6, alpha=0.75, label="_runs", clip_on=False,
+            x[which], y[which], "o", markersize=_MARK, markerfacecolor=face, markeredgecolor=_design_text_color(),
+            markeredgewidth=0.6, alpha=0.75, label="_runs", clip_on=False,
         )  # fmt: skip
 
 

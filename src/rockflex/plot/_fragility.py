@@ -1,7 +1,7 @@
-"""Fragility: curves of a cloud, of stripes, and of incremental dynamic analyses."""
+"""Clouds of response over intensity, and fragility: of a cloud, of stripes, and of incremental dynamic analyses."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, SupportsIndex
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, SupportsIndex
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,17 +10,22 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from rockflex._arrays import Array, Bools
-from rockflex._cases import runs_of_case
+from rockflex._cases import runs_by_case, runs_of_case
 from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError, SolverError
 from rockflex._number_format import short_number
-from rockflex._shown import number_with_noun
+from rockflex._shown import number_with_noun, shown
 from rockflex.fragility import (
+    NOMINAL,
+    OVERTURNING,
+    ROCKED,
+    CloudFit,
     CloudFits,
     LogisticFit,
     LognormalFragility,
     fit_capacities,
     fit_clouds,
+    fit_each_cloud,
     fit_stripes,
     observed_exceedance_fractions,
     recordings_of_runs,
@@ -28,6 +33,7 @@ from rockflex.fragility import (
 )
 from rockflex.plot._study_tables import (
     check_table_columns,
+    label_log_axis_plainly,
     measure_axis_name,
     model_legend_handles,
     model_lines_and_symbols,
@@ -59,12 +65,19 @@ if TYPE_CHECKING:
 
 _POINTS = 400
 _LOGIT_END = np.log(0.995 / 0.005)  # logit at which a curve has arrived
-_NEEDED = (
+_OF_INCREMENTAL = (
     *("structure", "model", "motion", "group", "scale", "status", "max_rotation", "overturned", "resurrections"),
     *("first_overturning_scale", "last_survival_scale"),
 )
 _MAX_ROWS = 6  # rows of panels
-_SOURCE = "what run_incremental returned"
+_QUANTITIES = {
+    "max_rotation": r"$θ_{\mathrm{max}}$ [rad]",
+    "max_top_displacement": r"$u_{\mathrm{top,max}}$, relative to the base [m]",
+    "max_total_top_displacement": r"total $u_{\mathrm{top,max}}$ [m]",
+}
+_TINY = 6.75
+_ROW = 0.056  # of the panel, from row to row of the numbers in it
+_CROSSES = 0.038  # and of the crosses
 
 
 def plot_fragility(
@@ -97,8 +110,7 @@ def plot_fragility(
         Number of groups of equally many runs, sorted by intensity, for which the fraction of rocking runs is marked;
         requires the table. Default: none.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -129,13 +141,21 @@ def plot_fragility(
     ends = [fit.outcomes.measured[0] for fit in fits if fit.outcomes.measured is not None]
     lowest = min(ends, default=None)
     with with_figure_style(size=size):
-        event = rf"\mathrm{{uplift}},\ θ_{{\mathrm{{max}}}}>{_threshold_text(fits[0].outcomes.threshold)}"
+        digits, exponent = f"{fits[0].outcomes.threshold:.3e}".split("e")
+        times = "" if float(digits) == 1.0 else rf"{float(digits):g}\times"
+        limit_text = rf"{times}10^{{{int(exponent)}}}\ \mathrm{{rad}}"
+        event = rf"\mathrm{{uplift}},\ θ_{{\mathrm{{max}}}}>{limit_text}"
         y = "probability" if overturning else f"$P({event})$"
         figure, panels = structure_panels(names, 3, 2.1, measure_axis_name(fits[0].measure), y)
         for axes, name in zip(panels, names, strict=True):
             for fit in (fit for fit in fits if fit.structure == name):
                 style, marker = styles[fit.model]
-                _draw_outcome_curves(axes, fit, style, limit, confidence, overturning=overturning)
+                _draw_fragility_curve(
+                    axes, fit.outcomes.initiation, limit, confidence, style, linewidth=1.2, label=fit.model
+                )
+                if overturning:
+                    fallen = fit.outcomes.overturning
+                    _draw_fragility_curve(axes, fallen, limit, confidence, style, linewidth=0.6, label="_overturning")
                 if runs is not None and groups:
                     _mark_observed_fractions(
                         axes, runs_of_case(runs, fit.structure, fit.model), fit, marker, style.color, groups
@@ -197,18 +217,15 @@ def _outcome_axis_limit(fits: list[CloudFits], runs: "pd.DataFrame | None", *, w
     return strongest if whole else min(max(ends, default=strongest), strongest)
 
 
-def _draw_outcome_curves(
-    axes: Axes, fit: CloudFits, style: LineStyle, limit: float, confidence: float | None, *, overturning: bool
+def _draw_fragility_curve(
+    axes: Axes, curve: Any, end: float, confidence: float | None, style: LineStyle, **line: Any
 ) -> None:
-    im = np.linspace(limit / _POINTS, limit, _POINTS)
-    curves = [(fit.outcomes.initiation, 1.2, fit.model)]
-    if overturning:
-        curves.append((fit.outcomes.overturning, 0.6, "_overturning"))
-    for curve, width, label in curves:
-        if confidence is not None:
-            low, high = curve.band(im, confidence)
-            axes.fill_between(im, low, high, color=style.color, alpha=0.13, linewidth=0.0, label="_band")
-        axes.plot(im, curve.probability(im), color=style.color, linestyle=style.dashes, linewidth=width, label=label)
+    """Draw a probability up to an intensity, with its band where the uncertainty of the curve is known."""
+    im = np.linspace(end / _POINTS, end, _POINTS)
+    axes.plot(im, curve.probability(im), **style.look, **line)
+    if confidence is not None:
+        low, high = curve.band(im, confidence)
+        axes.fill_between(im, low, high, color=style.color, alpha=0.13, linewidth=0.0, label="_band")
 
 
 def _mark_observed_fractions(
@@ -216,19 +233,11 @@ def _mark_observed_fractions(
 ) -> None:
     """Fraction of rocking runs in groups of neighbouring intensities, at their geometric mean."""
     rocks = rocked_runs(runs, fit.outcomes.threshold).to_numpy(dtype=bool)
-    font_size = observed_exceedance_fractions(runs[fit.measure].to_numpy(dtype=float), rocks, groups)
+    observed = observed_exceedance_fractions(runs[fit.measure].to_numpy(dtype=float), rocks, groups)
     axes.plot(
-        [at for at, _ in font_size], [fraction for _, fraction in font_size],
-        marker, color=color, markersize=3.0, markerfacecolor="none", markeredgewidth=0.7, label="_observed",
+        *zip(*observed, strict=True), marker, color=color, markersize=3.0, markerfacecolor="none", markeredgewidth=0.7,
+        label="_observed",
     )  # fmt: skip
-
-
-def _threshold_text(threshold: float) -> str:
-    """The threshold as mathematics."""
-    digits, exponent = f"{threshold:.3e}".split("e")
-    digits = f"{float(digits):g}"
-    times = "" if digits == "1" else rf"{digits}\times"
-    return rf"{times}10^{{{int(exponent)}}}\ \mathrm{{rad}}"
 
 
 def plot_stripes(
@@ -257,8 +266,7 @@ def plot_stripes(
     confidence
         Confidence of the bands around the curves, between 0 and 1; None for no bands.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -302,18 +310,19 @@ def plot_stripes(
             notes: list[tuple[str, str]] = []
             for model, (style, marker) in styles.items():
                 stripes = counts[(counts["structure"].astype(str) == name) & (counts["model"].astype(str) == model)]
-                if len(stripes):
-                    text = _draw_stripes(
-                        axes,
-                        stripes,
-                        _fit_of_stripes(runs_of_case(runs, name, model), limit),
-                        model,
-                        style,
-                        marker,
-                        end,
-                        confidence,
-                    )
-                    notes.append((text, style.color))
+                if not len(stripes):
+                    continue
+                axes.plot(
+                    stripes["level"], stripes["n_exceeding"] / stripes["n_total"], marker, color=style.color,
+                    markersize=3.5, markerfacecolor="none", markeredgewidth=0.8, label=f"_{model}",
+                )  # fmt: skip
+                fit = _fit_of_stripes(runs_of_case(runs, name, model), limit)
+                if fit is None:
+                    notes.append(("no curve fits", style.color))
+                else:
+                    known = confidence if fit.covariance is not None else None
+                    _draw_fragility_curve(axes, fit, end, known, style, label=model)
+                    notes.append((f"median {fit.median:.3g}, β = {fit.beta:.2f}", style.color))
             axes.axvspan(0.0, float(counts["level"].min()), color=SHADE, linewidth=0.0, label="_no runs")
             for place, (text, color) in enumerate(reversed(notes)):
                 axes.text(
@@ -323,31 +332,6 @@ def plot_stripes(
         panels[0].set(xlim=(0.0, end), ylim=(-0.03, 1.03))
         add_legend_above(figure, model_legend_handles(styles))
     return figure
-
-
-def _draw_stripes(
-    axes: Axes,
-    stripes: "pd.DataFrame",
-    fit: LognormalFragility | None,
-    model: str,
-    style: LineStyle,
-    marker: str,
-    end: float,
-    confidence: float | None,
-) -> str:
-    """Draw symbols, curve and band; return their text."""
-    at, events, total = (stripes[name].to_numpy(dtype=float) for name in ("level", "n_exceeding", "n_total"))
-    axes.plot(
-        at, events / total, marker, color=style.color, markersize=3.5, markerfacecolor="none", markeredgewidth=0.8,
-        label=f"_{model}",
-    )  # fmt: skip
-    if fit is None:
-        return "no curve fits"
-    im = np.linspace(end / _POINTS, end, _POINTS)
-    axes.plot(im, fit.probability(im), color=style.color, linestyle=style.dashes, label=model)
-    if confidence is not None and fit.covariance is not None:
-        axes.fill_between(im, *fit.band(im, confidence), color=style.color, alpha=0.13, linewidth=0.0, label="_band")
-    return f"median {fit.median:.3g}, β = {fit.beta:.2f}"
 
 
 def _fit_of_stripes(runs: "pd.DataFrame", limit: "StripeLimit") -> LognormalFragility | None:
@@ -391,8 +375,7 @@ def plot_ida(
     confidence
         Confidence of the band around the lognormal curve, between 0 and 1; None for no band.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -415,7 +398,7 @@ def plot_ida(
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('PGA [m/s²]', '$θ_{\\mathrm{max}}$ [rad]')
     """
-    check_table_columns(runs, (*_NEEDED, measure), _SOURCE)
+    check_table_columns(runs, (*_OF_INCREMENTAL, measure), "what run_incremental returned")
     from rockflex.study.incremental import incremental_capacities
 
     capacities = incremental_capacities(runs, measure)
@@ -441,7 +424,17 @@ def plot_ida(
         grid[0, 0].set_xlim(0.0, _ida_axis_limit(runs, capacities, measure))
         for axes in grid[-1, -across:]:
             axes.set_xlabel(measure_axis_name(measure))
-        add_legend_above(figure, _ida_legend_handles(), columnspacing=1.2, handlelength=1.6)
+        handles = [
+            Line2D([], [], color=GRAY, linewidth=0.7, label="record"),
+            Line2D([], [], color=RED, marker="x", linestyle="", markersize=3.5, label="first overturning"),
+            Line2D(
+                [], [], color=BLUE, marker="o", linestyle="", markersize=3.0, markerfacecolor="white",
+                label="stands again",
+            ),
+            Line2D([], [], color=BLACK, linewidth=0.9, label="observed"),
+            Line2D([], [], color=RED, linestyle="--", label="lognormal"),
+        ]  # fmt: skip
+        add_legend_above(figure, handles, columnspacing=1.2, handlelength=1.6)
     return figure
 
 
@@ -499,14 +492,17 @@ def _draw_ida_capacities(axes: Axes, found: _RecordCapacities, confidence: float
     if found.censored.any():
         lines[0] += f", {int(found.censored.sum())} never overturned"
     if (~found.censored).any():
-        at, fraction = _observed_capacity_fractions(found)
-        axes.step(np.append(0.0, at), np.append(0.0, fraction), where="post", color=BLACK, linewidth=0.9, label="_ecdf")
+        from scipy.stats import CensoredData, ecdf
+
+        # Records that never overturned are censored.
+        sample = CensoredData(uncensored=found.reached[~found.censored], right=found.reached[found.censored])
+        estimate = ecdf(sample).cdf
+        at, fraction = np.append(0.0, estimate.quantiles), np.append(0.0, estimate.probabilities)
+        axes.step(at, fraction, where="post", color=BLACK, linewidth=0.9, label="_ecdf")
     if found.fit is not None:
         end = float(found.reached.max()) * 1.3
-        im = np.linspace(end / _POINTS, end, _POINTS)
-        axes.plot(im, found.fit.probability(im), color=RED, linestyle="--", linewidth=1.1, label="_fit")
-        if confidence is not None and found.fit.covariance is not None:
-            axes.fill_between(im, *found.fit.band(im, confidence), color=RED, alpha=0.13, linewidth=0.0, label="_band")
+        known = confidence if found.fit.covariance is not None else None
+        _draw_fragility_curve(axes, found.fit, end, known, LineStyle(RED, "--"), linewidth=1.1, label="_fit")
         lines.append(f"median {short_number(found.fit.median)}, β = {found.fit.beta:.2f}")
     lines.append(f"{found.resurrected} with resurrections")
     if failed:
@@ -517,22 +513,178 @@ def _draw_ida_capacities(axes: Axes, found: _RecordCapacities, confidence: float
     )  # fmt: skip
 
 
-def _observed_capacity_fractions(found: _RecordCapacities) -> tuple[Array, Array]:
-    """Capacities and the fraction of records up to each; records that never overturned are censored."""
-    from scipy.stats import CensoredData, ecdf
+class _PlottedCloud(NamedTuple):
+    """The solved runs of one structure and model, and the line through those that rocked without overturning."""
 
-    sample = CensoredData(uncensored=found.reached[~found.censored], right=found.reached[found.censored])
-    estimate = ecdf(sample).cdf
-    return np.asarray(estimate.quantiles), np.asarray(estimate.probabilities)
+    structure: str
+    model: str
+    rocked: "pd.DataFrame"
+    fallen: "pd.DataFrame"
+    n_failed: int
+    line: CloudFit | None
+    fitted: bool
 
 
-def _ida_legend_handles() -> list[Line2D]:
-    return [
-        Line2D([], [], color=GRAY, linewidth=0.7, label="record"),
-        Line2D([], [], color=RED, marker="x", linestyle="", markersize=3.5, label="first overturning"),
-        Line2D(
-            [], [], color=BLUE, marker="o", linestyle="", markersize=3.0, markerfacecolor="white", label="stands again"
-        ),
-        Line2D([], [], color=BLACK, linewidth=0.9, label="observed"),
-        Line2D([], [], color=RED, linestyle="--", label="lognormal"),
-    ]
+def plot_clouds(
+    runs: "pd.DataFrame",
+    quantity: Literal["max_rotation", "max_top_displacement", "max_total_top_displacement"] = "max_rotation",
+    measure: str = "pgv",
+    *,
+    threshold: float = ROCKED,
+    nominal: bool = False,
+    size: Size | None = None,
+) -> Figure:
+    r"""Plot the response of runs that rocked without overturning over an intensity measure, one panel per structure.
+
+    The figure is that of Silva & Stojadinović 2024, Figs. 6 and 7: lines log(y) = c1 + c2 log(IM), with natural
+    logarithms, by least squares, and their dispersion σ. The panel lists these values, and the numbers of runs that
+    rocked (`n`) and overturned (`OV`). Overturned runs have no peak; they are crosses at the top, one row per model.
+    Where there is no fit, for instance with motions of a single intensity, the panel has points without a line and a
+    note.
+
+    Parameters
+    ----------
+    runs
+        The table of a cloud study, such as `run_cloud` returns.
+    quantity
+        ``"max_rotation"`` (Fig. 6), ``"max_top_displacement"`` (Fig. 7, relative to the base) or
+        ``"max_total_top_displacement"`` (relative to the ground).
+    measure
+        Column of the intensity measure.
+    threshold
+        A run counts as rocking if its base uplifted and its rotation in rad is larger.
+    nominal
+        Whether runs that exceed 0.7 atan(B/h*_1) count as overturned, as well as those that reach π/2.
+    size
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes per structure, with logarithmic scales; rad or m over the measure in its unit.
+
+    Raises
+    ------
+    InputError
+        If the quantity is unknown, the table lacks a column or holds no solved run, a measure is not positive, or there
+        are too many structures or models; or the size is unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    >>> motions = {"a": rf.ricker_pulse(2.5, 0.5), "b": rf.ricker_pulse(2.5, 1.0)}
+    >>> runs = rf.run_cloud(structure, motions, "rigid", scales=[0.5, 1.0, 1.5, 2.0])
+    >>> figure = rf.plot_clouds(runs, measure="pga")
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('PGA [m/s²]', '$θ_{\\mathrm{max}}$ [rad]')
+    """
+    if quantity not in _QUANTITIES:
+        raise InputError(f"quantity must be one of {', '.join(_QUANTITIES)}, but {shown(quantity)} was given.")
+    import pandas as pd
+
+    check_table_columns(runs, ("structure", "model", "status", measure), "what run_cloud returned")
+    clouds = _plotted_clouds(runs, quantity, measure, threshold, nominal=nominal)
+    styles = model_lines_and_symbols(names_in_column(cloud.model for cloud in clouds))
+    names = names_in_column(cloud.structure for cloud in clouds)
+    rocked, fallen = pd.concat([cloud.rocked for cloud in clouds]), pd.concat([cloud.fallen for cloud in clouds])
+    with with_figure_style(size=size):
+        figure, panels = structure_panels(names, 2, 2.45, measure_axis_name(measure), _QUANTITIES[quantity])
+        panels[0].set(xscale="log", yscale="log")
+        for axes in panels:
+            label_log_axis_plainly(axes.xaxis)
+        _set_cloud_limits(panels[0], rocked, pd.concat([rocked, fallen]), quantity, measure, len(styles))
+        for axes, name in zip(panels, names, strict=True):
+            rows: list[tuple[str, str]] = []
+            for cloud in (cloud for cloud in clouds if cloud.structure == name):
+                style, marker = styles[cloud.model]
+                crosses = 0.97 - _CROSSES * list(styles).index(cloud.model)
+                _draw_cloud(axes, cloud, quantity, measure, style, marker, crosses)
+                rows.append((_cloud_numbers_text(cloud), style.color))
+            _write_cloud_numbers(axes, rows)
+        handles = model_legend_handles(styles)
+        if len(fallen):
+            handles.append(Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.0, label="overturned"))
+        add_legend_above(figure, handles)
+    return figure
+
+
+def _plotted_clouds(
+    runs: "pd.DataFrame", quantity: str, measure: str, threshold: float, *, nominal: bool
+) -> list[_PlottedCloud]:
+    """Clouds of all structures and models, in the order of the table."""
+    fits, _ = fit_each_cloud(runs, measure, threshold=threshold, nominal=nominal)
+    fit_of = {(fit.structure, fit.model): fit for fit in fits}
+    everything = runs[runs["status"].notna()]
+    if not len(everything):
+        raise InputError("No run was solved. See the column error of the table.")
+    bad = ~(everything[measure].to_numpy(dtype=float) > 0.0)
+    if bad.any():
+        raise InputError(
+            f"{measure} must be positive, as its axis is logarithmic, but {int(bad.sum())} of {bad.size} values are "
+            f"not. Leave those runs out: keep the rows with {measure} > 0."
+        )
+    clouds: list[_PlottedCloud] = []
+    for structure, model, group in runs_by_case(runs):
+        solved = group[group["status"].notna()]
+        fell = (NOMINAL if nominal else OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
+        rocks = ~fell & rocked_runs(solved, threshold).to_numpy(dtype=bool)
+        fit = fit_of.get((structure, model))
+        line = fit and (fit.outcomes.rotation if quantity == "max_rotation" else getattr(fit, quantity[4:]))
+        failed = len(group) - len(solved)
+        clouds.append(_PlottedCloud(structure, model, solved[rocks], solved[fell], failed, line, fit is not None))
+    return clouds
+
+
+def _set_cloud_limits(
+    axes: Axes, rocked: "pd.DataFrame", seen: "pd.DataFrame", quantity: str, measure: str, n_models: int
+) -> None:
+    """Leave room for all points, a row of crosses per model above them, and the numbers below."""
+    im = seen[measure].to_numpy(dtype=float)
+    values = rocked[quantity].to_numpy(dtype=float)
+    values = values[values > 0.0]
+    low, high = (values.min(), values.max()) if values.size else (1e-4, 1e-1)
+    left, right = (im.min(), im.max()) if im.size else (0.1, 1.0)
+    below, above = 0.06 + _ROW * (n_models + 1), 0.06 + _CROSSES * n_models
+    height = max(float(np.log(high / low)), 0.5) / (1.0 - below - above)
+    axes.set_ylim(low * np.exp(-below * height), high * np.exp(above * height))
+    margin = 1.15 if right > 2.0 * left else 2.0  # of one intensity alone, wide enough for labels
+    axes.set_xlim(left / margin, right * margin)
+
+
+def _draw_cloud(
+    axes: Axes, cloud: _PlottedCloud, quantity: str, measure: str, style: LineStyle, marker: str, crosses: float
+) -> None:
+    """Draw the runs that stand, their line, and at the height `crosses` those that overturned."""
+    im = cloud.rocked[measure].to_numpy(dtype=float)
+    axes.plot(
+        im, cloud.rocked[quantity].to_numpy(dtype=float), marker, color=style.color, markersize=2.4,
+        markerfacecolor="none", markeredgewidth=0.45, alpha=0.6, label=f"_{cloud.model}",
+    )  # fmt: skip
+    if cloud.line is not None:
+        ends = np.array([im.min(), im.max()])
+        axes.plot(ends, cloud.line.median(ends), **style.look, linewidth=1.3, label=cloud.model, zorder=3.0)
+    axes.plot(
+        cloud.fallen[measure], np.full(len(cloud.fallen), crosses), "x", color=style.color, markersize=2.6,
+        markeredgewidth=0.6, transform=axes.get_xaxis_transform(), label="_overturned",
+    )  # fmt: skip
+
+
+def _cloud_numbers_text(cloud: _PlottedCloud) -> str:
+    line = cloud.line
+    three = "     –     –     –" if line is None else f"{line.c1:6.2f}{line.c2:6.2f}{line.dispersion:6.2f}"
+    remarks = [f"{cloud.n_failed} failed"] * bool(cloud.n_failed) + ["no fit"] * (not cloud.fitted)
+    remark = f" ({', '.join(remarks)})" if remarks else ""
+    return f"{cloud.model[:9]:>9}{three}{len(cloud.rocked):5d}{len(cloud.fallen):4d}{remark}".replace("-0.00", " 0.00")
+
+
+def _write_cloud_numbers(axes: Axes, rows: list[tuple[str, str]]) -> None:
+    """Write the numbers of all models, the first on top, in the lower right corner."""
+    header = f"{'':9}{'c₁':>6}{'c₂':>6}{'σ':>6}{'n':>5}{'OV':>4}"
+    width = max(len(text) for text, _ in rows)  # remarks stand behind, and move no column
+    for place, (text, color) in enumerate(reversed([(header, BLACK), *rows])):
+        axes.text(
+            0.985, 0.025 + _ROW * place, text.ljust(width), transform=axes.transAxes, color=color,
+            fontsize=scaled_font_size(_TINY), ha="right", family="DejaVu Sans Mono",
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.6, "pad": 0.5},
+        )  # fmt: skip

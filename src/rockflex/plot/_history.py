@@ -1,6 +1,6 @@
-"""Histories: panels over time, their peaks and uplifts, and bands of varied properties."""
+"""Responses over time: prepared for figures, their histories and spread, their energy, and a base on springs."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from string import ascii_uppercase
 from typing import Any
@@ -15,22 +15,28 @@ from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._number_format import short_number, unit_with_prefix
 from rockflex._shown import shown
-from rockflex.plot._response_curves import (
-    ResponseCurve,
-    response_curves,
-    response_figure_title,
-    rotation_axis_limit,
-    time_axis_limits,
-)
+from rockflex.modal import RockingProperties, Springs, Tendon
 from rockflex.plot._style import (
     BLACK,
+    BLUE,
     GRAY,
+    GREEN,
+    LINE_STYLES,
+    ORANGE,
+    PURPLE,
+    RED,
     SHADE,
+    SKY,
+    YELLOW,
+    LineStyle,
     Size,
     add_legend_above,
+    add_legend_beside,
     is_narrow_figure,
     label_panel,
+    literal_text,
     new_figure,
+    recoloured_line_styles,
     scaled_font_size,
     with_figure_style,
     write_notes_beside,
@@ -40,33 +46,204 @@ from rockflex.response import History, Response
 _MARGIN = 1.12
 _BAR = 0.025  # height of an uplift bar as a share of the panel
 _POINTS = 2000  # across the panel, more than it has dots
+_OPTIONAL = ("horizontal_reaction", "slip", "edge_uplift")  # or shown where the ground makes them matter
+BROWN, SAND, CLAY = "#7d5a30", "#d8c9a3", "#b8926a"  # of the ground
+MAX_LINES = 4  # springs whose forces are drawn as lines; more springs as a map
+_SPRING_COLORS = (BLUE, RED, BLACK, GRAY)
+
+
+@dataclass(frozen=True, eq=False)
+class ResponseCurve:
+    """One response with its history, label and line style."""
+
+    response: Response
+    history: History
+    label: str
+    style: LineStyle
+
+    @property
+    def overturned(self) -> bool:
+        """Whether |θ| reached π/2."""
+        return self.response.status == "overturned"
+
+    @property
+    def lifts(self) -> bool:
+        """Whether the base of the model can lift."""
+        return self.history.model.lifts
+
+    @property
+    def order(self) -> float:
+        """Drawing order: models with fewer modes on top, and dashes over solid lines, which show through the gaps."""
+        modes = 2.0 + 1.0 / (1.0 + self.history.model.properties.n_modes) if self.lifts else 1.9
+        return modes - 0.01 * (self.style.dashes == "-")
+
+    @property
+    def balance_rotation(self) -> float:
+        """Rotation α in rad at which the static resisting moment vanishes, on the side where it is larger.
+
+        Infinite if tendons prevent it.
+        """
+        return max(pivot.balance_rotation for pivot in self.history.model.properties.pivots)
+
+    @property
+    def balance(self) -> Array:
+        """The same, on the side of the rotation at each state."""
+        p = self.history.model.properties
+        return np.where(self.history.rotation < 0.0, p.pivot(-1).balance_rotation, p.pivot(1).balance_rotation)
+
+    @property
+    def uplifts(self) -> Array:
+        """Start and end of every uplift in s, shape (n_phases, 2), on either side."""
+        h = self.history
+        lifted = np.concatenate(([0], h.uplifted, [0]))
+        starts, ends = np.flatnonzero(np.diff(lifted) > 0), np.flatnonzero(np.diff(lifted) < 0) - 1
+        return np.column_stack((h.time[starts], h.time[ends]))
+
+    @property
+    def falls(self) -> bool:
+        """Whether it overturned, or was beyond the rotation of balance when the run ended."""
+        beyond = np.abs(self.history.rotation) > self.balance
+        return bool(beyond[-1] and not beyond.all())
+
+    @property
+    def before_fall(self) -> slice:
+        """Nodes until θ last passes the rotation of balance; all of them if it does not fall."""
+        if not self.falls:
+            return slice(None)
+        inside = np.flatnonzero(np.abs(self.history.rotation) <= self.balance)
+        return slice(int(inside[-1]) + 1)
+
+    @property
+    def finished_rotation(self) -> float:
+        """Largest |θ| in rad, without the last phase of a structure that falls."""
+        if not self.falls:
+            return self.response.max_rotation
+        contact = np.flatnonzero(~self.history.uplifted)
+        return float(np.max(np.abs(self.history.rotation[: contact[-1] + 1]))) if contact.size else 0.0
+
+
+def rotation_axis_limit(curves: list[ResponseCurve]) -> float:
+    """Largest |θ| in rad on an axis, including the rotation of balance if all that rock fall."""
+    finished = max(curve.finished_rotation for curve in curves)
+    fallen = [curve.balance_rotation for curve in curves if curve.falls]
+    standing = any(curve.finished_rotation > 0.0 for curve in curves if not curve.falls)
+    return finished if standing else max(finished, *fallen, 0.0)
+
+
+def time_axis_limits(curves: list[ResponseCurve]) -> tuple[float, float]:
+    """First and last time of all curves in s."""
+    times = [curve.history.time for curve in curves]
+    return min(float(time[0]) for time in times), max(float(time[-1]) for time in times)
+
+
+def response_figure_title(curves: list[ResponseCurve], title: str | None) -> str:
+    """The title given, or the name of the motion if there is only one."""
+    if title is not None:
+        return title
+    motions = {curve.response.motion for curve in curves}
+    return literal_text(motions.pop()) if len(motions) == 1 else ""
+
+
+def response_curves(
+    responses: Response | Iterable[Response], labels: Sequence[str] | None = None
+) -> list[ResponseCurve]:
+    """Check the responses, and give each a label and a line style."""
+    everything: list[Response] = [responses] if hasattr(responses, "history") else list(responses)  # pyright: ignore
+    if not everything:
+        raise InputError('There is no response to plot. Give at least one from simulate(..., output="history").')
+    histories: list[History] = []
+    for place, response in enumerate(everything):
+        if not hasattr(response, "history"):
+            raise InputError(
+                f"responses[{place}] must be a Response, but {type(response).__name__} was given. "
+                'Give what simulate returned, or the column "response" of simulate_many(..., output="history").'
+            )
+        if response.history is None:
+            raise InputError(
+                f"responses[{place}] ({response.model} under {shown(response.motion)}) keeps peaks only, but a plot "
+                'needs the history. Simulate it with output="history".'
+            )
+        histories.append(response.history)
+    names, styles = _response_labels(everything, labels), _response_line_styles(histories)
+    return [ResponseCurve(*parts) for parts in zip(everything, histories, names, styles, strict=True)]
+
+
+def _response_labels(responses: list[Response], labels: Sequence[str] | None) -> list[str]:
+    if labels is None:
+        models = [response.model for response in responses]
+        if len(set(models)) == len(models):
+            return [literal_text(model) for model in models]
+        return [literal_text(f"{response.model}, {response.motion}") for response in responses]
+    if isinstance(labels, str) or len(labels) != len(responses):
+        given = f"the string {shown(labels)}" if isinstance(labels, str) else f"{len(labels)}"
+        raise InputError(
+            f"labels must be a sequence of {len(responses)} strings, one per response, but {given} was given."
+        )
+    return list(labels)
+
+
+def _response_line_styles(histories: list[History]) -> list[LineStyle]:
+    """Line styles of Silva & Stojadinović 2024, Fig. 15, for fixed base, most modes, one and two, and others."""
+    max_modes = max((h.model.properties.n_modes for h in histories if h.model.lifts), default=0)
+    wanted = [_usual_line_style(history, max_modes) for history in histories]
+    spare, styles = [style for style in LINE_STYLES if style not in wanted], list[LineStyle]()
+    for own in wanted:
+        if own is None or own in styles:
+            if not spare:
+                raise InputError(
+                    f"{len(histories)} responses are too many to distinguish in one figure. Plot fewer at a time."
+                )
+            own = spare.pop(0)
+        styles.append(own)
+    return recoloured_line_styles(styles)
+
+
+def _usual_line_style(history: History, max_modes: int) -> LineStyle | None:
+    model = history.model
+    n = model.properties.n_modes
+    if not model.lifts:
+        return LineStyle(GRAY, "-", 1.4)
+    if np.any(history.yielding != 0.0):
+        return LineStyle(SKY, "-")
+    if "-C" in model.label:
+        closed = model.label.removesuffix("-R").endswith(("-SI", "-E"))
+        return LineStyle(ORANGE, (0, (4, 1.5))) if closed else LineStyle(PURPLE, "-")
+    if model.label.startswith("M") or n == max_modes > 2:
+        return LineStyle(BLACK, "-")
+    return {1: LineStyle(RED, "-."), 2: LineStyle(GREEN, "--")}.get(n)
 
 
 @dataclass(frozen=True)
 class PanelQuantity:
-    """The quantity of a panel."""
+    """The quantity of a panel: its name in a `History`, its symbol, and its unit, with a prefix for forces."""
 
-    symbol: str
     name: str
+    symbol: str
     unit: str
-    prefixed: bool
-    of: Callable[[History], Array]
+
+    def of(self, history: History) -> Array:
+        """Values over time."""
+        return getattr(history, self.name)
+
+    def peak(self, curve: "ResponseCurve") -> float:
+        """Largest magnitude of a response, also between the nodes of its history."""
+        return float(getattr(curve.response, f"max_{self.name}"))
 
 
-_QUANTITIES = (
-    PanelQuantity("θ", "rotation", "rad", False, lambda h: h.rotation),
-    PanelQuantity(r"$u_{\mathrm{top}}$, relative", "top_displacement", "m", False, lambda h: h.top_displacement),
-    PanelQuantity(
-        r"$u_{\mathrm{top}}$, total", "total_top_displacement", "m", False, lambda h: h.total_top_displacement
-    ),
-    PanelQuantity(r"$M_b$", "base_moment", "N m", True, lambda h: h.base_moment),
-    PanelQuantity(r"$V_b$", "base_shear", "N", True, lambda h: h.base_shear),
-    PanelQuantity(r"$ΣF_x$", "horizontal_reaction", "N", True, lambda h: h.horizontal_reaction),
-    PanelQuantity("slip", "slip", "m", False, lambda h: h.slip),
-    PanelQuantity("rise of edges", "edge_uplift", "m", False, lambda h: h.edge_uplift),
-)
-_OPTIONAL = ("horizontal_reaction", "slip", "edge_uplift")  # or shown where the ground makes them matter
-PANELS = tuple(quantity.name for quantity in _QUANTITIES)
+_QUANTITIES = {
+    quantity.name: quantity
+    for quantity in (
+        PanelQuantity("rotation", "θ", "rad"),
+        PanelQuantity("top_displacement", r"$u_{\mathrm{top}}$, relative", "m"),
+        PanelQuantity("total_top_displacement", r"$u_{\mathrm{top}}$, total", "m"),
+        PanelQuantity("base_moment", r"$M_b$", "N m"),
+        PanelQuantity("base_shear", r"$V_b$", "N"),
+        PanelQuantity("horizontal_reaction", r"$ΣF_x$", "N"),
+        PanelQuantity("slip", "slip", "m"),
+        PanelQuantity("edge_uplift", "rise of edges", "m"),
+    )
+}
+PANELS = tuple(_QUANTITIES)
 
 
 def default_history_panels(curves: list[ResponseCurve]) -> list[str]:
@@ -82,27 +259,27 @@ def default_history_panels(curves: list[ResponseCurve]) -> list[str]:
 
 
 def panel_quantities(panels: Sequence[str]) -> list[PanelQuantity]:
-    """Quantities by name.
-
-    Raises
-    ------
-    InputError
-        If there are none, or one is unknown or repeated.
-    """
+    """Quantities by name; an `InputError` if there are none, or one is unknown or repeated."""
     names = [panels] if isinstance(panels, str) else list(panels)
     if not names or len(set(names)) < len(names) or not set(names) <= set(PANELS):
         raise InputError(
             f"panels must be one or more of {', '.join(PANELS)}, each once, but {shown(panels)} was given."
         )
-    return [next(quantity for quantity in _QUANTITIES if quantity.name == name) for name in names]
+    return [_QUANTITIES[name] for name in names]
 
 
 def quantity_axis_scale(quantity: PanelQuantity, curves: list[ResponseCurve]) -> tuple[float, str, float]:
     """Divisor, unit and largest magnitude of an axis, with some room."""
-    largest = max(_largest_on_history_axis(curve, quantity) for curve in curves)
     if quantity.name == "rotation":
         largest = rotation_axis_limit(curves)
-    factor, unit = unit_with_prefix(largest, quantity.unit) if quantity.prefixed else (1.0, quantity.unit)
+    else:
+        largest = max(
+            float(np.max(np.abs(quantity.of(curve.history)[curve.before_fall])))
+            if curve.falls
+            else quantity.peak(curve)
+            for curve in curves
+        )
+    factor, unit = unit_with_prefix(largest, quantity.unit) if quantity.unit[0] == "N" else (1.0, quantity.unit)
     return factor, unit, _MARGIN * largest / factor if largest > 0.0 else 1e-3
 
 
@@ -120,15 +297,17 @@ def draw_history_curves(
 ) -> tuple[list[Artist], list[str]]:
     """Fill one panel over time; return a line for each curve, and its peak in words."""
     factor, unit, limit = quantity_axis_scale(quantity, curves)
-    low = -limit if quantity.name != "edge_uplift" else -_MARGIN * _largest_edge_settlement(curves, limit)
+    low = -limit
+    if quantity.name == "edge_uplift":  # how far they sink is less than how far they rise
+        low = -_MARGIN * max(*(curve.response.max_edge_settlement for curve in curves), 0.05 * limit)
     axes.set(ylim=(low, limit), ylabel=f"{quantity.symbol} [{unit}]")
     lines: list[Artist] = []
     peaks: list[str] = []
     for curve in curves:
         style = curve.style
         first, *others = axes.plot(
-            curve.history.time, quantity.of(curve.history) / factor, color=style.color, linestyle=style.dashes,
-            linewidth=style.width, label=curve.label, zorder=curve.order,
+            curve.history.time, quantity.of(curve.history) / factor, **style.look, linewidth=style.width,
+            label=curve.label, zorder=curve.order,
         )  # fmt: skip
         lines.append(first)
         for right in others:  # the right edge is thinner than the left one
@@ -150,54 +329,31 @@ def add_response_legend(
     **options: Any,
 ) -> None:
     """Add the legend of responses above a figure, under its title."""
-    add_legend_above(
-        figure,
-        handles,
-        names,
-        title=response_figure_title(curves, title),
-        handlelength=2.6,
-        columnspacing=1.4,
-        **options,
-    )
-
-
-def _largest_on_history_axis(curve: ResponseCurve, quantity: PanelQuantity) -> float:
-    """Largest magnitude on the axis."""
-    if not curve.falls:
-        return float(getattr(curve.response, f"max_{quantity.name}"))
-    return float(np.max(np.abs(quantity.of(curve.history)[curve.before_fall])))
+    options |= {"title": response_figure_title(curves, title), "handlelength": 2.6, "columnspacing": 1.4}
+    add_legend_above(figure, handles, names, **options)
 
 
 def _mark_peak(axes: Axes, quantity: PanelQuantity, curve: ResponseCurve, factor: float) -> str:
     """Circle the true peak, which may be between two nodes of the curve; return its text."""
     if curve.overturned and quantity.name == "rotation":
         return f"overturned, {curve.response.end_time:.2f} s"
-    peak = float(getattr(curve.response, f"max_{quantity.name}")) / factor
+    peak = quantity.peak(curve) / factor
     if peak == 0.0:
         return "0"
-    when, side = _peak_time_and_sign(quantity, curve)
+    time, values = curve.history.time, quantity.of(curve.history)
+    if quantity.name == "edge_uplift":
+        when, side = float(time[values.max(axis=1).argmax()]), 1.0
+    elif quantity.name == "slip":
+        node = int(np.abs(values).argmax())
+        when, side = float(time[node]), float(np.sign(values[node]))
+    else:
+        when = float(getattr(curve.response, f"time_of_max_{quantity.name}"))
+        side = float(np.sign(np.interp(when, time, values)))
     axes.plot(
         [when], [side * peak], "o", color=curve.style.color, markersize=3.5, markerfacecolor="white",
         markeredgewidth=0.9, zorder=3.0,
     )  # fmt: skip
     return f"{short_number(peak)} at {when:.2f} s"
-
-
-def _peak_time_and_sign(quantity: PanelQuantity, curve: ResponseCurve) -> tuple[float, float]:
-    """Return the time and the sign of a peak."""
-    time, values = curve.history.time, quantity.of(curve.history)
-    if quantity.name == "edge_uplift":
-        return float(time[values.max(axis=1).argmax()]), 1.0
-    if quantity.name == "slip":
-        node = int(np.abs(values).argmax())
-        return float(time[node]), float(np.sign(values[node]))
-    when = float(getattr(curve.response, f"time_of_max_{quantity.name}"))
-    return when, float(np.sign(np.interp(when, time, values)))
-
-
-def _largest_edge_settlement(curves: list[ResponseCurve], limit: float) -> float:
-    """Return how far the edges sink in m, for the lower end of an axis that reaches up to `limit`."""
-    return max(*(curve.response.max_edge_settlement for curve in curves), 0.05 * limit)
 
 
 def _mark_overturning(axes: Axes, curve: ResponseCurve, limit: float) -> None:
@@ -246,8 +402,7 @@ def plot_history(
     title
         Default: the name of the motion, if there is only one.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -346,8 +501,7 @@ def plot_spread(
     title
         Default: the name of the motion, if there is only one.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -377,7 +531,7 @@ def plot_spread(
             f"varied must hold {len(curves)} groups, one per response, each of at least one response, but groups of "
             f"{[len(group) for group in varied]} were given."
         )
-    groups = [[_single_response_curve(response) for response in group] for group in varied]
+    groups = [[response_curves(response)[0] for response in group] for group in varied]
     quantities = panel_quantities(panels)
     everything = [*curves, *(curve for group in groups for curve in group)]
     times = np.linspace(0.0, max(float(curve.history.time[-1]) for curve in curves), _POINTS)
@@ -406,10 +560,6 @@ def plot_spread(
     return figure
 
 
-def _single_response_curve(response: Response) -> ResponseCurve:
-    return response_curves(response)[0]
-
-
 def _spread_of_histories(quantity: PanelQuantity, curves: list[ResponseCurve], times: Array) -> tuple[Array, Array]:
     """Smallest and largest value at each time, among the runs that have not ended."""
     rows = np.full((len(curves), times.size), np.nan)
@@ -422,3 +572,199 @@ def _spread_of_histories(quantity: PanelQuantity, curves: list[ResponseCurve], t
     low, high = np.full(times.size, np.nan), np.full(times.size, np.nan)
     low[known], high[known] = np.nanmin(rows[:, known], axis=0), np.nanmax(rows[:, known], axis=0)
     return low, high
+
+
+def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
+    """Plot the stored and dissipated energies, stacked, and the input energy.
+
+    The layers are those of `EnergyLedger`, with the energies of the simplified models (Silva & Stojadinović 2024,
+    Eqs. 15, 23 and 25). Their sum equals the input, which starts from the energy at t = 0; the title
+    gives the difference. Tendons that lose prestress give back energy that they held before, which counts as part of
+    the energy at t = 0. On springs, the raised weight counts from the deepest position of the base. A run that
+    overturns is plotted until θ last passes the rotation at which the static resisting moment vanishes, beyond which
+    the weight overturns it.
+
+    Parameters
+    ----------
+    response
+        One response with its history.
+    size
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes; time in s, energy in a unit that suits its size. Empty layers are left out.
+
+    Raises
+    ------
+    InputError
+        If the response has no history; or the size is unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S")
+    >>> figure = rf.plot_energy(response)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('time [s]', 'energy [kJ]')
+    """
+    (curve,) = response_curves([response])
+    history = curve.history
+    ledger, drawn = history.energy, curve.before_fall
+    released = -min(float(ledger.element_strain[drawn].min()), 0.0)  # at t = 0, and given back later
+    settled = -min(float(ledger.gravity[drawn].min()), 0.0)  # below the level of the unloaded springs
+    layers = [
+        (label, color, values[drawn]) for label, color, values in _energy_layers(curve.history, released, settled)
+    ]
+    layers = [layer for layer in layers if np.any(layer[2] != 0.0)]
+    start = float(ledger.stored[0]) + released + settled
+    supply = ledger.input[drawn] + start
+    factor, unit = unit_with_prefix(float(np.max(np.abs(supply))), "J")
+    time = history.time[drawn]
+    with with_figure_style(size=size):
+        figure = new_figure(6.3, 3.4)
+        axes = figure.subplots()
+        if layers:
+            axes.stackplot(
+                time, *(values / factor for _, _, values in layers), labels=[label for label, _, _ in layers],
+                colors=[color for _, color, _ in layers], linewidth=0.0,
+            )  # fmt: skip
+        axes.plot(time, supply / factor, color=BLACK, linewidth=0.9, label="input" if start == 0.0 else "start + input")
+        if curve.falls:
+            axes.axvline(time[-1], color=BLUE, linestyle=":", label="overturning")
+        axes.set_xlim(float(history.time[0]), float(history.time[-1]))
+        axes.set(ylim=(0.0, 1.06 * float(np.max(supply)) / factor or 1.0), xlabel="time [s]", ylabel=f"energy [{unit}]")
+        title = f"{curve.label} under {literal_text(curve.response.motion)}, closing error {ledger.closing_error:.1e}"
+        axes.set_title(title)
+        handles, _ = axes.get_legend_handles_labels()
+        add_legend_beside(figure, handles[::-1])
+    return figure
+
+
+def _energy_layers(history: History, released: float, settled: float) -> list[tuple[str, str, Array]]:
+    """Return label, colour and values from the bottom: dissipated energy, which never falls, below stored energy."""
+    ledger, elements = history.energy, history.model.properties.elements
+    only_tendons = all(isinstance(each, Tendon) for each in elements)
+    return [
+        ("damped", GRAY, ledger.damped),
+        ("lost in impacts", RED, ledger.lost),
+        ("yield of tendons" if only_tendons else "taken by elements", YELLOW, ledger.elements.sum(axis=1)),
+        ("friction of the base", BROWN, ledger.friction),
+        ("damped by the ground", SAND, ledger.soil.sum(axis=1)),
+        ("raised weight", GREEN, ledger.gravity + settled),
+        ("compressed ground", CLAY, ledger.soil_strain),
+        ("tendons" if only_tendons else "stored in elements", PURPLE, ledger.element_strain + released),
+        ("strain", SKY, ledger.strain),
+        ("kinetic", ORANGE, ledger.kinetic),
+    ]
+
+
+def plot_footing(response: Response, *, title: str | None = None, size: Size | None = None) -> Figure:
+    """Plot a base on springs over time: the rise of its edges, the pressure under it, and its share in contact.
+
+    The pressure, or the force of each spring where the springs have no area, is a map over the width of the base and
+    the time, white where the base is off the ground; the forces of up to four springs are lines. The share in contact
+    counts each spring with the width nearest to it.
+
+    Parameters
+    ----------
+    response
+        One response with its history, of a structure on a `Ground` with springs.
+    title
+        Default: the name of the motion.
+    size
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three axes over a common time axis in s, and that of the colours of a map.
+
+    Raises
+    ------
+    InputError
+        If the response has no history, or its base is not on springs; or the size is unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> bed = rf.winkler_bed(frame.half_width, breadth=3.0, subgrade_modulus=2e8).damped(0.3, 160e3)
+    >>> ground = rf.Ground(springs=bed, base_inertia=1e4)
+    >>> figure = rf.plot_footing(rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S", ground=ground))
+    >>> [axes.get_ylabel() for axes in figure.axes]
+    ['rise of edges [mm]', 'x [m]', 'in contact [%]', 'pressure [MPa]']
+    """
+    (curve,) = curves = response_curves(response)
+    history = curve.history
+    springs = history.model.springs
+    if springs is None:
+        raise InputError(
+            "The base of this response is not on springs. Simulate it with "
+            "ground=Ground(springs=..., base_inertia=...), or use plot_history."
+        )
+    with with_figure_style(size=size):
+        figure = new_figure(6.3, 5.4)
+        edges, soil, contact = figure.subplots(3, 1, sharex=True, height_ratios=(1.0, 1.3, 0.7))
+        _draw_base_edges(edges, history)
+        _draw_soil_pressure(figure, soil, history, springs)
+        _draw_base_contact(contact, history, springs)
+        for axes, mark in zip((edges, soil, contact), "ABC", strict=True):
+            label_panel(axes, mark)
+        contact.set_xlabel("time [s]")
+        contact.set_xlim(float(history.time[0]), float(history.time[-1]))
+        figure.align_ylabels([edges, soil, contact])
+        edges.set_title(
+            literal_text(curve.label) + (f" under {given}" if (given := response_figure_title(curves, title)) else "")
+        )
+    return figure
+
+
+def tributary_shares(springs: Springs, p: RockingProperties) -> Array:
+    """Return the share of the width of the base that is nearest to each spring, shape (n_springs,)."""
+    places = springs.positions
+    middles = 0.5 * (places[1:] + places[:-1])
+    ends = np.clip(np.concatenate(([-p.pivot(-1).arm], middles, [p.pivot(1).arm])), -p.pivot(-1).arm, p.pivot(1).arm)
+    return np.diff(ends) / (2.0 * p.half_width)
+
+
+def _draw_base_edges(axes: Axes, history: History) -> None:
+    for values, name, color in zip(1e3 * history.edge_uplift.T, ("left", "right"), (BLUE, RED), strict=True):
+        axes.plot(history.time, values, color=color, linewidth=0.9, label=f"{name} edge")
+    axes.axhline(0.0, color=GRAY, linewidth=0.7)
+    axes.set_ylabel("rise of edges [mm]")
+    axes.legend(loc="upper right", ncols=2)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.25 * (high - low))  # room for the legend
+
+
+def _draw_soil_pressure(figure: Figure, axes: Axes, history: History, springs: Springs) -> None:
+    area = springs.area
+    name, pushes = ("force", history.spring_force) if area is None else ("pressure", history.soil_pressure)
+    factor, unit = unit_with_prefix(float(pushes.max()), "N" if area is None else "Pa")
+    places = springs.positions
+    if places.size <= MAX_LINES:
+        for place, force, color in zip(places, pushes.T / factor, _SPRING_COLORS, strict=False):
+            axes.plot(history.time, force, color=color, linewidth=0.9, label=f"x = {place:.3g} m".replace("-", "−"))
+        axes.set_ylabel(f"{name} [{unit}]")
+        axes.legend(loc="upper right", ncols=places.size)
+        axes.set_ylim(0.0, 1.25 * float(pushes.max()) / factor)
+        return
+    distinct = np.concatenate(([True], np.diff(history.time) > 0.0))
+    shown = np.ma.masked_less_equal(pushes[distinct].T / factor, 0.0)
+    mesh = axes.pcolormesh(history.time[distinct], places, shown, cmap="YlOrBr", shading="nearest", rasterized=True)
+    mesh.set_clim(0.0)
+    axes.set_ylabel("x [m]")
+    axes.grid(visible=False)
+    figure.colorbar(mesh, ax=axes, label=f"{name} [{unit}]", pad=0.01)
+
+
+def _draw_base_contact(axes: Axes, history: History, springs: Springs) -> None:
+    contact_share = (history.spring_force > 0.0) @ tributary_shares(springs, history.model.properties)
+    axes.fill_between(history.time, 100.0 * contact_share, color=GRAY, alpha=0.5, linewidth=0.0)
+    axes.plot(history.time, 100.0 * contact_share, color=BLACK, linewidth=0.7)
+    axes.set(ylim=(0.0, 104.0), ylabel="in contact [%]")

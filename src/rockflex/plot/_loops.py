@@ -1,4 +1,4 @@
-"""Loops: resisting moment and elements of a base, and the restoring force of the superstructure."""
+"""Moments over rotations and forces over elongations: of bases, of elements, and of superstructures."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -10,8 +10,11 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
 from rockflex._arrays import Array
+from rockflex._checks import checked_positive
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._number_format import short_number, unit_with_prefix
@@ -19,19 +22,23 @@ from rockflex.modal import (
     BaseElement,
     ElementLaw,
     FrictionDamper,
+    Pivot,
     RockingProperties,
     Tendon,
     ViscousDamper,
     YieldingDissipator,
 )
 from rockflex.plot._history import (
+    ResponseCurve,
     add_response_legend,
     draw_history_panel,
     panel_quantities,
     quantity_axis_scale,
+    response_curves,
+    response_figure_title,
+    rotation_axis_limit,
     shade_uplifts,
 )
-from rockflex.plot._response_curves import ResponseCurve, response_curves, response_figure_title
 from rockflex.plot._style import (
     BLACK,
     BLUE,
@@ -41,6 +48,7 @@ from rockflex.plot._style import (
     PURPLE,
     RED,
     SKY,
+    SMALL,
     Size,
     add_legend_above,
     is_narrow_figure,
@@ -50,15 +58,16 @@ from rockflex.plot._style import (
     with_figure_style,
 )
 from rockflex.response import (
-    History,
     MomentRotation,
     MomentRotationOnSprings,
     Response,
     element_resistance,
     large_resistance,
     resistance_on_springs,
+    static_path,
     weight_resistance,
 )
+from rockflex.study import RockingStructure, rocking_properties_of
 
 _COLORS = (SKY, ORANGE, PURPLE, GREEN, RED, "#7a5195")  # of elements, in their order
 _ELEMENT_NAMES: dict[type[BaseElement], str] = {
@@ -68,10 +77,11 @@ _ELEMENT_NAMES: dict[type[BaseElement], str] = {
     FrictionDamper: "friction damper",
 }
 _PER_ROW = 2
-
-
-def _element_name(element: BaseElement) -> str:
-    return element.words if isinstance(element, ElementLaw) else _ELEMENT_NAMES[type(element)]
+_LIMIT = 1.1
+_RUNS_PER_ROW = 3
+_WITHOUT_TENDONS = r"$\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$"
+_WITH_TENDONS = r"$\pm(M_r - (L_0^r\,g - k_t)\,|θ|)$"
+_LAW_MARGIN = 1.18
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,18 +132,10 @@ def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> B
         If `result` is neither, has no history, or is of a base that cannot lift.
     """
     if isinstance(result, MomentRotation | MomentRotationOnSprings):
-        on_springs = isinstance(result, MomentRotationOnSprings)
         return BaseLoops(
-            title="",
-            elements=result.elements,
-            rotation=result.rotation,
-            weight=result.weight_moment,
-            parts=result.element_moment,
-            elongation=result.element_elongation,
-            force=result.element_force,
-            springs=result.spring_moment if on_springs else None,
-            edges=result.edge_uplift if on_springs else None,
-        )
+            "", result.elements, result.rotation, result.weight_moment, result.element_moment,
+            result.element_elongation, result.element_force, result.spring_moment, result.edge_uplift,
+        )  # fmt: skip
     given: Any = result
     if not hasattr(given, "history"):
         raise InputError(
@@ -146,43 +148,30 @@ def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> B
             "The base of this response cannot lift, so it has no loops. Give the response of a model that rocks, such "
             'as "2DOF-S".'
         )
+    return _loops_of_run(curve, response_figure_title(curves, None))
+
+
+def _loops_of_run(curve: ResponseCurve, title: str = "") -> BaseLoops:
     history, until_fall = curve.history, curve.before_fall
-    title, elements = response_figure_title(curves, None), history.model.properties.elements
-    resistance = resistance_on_springs(history)
-    if resistance is not None:
-        return BaseLoops(
-            title=title,
-            elements=elements,
-            rotation=history.rotation[until_fall],
-            weight=resistance.weight[until_fall],
-            parts=resistance.elements[until_fall],
-            elongation=history.element_elongation[until_fall],
-            force=history.element_force[until_fall],
-            springs=resistance.springs[until_fall],
-            edges=history.edge_uplift[until_fall],
-        )
-    rocking = np.flatnonzero(history.side[until_fall] != 0.0)
-    weight, parts = resisting_moments(history)
-    return BaseLoops(
-        title=title,
-        elements=elements,
-        rotation=history.rotation[rocking],
-        weight=weight[rocking],
-        parts=parts[rocking],
-        elongation=history.element_elongation[until_fall],
-        force=history.element_force[until_fall],
-    )
-
-
-def resisting_moments(history: History) -> tuple[Array, Array]:
-    """Return the resisting moments of the weight (n,) and of the elements (n, E) in N m; zero in contact."""
     p, side = history.model.properties, history.side.astype(np.int64)
-    heavier = 1.0 + history.vertical_ground_acceleration / GRAVITY
-    if history.model.complete:
-        weight, parts = large_resistance(p, side, history.rotation, history.element_force)
-        return heavier * weight, parts
-    weight = weight_resistance(p, side, history.rotation)
-    return heavier * weight, element_resistance(p, side, history.element_force)
+    on_springs = resistance_on_springs(history)
+    springs = edges = None
+    drawn: slice | NDArray[np.intp] = until_fall
+    if on_springs is not None:
+        weight, parts = on_springs.weight, on_springs.elements
+        springs, edges = on_springs.springs[drawn], history.edge_uplift[drawn]
+    else:
+        drawn = np.flatnonzero(history.side[until_fall] != 0.0)
+        if history.model.complete:
+            weight, parts = large_resistance(p, side, history.rotation, history.element_force)
+        else:
+            weight = weight_resistance(p, side, history.rotation)
+            parts = element_resistance(p, side, history.element_force)
+        weight = (1.0 + history.vertical_ground_acceleration / GRAVITY) * weight
+    return BaseLoops(
+        title, p.elements, history.rotation[drawn], weight[drawn], parts[drawn],
+        history.element_elongation[until_fall], history.element_force[until_fall], springs, edges,
+    )  # fmt: skip
 
 
 def is_moment_path_independent(properties: RockingProperties) -> bool:
@@ -195,9 +184,11 @@ def is_moment_path_independent(properties: RockingProperties) -> bool:
     )
 
 
-def element_name(element: BaseElement, number: int) -> str:
+def _element_name(elements: Sequence[BaseElement], place: int) -> str:
     """Name of an element in a figure, with its number, counted from 1, and its position."""
-    return f"{number} {_element_name(element)}, x = {short_number(element.position)} m"
+    element = elements[place]
+    words = element.words if isinstance(element, ElementLaw) else _ELEMENT_NAMES[type(element)]
+    return f"{place + 1} {words}, x = {short_number(element.position)} m"
 
 
 def plot_loops(
@@ -220,8 +211,7 @@ def plot_loops(
     title
         Default: the name of the motion.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -251,11 +241,12 @@ def plot_loops(
     drawn += [partial(_draw_element_loop, place=place) for place in range(len(loops.elements))]
     count = len(drawn)
     with with_figure_style(size=size):
-        rows = count if is_narrow_figure() else max(math.ceil(count / _PER_ROW), 1)
-        beside = 0 if is_narrow_figure() else math.ceil(count / rows)
-        figure = new_figure(4.2 + 2.2 * beside, max(3.6, (3.3 if is_narrow_figure() else 0.7) + 2.3 * rows))
+        narrow = is_narrow_figure()
+        rows = count if narrow else max(math.ceil(count / _PER_ROW), 1)
+        beside = 0 if narrow else math.ceil(count / rows)
+        figure = new_figure(4.2 + 2.2 * beside, max(3.6, (3.3 if narrow else 0.7) + 2.3 * rows))
         figure.get_layout_engine().set(w_pad=0.07)  # pyright: ignore
-        if is_narrow_figure():
+        if narrow:
             grid = figure.add_gridspec(1 + rows, 1, height_ratios=(1.4, *[1.0] * rows))
             base = figure.add_subplot(grid[0, 0])
         else:
@@ -263,12 +254,10 @@ def plot_loops(
             base = figure.add_subplot(grid[:, 0])
         _draw_base_loop(base, loops)
         for place, draw in enumerate(drawn):
-            row, column = (1 + place, 0) if is_narrow_figure() else (place // beside, 1 + place % beside)
+            row, column = (1 + place, 0) if narrow else (place // beside, 1 + place % beside)
             draw(figure.add_subplot(grid[row, column]), loops)
-        lines = base.get_lines()
-        add_legend_above(
-            figure, lines, title=literal_text(title) if title is not None else loops.title, handlelength=2.0
-        )
+        heading = literal_text(title) if title is not None else loops.title
+        add_legend_above(figure, base.get_lines(), title=heading, handlelength=2.0)
     return figure
 
 
@@ -280,11 +269,9 @@ def _draw_base_loop(axes: Axes, loops: BaseLoops) -> None:
         axes.plot(loops.rotation, loops.weight / factor, color=GRAY, linewidth=0.9, label="weight")
     if loops.springs is not None:
         axes.plot(loops.rotation, loops.springs / factor, color=BLUE, linewidth=0.9, label="springs")
-    for place, element in enumerate(loops.elements):
-        axes.plot(
-            loops.rotation, loops.parts[:, place] / factor, color=_element_color(place), linewidth=0.9,
-            label=element_name(element, place + 1),
-        )  # fmt: skip
+    for place, part in enumerate(loops.parts.T):
+        color, name = _COLORS[place % len(_COLORS)], _element_name(loops.elements, place)
+        axes.plot(loops.rotation, part / factor, color=color, linewidth=0.9, label=name)
     axes.set(xlabel="θ [rad]", ylabel=f"M [{unit}]")
     axes.locator_params(axis="x", nbins=6)
 
@@ -302,13 +289,9 @@ def _draw_edge_loops(axes: Axes, loops: BaseLoops) -> None:
 def _draw_element_loop(axes: Axes, loops: BaseLoops, place: int) -> None:
     force = loops.force[:, place]
     factor, unit = unit_with_prefix(max(map(abs, (*force, 0.0))), "N")
-    axes.plot(loops.elongation[:, place], force / factor, color=_element_color(place), linewidth=1.1)
-    axes.set(title=element_name(loops.elements[place], place + 1), xlabel="δ [m]", ylabel=f"F [{unit}]")
+    axes.plot(loops.elongation[:, place], force / factor, color=_COLORS[place % len(_COLORS)], linewidth=1.1)
+    axes.set(title=_element_name(loops.elements, place), xlabel="δ [m]", ylabel=f"F [{unit}]")
     axes.locator_params(axis="x", nbins=4)
-
-
-def _element_color(place: int) -> str:
-    return _COLORS[place % len(_COLORS)]
 
 
 def plot_hysteresis(
@@ -332,8 +315,7 @@ def plot_hysteresis(
     title
         Default: the name of the motion, if there is only one.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -386,8 +368,7 @@ def plot_yielding(
     title
         Default: the name of the motion, if there is only one.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -413,22 +394,21 @@ def plot_yielding(
     """
     curves = response_curves(responses, labels)
     with with_figure_style(size=size):
-        tall = max(1.45, 0.155 * (len(curves) + 2))
-        figure = new_figure(8.6, (2.0 * tall if not is_narrow_figure() else 2.0 * tall + 2.6) + 0.9)
-        if is_narrow_figure():
+        tall, narrow = max(1.45, 0.155 * (len(curves) + 2)), is_narrow_figure()
+        figure = new_figure(8.6, 2.0 * tall + 2.6 * narrow + 0.9)
+        if narrow:
             grid = figure.add_gridspec(3, 1, height_ratios=(tall, tall, 2.6))
         else:
             grid = figure.add_gridspec(2, 2, width_ratios=(1.55, 1.0))
         top = figure.add_subplot(grid[0, 0])
         histories: list[Axes] = [top, figure.add_subplot(grid[1, 0], sharex=top)]
-        for axes, quantity, mark in zip(
-            histories, panel_quantities(("rotation", "top_displacement")), "AB", strict=True
-        ):
+        quantities = panel_quantities(("rotation", "top_displacement"))
+        for axes, quantity, mark in zip(histories, quantities, "AB", strict=True):
             draw_history_panel(axes, quantity, curves, mark)
         shade_uplifts(histories, curves)
         top.tick_params(labelbottom=False)
         histories[1].set(xlabel="time [s]", xlim=(0.0, max(float(curve.history.time[-1]) for curve in curves)))
-        loops = figure.add_subplot(grid[2, 0] if is_narrow_figure() else grid[:, 1])
+        loops = figure.add_subplot(grid[2, 0] if narrow else grid[:, 1])
         lines = _draw_hysteresis(loops, curves)
         label_panel(loops, "C")
         figure.align_ylabels(histories)
@@ -448,7 +428,275 @@ def _draw_hysteresis(axes: Axes, curves: list[ResponseCurve]) -> list[Artist]:
     for curve in curves:
         drawn = curve.before_fall
         lines += axes.plot(
-            displacement.of(curve.history)[drawn], force.of(curve.history)[drawn] / factor, color=curve.style.color,
-            linestyle=curve.style.dashes, linewidth=curve.style.width, label=curve.label, zorder=curve.order,
+            displacement.of(curve.history)[drawn], force.of(curve.history)[drawn] / factor, **curve.style.look,
+            linewidth=curve.style.width, label=curve.label, zorder=curve.order,
         )  # fmt: skip
     return lines
+
+
+def plot_moment_rotation(
+    responses: Response | Iterable[Response], labels: Sequence[str] | None = None, *, size: Size | None = None
+) -> Figure:
+    """Plot the base moment M_b over the rotation θ, and the static resisting moment of the simplified models.
+
+    The resisting moment is ±(M_r - L_0^r g |θ|), with M_r = m_tot g B (Silva & Stojadinović 2024, Fig. 11 and Eq. 23);
+    tendons add their prestress to M_r and their stiffness k_t to the slope, and the two sides differ if the base is
+    eccentric or the tendons are not symmetric. With elements that yield, slide or damp, the resisting moment depends on
+    the path, and that of the run is plotted: `plot_loops` shows its parts. On springs the static moment is that of
+    `moment_rotation`. M_b is the moment of the elastic forces; it
+    differs from the resisting moment by rotational inertia and damping. Responses on a fixed base have no rotation and
+    are left out. Overturning does not extend the axes.
+
+    Parameters
+    ----------
+    responses
+        One response or several, each with its history.
+    labels
+        A name for each response. Default: the models, with the motions if a model occurs twice.
+    size
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes per response, three per row, with common scales; θ in rad, M_b in a unit that suits its size.
+
+    Raises
+    ------
+    InputError
+        If there are no responses or too many, one has no history, the number of labels differs, or no base can
+        lift; or the size is unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> response = rf.simulate(frame, rf.ricker_pulse(4.0, 0.6), "2DOF-S")
+    >>> figure = rf.plot_moment_rotation(response)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('', '')
+    """
+    curves = [curve for curve in response_curves(responses, labels) if curve.lifts]
+    if not curves:
+        raise InputError(
+            "None of the responses has a base that can lift, so there is no moment over rotation to plot. "
+            'Give at least one of a model that rocks, such as "2DOF-S".'
+        )
+    rotation = _LIMIT * (rotation_axis_limit(curves) or max(map(static_line_rotation, curves)))
+    largest = max(largest_base_moment_on_axes(curve) for curve in curves)
+    factor, unit = unit_with_prefix(largest, "N m")
+    with with_figure_style(size=size):
+        columns = 1 if is_narrow_figure() else min(len(curves), _RUNS_PER_ROW)
+        rows = math.ceil(len(curves) / columns)
+        figure = new_figure(2.2 + 1.8 * columns, 0.6 + 2.6 * rows)
+        grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+        panels: list[Axes] = list(grid.flat)
+        panels[0].set(xlim=(-rotation, rotation), ylim=(-_LIMIT * largest / factor, _LIMIT * largest / factor))
+        panels[0].locator_params(axis="x", nbins=5)
+        for axes, curve in zip(panels, curves, strict=False):
+            moment = curve.history.base_moment / factor
+            axes.plot(curve.history.rotation, moment, color=curve.style.color, linewidth=0.8, label=curve.label)
+            axes.add_line(resisting_moment_line(curve, rotation, factor))
+            axes.set_title(curve.label)
+            axes.tick_params(labelbottom=True)
+        for axes in panels[len(curves) :]:
+            axes.set_axis_off()
+        figure.supxlabel("θ [rad]", fontsize="medium")
+        figure.supylabel(f"$M_b$ [{unit}]", fontsize="medium")
+        kinds = {line.get_label(): line for axes in panels for line in axes.get_lines()[1:]}
+        add_legend_above(figure, list(kinds.values()), max_columns=1, handlelength=3.0)
+    return figure
+
+
+def static_line_rotation(curve: ResponseCurve) -> float:
+    """Rotation up to which the static line is shown: where the moment vanishes, if it does."""
+    balance = curve.balance_rotation
+    return balance if math.isfinite(balance) else curve.history.model.properties.nominal_overturning_rotation
+
+
+def largest_base_moment_on_axes(curve: ResponseCurve) -> float:
+    """Largest moment on the axes: of the static moment, and of M_b without overturning."""
+    moment = curve.response.max_base_moment
+    if curve.falls:
+        moment = float(np.max(np.abs(curve.history.base_moment[curve.before_fall])))
+    p = curve.history.model.properties
+    held = 0.0 if is_moment_path_independent(p) else float(np.max(np.abs(_loops_of_run(curve).moment), initial=0.0))
+    return max(moment, held, *(pivot.resisting_moment for pivot in p.pivots))
+
+
+def resisting_moment_line(curve: ResponseCurve, rotation: float, factor: float) -> Line2D:
+    model, p = curve.history.model, curve.history.model.properties
+    if not is_moment_path_independent(p):
+        loops = _loops_of_run(curve)
+        label = "resisting moment of weight and elements"
+        return Line2D(loops.rotation, loops.moment / factor, color=BLUE, linewidth=0.8, label=label, zorder=3.0)
+    if model.springs is not None:
+        push = static_path(p, np.array([rotation, -rotation]), model.springs, model.rest)
+        theta, moment, law = push.rotation, push.moment / factor, "on the springs"
+    else:
+        right, left = (
+            (each.resisting_moment / factor, (each.resisting_moment + each.rocking_stiffness * rotation) / factor)
+            for each in (p.pivot(1), p.pivot(-1))
+        )
+        theta, moment = [-rotation, 0.0, 0.0, rotation], [-left[1], -left[0], *right]
+        law = _WITHOUT_TENDONS if p.symmetric and not p.tendons else _WITH_TENDONS
+        law += "" if p.symmetric else " of each side"
+    return Line2D(theta, moment, color=BLUE, linestyle=(0, (4, 2)), linewidth=1.1, label=f"static, {law}", zorder=3.0)
+
+
+def plot_moment_rotation_laws(
+    structure: "RockingStructure | RockingProperties",
+    spring: float | None = None,
+    *,
+    rotation: float | None = None,
+    size: Size | None = None,
+) -> Figure:
+    """Plot the static base moment over the rotation: of a pinned beam on a spring, and of the rocking structure.
+
+    The figure is that of Silva & Stojadinović 2024, Fig. 11: M = k_r θ, and M = ±(M_r + k |θ|) with the slope
+    k = -L_0^r g, to which tendons add theirs. While the base stands, M is anything between -M_r and M_r. For an
+    eccentric base, or tendons that are not symmetric, M_r and k differ between the two sides. With elements that yield
+    or slide, the curve is that of a first push to each side; `plot_loops` shows cycles.
+
+    Parameters
+    ----------
+    structure
+        The rocking structure, or its `RockingProperties`.
+    spring
+        Stiffness k_r of the pinned beam's spring in N m/rad, positive. Default: L_0^r g, so that the slopes
+        differ only in sign.
+    rotation
+        Largest rotation shown in rad. Default: a little beyond the one at which M vanishes, or the nominal
+        overturning rotation where tendons keep it from vanishing.
+    size
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Two axes; θ in rad, M in the unit that suits its size.
+
+    Raises
+    ------
+    InputError
+        If no structure is given, or a number is not positive and finite; or the size is unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=1e9,
+    ...               period=0.6, aspect_ratio=6.0, damping_ratio=0.02)
+    >>> figure = rf.plot_moment_rotation_laws(frame)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('θ [rad]', 'M [MN m]')
+    """
+    p = rocking_properties_of(structure)
+    sides = (p.pivot(1), p.pivot(-1))
+    zeros = [side.balance_rotation for side in sides]
+    vanishing = [zero for zero in zeros if math.isfinite(zero)]
+    default = _LAW_MARGIN * max(vanishing) if vanishing else max(each.nominal_overturning_rotation for each in sides)
+    end = default if rotation is None else checked_positive("rotation", rotation, "rad")
+    stiffness = p.l0r * GRAVITY if spring is None else checked_positive("spring", spring, "N m/rad")
+    pushes: list[tuple[Array, Array]] = []
+    for side in (1, -1):  # |θ| and M of a first push to one side, from lift-off on
+        push = static_path(p, np.array([side * end]))
+        pushes.append((np.abs(push.rotation[1:]), side * push.moment[1:]))
+    starts, lasts = ([moment[place] for _, moment in pushes] for place in (0, -1))
+    largest = max(float(np.max(np.abs(moment))) for _, moment in pushes)
+    factor, unit = unit_with_prefix(largest, "N m")
+    line = is_moment_path_independent(p)
+    if not line:
+        zeros = [_rotation_of_zero_moment(*push) for push in pushes]
+    with with_figure_style(size=size):
+        figure = new_figure(6.3, 5.6 if is_narrow_figure() else 3.1)
+        left, right = figure.subplots(*((2, 1) if is_narrow_figure() else (1, 2)), sharex=True, sharey=True)
+        for axes, mark, title in ((left, "A", "pinned beam on a spring"), (right, "B", "rocking base")):
+            axes.axhline(0.0, color=GRAY, linewidth=0.8, label="_axis")
+            axes.axvline(0.0, color=GRAY, linewidth=0.8, label="_axis")
+            axes.set(title=title, xlabel="θ [rad]")
+            axes.tick_params(labelleft=True)
+            label_panel(axes, mark)
+        left.set(
+            ylabel=f"M [{unit}]",
+            xlim=(-end, end),
+            ylim=(-_LAW_MARGIN * largest / factor, _LAW_MARGIN * largest / factor),
+        )
+        left.locator_params(axis="x", nbins=5)
+        moment = stiffness * end / factor
+        left.plot([-end, end], [-moment, moment], color=BLACK, linewidth=1.4, label="pinned beam")
+        right.plot(
+            np.concatenate((-pushes[1][0][::-1], pushes[0][0])),
+            np.concatenate((-pushes[1][1][::-1], pushes[0][1])) / factor,
+            color=BLACK, linewidth=1.4, label="rocking",
+        )  # fmt: skip
+        _write_moment_note(left, f"slope $k_r$ =\n{_moment_with_unit(stiffness, 'N m/rad')}", low=True)
+        low = lasts[0] > -0.3 * starts[0]
+        crossings = [sign * zero for sign, zero in ((-1.0, zeros[1]), (1.0, zeros[0])) if zero <= end]
+        if crossings:
+            right.plot(
+                crossings, [0.0] * len(crossings), "o", color=BLACK, markersize=4.0, markerfacecolor="white", label="_0"
+            )
+        slope = _moment_slope_text(sides, symmetric=p.symmetric) if line else ""
+        zero = _vanishing_moment_text(zeros, end, symmetric=p.symmetric) if line or min(zeros) <= end else ""
+        resisting = [f"$M_r$ = {_moment_with_unit(start, 'N m')}" for start in starts]
+        corners = not p.symmetric or low  # where M_r is written; else with the rest
+        if corners:
+            _write_beside_moment_corner(right, resisting[0], starts[0] / factor, left=True)
+        if not p.symmetric:
+            _write_beside_moment_corner(right, resisting[1], -starts[1] / factor, left=False)
+            for zero_at in crossings:
+                right.annotate(
+                    f"{short_number(zero_at)} rad", (zero_at, 0.0), xytext=(5, 4), ha="left", va="bottom",
+                    textcoords="offset points", fontsize=SMALL,
+                )  # fmt: skip
+        lines = (slope, zero) if corners else (zero, slope, resisting[0])
+        at = 0.48 if low and not p.symmetric else None  # between the axis and the lower corner
+        _write_moment_note(right, "\n".join(filter(None, lines)), low=low, at=at)
+    return figure
+
+
+def _rotation_of_zero_moment(rotation: Array, moment: Array) -> float:
+    """Rotation at which the moment first vanishes; infinite if it does not."""
+    below = np.flatnonzero((moment[:-1] > 0.0) & (moment[1:] <= 0.0))[:1]
+    if not below.size:
+        return math.inf
+    k = int(below[0])
+    return float(rotation[k] + (rotation[k + 1] - rotation[k]) * moment[k] / (moment[k] - moment[k + 1]))
+
+
+def _moment_slope_text(sides: tuple[Pivot, Pivot], *, symmetric: bool) -> str:
+    held = any(side.tendon_stiffness for side in sides)
+    name = r"k_t - L_0^r\,g" if held else r"-L_0^r\,g"
+    values = [_moment_with_unit(side.rocking_stiffness, "N m/rad") for side in sides]
+    both = values[0] if symmetric or not held else f"{values[0]} (right)\n{values[1]} (left)"
+    return f"slope ${name}$ =\n{both}"
+
+
+def _vanishing_moment_text(zeros: list[float], end: float, *, symmetric: bool) -> str:
+    """Text about the rotations at which M vanishes, if they are shown; beside the marks if each side has its own."""
+    if symmetric and zeros[0] <= end:
+        return f"$M$ = 0 at ±{short_number(zeros[0])} rad"
+    return "$M$ does not vanish" if all(map(math.isinf, zeros)) else ""
+
+
+def _moment_with_unit(value: float, unit: str) -> str:
+    factor, named = unit_with_prefix(value, unit)
+    return f"{short_number(value / factor)} {named}"
+
+
+def _write_beside_moment_corner(axes: Axes, text: str, moment: float, *, left: bool) -> None:
+    """Write next to the corner of the curve at θ = 0, on the free side."""
+    axes.annotate(
+        text, (0.0, moment), xytext=(-4 if left else 4, 0), ha="right" if left else "left", va="center",
+        textcoords="offset points", fontsize=SMALL,
+    )  # fmt: skip
+
+
+def _write_moment_note(axes: Axes, text: str, *, low: bool, at: float | None = None) -> None:
+    """Write into the lower or the upper right corner, whichever is free, or below a given height."""
+    height = at if at is not None else (0.03 if low else 0.97)
+    axes.text(
+        0.97, height, text, transform=axes.transAxes, ha="right", va="bottom" if low and at is None else "top",
+        fontsize=SMALL, linespacing=1.5,
+    )  # fmt: skip

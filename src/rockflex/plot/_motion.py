@@ -1,10 +1,13 @@
-"""Ground motions: one with its spectrum, and the spectra of selected records beside their target."""
+"""Ground motions with their spectra, selected records beside their target, and rocking and overturning spectra."""
 
-from typing import Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from rockflex._arrays import Array
@@ -13,21 +16,31 @@ from rockflex._errors import InputError
 from rockflex._number_format import short_number
 from rockflex._shown import number_with_noun
 from rockflex.motion import MEASURES, GroundMotion, MeasureInput, Selection
+from rockflex.plot._study_tables import check_table_columns
 from rockflex.plot._style import (
     BLACK,
     BLUE,
     GRAY,
+    GREEN,
+    LINE_STYLES,
     ORANGE,
     RED,
     SHADE,
+    LineStyle,
     Size,
     add_legend_above,
+    add_legend_beside,
+    assign_distinct,
     is_narrow_figure,
     literal_text,
     new_figure,
+    recoloured_line_styles,
     scaled_font_size,
     with_figure_style,
 )
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 _PERIODS = np.geomspace(0.02, 10.0, 240)
 _DAMPING = 0.05
@@ -36,6 +49,14 @@ _BEYOND = 3.0  # the figure reaches beyond the range of periods by this factor
 _CODE_MINIMUM = 0.9  # of the target, by EN 1998-1:2004 and ASCE 7-16
 _NAMES = {"component": "$S_a$", "geometric mean": "geometric-mean $S_a$", "rotd50": "RotD50 $S_a$",
           "rotd100": "RotD100 $S_a$"}  # fmt: skip
+_CROSS_ROW = 0.045  # of the panel, from row to row
+_SPECTRUM_STYLES = (
+    LineStyle(BLACK, "-"),
+    LineStyle(RED, "-."),
+    LineStyle(GREEN, "--"),
+    LineStyle(BLUE, ":"),
+    *LINE_STYLES,
+)
 
 
 def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
@@ -51,8 +72,7 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
     motion
         A ground motion.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -79,21 +99,17 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
         )
     spectrum = motion.spectrum(_PERIODS, _DAMPING)
     first = motion.significant_duration(0.0, 0.05)
+    said = {
+        name: f"{MEASURES[name].sign} = {short_number(MEASURES[name].of(MeasureInput(motion)))} {MEASURES[name].unit}"
+        for name in ("pga", "pva", "pgv", "pgd", "arias", "d5_95")
+    }
     histories = [
-        ("a", "m/s²", motion.acceleration, f"{_measure_text('pga', motion)} ({short_number(motion.pga / GRAVITY)} g)"),
-        ("v", "m/s", motion.velocity, _measure_text("pgv", motion)),
-        ("d", "m", motion.displacement, _measure_text("pgd", motion)),
+        ("a", "m/s²", motion.acceleration, f"{said['pga']} ({short_number(motion.pga / GRAVITY)} g)"),
+        ("v", "m/s", motion.velocity, said["pgv"]),
+        ("d", "m", motion.displacement, said["pgd"]),
     ]
     if motion.vertical is not None:
-        histories.insert(
-            1,
-            (
-                "a_v",
-                "m/s²",
-                motion.vertical,
-                f"{_measure_text('pva', motion)} ({short_number(motion.pva / GRAVITY)} g)",
-            ),
-        )
+        histories.insert(1, ("a_v", "m/s²", motion.vertical, f"{said['pva']} ({short_number(motion.pva / GRAVITY)} g)"))
     with with_figure_style(size=size):
         figure = new_figure(7.2, 1.0 + 1.2 * len(histories) + 2.4 * is_narrow_figure())
         if is_narrow_figure():
@@ -123,16 +139,10 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
         axes.set(xscale="log", xlim=(_PERIODS[0], _PERIODS[-1]), ylim=(0.0, 1.08 * largest or 1.0))
         axes.xaxis.set_major_formatter("{x:g}")
         axes.set(xlabel="$T$ [s]", ylabel="$S_a$ [m/s²]")
-        measures = f"{_measure_text('arias', motion)}, {_measure_text('d5_95', motion)} (shaded)"
-        axes.set_title(f"{measures}\nspectrum for ζ = {100.0 * _DAMPING:g} %", fontsize=scaled_font_size(8.0))
+        words = f"{said['arias']}, {said['d5_95']} (shaded)\nspectrum for ζ = {100.0 * _DAMPING:g} %"
+        axes.set_title(words, fontsize=scaled_font_size(8.0))
         figure.suptitle(literal_text(motion.name) or "ground motion", fontsize="medium")
     return figure
-
-
-def _measure_text(name: str, motion: GroundMotion) -> str:
-    """Symbol, value and unit of a measure."""
-    measure = MEASURES[name]
-    return f"{measure.sign} = {short_number(measure.of(MeasureInput(motion)))} {measure.unit}"
 
 
 def plot_selection(selection: Selection[Any], *, size: Size | None = None) -> Figure:
@@ -147,8 +157,7 @@ def plot_selection(selection: Selection[Any], *, size: Size | None = None) -> Fi
     selection
         The result of `Suite.select`.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -173,7 +182,10 @@ def plot_selection(selection: Selection[Any], *, size: Size | None = None) -> Fi
             f"selection must be a Selection, but {type(selection).__name__} was given. Make one: suite.select(...)."
         )
     target = selection.target
-    low, high = _period_range_ends(selection.periods)
+    positive = selection.periods[selection.periods > 0.0]
+    low, high = (float(positive[0]), float(positive[-1])) if positive.size else (0.1, 1.0)
+    if low == high:  # widened so that it can be seen
+        low, high = low / 1.02, high * 1.02
     periods = np.geomspace(low / _BEYOND, high * _BEYOND, _N_PERIODS)
     known = periods[(periods >= target.periods[0]) & (periods <= target.periods[-1])]
     rows = selection.at(periods)
@@ -203,15 +215,6 @@ def plot_selection(selection: Selection[Any], *, size: Size | None = None) -> Fi
     return figure
 
 
-def _period_range_ends(periods: Array) -> tuple[float, float]:
-    """First and last positive period; a single one is widened so that its range can be seen."""
-    positive = periods[periods > 0.0]
-    if not positive.size:
-        return 0.1, 1.0
-    low, high = float(positive[0]), float(positive[-1])
-    return (low, high) if low < high else (low / 1.02, high * 1.02)
-
-
 def _draw_selected_spectra(axes: Axes, selection: Selection[Any], periods: Array, rows: Array) -> None:
     count = len(rows)
     if count > 1:
@@ -224,3 +227,136 @@ def _draw_selected_spectra(axes: Axes, selection: Selection[Any], periods: Array
     what = "mean" if count > 1 else "record"
     label = f"{what}: misfit {selection.misfit:.2g}, at least {selection.least_ratio:.2f} of the target"
     axes.plot(periods, rows.mean(axis=0), color=BLUE, linewidth=1.6, label=label)
+
+
+def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "", size: Size | None = None) -> Figure:
+    r"""Plot θ_max/α over 2π/p, a curve for each slenderness.
+
+    Blocks that overturn have no θ_max: the curve is interrupted, and crosses at the top mark them, one row per
+    slenderness.
+
+    Parameters
+    ----------
+    table
+        The table of `rocking_spectrum`.
+    title
+        Title of the figure, such as the name of the motion.
+    size
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes; 2π/p in s.
+
+    Raises
+    ------
+    InputError
+        If the table lacks a column that it needs, has no rows, or has too many slendernesses to distinguish; or the
+        size is unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> table = rf.rocking_spectrum(rf.ricker_pulse(4.0, 0.6), slendernesses=[0.2], periods=[2.0, 4.0, 6.0])
+    >>> figure = rf.plot_rocking_spectrum(table)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$2π/p$ [s]', '$θ_{\\mathrm{max}}/α$')
+    """
+    check_table_columns(
+        table, ("slenderness", "period", "relative_rotation", "overturned"), "what rocking_spectrum returned"
+    )
+    groups = dict(iter(table.groupby("slenderness")))
+    styles = assign_distinct(list(groups), recoloured_line_styles(_SPECTRUM_STYLES), "slendernesses")
+    fell = table["overturned"].fillna(False).astype(bool)
+    standing = [float(value) for value in table["relative_rotation"][~fell] if np.isfinite(value)]
+    share = 1.0 - _CROSS_ROW * (len(groups) + 1)
+    limit = (1.05 * max(standing, default=0.0) or 1.0) / share
+    with with_figure_style(size=size):
+        figure = new_figure(6.3, 3.6)
+        axes = figure.subplots()
+        for rank, (slenderness, style) in enumerate(styles.items()):
+            block = groups[slenderness].sort_values("period")
+            over = block["overturned"].fillna(False).to_numpy(dtype=bool)
+            values = np.where(over, np.nan, block["relative_rotation"].to_numpy(dtype=float))
+            label = f"α = {slenderness:.3g} rad"
+            axes.plot(block["period"], values, **style.look, marker=".", markersize=2.5, label=label)
+            axes.plot(
+                block["period"][over], np.full(over.sum(), 1.0 - _CROSS_ROW * (rank + 1)), "x", color=style.color,
+                markersize=3.5, transform=axes.get_xaxis_transform(), label="_overturned",
+            )  # fmt: skip
+        axes.set(ylim=(0.0, limit), xlabel=r"$2π/p$ [s]", ylabel=r"$θ_{\mathrm{max}}/α$", title=literal_text(title))
+        cross = Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.5, label="overturned")
+        handles, _ = axes.get_legend_handles_labels()
+        add_legend_beside(figure, [*handles, cross])
+    return figure
+
+
+def plot_overturning_spectrum(
+    tables: "pd.DataFrame | Mapping[str, pd.DataFrame]", *, title: str = "", size: Size | None = None
+) -> Figure:
+    r"""Plot the smallest amplitude a_p/(g α) that overturns over ω_g/p, one curve per table.
+
+    Some larger amplitudes may not overturn, because overturning is not monotone: the range up to the largest of them
+    is hatched.
+
+    Parameters
+    ----------
+    tables
+        A table of `overturning_spectrum`, or several by name.
+    title
+        Title of the figure.
+    size
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One axes; no units.
+
+    Raises
+    ------
+    InputError
+        If a table lacks a column that it needs or has no rows, or there are too many tables to distinguish; or the size
+        is unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
+    >>> pulse = lambda amplitude, frequency: rf.ricker_pulse(amplitude, 6.28 / frequency)
+    >>> table = rf.overturning_spectrum(structure, pulse, [1.0, 2.0], relative_amplitudes=[1.0, 2.0, 4.0, 8.0])
+    >>> figure = rf.plot_overturning_spectrum(table)
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('$ω_g/p$', '$a_p/(g\\,α)$')
+    """
+    named: Mapping[str, pd.DataFrame] = tables if isinstance(tables, Mapping) else {"": tables}
+    if not named:
+        raise InputError("There is no table to plot. Give at least one from overturning_spectrum.")
+    styles = assign_distinct(list(named), recoloured_line_styles(_SPECTRUM_STYLES), "tables")
+    needed = ("frequency_ratio", "lowest", "highest_standing")
+    for table in named.values():
+        check_table_columns(table, needed, "what overturning_spectrum returned")
+    with with_figure_style(size=size):
+        figure = new_figure(6.3, 3.6)
+        axes = figure.subplots()
+        ends = [value for table in named.values() for name in needed[1:] for value in table[name]]
+        limit = 1.1 * max(value for value in (*ends, 1.0) if np.isfinite(value))
+        for name, style in styles.items():
+            rows = named[name].sort_values("frequency_ratio")
+            ratio, low = rows["frequency_ratio"].to_numpy(dtype=float), rows["lowest"].to_numpy(dtype=float)
+            high = np.minimum(rows["highest_standing"].to_numpy(dtype=float), limit)
+            both = high > low * (1.0 + 1e-3)
+            axes.fill_between(
+                ratio, low, high, where=both, facecolor="none", edgecolor=style.color, hatch="////", linewidth=0.0,
+                alpha=0.5,
+            )  # fmt: skip
+            axes.plot(ratio, low, **style.look, label=literal_text(name) or "lowest")
+        axes.axhline(1.0, color=GRAY, linewidth=0.8, label="uplift")
+        axes.set_xlim(left=0.0)
+        axes.set(ylim=(0.0, limit), xlabel=r"$ω_g/p$", ylabel=r"$a_p/(g\,α)$", title=literal_text(title))
+        handles, _ = axes.get_legend_handles_labels()
+        if axes.collections and any(len(area.get_paths()) for area in axes.collections):
+            handles.append(Patch(facecolor="none", edgecolor=GRAY, hatch="////", linewidth=0.0, label="either"))
+        add_legend_beside(figure, handles)
+    return figure

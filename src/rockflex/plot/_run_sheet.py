@@ -11,14 +11,17 @@ from matplotlib.figure import Figure
 from rockflex._arrays import Array
 from rockflex._number_format import unit_with_prefix
 from rockflex.plot._history import (
+    ResponseCurve,
     add_response_legend,
     draw_history_curves,
     panel_quantities,
     quantity_axis_scale,
+    response_curves,
+    rotation_axis_limit,
     shade_uplifts,
+    time_axis_limits,
 )
-from rockflex.plot._moment_rotation import largest_base_moment_on_axes, resisting_moment_line, static_line_rotation
-from rockflex.plot._response_curves import ResponseCurve, response_curves, rotation_axis_limit, time_axis_limits
+from rockflex.plot._loops import largest_base_moment_on_axes, resisting_moment_line, static_line_rotation
 from rockflex.plot._style import BLACK, SMALL, new_figure, scaled_font_size, with_figure_style
 from rockflex.response import Response
 

@@ -12,6 +12,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rockflex._errors import InputError
 from rockflex._number_format import short_number
+from rockflex._shown import shown
 from rockflex.motion import MEASURES
 from rockflex.plot._style import (
     BLACK,
@@ -35,13 +36,7 @@ _MAX_PANELS = 12  # panels in one figure
 
 
 def model_line_styles(models: Iterable[str]) -> dict[str, LineStyle]:
-    """Give each model its own line style, in order of appearance; fewer modes are drawn over more.
-
-    Raises
-    ------
-    InputError
-        If there are too many models to distinguish.
-    """
+    """Give each model its own line style, in order of appearance; an `InputError` if there are too many."""
     names = list(dict.fromkeys(models))
     others = [name for name in names if name not in _OWN]
     if len(others) > len(LINE_STYLES):
@@ -50,12 +45,12 @@ def model_line_styles(models: Iterable[str]) -> dict[str, LineStyle]:
     return dict(zip(names, recoloured_line_styles(styles[name] for name in names), strict=True))
 
 
-def check_table_columns(table: object, columns: Iterable[str], source: str) -> None:
+def check_table_columns(table: object, columns: Iterable[str], source: str, called: str = "") -> None:
     """Raise an InputError unless a table has rows and these columns; `source` names the function that returns one."""
     lacking = [name for name in columns if name not in getattr(table, "columns", ())]
     if lacking or not len(table):  # pyright: ignore[reportArgumentType]
         lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
-        raise InputError(f"The table {lacks}. Give {source}.")
+        raise InputError(f"The table{f' {shown(called)}' if called else ''} {lacks}. Give {source}.")
 
 
 def measure_axis_name(measure: str) -> str:
@@ -77,33 +72,23 @@ def model_lines_and_symbols(models: Sequence[str]) -> dict[str, tuple[LineStyle,
 def label_log_axis_plainly(axis: Axis) -> None:
     """Label a logarithmic axis of a few decades at 1, 2 and 5, without exponents."""
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axis.set_major_formatter(FuncFormatter(_plain_tick_label))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: short_number(value)))
     axis.set_minor_formatter(NullFormatter())
-
-
-def _plain_tick_label(value: float, _: object) -> str:
-    return short_number(value)
 
 
 def model_legend_handles(styles: dict[str, tuple[LineStyle, str]], *, symbols: bool = True) -> list[Line2D]:
     """Entries of a legend, one per model, with its line and its symbol."""
     return [
         Line2D(
-            [], [], color=style.color, linestyle=style.dashes,  # pyright: ignore[reportArgumentType]
-            marker=marker if symbols else "", markersize=3.5, markerfacecolor="none", markeredgewidth=0.7, label=model,
+            [], [], **style.look, marker=marker if symbols else "", markersize=3.5, markerfacecolor="none",
+            markeredgewidth=0.7, label=model,
         )
         for model, (style, marker) in styles.items()
     ]  # fmt: skip
 
 
 def structure_panels(names: Sequence[str], across: int, height: float, x: str, y: str) -> tuple[Figure, list[Axes]]:
-    """Figure with one panel per structure, of a `height` in inches, `across` per row, over the same axes.
-
-    Raises
-    ------
-    InputError
-        If there are too many for one figure.
-    """
+    """Figure with one panel per structure, of a `height` in inches, `across` per row, over the same axes."""
     if len(names) > _MAX_PANELS:
         raise InputError(
             f"{len(names)} structures are too many for one figure; {_MAX_PANELS} fit. Plot fewer at a time."

@@ -10,7 +10,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from pathlib import Path
 from threading import RLock
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 from matplotlib import rc_context, rcParams, rcParamsDefault
@@ -81,6 +81,9 @@ _UNDATED: dict[str, dict[str, Any]] = {".png": {}, ".pdf": {"CreationDate": None
 _DPI = 200
 
 
+_T = TypeVar("_T")
+
+
 @dataclass(frozen=True)
 class LineStyle:
     """Colour and line style of one curve."""
@@ -88,6 +91,11 @@ class LineStyle:
     color: str
     dashes: str | tuple[int, tuple[float, ...]]
     width: float = 1.0
+
+    @property
+    def look(self) -> dict[str, Any]:
+        """Colour and line style as keywords of matplotlib."""
+        return {"color": self.color, "linestyle": self.dashes}
 
 
 _DASHES = ("-", (0, (6, 2)), (0, (1, 1)), (0, (6, 1, 1, 1, 1, 1)))
@@ -120,7 +128,8 @@ def with_figure_style(theme: str = "light", size: Size | None = None) -> Generat
     """
     inches = _figure_size_in_inches(size)
     with _LOCK:
-        font = rcParams["font.size"] if _is_style_set_by_caller("font.size") else _default_font_size(inches)
+        usual = _FONT if inches is None or inches[0] >= _NARROW else _COLUMN_FONT
+        font = rcParams["font.size"] if _is_style_set_by_caller("font.size") else usual
         lines, marks = (
             rcParams[name] if _is_style_set_by_caller(name) else None
             for name in ("lines.linewidth", "lines.markersize")
@@ -140,7 +149,7 @@ def with_figure_style(theme: str = "light", size: Size | None = None) -> Generat
                 _DRAWN.reset(tokens[1])
             for figure in figures:
                 _rescale_lines(figure, lines, marks)
-                if theme == "light" and _color_brightness(rcParams["axes.facecolor"]) < _DARK_BRIGHTNESS:
+                if theme == "light" and sum(to_rgb(rcParams["axes.facecolor"])) / 3.0 < _DARK_BRIGHTNESS:
                     _invert_figure_colors(figure)
                 if inches is not None or font != _FONT:
                     _wrap_figure_texts(figure)
@@ -149,10 +158,6 @@ def with_figure_style(theme: str = "light", size: Size | None = None) -> Generat
 def _is_style_set_by_caller(name: Any) -> bool:
     """Whether the caller has set one of matplotlib's settings."""
     return bool(rcParams[name] != rcParamsDefault[name])
-
-
-def _default_font_size(inches: tuple[float, float | None] | None) -> float:
-    return _FONT if inches is None or inches[0] >= _NARROW else _COLUMN_FONT
 
 
 def _figure_size_in_inches(size: Size | None) -> tuple[float, float | None] | None:
@@ -237,6 +242,22 @@ def recoloured_line_styles(styles: Iterable[LineStyle]) -> list[LineStyle]:
     return [replace(style, color=color) for style, color in zip(styles, itertools.cycle(cycle), strict=False)]
 
 
+def assign_distinct(names: Sequence[Any], among: Sequence[_T], what: str) -> dict[Any, _T]:
+    """Give each name one of some line styles or symbols; `what` says in the plural what the names are of.
+
+    Raises
+    ------
+    InputError
+        If there are too many names to distinguish.
+    """
+    if len(names) > len(among):
+        raise InputError(
+            f"{len(names)} {what} are too many to distinguish in one figure, which can show {len(among)}. Plot fewer "
+            "at a time."
+        )
+    return dict(zip(names, among, strict=False))
+
+
 def label_panel(axes: Axes, text: str) -> None:
     """Panel letter outside the axes, left of their upper corner."""
     axes.annotate(
@@ -283,19 +304,12 @@ def write_notes_beside(axes: Axes, notes: list[tuple[str, str]], step: float) ->
 
 def _rescale_lines(figure: Figure, width: float | None, mark: float | None) -> None:
     """Scale line widths and marker sizes by the ratio of the caller's settings to the settings here."""
-    for line in (line for part in (*figure.axes, *_legends_of_figure(figure)) for line in part.get_lines()):
+    legends = [*figure.legends, *filter(None, (axes.get_legend() for axes in figure.axes))]
+    for line in (line for part in (*figure.axes, *legends) for line in part.get_lines()):
         if width is not None:
             line.set_linewidth(line.get_linewidth() * width / _STYLE["lines.linewidth"])
         if mark is not None:
             line.set_markersize(line.get_markersize() * mark / rcParamsDefault["lines.markersize"])
-
-
-def _legends_of_figure(figure: Figure) -> list[Any]:
-    return [*figure.legends, *filter(None, (axes.get_legend() for axes in figure.axes))]
-
-
-def _color_brightness(color: Any) -> float:
-    return sum(to_rgb(color)) / 3.0
 
 
 def _invert_figure_colors(figure: Figure) -> None:

@@ -114,6 +114,7 @@ class MomentRotation(StaticPath):
     """
 
     side: NDArray[np.int64]
+    spring_moment = edge_uplift = None  # on rigid ground
 
     def __repr__(self) -> str:
         largest, peak = (float(np.max(np.abs(values))) for values in (self.rotation, self.moment))

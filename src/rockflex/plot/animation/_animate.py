@@ -7,8 +7,7 @@ from typing import Any
 from rockflex._checks import checked_positive, checked_whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.plot._history import default_history_panels, panel_quantities
-from rockflex.plot._response_curves import ResponseCurve, response_curves
+from rockflex.plot._history import ResponseCurve, default_history_panels, panel_quantities, response_curves
 from rockflex.plot.animation._files import GIF, MP4, animation_path_and_suffix, write_gif, write_video
 from rockflex.plot.animation._poses import default_amplification, frame_timing, structure_outline, structure_poses
 from rockflex.plot.animation._scene import AnimatedFigure

@@ -12,7 +12,7 @@ from rockflex._checks import checked_finite, checked_positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
-from rockflex.plot._response_curves import ResponseCurve
+from rockflex.plot._history import ResponseCurve
 from rockflex.response import History
 from rockflex.structure import CantileverWithTipMass, Eccentric, FishBone, Frame, LumpedStructure, Restrained
 

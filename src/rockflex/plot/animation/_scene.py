@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex.plot._history import (
     PanelQuantity,
+    ResponseCurve,
     add_response_legend,
     draw_history_curves,
     quantity_axis_scale,
     shade_uplifts,
 )
-from rockflex.plot._response_curves import ResponseCurve
 from rockflex.plot._style import BLUE, GRAY, RED, SHADE, SMALL, new_figure, with_figure_style
 from rockflex.plot.animation._poses import FrameTiming, StructurePoses
 

@@ -135,8 +135,7 @@ def plot_population(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figur
     pairs
         The table of a population study, such as `run_population` returns.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -222,8 +221,7 @@ def plot_agreement(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figure
     pairs
         The table of a population study, such as `run_population` returns.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -370,8 +368,7 @@ def plot_modal_combination(pairs: "pd.DataFrame", *, size: Size | None = None) -
     pairs
         The table of a population study, such as `run_population` returns.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Modes: shapes over the height, and the frequencies of uplifted structures."""
+"""Structures: shapes of modes, the frequencies of uplifted structures, and the geometry of a tapered tower."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, Wedge
 
 from rockflex._arrays import Array
 from rockflex._checks import checked_positive, checked_whole_number
@@ -24,10 +25,12 @@ from rockflex.modal import (
     frequency_equation,
     uplifted_modes,
 )
-from rockflex.plot._study_tables import label_log_axis_plainly, model_line_styles
+from rockflex.plot._study_tables import check_table_columns, label_log_axis_plainly, model_line_styles
 from rockflex.plot._style import (
     BLUE,
     GRAY,
+    RED,
+    SHADE,
     SMALL,
     LineStyle,
     Size,
@@ -40,11 +43,14 @@ from rockflex.plot._style import (
     with_figure_style,
     write_notes_beside,
 )
+from rockflex.structure import TaperedTower
 from rockflex.study import RockingStructure, rocking_properties_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
+_INK = "#404040"
+_SLICE = 0.015  # height of the slice over that of the tower
 _PER_ROW, _PER_NARROW_ROW = 5, 3
 _POINTS = 300  # of a curve between two poles
 _NAMED_ROOTS = 2
@@ -52,7 +58,6 @@ _BEYOND = 1.15  # of the last root that is named
 _SHARE = 75.0  # per cent of the curves' points that the panel holds
 Dashes = str | tuple[int, tuple[float, ...]]
 _DASHES: tuple[Dashes, ...] = ("-", (0, (5, 2)), (0, (1, 1)), (0, (6, 1, 1, 1)))
-_RATIO_COLUMNS = ("model", "aspect_ratio", "mode", "ratio")
 _MARGIN = 1.06
 
 
@@ -76,8 +81,7 @@ def plot_mode_shapes(
     n_modes
         Number of modes to show, the lowest first. Default: all.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -98,7 +102,12 @@ def plot_mode_shapes(
     >>> len(figure.axes), figure.axes[0].get_ylabel()
     (2, 'height [m]')
     """
-    modes = _modal_properties_of_source(structure_or_modal)
+    if not isinstance(structure_or_modal, ModalProperties) and not hasattr(structure_or_modal, "modal"):
+        raise InputError(
+            "structure_or_modal must be a structure with modes, such as a Frame, or its ModalProperties, but "
+            f"{type(structure_or_modal).__name__} was given. Give the structure itself, or structure.modal()."
+        )
+    modes = structure_or_modal if isinstance(structure_or_modal, ModalProperties) else structure_or_modal.modal()
     # Γ_n φ_n sums to 1 at every height over all modes, and only over all of them.
     complete = np.allclose(modes.shapes @ modes.participation, 1.0, rtol=0.0, atol=1e-6)
     total = float(modes.effective_mass.sum()) if complete else None
@@ -120,17 +129,6 @@ def plot_mode_shapes(
     return figure
 
 
-def _modal_properties_of_source(source: _HasModes | ModalProperties) -> ModalProperties:
-    if isinstance(source, ModalProperties):
-        return source
-    if not hasattr(source, "modal"):
-        raise InputError(
-            f"structure_or_modal must be a structure with modes, such as a Frame, or its ModalProperties, but "
-            f"{type(source).__name__} was given. Give the structure itself, or structure.modal()."
-        )
-    return source.modal()
-
-
 def _draw_mode_shape(axes: Axes, modes: ModalProperties, n: int, total: float | None) -> None:
     ordinates = np.concatenate(([0.0], modes.participation[n] * modes.shapes[:, n]))
     heights = np.concatenate(([0.0], modes.heights))
@@ -138,17 +136,12 @@ def _draw_mode_shape(axes: Axes, modes: ModalProperties, n: int, total: float | 
     few = heights.size <= 40
     axes.plot(ordinates, heights, color=BLUE, linewidth=1.4, marker="o" if few else "", markersize=3.0)
     largest = float(np.max(np.abs(ordinates))) or 1.0
-    tick = _rounded_down_to_first_digit(largest)
+    power = math.floor(math.log10(largest))
+    tick = float(f"{math.floor(largest / 10.0**power)}e{power}")  # rounded down to its first digit
     axes.set_xlim(-1.25 * largest, 1.25 * largest)
     axes.set_xticks([-tick, 0.0, tick], [f"−{tick:g}", "0", f"{tick:g}"])
     axes.set_ylim(0.0, 1.04 * float(heights[-1]))
     axes.set_title(_mode_description(modes, n, total), fontsize=scaled_font_size(8.0))
-
-
-def _rounded_down_to_first_digit(value: float) -> float:
-    """First digit of a positive number."""
-    power = math.floor(math.log10(value))
-    return float(f"{math.floor(value / 10.0**power)}e{power}")
 
 
 def _mode_description(modes: ModalProperties, n: int, total: float | None) -> str:
@@ -187,8 +180,7 @@ def plot_frequency_equation(
         1 for motion about the right edge of the base, -1 about the left one. Default: the edge about which the base
         lifts first; both are equal if the structure is symmetric.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -226,10 +218,7 @@ def plot_frequency_equation(
             axes.set_title(literal_text(name))
             label_panel(axes, mark)
         panels[-1].set_xlabel(r"$ω/ω_1$")
-        handles = [
-            Line2D([], [], color=style.color, linestyle=style.dashes, linewidth=style.width, label=label)  # pyright: ignore[reportArgumentType]
-            for label, style in styles.items()
-        ]
+        handles = [Line2D([], [], **style.look, linewidth=style.width, label=label) for label, style in styles.items()]
         handles.append(Line2D([], [], color=GRAY, linestyle=":", linewidth=0.9, label=r"$ω_n/ω_1$, fixed base"))
         add_legend_above(figure, handles, handlelength=2.8)
     return figure
@@ -263,23 +252,21 @@ def _draw_frequency_equation(
     end = _BEYOND * named if highest is None else highest
     for pole in most.omega[most.omega < end * first] / first:
         axes.axvline(float(pole), color=GRAY, linestyle=":", linewidth=0.9, zorder=1.5, label="_pole")
-    axes.axhline(0.0, color="#404040", linewidth=0.8, zorder=1.6, label="_zero")
+    axes.axhline(0.0, color=_INK, linewidth=0.8, zorder=1.6, label="_zero")
     ordinates: list[Array] = []
-    notes = [(r"zeros, $ω^*_n/ω_1$", "#404040")]
+    notes = [(r"zeros, $ω^*_n/ω_1$", _INK)]
     for label, (p, modes) in models.items():
         style = styles[label]
         omega = _frequencies_between_poles(p.omega, end * first)
         inertia = p.weaker_pivot.i_theta if side is None else p.pivot(side).i_theta
         ordinate = frequency_equation(p, omega, side=side) / (inertia * first**2)
         ordinates.append(np.abs(ordinate[np.isfinite(ordinate)]))
-        axes.plot(
-            omega / first, ordinate, color=style.color, linestyle=style.dashes, linewidth=style.width,
-            label=label, zorder=2.5 - 0.1 * style.width,
-        )  # fmt: skip
+        order = 2.5 - 0.1 * style.width
+        axes.plot(omega / first, ordinate, **style.look, linewidth=style.width, label=label, zorder=order)
         roots = modes.omega[modes.omega < end * first] / first
         axes.plot(
             roots, np.zeros(roots.size), "o", color=style.color, markersize=3.0 + 1.5 * style.width,
-            markerfacecolor="white", markeredgewidth=1.1, zorder=3.5 - 0.1 * style.width, label=f"_{label}",
+            markerfacecolor="white", markeredgewidth=1.1, zorder=1.0 + order, label=f"_{label}",
         )  # fmt: skip
         notes += [(label, style.color), *((f"   {root:.3f}", style.color) for root in roots[:_NAMED_ROOTS])]
     limit = float(np.percentile(np.concatenate(ordinates), _SHARE))
@@ -320,8 +307,7 @@ def plot_frequency_ratios(
     mark
         Aspect ratio of a vertical gray line; None for none.
     size
-        ``"column"`` or ``"page"``, as wide as a column (3.5 in) or a page (7.2 in) of a journal, or width and height in
-        inches. Default: what suits the number of panels.
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
     Returns
     -------
@@ -358,7 +344,11 @@ def plot_frequency_ratios(
             top = max(_draw_frequency_ratios(axes, table, mode, styles, dashes[name]) for name, table in named.items())
             for name, beam in bounds.items():
                 value = float(beam.ratio[mode - 1])
-                _draw_pinned_beam_limit(axes, value, dashes[name])
+                axes.axhline(value, color=BLUE, linestyle=dashes[name], linewidth=0.8, zorder=1.6, label="_limit")
+                axes.annotate(
+                    f"{value:.3f}", (0.02, value), xytext=(0, 2), xycoords=("axes fraction", "data"),
+                    textcoords="offset points", color=BLUE, fontsize=SMALL, va="bottom",
+                )  # fmt: skip
                 top = max(top, value)
             if mark is not None:
                 axes.axvline(mark, color=GRAY, linewidth=1.2, zorder=1.5, label="_mark")
@@ -384,21 +374,12 @@ def _draw_frequency_ratios(
     for model, style in styles.items():
         rows = table[(table["model"] == model) & (table["mode"] == mode)].sort_values("aspect_ratio")
         if len(rows):
-            ratio = rows["ratio"].to_numpy(dtype=float)
             axes.plot(
-                rows["aspect_ratio"].to_numpy(dtype=float), ratio, color=style.color, linestyle=dashes,
-                linewidth=style.width, label=model, zorder=2.5 - 0.1 * style.width,
+                rows["aspect_ratio"], rows["ratio"], color=style.color, linestyle=dashes, linewidth=style.width,
+                label=model, zorder=2.5 - 0.1 * style.width,
             )  # fmt: skip
-            top = max(top, float(ratio.max()))
+            top = max(top, float(rows["ratio"].max()))
     return top
-
-
-def _draw_pinned_beam_limit(axes: Axes, value: float, dashes: Dashes) -> None:
-    axes.axhline(value, color=BLUE, linestyle=dashes, linewidth=0.8, zorder=1.6, label="_limit")
-    axes.annotate(
-        f"{value:.3f}", (0.02, value), xytext=(0, 2), xycoords=("axes fraction", "data"), textcoords="offset points",
-        color=BLUE, fontsize=SMALL, va="bottom",
-    )  # fmt: skip
 
 
 def _frequency_ratio_handles(
@@ -406,10 +387,8 @@ def _frequency_ratio_handles(
 ) -> list[Line2D]:
     handles = [Line2D([], [], color=style.color, linewidth=style.width, label=model) for model, style in styles.items()]
     if list(dashes) != [""]:
-        handles += [
-            Line2D([], [], color="#606060", linestyle=dash, label=literal_text(name))  # pyright: ignore[reportArgumentType]
-            for name, dash in dashes.items()
-        ]
+        grays = {name: LineStyle("#606060", dash) for name, dash in dashes.items()}
+        handles += [Line2D([], [], **gray.look, label=literal_text(name)) for name, gray in grays.items()]
     if bounded:
         handles.append(Line2D([], [], color=BLUE, linewidth=0.8, label="pinned beam, no spring"))
     if mark is not None:
@@ -425,11 +404,7 @@ def _check_frequency_ratios(
     if not 1 <= len(named) <= len(_DASHES):
         raise InputError(f"{len(named)} tables were given, but one figure can show from 1 to {len(_DASHES)}.")
     for name, table in named.items():
-        lacking = [column for column in _RATIO_COLUMNS if column not in getattr(table, "columns", ())]
-        if lacking:
-            raise InputError(
-                f"The table {shown(name)} lacks {', '.join(lacking)}. Give what frequency_ratios returned."
-            )
+        check_table_columns(table, ("model", "aspect_ratio", "mode", "ratio"), "what frequency_ratios returned", name)
         absent = [mode for mode in modes if not (table["mode"] == mode).any()]
         if absent:
             raise InputError(
@@ -445,3 +420,144 @@ def _check_frequency_ratios(
                 f"The limit {shown(name)} has {beam.ratio.size} frequency ratios, but mode {max(modes)} is to be "
                 f"shown. Give pinned_beam(..., n_modes={max(modes)})."
             )
+
+
+def plot_tower(tower: TaperedTower, section: float | None = None, *, size: Size | None = None) -> Figure:
+    """Plot a tower's elevation, and one of its sections with its contribution to I_θ.
+
+    The figure is that of Silva & Stojadinović 2024, Fig. 14. A slice of mass m at the height z turns about the pivot O
+    with m((R² + r²)/4 + Δ²), where Δ² = z² + B² (Eq. 33).
+
+    Parameters
+    ----------
+    tower
+        A `TaperedTower`.
+    section
+        Height z of the section in m, at most the tower's height. Default: half the height.
+    size
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Two axes, elevation and section, in m. Widths and heights of the elevation have different scales.
+
+    Raises
+    ------
+    InputError
+        If no tower is given, or the section is outside it; or the size is unknown.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> tower = rf.TaperedTower(height=200, base_radius=8, top_radius=4, wall=1, density=2400, elastic_modulus=25e9,
+    ...                         damping_ratio=0.02)
+    >>> figure = rf.plot_tower(tower)
+    >>> len(figure.axes), figure.axes[0].get_ylabel()
+    (2, 'height [m]')
+    """
+    if not hasattr(tower, "top_radius"):
+        raise InputError(f"tower must be a TaperedTower, but {type(tower).__name__} was given.")
+    z = 0.5 * tower.height if section is None else checked_positive("section", section, "m")
+    if z > tower.height:
+        raise InputError(f"section must be at most the height of the tower, {tower.height:g} m, but {z:g} m was given.")
+    with with_figure_style(size=size):
+        figure = new_figure(6.3, 7.2 if is_narrow_figure() else 4.6)
+        if is_narrow_figure():
+            left, right = figure.subplots(2, 1, height_ratios=(1.5, 1.0))
+        else:
+            left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
+        _draw_tower_elevation(left, tower, z)
+        _draw_tower_section(right, tower, z)
+        label_panel(left, "A")
+        label_panel(right, "B")
+    return figure
+
+
+def _outer_tower_radius(tower: TaperedTower, z: float) -> float:
+    return tower.base_radius + (tower.top_radius - tower.base_radius) * z / tower.height
+
+
+def _draw_tower_elevation(axes: Axes, tower: TaperedTower, z: float) -> None:
+    height, base, top = tower.height, tower.base_radius, tower.top_radius
+    levels = np.array([0.0, height])
+    outer = np.array([base, top])
+    inner = np.maximum(outer - tower.wall, 0.0)
+    for side in (-1.0, 1.0):
+        axes.fill_betweenx(
+            levels, side * inner, side * outer, facecolor=SHADE, edgecolor=_INK, linewidth=0.9, label="_wall"
+        )
+    radius = _outer_tower_radius(tower, z)
+    slab = z + 0.5 * _SLICE * height * np.array([-1.0, 1.0])
+    axes.fill_betweenx(slab, -radius, radius, facecolor=BLUE, alpha=0.5, linewidth=0.0, label="_slice")
+    axes.axvline(0.0, color=GRAY, linestyle=(0, (8, 2, 1, 2)), linewidth=0.7, label="_axis")
+    axes.axhline(0.0, color=_INK, linewidth=1.2, label="_ground")
+    axes.plot([base, 0.0], [0.0, z], color=RED, linewidth=1.0, label="_arm")
+    axes.plot([base], [0.0], "o", color=RED, markersize=4.5, clip_on=False, zorder=4.0, label="_pivot")
+    _annotate_tower(axes, "O", (base, 0.0), (5, 4), RED)
+    arm = float(np.hypot(z, base))
+    _annotate_tower(axes, rf"$Δ$ = {arm:.4g} m", (0.5 * base, 0.5 * z), (3, 6), RED, boxed=True)
+    reach = 1.5 * max(base, top)
+    axes.set(xlim=(-reach, 1.75 * max(base, top)), ylim=(-0.12 * height, 1.09 * height))
+    _draw_tower_dimension(axes, (-1.25 * max(base, top), 0.0), (-1.25 * max(base, top), height))
+    _annotate_tower(axes, rf"$H$ = {height:g} m", (-1.25 * max(base, top), 0.5 * height), (-3, 0), _INK, turned=True)
+    _draw_tower_dimension(axes, (0.0, -0.045 * height), (base, -0.045 * height))
+    _annotate_tower(axes, rf"$B$ = $R_c$ = {base:g} m", (0.5 * base, -0.045 * height), (0, -4), _INK, below=True)
+    _draw_tower_dimension(axes, (0.0, 1.03 * height), (top, 1.03 * height))
+    _annotate_tower(axes, rf"$R_{{\mathrm{{top}}}}$ = {top:g} m", (top, 1.03 * height), (4, -3), _INK)
+    _annotate_tower(
+        axes, rf"$t_c$ = {tower.wall:g} m", (_outer_tower_radius(tower, 0.78 * height), 0.78 * height), (4, -3), _INK
+    )
+    _annotate_tower(axes, rf"$z$ = {z:g} m", (radius, z), (4, -3), BLUE)
+    axes.set(xlabel="width [m]", ylabel="height [m]")
+    axes.grid(visible=False)
+    axes.set_title("elevation, widths enlarged")
+
+
+def _draw_tower_section(axes: Axes, tower: TaperedTower, z: float) -> None:
+    outer = _outer_tower_radius(tower, z)
+    inner = max(outer - tower.wall, 0.0)
+    axes.add_patch(Wedge((0.0, 0.0), outer, 0.0, 360.0, width=outer - inner, facecolor=SHADE, edgecolor="none"))
+    for radius in (outer, inner):
+        axes.add_patch(Circle((0.0, 0.0), radius, fill=False, edgecolor=_INK, linewidth=0.9))
+    reach = 1.25 * outer
+    axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
+    axes.axhline(0.0, color=GRAY, linestyle=(0, (8, 2, 1, 2)), linewidth=0.7, label="_axis")
+    axes.axvline(0.0, color=GRAY, linestyle=(0, (8, 2, 1, 2)), linewidth=0.7, label="_axis")
+    for radius, degrees, name in ((outer, 40.0, "R"), (inner, 140.0, "r")):
+        angle = np.deg2rad(degrees)
+        end = (radius * float(np.cos(angle)), radius * float(np.sin(angle)))
+        axes.annotate("", end, (0.0, 0.0), arrowprops={"arrowstyle": "-|>", "color": BLUE, "linewidth": 1.0})
+        middle = (0.5 * end[0], 0.5 * end[1])
+        _annotate_tower(axes, f"${name}$ = {short_number(radius)} m", middle, (0, 0), BLUE, boxed=True)
+    axes.set_xlabel(r"$I = m\,[(R^2 + r^2)/4 + Δ^2]$, $Δ^2 = z^2 + B^2$")
+    axes.grid(visible=False)
+    axes.set_ylabel("[m]")
+    axes.set_anchor("N")
+    axes.set_title(f"section at {z:g} m")
+
+
+def _draw_tower_dimension(axes: Axes, start: tuple[float, float], end: tuple[float, float]) -> None:
+    axes.annotate(
+        "", end, start, arrowprops={"arrowstyle": "<|-|>", "color": _INK, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
+    )
+
+
+def _annotate_tower(
+    axes: Axes,
+    text: str,
+    at: tuple[float, float],
+    offset: tuple[float, float],
+    color: str,
+    *,
+    turned: bool = False,
+    below: bool = False,
+    boxed: bool = False,
+) -> None:
+    """Write next to a point, `offset` points away."""
+    axes.annotate(
+        text, at, xytext=offset, textcoords="offset points", color=color, fontsize=SMALL, annotation_clip=False,
+        ha="right" if turned else "center" if below or boxed else "left",
+        va="center" if turned or boxed else "top" if below else "bottom", rotation=90.0 if turned else 0.0,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0} if boxed else None,
+    )  # fmt: skip
