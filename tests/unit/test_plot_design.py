@@ -120,7 +120,7 @@ def test_gaps_and_single_designs():
         (designs()[:0], "The table has no rows. Give what design_table returned."),
         (
             designs({f"T{i}": [0.1] * 4 for i in range(16)}),
-            "16 tendons were given, but there are 15 symbols. Plot some of them.",
+            "16 tendons are too many to distinguish in one figure, which can show 15. Plot fewer at a time.",
         ),
         (
             designs().assign(limit=[0.01, 0.02] * 4),

@@ -87,7 +87,7 @@ def test_a_range_without_end_fills_the_panel_and_one_table_needs_no_name():
         ),
         (
             lambda: plot_overturning_spectrum({str(i): overturning([1.0], [1.0]) for i in range(17)}),
-            "17 tables are too many to distinguish in one figure; at most 16 can be shown.",
+            "17 tables are too many to distinguish in one figure, which can show 16. Plot fewer at a time.",
         ),
     ],
 )

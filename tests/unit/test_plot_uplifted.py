@@ -215,7 +215,7 @@ def test_a_tower_by_its_measures():
         (lambda: rf.plot_frequency_ratios({}), "0 tables were given, but one figure can show from 1 to 4."),
         (
             lambda: rf.plot_frequency_ratios(pd.DataFrame({"mode": [1]})),
-            "The table '' lacks model, aspect_ratio, ratio. Give what frequency_ratios returned.",
+            "The table lacks model, aspect_ratio, ratio. Give what frequency_ratios returned.",
         ),
         (
             lambda: rf.plot_frequency_ratios({"a": rf.frequency_ratios(FRAME, [1.0], 1)}),
