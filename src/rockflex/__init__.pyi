@@ -134,6 +134,7 @@ from .structure import CantileverWithTipMass as CantileverWithTipMass
 from .structure import Eccentric as Eccentric
 from .structure import FishBone as FishBone
 from .structure import Frame as Frame
+from .structure import Leaning as Leaning
 from .structure import LumpedMasses as LumpedMasses
 from .structure import LumpedStructure as LumpedStructure
 from .structure import ModalStructure as ModalStructure

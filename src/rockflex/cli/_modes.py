@@ -249,6 +249,8 @@ def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "Rocking
         *([inertia] if p.symmetric else []),
         ("First moment of mass, L_0^r", number_for_console(p.l0r), "kg m"),
         ("Total mass with the base, m_tot", number_for_console(p.m_tot), "kg"),
+        *([("Leaning mass", number_for_console(p.leaning_mass), "kg")] if p.leaning_mass else []),
+        *([("Share of the weight on the base", number_for_console(p.weight_share), "")] if p.leaning_mass else []),
         ("Half width of the base, B", number_for_console(p.half_width), "m"),
         *(
             [("Masses to the right of its middle, e", number_for_console(p.eccentricity), "m")]

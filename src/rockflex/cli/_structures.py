@@ -21,7 +21,7 @@ from rockflex.modal import (
     YieldingDissipator,
     law_parameters,
 )
-from rockflex.structure import Eccentric, Frame, Restrained, structure_warnings
+from rockflex.structure import Eccentric, Frame, Leaning, Restrained, structure_warnings
 from rockflex.structure.file import (
     ELEMENTS,
     KINDS,
@@ -125,14 +125,14 @@ class LoadedStructure:
         if isinstance(self.built, RockingProperties):
             return None
         structure = self.built
-        while isinstance(structure, Restrained | Eccentric):
+        while isinstance(structure, Restrained | Eccentric | Leaning):
             structure = structure.structure
         return float(getattr(structure, "base_mass", 0.0))
 
     @property
     def reference_mass(self) -> float:
         """Mass above the base in kg; the total mass where only properties are known."""
-        return self.properties.m_tot - (self.base_mass or 0.0)
+        return self.properties.horizontal_mass - (self.base_mass or 0.0)
 
     @property
     def title(self) -> str:

@@ -254,7 +254,7 @@ def adequacy(
     rest = p.translational_inertia - float(p.effective_mass @ p.effective_height**2)
     complete = rest <= SUM_TOLERANCE * p.translational_inertia
     base = p.base_mass if base_mass is None else base_mass
-    mass = p.m_tot if base is None else _mass_above_base(p, base)
+    mass = p.horizontal_mass if base is None else _mass_above_base(p, base)
     moment, shear = p.effective_mass * p.effective_height / p.l0r, p.effective_mass / mass
     others = np.append(np.cumsum(np.abs(moment)[::-1])[-2::-1], 0.0)
     lost = abs(1.0 - float(moment.sum()))
@@ -281,7 +281,7 @@ def adequacy(
 
 def _mass_above_base(p: RockingProperties, base_mass: float) -> float:
     modal = float(p.effective_mass.sum())
-    mass = p.m_tot - checked_positive("base_mass", base_mass, "kg", zero=True)
+    mass = p.horizontal_mass - checked_positive("base_mass", base_mass, "kg", zero=True)
     if mass < modal * (1.0 - SUM_TOLERANCE):
         raise InputError(
             f"base_mass must leave the effective mass of the modes, {modal:.6g} kg, but {base_mass:g} kg of m_tot = "

@@ -129,29 +129,31 @@ def checked_top_height(floors: FloorModes | None, given: float | None) -> float 
     return None if floors is None else float(floors.heights.max())
 
 
-def checked_base_mass(modes: dict[str, Array], m_tot: float, inertia: float, given: float | None) -> float | None:
+def checked_base_mass(modes: dict[str, Array], moved: float, inertia: float, given: float | None) -> float | None:
     mass = modes["effective_mass"]
     modal_mass = float(mass.sum())
     if given is not None:
         base = checked_positive("base_mass", given, "kg", zero=True)
-        if m_tot - base < modal_mass - SUM_TOLERANCE * m_tot:
+        if moved - base < modal_mass - SUM_TOLERANCE * moved:
             raise InputError(
                 f"base_mass must leave the effective mass of the modes, {modal_mass:.9g} kg, but {base:.9g} kg of "
-                f"m_tot = {m_tot:.9g} kg was given.",
+                f"m_tot = {moved:.9g} kg was given.",
                 field="base_mass",
             )
         return base
     complete = mass.size > 0 and float(mass @ modes["effective_height"] ** 2) >= (1.0 - SUM_TOLERANCE) * inertia
-    return max(m_tot - modal_mass, 0.0) if complete else None
+    return max(moved - modal_mass, 0.0) if complete else None
 
 
 @explaining_overflow("The inertia of the modes, from effective_mass and effective_height,")
-def checked_translational_inertia(modes: dict[str, Array], scalars: dict[str, float], given: float | None) -> float:
+def checked_translational_inertia(
+    modes: dict[str, Array], scalars: dict[str, float], leaning_mass: float, given: float | None
+) -> float:
     mass = modes["effective_mass"]
     modal_mass = float(mass.sum())
     modal_inertia = float(mass @ modes["effective_height"] ** 2)
     i_theta, m_tot = scalars["i_theta"], scalars["m_tot"]
-    if m_tot < modal_mass * (1.0 - SUM_TOLERANCE):
+    if m_tot + leaning_mass < modal_mass * (1.0 - SUM_TOLERANCE):
         raise InputError(
             f"m_tot must be at least the sum of effective_mass, {modal_mass:.9g} kg, but {m_tot:.9g} kg was "
             "given. It is the mass of the whole structure including its base; check the units too.",
@@ -211,7 +213,7 @@ class RockingProperties(HtmlTable, Value):
     l0r : float
         L_0^r = Σ_i m_i h_i in kg m.
     m_tot : float
-        Total mass in kg, including the base; at least Σ_n m*_n.
+        Total mass in kg that stands on the base, with the base; with `leaning_mass` at least Σ_n m*_n.
     half_width : float
         B in m, positive and finite. For a base that cannot lift, choose a fixed-base model instead of a large B.
     zeta : ndarray, shape (n,)
@@ -230,6 +232,9 @@ class RockingProperties(HtmlTable, Value):
     eccentricity : float
         e in m, smaller than B in magnitude: distance of the vertical axis of the masses to the right of the middle of
         the base. The pivots are B - e to the right and B + e to the left of this axis.
+    leaning_mass : float
+        Σ l_i in kg, zero by default: mass that moves with the floors and stands on other columns, which are hinged; see
+        `Leaning`. It is in the modes, in L_0^r and in Σ m_i h_i², but not in `m_tot`, so not in M_r.
 
     Raises
     ------
@@ -262,6 +267,7 @@ class RockingProperties(HtmlTable, Value):
     top_height: float | None
     base_mass: float | None
     eccentricity: float
+    leaning_mass: float
 
     def __init__(
         self,
@@ -280,10 +286,12 @@ class RockingProperties(HtmlTable, Value):
         top_height: float | None = None,
         base_mass: float | None = None,
         eccentricity: float = 0.0,
+        leaning_mass: float = 0.0,
     ) -> None:
         modes = checked_modal_values(omega, effective_mass, effective_height, top_ordinate)
         scalars = checked_rocking_scalars(i_theta, l0r, m_tot, half_width)
-        inertia = checked_translational_inertia(modes, scalars, translational_inertia)
+        leaning = checked_positive("leaning_mass", leaning_mass, "kg", zero=True)
+        inertia = checked_translational_inertia(modes, scalars, leaning, translational_inertia)
         e = checked_eccentricity(modes, scalars, inertia, eccentricity)
         vars(self).update(
             modes,
@@ -293,8 +301,9 @@ class RockingProperties(HtmlTable, Value):
             floors=checked_floor_modes(floors, modes["omega"].size),
             elements=elements_within_base(base_element_tuple(elements), scalars["half_width"], e),
             top_height=checked_top_height(floors, top_height),
-            base_mass=checked_base_mass(modes, scalars["m_tot"], inertia, base_mass),
+            base_mass=checked_base_mass(modes, scalars["m_tot"] + leaning, inertia, base_mass),
             eccentricity=e,
+            leaning_mass=leaning,
         )
 
     @property
@@ -303,13 +312,23 @@ class RockingProperties(HtmlTable, Value):
         return self.omega.size
 
     @property
+    def horizontal_mass(self) -> float:
+        """Mass m_tot + Σ l_i in kg that moves horizontally with the structure."""
+        return self.m_tot + self.leaning_mass
+
+    @property
+    def weight_share(self) -> float:
+        """Share of the weight that stands on the base, and so resists uplift; 1 without leaning mass."""
+        return self.m_tot / self.horizontal_mass
+
+    @property
     def mass_left_out(self) -> Array:
         """Parts of Σ m_i, Σ m_i h_i and Σ m_i h_i² that the n modes leave out, in kg, kg m and kg m², shape (3,).
 
         The sums exclude the base. Stiff modes that are left out move with the base, and so does this mass. The first
         entry is NaN if `base_mass` is not known.
         """
-        above = math.nan if self.base_mass is None else self.m_tot - self.base_mass
+        above = math.nan if self.base_mass is None else self.horizontal_mass - self.base_mass
         moments = np.array([above, self.l0r, self.translational_inertia])
         left = moments - np.array([self.effective_mass * self.effective_height**k for k in range(3)]).sum(axis=1)
         left[np.abs(left) <= SUM_TOLERANCE * np.abs(moments)] = 0.0

@@ -161,6 +161,7 @@ class Model:
             )
         kept = properties if self.n_modes is None else properties.truncated(self.n_modes)
         self._check_missing_mass(kept)
+        self._check_leaning(kept)
         self._check_friction(kept)
         label = self._check_yielding(kept, bouc_wen)
         if ground is not None and not ground.rigid:
@@ -179,6 +180,14 @@ class Model:
             raise InputError(
                 f"{self.label} needs the mass above the base, but these properties give only the total mass. Give "
                 "RockingProperties the base_mass, in kg."
+            )
+
+    def _check_leaning(self, kept: RockingProperties) -> None:
+        if self.complete and kept.leaning_mass > 0.0:
+            raise InputError(
+                f"{self.label} does not take leaning mass, whose columns are hinged and lean by small rotations. Use "
+                f"{replace(self, complete=False, closure=None).label}.",
+                field="model",
             )
 
     def _check_friction(self, kept: RockingProperties) -> None:

@@ -483,7 +483,7 @@ def bordered_system_of(model: ModalModel, equations: BaseEquations, freed: Bools
 
 def _jammed(model: ModalModel) -> str:
     p = model.properties
-    if p.m_tot - p.effective_mass.sum() <= JAMMED * p.m_tot:
+    if p.horizontal_mass - p.effective_mass.sum() <= JAMMED * p.m_tot:
         return (
             f"{model.label} with {p.n_modes} modes leaves no mass in the base that slides: Σ m* = m_tot = "
             f"{p.m_tot:.6g} kg. Give the structure a base_mass, or keep fewer modes."
@@ -517,6 +517,6 @@ def accelerations_of(model: ModalModel, bordered_system: BorderedSystem) -> Arra
 def horizontal_reaction(model: ModalModel, accelerations: Array) -> Array:
     """Return the horizontal force of the ground on the base, m_tot (a + x'') + L_0^r θ'' + Σ m* D'': a row, (C,)."""
     p, n = model.properties, model.properties.n_modes
-    row = p.effective_mass @ accelerations[:n] + p.l0r * accelerations[n] + p.m_tot * accelerations[n + 1]
-    row[-2] += p.m_tot
+    row = p.effective_mass @ accelerations[:n] + p.l0r * accelerations[n] + p.horizontal_mass * accelerations[n + 1]
+    row[-2] += p.horizontal_mass
     return row

@@ -49,9 +49,9 @@ def _total_top_displacement(model: ModalModel) -> Share:
 
 
 def _horizontal_reaction(model: ModalModel) -> Share:
-    """ΣF_x = m_tot a + L_0^r θ'' + Σ m* D''."""
+    """ΣF_x = (m_tot + Σ l) a + L_0^r θ'' + Σ m* D''."""
     p = model.properties
-    return HORIZONTAL, {"acceleration": p.effective_mass, "turn": p.l0r, "ground": p.m_tot}
+    return HORIZONTAL, {"acceleration": p.effective_mass, "turn": p.l0r, "ground": p.horizontal_mass}
 
 
 def _slip(_model: ModalModel) -> Share:

@@ -36,9 +36,9 @@ def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     p, side, layout = model.properties, acting_side(states), model.layout
     n = p.n_modes
     turn, push = rates[:, n], rates[:, :n] @ p.effective_mass
-    horizontal = p.m_tot * states[:, GROUND] + p.l0r * turn + push
+    horizontal = p.horizontal_mass * states[:, GROUND] + p.l0r * turn + push
     if layout.slip >= 0:
-        horizontal += p.m_tot * rates[:, n + 1]
+        horizontal += p.horizontal_mass * rates[:, n + 1]
     if model.springs is not None:
         return Reactions(horizontal, spring_forces(model, states).sum(axis=1))
     vertical = p.m_tot * (model.gravity + states[:, RISE]) + element_forces(model, states).sum(axis=1)
@@ -68,6 +68,7 @@ def printed_reactions(model: RockingModel, states: Array, rates: Array) -> React
 def _of_large_rotations(model: RockingModel, states: Array, rates: Array) -> Reactions:
     numbers, moving = numbers_of(model, [HORIZONTAL, VERTICAL]), rates_of(model, states, rates)
     x, lost = observed(model, numbers, states, acting_side(states), moving, np.zeros((states.shape[0], 2))).T
+    x = x + model.properties.leaning_mass * states[:, GROUND]
     if model.layout.slip >= 0:
-        x = x + model.properties.m_tot * rates[:, -1]
+        x = x + model.properties.horizontal_mass * rates[:, -1]
     return Reactions(x, model.properties.resting_reaction - lost)

@@ -83,7 +83,7 @@ class SlidingModel(LinearModel):
         """Return the forces on the rotation and the slip; friction is -sign(x') μ N."""
         p, side, slip, elements = self.properties, key[0], key[-1], self.element_key(key)
         equations = BaseEquations.blank(2, self.layout.n_internal)
-        equations.inertia[1, 1], equations.ground[1] = p.m_tot, -p.m_tot
+        equations.inertia[1, 1], equations.ground[1] = p.horizontal_mass, -p.horizontal_mass
         equations.inertia[0, 1] = equations.inertia[1, 0] = p.l0r
         equations.ground[0] = -p.l0r
         if side != CLOSED:

@@ -223,7 +223,7 @@ class SpringModel(LinearModel):
         equations.ground[0] = -p.l0r
         if self.friction is not None:
             equations.inertia[0, 1] = equations.inertia[1, 0] = p.l0r
-            equations.inertia[1, 1], equations.ground[1] = p.m_tot, -p.m_tot
+            equations.inertia[1, 1], equations.ground[1] = p.horizontal_mass, -p.horizontal_mass
         forces = self.spring_forces(key)
         self._add_to(equations, 0, -self.springs.positions @ forces)
         self._add_to(equations, z, forces.sum(axis=0))

@@ -34,7 +34,7 @@ def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, A
         kinetic += 0.5 * p.m_tot * layout.of(states, layout.heave + 1) ** 2
     if layout.slip >= 0:
         slide = layout.of(states, layout.slip + 1)
-        kinetic += slide * (0.5 * p.m_tot * slide + p.l0r * spin + v @ p.effective_mass)
+        kinetic += slide * (0.5 * p.horizontal_mass * slide + p.l0r * spin + v @ p.effective_mass)
     return kinetic, strain, model.gravity * model.raised_weight(states)
 
 

@@ -261,7 +261,7 @@ class PhaseWork:
             self._lift = key[0] * p.m_tot * p.pivot(key[0]).arm * unit[layout.spin]
         self._slide, self._held, self._heavier = np.zeros((3, len(unit)))
         if layout.slip >= 0:
-            self._push += p.m_tot * unit[layout.slip + 1]
+            self._push += p.horizontal_mass * unit[layout.slip + 1]
         if layout.slip >= 0 and model.bordered_system(key).freed[1]:
             heavier = under_more_gravity(model)
             self._slide = unit[layout.slip + 1]

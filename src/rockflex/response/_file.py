@@ -111,7 +111,7 @@ def save(
         scalars["lifts"] = model.lifts
         scalars["law"] = _described(model.law)
         scalars["missing_mass"] = model.missing_mass
-        scalars |= {name: getattr(model.properties, name) for name in (*KNOWN_OR_NOT, "eccentricity")}
+        scalars |= {name: getattr(model.properties, name) for name in (*KNOWN_OR_NOT, "eccentricity", "leaning_mass")}
         if model.integrated:
             scalars["complete"] = model.complete
             scalars["bouc_wen"] = None if model.bouc_wen is None else asdict(model.bouc_wen)
@@ -270,7 +270,7 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     name = "tendons" if scalars["format"] == OLDEST else "elements"
     elements = [_element(**each) for each in _typed(scalars, name, list)]
     known = {name: scalars[name] for name in KNOWN_OR_NOT}
-    known["eccentricity"] = scalars.get("eccentricity", 0.0)  # files of symmetric bases may lack it
+    known |= {name: scalars.get(name, 0.0) for name in ("eccentricity", "leaning_mass")}  # older files may lack them
     properties = RockingProperties(**values, floors=floors, elements=elements, **known)
     lifts, parameters = _typed(scalars, "lifts", bool), dict(_typed(scalars, "law", dict))
     missing = _typed(scalars, "missing_mass", bool)

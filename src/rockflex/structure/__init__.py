@@ -6,6 +6,7 @@ from rockflex.structure._beam_sections import LumpedMasses
 from rockflex.structure._cross_section import Section
 from rockflex.structure._frames import FishBone, Frame, LumpedStructure
 from rockflex.structure._from_matrices import from_matrices, from_modes
+from rockflex.structure._leaning import Leaning
 from rockflex.structure._structure import Eccentric, ModalStructure, Restrained, structure_warnings
 from rockflex.structure._towers import CantileverWithTipMass, TaperedTower, rigid_block
 from rockflex.structure._wall_frame import WallFrame
@@ -16,6 +17,7 @@ __all__ = [
     "Eccentric",
     "FishBone",
     "Frame",
+    "Leaning",
     "LumpedMasses",
     "LumpedStructure",
     "ModalStructure",

@@ -229,10 +229,13 @@ def _mode_adequacy_view(entry: StructureEntry, p: RockingProperties) -> dict[str
 def _rocking_parameter_facts(p: RockingProperties) -> list[dict[str, Any]]:
     """Return the parameters with symbols, units and meaning, for each edge of the base where the two differ."""
     moved = {"symbol": "e", "value": p.eccentricity, "unit": "m", "help": "masses to the right of the base's middle"}
+    told = f"mass that stands on other columns; {p.weight_share:.0%} of the weight is on the base"
+    leaning = {"symbol": "Σ l", "value": p.leaning_mass, "unit": "kg", "help": told}
     base = [
         {"symbol": "B", "value": p.half_width, "unit": "m", "help": "half the width of the base"},
         *([moved] if p.eccentricity else []),
         {"symbol": "m_tot", "value": p.m_tot, "unit": "kg", "help": "total mass with the base"},
+        *([leaning] if p.leaning_mass else []),
     ]
     arm = {"symbol": "L₀ʳ", "value": p.l0r, "unit": "kg m", "help": "sum of mass times height"}
     if p.symmetric:
@@ -270,7 +273,7 @@ def _mode_facts(built: BuiltStructure) -> list[dict[str, Any]]:
         {
             "period": 2.0 * np.pi / p.omega[n],
             "effective_mass": p.effective_mass[n],
-            "mass_share": p.effective_mass[n] / p.m_tot,
+            "mass_share": p.effective_mass[n] / p.horizontal_mass,
             "effective_height": p.effective_height[n],
             "damping": p.zeta[n],
             "uplifted": [

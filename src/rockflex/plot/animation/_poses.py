@@ -14,7 +14,7 @@ from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.plot._history import ResponseCurve
 from rockflex.response import History
-from rockflex.structure import CantileverWithTipMass, Eccentric, FishBone, Frame, LumpedStructure, Restrained
+from rockflex.structure import CantileverWithTipMass, Eccentric, FishBone, Frame, Leaning, LumpedStructure, Restrained
 
 MAX_FRAMES = 20_000
 RATES = {".gif": (1.0, 50.0), ".mp4": (1.0, 120.0)}
@@ -158,7 +158,7 @@ def structure_outline(history: History, structure: Any | None, place: int) -> St
 
 
 def _outline_kind(structure: Any) -> Kind:
-    while isinstance(structure, Restrained | Eccentric):
+    while isinstance(structure, Restrained | Eccentric | Leaning):
         structure = structure.structure
     if isinstance(structure, CantileverWithTipMass):
         return "mast"

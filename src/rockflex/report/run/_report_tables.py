@@ -176,11 +176,20 @@ def structure_facts(p: RockingProperties) -> list[ReportFact]:
     slope = "h*_1/B" if p.n_modes else "h/B"
     base = [] if p.base_mass is None else [value_fact("Mass of the base m_0", p.base_mass, "t", "base_mass", 1e3)]
     top = [] if p.top_height is None else [value_fact("Height of the top", p.top_height, "m", "top_height")]
+    leaning = (
+        []
+        if not p.leaning_mass
+        else [
+            value_fact("Leaning mass", p.leaning_mass, "t", "leaning_mass", 1e3, 4),
+            value_fact("Share of the weight on the base", 100.0 * p.weight_share, "%", "weight_share"),
+        ]
+    )
     shift = [value_fact("Eccentricity e", p.eccentricity, "m", "eccentricity")] if p.eccentricity else []
     held = [value_fact("Prestress of the tendons", p.prestress, "kN", "prestress", 1e3)] if p.tendons else []
     return [
         ReportFact("Modes", ReportCell(str(p.n_modes) if p.n_modes else "none (rigid)", p.n_modes, "n_modes")),
         value_fact("Total mass m_tot", p.m_tot, "t", "m_tot", 1e3, 4),
+        *leaning,
         *base,
         *top,
         value_fact("Half width of the base B", p.half_width, "m", "half_width"),
@@ -218,7 +227,7 @@ def mode_table(p: RockingProperties) -> ReportTable | None:
     if not p.n_modes:
         return None
     uplifted = _uplifted_modes_of_structure(p)
-    above = p.m_tot if p.base_mass is None else p.m_tot - p.base_mass
+    above = p.horizontal_mass - (p.base_mass or 0.0)
     shares = p.effective_mass / above
     rows: list[list[ReportCell]] = []
     for n in range(min(p.n_modes, MAX_MODES)):
