@@ -121,6 +121,7 @@ VALUES = {
     rf.RotationFragility: lambda: rf.fit_outcomes(*RUNS).curve(0.01),
     rf.SampledHistory: lambda: response().resample(0.1),
     rf.InitialState: lambda: rf.InitialState(0.01, [0.001], rotation_velocity=0.1),
+    rf.Leaning: lambda: rf.Leaning(frame(), [1e3, 2e3]),
     rf.LogisticFit: lambda: rf.fit_logistic([0.1, 0.2, 0.3, 0.4, 0.5], [0, 0, 1, 0, 1]),
     rf.LognormalFragility: lambda: rf.LognormalFragility(0.5, 0.4, np.eye(2)),
     rf.LumpedMasses: lambda: rf.LumpedMasses([1.0, 2.0], [10.0, 20.0], [0.0, 1.0]),

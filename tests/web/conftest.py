@@ -168,10 +168,10 @@ class Visitor:
         box.press("Enter")
         box.blur()
 
-    def error(self, path: str) -> str:
-        found = self.page.locator(f'[data-path="{path}"] > .error')
-        found.first.wait_for(state="visible")
-        return found.first.inner_text()
+    def wait_for_error(self, path: str, words: str = "") -> None:
+        """Wait until a field's error has these words; that of the value before may still be shown."""
+        error = self.page.locator(f'[data-path="{path}"] > .error').filter(has_text=words)
+        error.first.wait_for(state="visible")
 
     def value(self, selector: str) -> float:
         return float(self.page.locator(selector).first.get_attribute("data-value"))
