@@ -30,6 +30,7 @@ from .kinds import load_study as load_study
 from .kinds import run_study as run_study
 from .modal import Adequacy as Adequacy
 from .modal import AdequacyTolerance as AdequacyTolerance
+from .modal import Attachment as Attachment
 from .modal import Branch as Branch
 from .modal import BranchEnd as BranchEnd
 from .modal import ElementLaw as ElementLaw
@@ -143,6 +144,7 @@ from .structure import RitzShapes as RitzShapes
 from .structure import Section as Section
 from .structure import TaperedTower as TaperedTower
 from .structure import WallFrame as WallFrame
+from .structure import YieldingStories as YieldingStories
 from .structure import cosine_shapes as cosine_shapes
 from .structure import from_matrices as from_matrices
 from .structure import from_modes as from_modes

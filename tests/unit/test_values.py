@@ -167,6 +167,7 @@ VALUES = {
     rf.VVELSimplified: rf.VVELSimplified,
     rf.ViscousDamper: lambda: rf.ViscousDamper(1e5, -0.2),
     rf.WallFrame: lambda: rf.WallFrame(30.0, 3e5, 2.0, 1.0, 1e4, 8.0, 0.02),
+    rf.YieldingStories: lambda: rf.YieldingStories(make_frame(n_stories=2, stiffness_ratio=math.inf), [1e5, 8e4], 0.05),
     rf.YieldingDissipator: lambda: rf.YieldingDissipator(1e7, 1e5, 0.02, rupture_elongation=0.1),
     # not in `rockflex` itself, but in what it returns
     ForgottenLaw: lambda: ForgottenLaw("Mine()", "this", "that"),
@@ -187,7 +188,7 @@ STUDIES = {
     rf.Records: lambda: rf.Records(suites=["el-centro-1940"]),
     rf.StripeStudy: lambda: rf.StripeStudy(**STUDY, measure="pga", levels=[1.0]),
 }
-NO_VALUES = {rf.StudyFolder}  # a place on the disk, held open by a process
+NO_VALUES = {rf.Attachment, rf.ElementLaw, rf.StudyFolder}  # a place on the disk, held open by a process
 UNHASHABLE = {rf.BestDesign, rf.PopulationStatistics}  # they hold tables
 
 cases = pytest.mark.parametrize("make", VALUES.values(), ids=[kind.__name__ for kind in VALUES])

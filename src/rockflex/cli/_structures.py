@@ -19,7 +19,7 @@ from rockflex.modal import (
     Tendon,
     ViscousDamper,
     YieldingDissipator,
-    law_parameters,
+    element_parameters,
 )
 from rockflex.structure import Eccentric, Frame, Leaning, Restrained, structure_warnings
 from rockflex.structure.file import (
@@ -62,7 +62,7 @@ _WORDS = 2  # columns of words
 
 def describe_elements(elements: Sequence[BaseElement]) -> list[dict[str, Any]]:
     """Return the kind and the values of each element, for a document."""
-    return [{"kind": _element_kind(each), **asdict(each)} for each in elements]
+    return [{"kind": _element_kind(each), **element_parameters(each)} for each in elements]
 
 
 def elements_table(elements: Sequence[BaseElement]) -> "Table":
@@ -75,7 +75,7 @@ def elements_table(elements: Sequence[BaseElement]) -> "Table":
 def _element_row(element: BaseElement) -> tuple[str, ...]:
     stiffness = damping = prestress = strength = ratio = breaks = None
     if isinstance(element, ElementLaw):
-        given = {key: value for key, value in law_parameters(element).items() if isinstance(value, float)}
+        given = {key: value for key, value in element_parameters(element).items() if isinstance(value, float)}
         stiffness, strength = (given[key] / 1e3 if key in given else None for key in ("stiffness", "yield_force"))
         ratio = given.get("post_yield_ratio")
     if isinstance(element, Tendon | YieldingDissipator):
@@ -88,8 +88,9 @@ def _element_row(element: BaseElement) -> tuple[str, ...]:
     elif isinstance(element, FrictionDamper):
         strength = element.force / 1e3
     only = ", tension only" if isinstance(element, YieldingDissipator) and element.tension_only else ""
-    values = (element.position, stiffness, damping, prestress, strength, ratio, breaks)
-    return (_element_kind(element).replace("_", " ") + only, *map(number_for_console, values))
+    values = (stiffness, damping, prestress, strength, ratio, breaks)
+    place = element.where if element.attached else number_for_console(element.position)
+    return (_element_kind(element).replace("_", " ") + only, place, *map(number_for_console, values))
 
 
 def _element_kind(element: BaseElement) -> str:

@@ -2,7 +2,8 @@
 
 from rockflex.modal._adequacy import Adequacy, AdequacyTolerance, adequacy
 from rockflex.modal._analysis import FloorModes, ModalProperties, modal_properties
-from rockflex.modal._element_law import Branch, BranchEnd, ElementLaw, law_parameters, slow_path
+from rockflex.modal._attachment import PLACE, Attachment, YieldingStory, element_parameters
+from rockflex.modal._element_law import Branch, BranchEnd, ElementLaw, slow_path
 from rockflex.modal._elements import (
     BaseElement,
     FrictionDamper,
@@ -10,6 +11,7 @@ from rockflex.modal._elements import (
     ViscousDamper,
     YieldingDissipator,
     base_element_tuple,
+    initial_force,
 )
 from rockflex.modal._ground import Ground, Springs, asce41_bed, winkler_bed
 from rockflex.modal._law_bars import FlagShapedBar, GapBar, MultilinearBar
@@ -19,8 +21,10 @@ from rockflex.modal._rocking import RockingProperties
 from rockflex.modal._uplifted import PinnedBeam, UpliftedModes, frequency_equation, pinned_beam, uplifted_modes
 
 __all__ = [
+    "PLACE",
     "Adequacy",
     "AdequacyTolerance",
+    "Attachment",
     "BaseElement",
     "Branch",
     "BranchEnd",
@@ -41,12 +45,14 @@ __all__ = [
     "UpliftedModes",
     "ViscousDamper",
     "YieldingDissipator",
+    "YieldingStory",
     "adequacy",
     "asce41_bed",
     "base_element_tuple",
+    "element_parameters",
     "excited_mode_indices",
     "frequency_equation",
-    "law_parameters",
+    "initial_force",
     "modal_properties",
     "pinned_beam",
     "rocking_properties",

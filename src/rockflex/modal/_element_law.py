@@ -4,7 +4,7 @@ import math
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import Field, dataclass, fields
+from dataclasses import Field, dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
@@ -15,6 +15,7 @@ from rockflex._checks import checked_finite, checked_instance, real_or_nan
 from rockflex._errors import InputError
 from rockflex._overflow import explaining_overflow
 from rockflex._shown import shown
+from rockflex.modal._attachment import Attachment
 
 ROUNDING = 1e-9  # relative: by how much forces and energies may differ that must be equal
 MAX_BRANCHES = 32
@@ -97,11 +98,12 @@ class SlowState(NamedTuple):
     internal: float
 
 
-class ElementLaw(ABC):
-    """An element between base and ground whose law is given by its branches.
+class ElementLaw(Attachment, ABC):
+    """An element whose law is given by its branches, between base and ground or attached to floors.
 
     Derive a frozen dataclass from it: its fields are the parameters, numbers or texts, among them the `position` in m
-    from the axis of the masses, positive to the right. The first branch is that of the element as built, at δ = m = 0.
+    from the axis of the masses, positive to the right; `between`, `cosine` and `height` of `Attachment` come with it.
+    The first branch is that of the element as built, at δ = m = 0.
     The force must be continuous where branches meet; that, and the energies, are checked when an element is made.
     `rockflex` finds all events, forces, energies and peaks from the branches. A package makes its elements known to
     structure files and saved responses by an entry point of the group ``rockflex.elements`` with the name of the kind.
@@ -136,7 +138,6 @@ class ElementLaw(ABC):
     [0.056, 0.0389]
     """
 
-    position: float
     if TYPE_CHECKING:
         __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # every class that is derived is a dataclass
 
@@ -148,6 +149,7 @@ class ElementLaw(ABC):
             if own is not None:
                 own(self)
             vars(self).update(position=checked_finite("position", self.position, "m"))
+            self.check_attachment()
             _ = self.law
 
         cls.__post_init__ = check  # pyright: ignore[reportAttributeAccessIssue]
@@ -412,8 +414,3 @@ def _check_energy(law: ElementLaw, size: float) -> None:
                 "all work, another one no more than that; and nothing is stored at δ = m = 0.",
                 field="stored_energy",
             )
-
-
-def law_parameters(law: ElementLaw) -> dict[str, Any]:
-    """Return the parameters of an element by name."""
-    return {each.name: getattr(law, each.name) for each in fields(law)}

@@ -1,4 +1,4 @@
-"""Elements between base and ground: tendons, yielding dissipators, viscous dampers and friction dampers."""
+"""Tendons, yielding dissipators, viscous and friction dampers: under the base, between floors or from a height."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -8,11 +8,12 @@ from typing import Any
 from rockflex._checks import checked_finite, checked_instance, checked_positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.modal._element_law import ElementLaw, law_parameters
+from rockflex.modal._attachment import PLACE, Attachment, element_parameters
+from rockflex.modal._element_law import ElementLaw
 
 
-@dataclass(frozen=True)
-class Tendon:
+@dataclass(frozen=True, repr=False)
+class Tendon(Attachment):
     """An unbonded, elastic, vertical tendon from the structure through the base into the ground.
 
     While the base rocks about a pivot at the distance r, the tendon is stretched by the gap that opens at its place,
@@ -37,6 +38,9 @@ class Tendon:
         stretch, loses prestress and becomes slack at zero force. Default: it stays elastic.
     rupture_elongation : float or None
         Elongation in m, from the base in contact, at which a yielding tendon breaks for good. Default: it never does.
+    between, cosine, height
+        In place of a position: the floors that the element connects, or the height of a tie to the ground, and the
+        direction; see `Attachment`.
 
     Raises
     ------
@@ -64,6 +68,7 @@ class Tendon:
             stiffness=checked_positive("stiffness", self.stiffness, "N/m", zero=True),
             position=checked_finite("position", self.position, "m"),
         )
+        self.check_attachment()
         if self.yield_force is not None:
             limit = checked_positive("yield_force", self.yield_force, "N")
             vars(self).update(yield_force=limit)
@@ -129,8 +134,8 @@ def checked_rupture_elongation(value: float | None, yields_at: float) -> float |
     return limit
 
 
-@dataclass(frozen=True)
-class YieldingDissipator:
+@dataclass(frozen=True, repr=False)
+class YieldingDissipator(Attachment):
     """A fuse between the base and the ground that yields in tension and compression, with kinematic hardening.
 
     At a distance r from the pivot it is stretched by the gap that opens there, δ = 2 r sin(|θ|/2), to first order
@@ -152,6 +157,9 @@ class YieldingDissipator:
         Whether the fuse buckles or is unhooked, so that it cannot push: F = max(0, ·).
     rupture_elongation : float or None
         Elongation in m at which the fuse breaks, for good. Larger than F_y/k. Default: it never does.
+    between, cosine, height
+        In place of a position: the floors that the element connects, or the height of a tie to the ground, and the
+        direction; see `Attachment`.
 
     Raises
     ------
@@ -183,10 +191,11 @@ class YieldingDissipator:
             tension_only=checked_instance("tension_only", self.tension_only, bool),
             rupture_elongation=checked_rupture_elongation(self.rupture_elongation, self.yield_force / self.stiffness),
         )
+        self.check_attachment()
 
 
-@dataclass(frozen=True)
-class ViscousDamper:
+@dataclass(frozen=True, repr=False)
+class ViscousDamper(Attachment):
     """A linear viscous damper between the base and the ground: F = c δ'.
 
     Attributes
@@ -195,6 +204,9 @@ class ViscousDamper:
         c in N s/m, zero or positive.
     position : float
         Distance in m from the axis of the masses, positive to the right.
+    between, cosine, height
+        In place of a position: the floors that the element connects, or the height of a tie to the ground, and the
+        direction; see `Attachment`.
 
     Raises
     ------
@@ -219,10 +231,11 @@ class ViscousDamper:
             coefficient=checked_positive("coefficient", self.coefficient, "N s/m", zero=True),
             position=checked_finite("position", self.position, "m"),
         )
+        self.check_attachment()
 
 
-@dataclass(frozen=True)
-class FrictionDamper:
+@dataclass(frozen=True, repr=False)
+class FrictionDamper(Attachment):
     """A friction damper between the base and the ground: F = ± F_0 while it slides; it sticks in between.
 
     Attributes
@@ -231,6 +244,9 @@ class FrictionDamper:
         F_0 in N, zero or positive.
     position : float
         Distance in m from the axis of the masses, positive to the right.
+    between, cosine, height
+        In place of a position: the floors that the element connects, or the height of a tie to the ground, and the
+        direction; see `Attachment`.
 
     Raises
     ------
@@ -254,6 +270,7 @@ class FrictionDamper:
             force=checked_positive("force", self.force, "N", zero=True),
             position=checked_finite("position", self.position, "m"),
         )
+        self.check_attachment()
 
 
 BaseElement = Tendon | YieldingDissipator | ViscousDamper | FrictionDamper | ElementLaw
@@ -309,7 +326,10 @@ def element_pushover_force(element: BaseElement, elongation: float) -> float:
 
 
 def are_elements_symmetric(elements: Sequence[BaseElement]) -> bool:
-    """Return whether every off-centre element has a mirror image: the same at the same distance on the other side."""
+    """Return whether every off-centre element has a mirror image: the same at the same distance on the other side.
+
+    Attached elements do not matter: they act alike about both pivots.
+    """
     left = sorted(_element_values(each, -each.position) for each in elements if each.position < 0.0)
     right = sorted(_element_values(each, each.position) for each in elements if each.position > 0.0)
     return len(left) == len(right) and all(
@@ -329,12 +349,10 @@ def _element_values(element: BaseElement, distance: float) -> tuple[str, tuple[f
             *beyond,
             element.rupture_elongation or 0.0,
         )
-    if isinstance(element, ElementLaw):
-        rest = law_parameters(element) | {"position": distance}
-        words = [f"{key}={value!r}" for key, value in rest.items() if not isinstance(value, float)]
-        return " ".join([type(element).__name__, *words]), tuple(v for v in rest.values() if isinstance(v, float))
-    rest = {**vars(element), "position": distance}
-    return type(element).__name__, tuple(float(value or 0.0) for value in rest.values())
+    rest = {name: value for name, value in element_parameters(element).items() if name not in PLACE}
+    words = [f"{key}={value!r}" for key, value in rest.items() if not isinstance(value, float | None)]
+    numbers = (float(value or 0.0) for value in rest.values() if isinstance(value, float | None))
+    return " ".join([type(element).__name__, *words]), (distance, *numbers)
 
 
 def closes(element: BaseElement) -> bool:

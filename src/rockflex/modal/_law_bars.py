@@ -13,7 +13,7 @@ from rockflex.modal._element_law import Branch, BranchEnd, ElementLaw
 from rockflex.modal._elements import checked_post_yield_ratio
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FlagShapedBar(ElementLaw):
     """A superelastic bar of a shape-memory alloy, or any device with a flag-shaped loop.
 
@@ -125,7 +125,7 @@ class FlagShapedBar(ElementLaw):
         return np.where((elongation < 0.0) & self.tension_only, 0.0, elastic + changed)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class GapBar(ElementLaw):
     """An elastic bar or stop that acts beyond a gap: F = k (δ - gap) where δ exceeds it, otherwise zero.
 
@@ -171,7 +171,7 @@ class GapBar(ElementLaw):
         return pieces([0.0, self.gap, self.gap + 1.0], [0.0, 0.0, self.stiffness], mirrored=self.both_ways)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class MultilinearBar(ElementLaw):
     """A nonlinear elastic bar whose force is linear between given points, and beyond the last two.
 

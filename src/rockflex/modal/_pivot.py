@@ -140,13 +140,14 @@ def build_pivot(
         return Pivot(side, arm, inertia, weight, 0.0, 0.0, 0.0, 0.0, -l0r * GRAVITY, limit, weight / l0r)
     # Both pivots of a symmetric base must give identical numbers, to the last digit and in any order of the tendons.
     towards = 1 if alike else side
+    elements = [each for each in elements if not each.attached]
     tendons = [each for each in elements if isinstance(each, Tendon)]
-    distances = [arm - towards * each.position for each in tendons]
+    distances = [each.arm(arm, towards) for each in tendons]
     if alike:
         prestress = sum(map(initial_force, elements), 0.0) * arm
         pull = sum((each.stiffness for each in tendons), 0.0) * arm
     else:
-        prestress = sum((initial_force(each) * (arm - towards * each.position) for each in elements), 0.0)
+        prestress = sum((initial_force(each) * each.arm(arm, towards) for each in elements), 0.0)
         pull = sum((each.stiffness * r for each, r in zip(tendons, distances, strict=True)), 0.0)
     stiffness = sum((each.stiffness * r**2 for each, r in zip(tendons, distances, strict=True)), 0.0)
     return Pivot(
@@ -157,9 +158,7 @@ def build_pivot(
         prestress_moment=prestress,
         tendon_stiffness=stiffness,
         axial_stiffness_moment=pull,
-        dissipator_moment=sum(
-            (element_locking_force(each) * abs(arm - towards * each.position) for each in elements), 0.0
-        ),
+        dissipator_moment=sum((element_locking_force(each) * abs(each.arm(arm, towards)) for each in elements), 0.0),
         rocking_stiffness=stiffness - l0r * GRAVITY,
         nominal_overturning_rotation=limit,
         uplift_acceleration=(weight + prestress) / l0r,

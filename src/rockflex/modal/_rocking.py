@@ -26,6 +26,7 @@ from rockflex._html import HtmlTable
 from rockflex._overflow import explaining_overflow
 from rockflex._values import Value, with_changed_fields
 from rockflex.modal._analysis import FloorModes
+from rockflex.modal._attachment import Attachment, YieldingStory
 from rockflex.modal._elements import (
     BaseElement,
     Tendon,
@@ -108,11 +109,13 @@ def checked_eccentricity(modes: dict[str, Array], scalars: dict[str, float], ine
     return e
 
 
-def elements_within_base(
-    elements: tuple[BaseElement, ...], half_width: float, eccentricity: float
+def elements_in_place(
+    elements: tuple[BaseElement, ...], half_width: float, eccentricity: float, floors: FloorModes | None, n_modes: int
 ) -> tuple[BaseElement, ...]:
     limit = half_width + abs(eccentricity)  # on an eccentric base, outriggers may reach as far on the shorter side
     for element in elements:
+        if element.attached:
+            check_floors_of(element, floors, n_modes)
         if abs(element.position) > limit * (1.0 + SUM_TOLERANCE):
             what = "half_width" if eccentricity == 0.0 else "half_width + |eccentricity|"
             raise InputError(
@@ -121,6 +124,46 @@ def elements_within_base(
                 field="elements",
             )
     return elements
+
+
+def check_floors_of(element: Attachment, floors: FloorModes | None, n_modes: int) -> None:
+    """Check that a structure has the floors to which an element is attached; a rigid block has any."""
+    name, field_ = type(element).__name__, "between" if element.between else "height"
+    if n_modes == 0:
+        return
+    if floors is None:
+        raise InputError(
+            f"A {name} with {field_} = {getattr(element, field_)} needs floors, but this structure has none. Give "
+            "RockingProperties the floors (FloorModes), or use a structure with floors, such as a Frame.",
+            field=field_,
+        )
+    count, top = floors.heights.size, float(floors.heights.max())
+    if element.between is not None and max(element.between) > count:
+        raise InputError(
+            f"between must be floors from 0, the base, to {count}, but a {name} is between {element.between}.",
+            field="between",
+        )
+    if element.height is not None and element.height > top * (1.0 + SUM_TOLERANCE):
+        raise InputError(
+            f"height must be at most that of the top, {top:g} m, but a {name} is at {element.height:g} m.",
+            field="height",
+        )
+
+
+def checked_stories(
+    given: Iterable[YieldingStory], floors: FloorModes | None, n_modes: int
+) -> tuple[YieldingStory, ...]:
+    stories = tuple(given) if n_modes else ()
+    for each in stories:
+        floor = checked_instance("stories", each, YieldingStory).floor
+        if floors is None or floor > floors.heights.size:
+            known = "none" if floors is None else f"{floors.heights.size}"
+            raise InputError(
+                f"stories: story {floor} yields, but the structure has {known}. Give RockingProperties the floors "
+                "(FloorModes) with it.",
+                field="stories",
+            )
+    return stories
 
 
 def checked_top_height(floors: FloorModes | None, given: float | None) -> float | None:
@@ -228,10 +271,13 @@ class RockingProperties(HtmlTable, Value):
     base_mass : float or None
         Mass m_0 of the base in kg. Default: `m_tot` minus the effective mass of all modes; None if modes are missing.
     elements : tuple of Tendon, YieldingDissipator, ViscousDamper or FrictionDamper
-        Elements between the base and the ground, at most B + |e| from the axis of the masses.
+        Elements between the base and the ground, at most B + |e| from the axis of the masses, and elements between
+        floors or from a height to the ground, which need `floors`; see `Attachment`.
     eccentricity : float
         e in m, smaller than B in magnitude: distance of the vertical axis of the masses to the right of the middle of
         the base. The pivots are B - e to the right and B + e to the left of this axis.
+    stories : tuple of YieldingStory
+        Stories that yield, which need the `floors`; see `YieldingStories`. None by default.
     leaning_mass : float
         Σ l_i in kg, zero by default: mass that moves with the floors and stands on other columns, which are hinged; see
         `Leaning`. It is in the modes, in L_0^r and in Σ m_i h_i², but not in `m_tot`, so not in M_r.
@@ -268,6 +314,7 @@ class RockingProperties(HtmlTable, Value):
     base_mass: float | None
     eccentricity: float
     leaning_mass: float
+    stories: tuple[YieldingStory, ...]
 
     def __init__(
         self,
@@ -287,6 +334,7 @@ class RockingProperties(HtmlTable, Value):
         base_mass: float | None = None,
         eccentricity: float = 0.0,
         leaning_mass: float = 0.0,
+        stories: Iterable[YieldingStory] = (),
     ) -> None:
         modes = checked_modal_values(omega, effective_mass, effective_height, top_ordinate)
         scalars = checked_rocking_scalars(i_theta, l0r, m_tot, half_width)
@@ -299,11 +347,14 @@ class RockingProperties(HtmlTable, Value):
             zeta=checked_damping_ratios("zeta", zeta, modes["omega"].size),
             translational_inertia=inertia,
             floors=checked_floor_modes(floors, modes["omega"].size),
-            elements=elements_within_base(base_element_tuple(elements), scalars["half_width"], e),
+            elements=elements_in_place(
+                base_element_tuple(elements), scalars["half_width"], e, floors, modes["omega"].size
+            ),
             top_height=checked_top_height(floors, top_height),
             base_mass=checked_base_mass(modes, scalars["m_tot"] + leaning, inertia, base_mass),
             eccentricity=e,
             leaning_mass=leaning,
+            stories=checked_stories(stories, floors, modes["omega"].size),
         )
 
     @property
@@ -379,8 +430,8 @@ class RockingProperties(HtmlTable, Value):
 
     @property
     def prestress(self) -> float:
-        """Sum of the initial forces of the elements in N, those of tendons for example."""
-        return sum(map(initial_force, self.elements), 0.0)
+        """Sum of the initial forces of the elements under the base in N, those of tendons for example."""
+        return sum((initial_force(each) for each in self.elements if not each.attached), 0.0)
 
     @cached_property
     def resting_reaction(self) -> float:
@@ -402,8 +453,8 @@ class RockingProperties(HtmlTable, Value):
 
     @property
     def axial_stiffness(self) -> float:
-        """Sum of the tendon stiffnesses in N/m: stiffness against lifting the base without rotation."""
-        return sum((each.stiffness for each in self.tendons), 0.0)
+        """Sum of the stiffnesses of tendons under the base in N/m: against lifting it without rotation."""
+        return sum((each.stiffness for each in self.tendons if not each.attached), 0.0)
 
     @property
     def tendon_stiffness(self) -> float:
@@ -449,7 +500,7 @@ class RockingProperties(HtmlTable, Value):
         turn = checked_positive("rotation", checked_magnitude("rotation", rotation, 0.5 * math.pi, "rad"), "rad")
         found: list[float] = []
         for pivot in self.pivots:
-            arms = [(each, pivot.arm - pivot.side * each.position) for each in self.elements]
+            arms = [(each, each.arm(pivot.arm, pivot.side)) for each in self.elements if not each.attached]
             moments = [(closes(each), element_pushover_force(each, r * turn) * r) for each, r in arms]
             locked = sum((abs(moment) for helps, moment in moments if not helps), 0.0)
             closing = pivot.weight_moment + sum((moment for helps, moment in moments if helps), 0.0)
@@ -502,4 +553,5 @@ class RockingProperties(HtmlTable, Value):
             top_ordinate=self.top_ordinate[:k],
             zeta=self.zeta[:k],
             floors=None if self.floors is None or k == 0 else self.floors.truncated(k),
+            stories=self.stories if k else (),
         )

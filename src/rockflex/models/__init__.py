@@ -16,6 +16,7 @@ from rockflex.models._elements import (
     arm_of,
     element_force_sums,
     elements_of,
+    rate_of,
     stiffness_of_fuses,
 )
 from rockflex.models._impact import (
@@ -38,8 +39,9 @@ from rockflex.models._kept import (
 from rockflex.models._label import Model, RockingModel, parse_model
 from rockflex.models._landing import GainsEnergyError
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout
+from rockflex.models._linear_model import LinearModel, horizontal_reaction
 from rockflex.models._linear_system import ElementBase, element_base, linear_system_of
-from rockflex.models._modal_model import LEVEL, LinearModel, Pose, horizontal_reaction
+from rockflex.models._modal_model import LEVEL, Pose
 from rockflex.models._named import (
     element_moves,
     element_speeds,
@@ -48,6 +50,7 @@ from rockflex.models._named import (
     quantities,
     rotation_by_side,
     rotation_rate_by_side,
+    tracked_elements,
 )
 from rockflex.models._nonlinear import NonlinearModel
 from rockflex.models._nonlinear_system import key_of, nonlinear_system, with_marks
@@ -140,6 +143,7 @@ __all__ = [
     "plastic_stretches",
     "printed_reactions",
     "quantities",
+    "rate_of",
     "rates_of",
     "reactions",
     "rotation_by_side",
@@ -150,6 +154,7 @@ __all__ = [
     "stiffness_of_fuses",
     "stored_energies",
     "system_of",
+    "tracked_elements",
     "under_more_gravity",
     "values_of",
     "with_marks",

@@ -1,4 +1,4 @@
-"""The elements between base and ground: tendons, fuses, viscous and friction dampers, each with its branches."""
+"""Elements of a model: tendons, fuses, viscous and friction dampers, and stories that yield, each with its branches."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -35,11 +35,11 @@ class Stop(NamedTuple):
 
 
 class Element(Protocol):
-    """An element that is stretched by δ = r |θ| at the distance r from the pivot, and pulls the base down."""
+    """An element under the base, stretched by δ = r |θ| at the distance r from the pivot, or attached to floors."""
 
     @property
-    def position(self) -> float:
-        """Distance from the axis of the masses in m, positive to the right."""
+    def position(self) -> float | None:
+        """Distance from the axis of the masses in m, positive to the right; None if attached to floors."""
         ...
 
     @property
@@ -180,7 +180,7 @@ class Spring(WithoutMemory):
 
     stiffness: float
     initial_force: float
-    position: float
+    position: float | None
 
     @property
     def branches(self) -> tuple[int, ...]:
@@ -213,7 +213,7 @@ class Dashpot(WithoutMemory):
     """A viscous damper: F = c δ'."""
 
     coefficient: float
-    position: float
+    position: float | None
 
     def pull(self, branch: int) -> Pull:
         del branch
@@ -235,7 +235,7 @@ class Bar:
     stiffness: float
     yield_force: float
     ratio: float
-    position: float
+    position: float | None
     stretched: float = 0.0  # e_0
     pulls_only: bool = False
     rupture: float = np.inf  # elongation δ at which it breaks
@@ -341,11 +341,25 @@ class Bar:
 
 
 @dataclass(frozen=True)
+class Story(Bar):
+    """A story that yields, less its elastic part k δ, which belongs to the modes."""
+
+    def pull(self, branch: int) -> Pull:
+        whole = super().pull(branch)
+        return whole._replace(stiffness=whole.stiffness - self.stiffness)
+
+    def stored_energy(self, elongation: Array, force: Array, plastic: Array) -> Array:
+        """What the whole story stores, less ½ k δ²."""
+        elastic = self.stiffness * elongation
+        return super().stored_energy(elongation, force + elastic, plastic) - 0.5 * elastic * elongation
+
+
+@dataclass(frozen=True)
 class Slider(Unbreakable):
     """A friction damper: F = ± F_0 while it slides, less while it sticks. It remembers its direction, 1, 0 or -1."""
 
     force: float
-    position: float
+    position: float | None
 
     @property
     def n_internal(self) -> int:
@@ -412,8 +426,8 @@ class LawElement:
         return {name: place for place, name in enumerate(self.law.law)}
 
     @property
-    def position(self) -> float:
-        return self.law.position
+    def position(self) -> float | None:
+        return None if self.law.attached else self.law.position
 
     @property
     def n_internal(self) -> int:

@@ -1,4 +1,4 @@
-"""The elements between the base and the ground at the states of a history: elongations, tensions, stored energies."""
+"""The elements at the states of a history: tensions, plastic stretches and energies."""
 
 import numpy as np
 

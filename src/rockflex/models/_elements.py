@@ -9,12 +9,14 @@ from rockflex._constants import GRAVITY
 from rockflex.modal import (
     BaseElement,
     ElementLaw,
+    FloorModes,
     FrictionDamper,
     RockingProperties,
     ViscousDamper,
     YieldingDissipator,
 )
-from rockflex.models._element import HELD, Bar, Dashpot, Element, LawElement, Slider, Spring, Stop
+from rockflex.models._element import HELD, Bar, Dashpot, Element, LawElement, Slider, Spring, Stop, Story
+from rockflex.models._layout import StateLayout
 from rockflex.models._phase import BaseEquations, Key
 
 CLOSED, RIGHT, LEFT = 0, 1, -1  # branches of the base: in contact, or rotating about one pivot; the sign of θ
@@ -41,8 +43,8 @@ def weight_equations(
 
 
 def arm_of(properties: RockingProperties, element: Element, side: int) -> float:
-    """Return the distance r of an element from a pivot in m; negative beyond the pivot."""
-    return properties.pivot(side).arm - side * element.position
+    """Return the distance r of an element from a pivot in m; negative beyond the pivot, zero if attached to floors."""
+    return 0.0 if element.position is None else properties.pivot(side).arm - side * element.position
 
 
 def first_key(properties: RockingProperties, elements: tuple[Element, ...], side: int) -> Key:
@@ -51,9 +53,15 @@ def first_key(properties: RockingProperties, elements: tuple[Element, ...], side
 
 
 def set_off(properties: RockingProperties, elements: tuple[Element, ...], key: Key, turn: int) -> Key:
-    """Return the branches as the base begins to rotate, with the sign `turn` of θ'; 0 as it stops."""
+    """Return the branches as the base begins to rotate, with the sign `turn` of θ'; 0 as it stops.
+
+    Attached elements go on as they were.
+    """
     side, found = key[0], list[int]()
     for each, branch in zip(elements, key[1:], strict=True):
+        if each.position is None:
+            found.append(branch)
+            continue
         reach = side * turn * arm_of(properties, each, side) if side != CLOSED else 0.0
         stopped = each.stopped(branch)
         found.append(each.moving(stopped, int(np.sign(reach))) if turn else stopped)
@@ -159,29 +167,76 @@ def stiffness_of_fuses(properties: RockingProperties, side: int) -> float:
         stiffest = each.stiffness if isinstance(each, YieldingDissipator) else 0.0
         if isinstance(each, ElementLaw):
             stiffest = max(branch.stiffness for branch in each.law.values())
-        found += stiffest * (arm - side * each.position) ** 2
+        found += stiffest * each.arm(arm, side) ** 2
     return found
 
 
 def elements_of(properties: RockingProperties) -> tuple[Element, ...]:
-    """Return the elements of a structure, in its order."""
-    return tuple(_element_of(each) for each in properties.elements)
+    """Return the elements of a structure, in its order, and then its stories that yield."""
+    stories = (Story(each.stiffness, each.yield_force, each.post_yield_ratio, None) for each in properties.stories)
+    return (*map(_element_of, properties.elements), *stories)
 
 
 def _element_of(given: BaseElement) -> Element:
     if isinstance(given, ElementLaw):
         return LawElement(given)
+    position = None if given.attached else given.position
     if isinstance(given, ViscousDamper):
-        return Dashpot(given.coefficient, given.position)
+        return Dashpot(given.coefficient, position)
     if isinstance(given, FrictionDamper):
         # Without force there is nothing to stick or slide.
-        return Slider(given.force, given.position) if given.force > 0.0 else Dashpot(0.0, given.position)
+        return Slider(given.force, position) if given.force > 0.0 else Dashpot(0.0, position)
     rupture = np.inf if given.rupture_elongation is None else given.rupture_elongation
     if isinstance(given, YieldingDissipator):
         return Bar(
-            given.stiffness, given.yield_force, given.post_yield_ratio, given.position, 0.0, given.tension_only, rupture
+            given.stiffness, given.yield_force, given.post_yield_ratio, position, 0.0, given.tension_only, rupture
         )
     if given.post_yield_ratio is None or given.yield_force is None:
-        return Spring(given.stiffness, given.initial_force, given.position)
+        return Spring(given.stiffness, given.initial_force, position)
     stretched = given.initial_force / given.stiffness
-    return Bar(given.stiffness, given.yield_force, given.post_yield_ratio, given.position, stretched, True, rupture)
+    return Bar(given.stiffness, given.yield_force, given.post_yield_ratio, position, stretched, True, rupture)
+
+
+def attached_rows(properties: RockingProperties, layout: StateLayout) -> dict[int, Array]:
+    """Return the elongations of attached elements and stories in m by their places, as rows, shape (C,)."""
+    found, stories = dict[int, Array](), len(properties.elements)
+    places = [k for k, each in enumerate(properties.elements) if each.attached]
+    floors = properties.floors
+    n = layout.modes
+    shapes = np.zeros((1, n)) if floors is None else np.vstack((np.zeros(n), floors.displacement))
+    for place in [*places, *range(stories, stories + len(properties.stories))]:
+        row = np.zeros(layout.columns)
+        if place >= stories:
+            floor = properties.stories[place - stories].floor
+            row[:n] = shapes[floor] - shapes[floor - 1]
+        else:
+            row[:] = _row_of(properties.elements[place], layout, shapes, floors)
+        found[place] = row
+    return found
+
+
+def _row_of(element: BaseElement, layout: StateLayout, shapes: Array, floors: FloorModes | None) -> Array:
+    row = np.zeros(layout.columns)
+    if element.between is not None:
+        lower, upper = element.between
+        if layout.modes:
+            row[: layout.modes] = element.cosine * (shapes[upper] - shapes[lower])
+        return row
+    assert element.height is not None
+    if floors is not None and layout.modes:
+        order = np.argsort(floors.heights)
+        heights = np.append(0.0, floors.heights[order])
+        shares = [np.interp(element.height, heights, shapes[np.append(0, 1 + order), k]) for k in range(layout.modes)]
+        row[: layout.modes] = element.cosine * np.array(shares)
+    row[layout.rotation] = element.cosine * element.height
+    if layout.slip >= 0:
+        row[layout.slip] = element.cosine
+    return row
+
+
+def rate_of(row: Array, layout: StateLayout) -> Array:
+    """Return the rate of a row over displacements, the rotation, the slip and the heave."""
+    found, n = np.zeros_like(row), layout.modes
+    found[n : 2 * n] = row[:n]
+    found[layout.rotation + 1 : layout.core : 2] = row[layout.rotation : layout.core : 2]
+    return found

@@ -7,7 +7,8 @@ from rockflex._errors import InputError
 from rockflex.modal import FrictionDamper, Ground, RockingProperties, Springs
 from rockflex.models._elements import elements_of
 from rockflex.models._impact import ImpactLaw, VVELSimplified
-from rockflex.models._modal_model import LinearModel, Pose
+from rockflex.models._linear_model import LinearModel
+from rockflex.models._modal_model import Pose
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._spring_model import SpringModel
 
@@ -58,7 +59,8 @@ def pose_at_rest(label: str, properties: RockingProperties, springs: Springs) ->
         If it topples.
     """
     p = properties
-    pulls = [(each.position, each.pull(each.branches[0]).force) for each in elements_of(p)]
+    under = [(each.position, each.pull(each.branches[0]).force) for each in elements_of(p)]
+    pulls = [(position, force) for position, force in under if position is not None]
     forces = np.array([sum(x * force for x, force in pulls), -p.m_tot * GRAVITY - sum(force for _, force in pulls)])
     pressed = np.ones(springs.n, dtype=bool)
     for _ in range(springs.n):

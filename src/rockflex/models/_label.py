@@ -10,11 +10,11 @@ import numpy as np
 from rockflex._checks import checked_whole_number, is_one_of
 from rockflex._errors import InputError
 from rockflex._shown import number_with_noun, shown
-from rockflex.modal import FrictionDamper, Ground, RockingProperties
+from rockflex.modal import FrictionDamper, Ground, RockingProperties, initial_force
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._ground import check_base, model_on_ground
 from rockflex.models._impact import ImpactLaw, VVELComplete, VVELSimplified, housner
-from rockflex.models._modal_model import LinearModel
+from rockflex.models._linear_model import LinearModel
 from rockflex.models._nonlinear import NonlinearModel
 
 RockingModel = LinearModel | NonlinearModel
@@ -163,6 +163,7 @@ class Model:
         self._check_missing_mass(kept)
         self._check_leaning(kept)
         self._check_friction(kept)
+        self._check_attached(kept, bouc_wen, ground)
         label = self._check_yielding(kept, bouc_wen)
         if ground is not None and not ground.rigid:
             self._check_ground(label, ground, impact, bouc_wen)
@@ -198,6 +199,29 @@ class Model:
                 "YieldingDissipator with yield_force = F_0 and a stiffness far above that of the structure.",
                 field="elements",
             )
+
+    def _check_attached(self, kept: RockingProperties, bouc_wen: BoucWen | None, ground: Ground | None) -> None:
+        attached = [each for each in kept.elements if each.attached]
+        what, field_ = ("elements between floors or from a height", "elements") if attached else ("", "stories")
+        what = what or ("stories that yield" if kept.stories else "")
+        if what and (self.complete or bouc_wen is not None):
+            simple = replace(self, complete=False, closure=None, yields=False).label
+            raise InputError(f"{self.label} does not take {what}. Use {simple}.", field=field_)
+        for each in attached:
+            if isinstance(each, FrictionDamper) and each.force > 0.0:
+                raise InputError(
+                    f"No model has a friction damper that acts at {each.where}, away from the base. Use a "
+                    "YieldingDissipator with yield_force = F_0 and a stiffness far above that of the structure.",
+                    field="elements",
+                )
+        if attached and ground is not None and ground.springs is not None:
+            pull = [each.cosine * (each.height or 0.0) * initial_force(each) for each in attached]
+            if abs(sum(pull)) > _SAME * sum(map(abs, pull)):
+                raise InputError(
+                    "On springs the initial forces of ties from a height must balance one another, but together they "
+                    f"turn the base with {sum(pull):.4g} N m. Give ties to both sides, or no initial force.",
+                    field="elements",
+                )
 
     def _check_ground(self, label: str, ground: Ground, impact: ImpactLaw | None, bouc_wen: BoucWen | None) -> None:
         what = "Springs need" if ground.springs is not None else "Friction needs"

@@ -3,11 +3,18 @@
 from functools import lru_cache
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rockflex._arrays import Array
 
 # Columns that precede the state vector in a history, and their number; GROUND and RISE are the horizontal and the
 # vertical acceleration of the ground.
 TIME, SIDE, GROUND, RISE, HEADER = 0, 1, 2, 3, 4
+
+# Branches of many elements are kept in the state as a few numbers.
+BASE, DIGITS = 8, 17  # a double holds 17 octal digits exactly
+SHIFT = 1  # the lowest branch is -1
 
 
 class StateLayout(NamedTuple):
@@ -109,3 +116,21 @@ def layout_of(
     moving = size if n_internal else core + 1
     swept = core + 4 if viscous else -1
     return StateLayout(modes, *base, core, core + 1, core + 2, core + 3, swept, memory, n_internal, moving, size)
+
+
+def codes_for(size: int) -> int:
+    """Return how many numbers hold the branches of `size` elements."""
+    return -(-size // DIGITS)
+
+
+def code_of(branches: tuple[int, ...]) -> tuple[float, ...]:
+    """Return the numbers that stand for branches from -1 to 6."""
+    parts = (branches[first : first + DIGITS] for first in range(0, len(branches), DIGITS))
+    return tuple(float(sum((branch + SHIFT) * BASE**k for k, branch in enumerate(part))) for part in parts)
+
+
+def decoded(codes: Array, size: int) -> NDArray[np.int64]:
+    """Return the branches of `size` elements from their numbers, (n, codes_for(size)), as (n, size)."""
+    whole = codes.astype(np.int64)
+    columns = [whole[:, k // DIGITS] // BASE ** (k % DIGITS) % BASE - SHIFT for k in range(size)]
+    return np.array(columns, dtype=np.int64).reshape(size, len(codes)).T

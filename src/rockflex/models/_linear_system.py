@@ -19,19 +19,21 @@ from rockflex.models._elements import (
     internal_count,
     internal_places,
     is_in_reach,
+    rate_of,
     set_off,
     turning_way,
 )
 from rockflex.models._impact import Restitution, VVELSimplified
 from rockflex.models._label import RockingModel
 from rockflex.models._landing import landing_of, sided, turn_by_rows
-from rockflex.models._modal_model import horizontal_reaction
+from rockflex.models._linear_model import horizontal_reaction
 from rockflex.models._phase import Key
 from rockflex.models._quantities import Quantities, rows_of
 from rockflex.models._sliding import LOST, STICK, SlidingModel
-from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, SpringModel, code_of
+from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, SpringModel
 
 TINY = 1e-300
+LEAST_ELONGATION = 1e-6  # m
 MORE = 1e6  # m/s², of gravity: the terms that it adds outweigh the rounding of all others
 
 
@@ -187,11 +189,11 @@ class ElementBase:
 
     def stretch(self, place: int, key: Key) -> Array:
         """The elongation of an element: a row."""
-        raise NotImplementedError
+        return self.model.stretch(place, key[0])[self.columns]
 
     def stretching(self, place: int, key: Key) -> Array:
         """The rate of the elongation of an element: a row."""
-        raise NotImplementedError
+        return rate_of(self.model.stretch(place, key[0]), self.model.layout)[self.columns]
 
     def events(self, key: Key) -> list[Event]:
         """What ends a phase."""
@@ -262,14 +264,32 @@ class ElementBase:
             last = found[:, model.layout.memory + index + each.n_internal - 1]
             last[:] = np.where(np.isnan(marks), last, marks)
         if model.layout.n_internal > internal_count(model.elements):
-            more = np.array([self.marks(key) for key in keys])[places]
+            more = np.array([model.marks(key) for key in keys])[places]
             found[:, model.layout.memory + internal_count(model.elements) :] = more
         return found
 
-    def marks(self, key: Key) -> tuple[float, ...]:
-        """The internal variables of the model that tell the branches of the base."""
-        del key
-        return ()
+    def element_events(self, place: int, key: Key) -> list[Event]:
+        """An element that may be stretched and shortened in every phase takes another branch."""
+        model, found = self.model, list[Event]()
+        branches = model.element_key(key)[1:]
+        each, branch = model.elements[place], branches[place]
+
+        def other(branch: int) -> Key:
+            return model.with_branches(key, (*branches[:place], branch, *branches[place + 1 :]))
+
+        for row, following, scale in self.stops(place, key, branch):
+            jump = self.begun(place, following)
+            found.append(self.event("change", row, other(following), scale or self.least_elongation, jump))
+        way = each.direction(branch)
+        if way:
+            row = way * self.stretching(place, key)
+            found.append(self.event("turn", row, other(each.stopped(branch)), 1.0))
+        return found
+
+    @property
+    def least_elongation(self) -> float:
+        """An elongation in m that is small, for conditions without a scale of their own."""
+        return LEAST_ELONGATION
 
 
 @dataclass(frozen=True, eq=False)
@@ -285,17 +305,6 @@ class OnRigidGround(ElementBase):
         """The branches of base and elements, with those of the slip."""
         return (*base, key[-1]) if self.slides else base
 
-    def stretch(self, place: int, key: Key) -> Array:
-        """The elongation of an element, r |θ|: a row."""
-        return self._reach(place, key) * self.unit(self.model.layout.rotation)
-
-    def stretching(self, place: int, key: Key) -> Array:
-        """The rate of the elongation of an element, r |θ|': a row."""
-        return self._reach(place, key) * self.unit(self.model.layout.spin)
-
-    def _reach(self, place: int, key: Key) -> float:
-        return key[0] * arm_of(self.model.properties, self.model.elements[place], key[0]) if key[0] != CLOSED else 0.0
-
     def events(self, key: Key) -> list[Event]:
         """What ends a phase: uplift, or the release of a held base; impact, overturning, elements; and the slip."""
         model = self.model
@@ -304,6 +313,8 @@ class OnRigidGround(ElementBase):
             found += (self.landing(key), self.overturning(key), *self.changes(key), *self.turning(key))
         elif model.lifts:
             found += self.departures(key)
+        for place in model.attached_places:
+            found += self.element_events(place, key)
         return found + (self.slip(key) if self.slides else [])
 
     def departures(self, key: Key) -> list[Event]:
@@ -313,7 +324,7 @@ class OnRigidGround(ElementBase):
         """
         model, base = self.model, self.model.element_key(key)
         p, side = model.properties, base[0]
-        moment = model.overturning_moment()
+        moment = model.overturning_moment(key)
         if self.slides:
             moment = (
                 moment + (p.l0r - float(np.sum(p.effective_mass * p.effective_height))) * model.accelerations(key)[-1]
@@ -415,7 +426,7 @@ class OnRigidGround(ElementBase):
         before, slip, place = key[:-1], key[-1], model.layout.slip + 1
         pressure, weight = model.pressure(key), model.properties.m_tot * model.gravity
         if slip == STICK:
-            held = horizontal_reaction(model, model.accelerations(key))
+            held = horizontal_reaction(model, key)
             # The ground pushes to the right on a base that would slide to the left.
             rows = {-1: model.friction * pressure - held, 1: model.friction * pressure + held}
             return [
@@ -429,26 +440,12 @@ class OnRigidGround(ElementBase):
             return [*found, self.event("change", self.taken(-pressure, key), (*before, way), weight)]
         return [*found, self.event("change", self.taken(pressure, key), (*before, LOST * way), weight)]
 
-    def marks(self, key: Key) -> tuple[float, ...]:
-        """The branch of the slip."""
-        return (float(key[-1]),)
-
 
 @dataclass(frozen=True, eq=False)
 class OnSprings(ElementBase):
     """A base on springs that cannot pull: it rotates, heaves and may slide."""
 
     model: SpringModel  # pyright: ignore[reportIncompatibleVariableOverride]
-
-    def stretch(self, place: int, key: Key) -> Array:
-        """The elongation of an element since the base was at rest: a row."""
-        del key
-        return self.model.stretch(self.model.elements[place])[self.columns]
-
-    def stretching(self, place: int, key: Key) -> Array:
-        """The rate of the elongation of an element: a row."""
-        del key
-        return self.model.risen(self.model.elements[place].position)[1][self.columns]
 
     @cached_property
     def heave_scale(self) -> float:
@@ -467,7 +464,8 @@ class OnSprings(ElementBase):
         for row in tips:
             row[-1] = QUARTER_TURN
         found = [self.event("overturning", row, None, QUARTER_TURN) for row in tips]
-        return [*self.of_springs(key), *self.of_slip(key), *self.of_elements(key), *found]
+        of_elements = [each for place in range(len(self.model.elements)) for each in self.element_events(place, key)]
+        return [*self.of_springs(key), *self.of_slip(key), *of_elements, *found]
 
     def of_springs(self, key: Key) -> list[Event]:
         """A spring unloads, the base leaves it, or comes back to it."""
@@ -495,30 +493,17 @@ class OnSprings(ElementBase):
         if key[place] != STICK:
             row = key[place] * self.unit(rate)
             return [self.event("stick", row, _with(key, place, STICK), 1.0, self.without(rate))]
-        held, grip = horizontal_reaction(model, model.accelerations(key)), model.grip(key)
+        held, grip = horizontal_reaction(model, key), model.grip(key)
         scale = float(model.friction.max()) * self.weight
         # The ground pushes to the right on a base that would slide to the left.
         return [
             self.event("slip", self.taken(grip + way * held, key), _with(key, place, way), scale) for way in (-1, 1)
         ]
 
-    def of_elements(self, key: Key) -> list[Event]:
-        """An element takes another branch."""
-        model, found = self.model, list[Event]()
-        for k, each in enumerate(model.elements):
-            place = model.springs.n + 2 + k
-            for row, branch, scale in self.stops(k, key, key[place]):
-                jump = self.begun(k, branch)
-                found.append(self.event("change", row, _with(key, place, branch), scale or self.heave_scale, jump))
-            way = each.direction(key[place])
-            if way:
-                row = way * self.stretching(k, key)
-                found.append(self.event("turn", row, _with(key, place, each.stopped(key[place])), 1.0))
-        return found
-
-    def marks(self, key: Key) -> tuple[float, ...]:
-        """The branches, as codes."""
-        return code_of(key[1:])
+    @property
+    def least_elongation(self) -> float:
+        """The settlement of the springs under the weight, m."""
+        return self.heave_scale
 
 
 def _with(key: Key, place: int, branch: int) -> Key:

@@ -1,7 +1,6 @@
 """What all models with N modes have in common: elements, and equations of motion as rows; and the simplified models."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -10,7 +9,6 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._constants import GRAVITY
-from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.modal import RockingProperties, Springs
 from rockflex.models._bouc_wen import BoucWen
@@ -20,20 +18,19 @@ from rockflex.models._elements import (
     LEFT,
     RIGHT,
     arm_of,
+    attached_rows,
     base_equations_of,
     elements_of,
     first_key,
     internal_count,
     internal_places,
     is_held,
+    rate_of,
     set_off,
 )
-from rockflex.models._impact import ImpactLaw, VVELSimplified
-from rockflex.models._layout import HEADER, SIDE, TIME, StateLayout, layout_of
+from rockflex.models._impact import ImpactLaw
+from rockflex.models._layout import HEADER, SIDE, TIME, StateLayout, code_of, codes_for, decoded, layout_of
 from rockflex.models._phase import BaseEquations, BorderedSystem, Key
-
-JAMMED = 1e-12  # relative: determinant below which the base has no inertia against a motion
-
 
 MAX_PHASES = 1000  # whose equations of motion are kept
 
@@ -95,45 +92,83 @@ class ModalModel(Value):
             self.properties.n_modes,
             integrated=self.integrated,
             viscous=any(isinstance(each, Dashpot) for each in self.elements),
-            n_internal=internal_count(self.elements),
+            n_internal=internal_count(self.elements) + codes_for(len(self.attached_places)),
         )
 
     @cached_property
     def elements(self) -> tuple[Element, ...]:
-        """The elements between the base and the ground."""
+        """The elements under the base and those attached to floors, and then the stories that yield."""
         return elements_of(self.properties)
+
+    @cached_property
+    def attached_places(self) -> tuple[int, ...]:
+        """The places of attached elements and stories among the elements."""
+        return tuple(place for place, each in enumerate(self.elements) if each.position is None)
+
+    @cached_property
+    def attached(self) -> dict[int, Array]:
+        """The elongation in m of each attached element and story, by its place: a row, shape (C,)."""
+        return attached_rows(self.properties, self.layout)
 
     def start(self, side: int) -> Key:
         """Return the branches on which a run starts in contact, or as the base begins to rotate about a pivot."""
         return first_key(self.properties, self.elements, side)
 
     def initial(self, state: Array | None) -> tuple[Key, Array]:
-        """Return the branches and the state at the start of a run, from [D.., D'.., θ, θ'] or at rest."""
+        """Return the branches and the state at the start of a run, from [D.., D'.., θ, θ'] or at rest.
+
+        Elements as built are brought to this state, and may yield or break on the way. At rest the structure is bent by
+        the initial forces of attached elements, as far as these do not balance.
+        """
         layout = self.layout
         start = np.zeros(layout.size)
-        if state is not None:
+        if state is None:
+            start[: layout.modes] = self.bent_at_rest(np.zeros(len(self.elements)))
+        else:
             start[: state.size] = state
-        key, memory = self.begin(float(start[layout.rotation]), float(start[layout.spin]))
-        start[layout.memory : layout.memory + layout.n_internal] = memory
-        return key, start
-
-    def begin(self, rotation: float, spin: float) -> tuple[Key, Array]:
-        """Return the branches and the internal variables at the start of a run with a rotation in rad and θ' in rad/s.
-
-        Elements as built are brought to the rotation, and may yield or break on the way.
-        """
+        rotation, spin = float(start[layout.rotation]), float(start[layout.spin])
         outward = rotation or spin
         side = (outward > 0.0) - (outward < 0.0)
         kept, branches = list[float](), list[int]()
-        for each in self.elements:
-            elongation = np.zeros(1) if side == CLOSED else self.elongations(each, side, np.array([abs(rotation)]))
-            branch, remembered = each.brought(float(elongation[0]))
+        moving = np.append(start[: layout.moving], (0.0, 1.0))
+        for place, each in enumerate(self.elements):
+            if place in self.attached:
+                elongation = float(self.attached[place] @ moving)
+            else:
+                elongation = 0.0 if side == CLOSED else float(self.elongations(each, side, np.array(abs(rotation))))
+            branch, remembered = each.brought(elongation)
             branches.append(branch)
             kept += remembered
         key = (side, *branches)
         if side != CLOSED and spin != 0.0:
             key = set_off(self.properties, self.elements, key, 1 if spin > 0.0 else -1)
-        return key, np.array(kept)
+        start[layout.memory : layout.memory + len(kept)] = kept
+        key = self.from_rest(key)
+        start[layout.memory + len(kept) :] = self.marks(key)
+        return key, start
+
+    def bent_at_rest(self, plastic: Array) -> Array:
+        """Return D of every mode in m, shape (N,), at rest in contact with plastic stretches of the elements, (E,).
+
+        Everything is elastic but for elements that are broken, whose plastic stretch is NaN.
+        """
+        p, forces = self.properties, np.zeros(self.properties.n_modes)
+        stiffness = np.diag(p.effective_mass * p.omega**2)
+        for place, row in self.attached.items():
+            each, r = self.elements[place], row[: p.n_modes]
+            if not np.isnan(plastic[place]):
+                pull = each.pull(each.branches[0])
+                stiffness += pull.stiffness * np.outer(r, r)
+                forces -= r * (pull.force + pull.recall * plastic[place])
+        return np.asarray(np.linalg.solve(stiffness, forces), dtype=float) if forces.any() else forces
+
+    def from_rest(self, key: Key) -> Key:
+        """Return the key of a base that does not slip, from its branches and those of the elements."""
+        return key
+
+    def marks(self, key: Key) -> tuple[float, ...]:
+        """Return the last internal variables of the state, which tell the branches of attached elements."""
+        return code_of(tuple(key[1 + place] for place in self.attached_places))
 
     def element_key(self, key: Key) -> Key:
         """Return the branches of the base and of the elements, without those that a kind of ground adds."""
@@ -148,7 +183,13 @@ class ModalModel(Value):
         branches = np.empty((side.size, 1 + len(self.elements)), dtype=np.int64)
         branches[:, 0] = side
         known = internal_places(self.elements)
+        first = HEADER + self.layout.memory + internal_count(self.elements)
+        codes = states[:, first : first + codes_for(len(self.attached_places))]
+        attached = dict(zip(self.attached_places, decoded(codes, len(self.attached_places)).T, strict=True))
         for place, each in enumerate(self.elements):
+            if place in attached:
+                branches[:, 1 + place] = attached[place]
+                continue
             right, left = (self.elongations(each, which, np.abs(rotation)) for which in (RIGHT, LEFT))
             elongation = np.where(side < 0.0, left, right)
             first = HEADER + self.layout.memory + known.get(place, 0)
@@ -176,10 +217,65 @@ class ModalModel(Value):
         """Return δ of every element at the states of a history in m, shape (n, E).
 
         That is r |θ|, in complete models 2 r sin(|θ|/2); on springs how far the base has risen there since it was at
-        rest.
+        rest; and for attached elements as in `Attachment`.
         """
         rotation = self.layout.of(states, self.layout.rotation)
-        return self.arms(rotation) * self.stretch_per_arm(np.abs(rotation))[:, None]
+        return self._with_attached(states, self.arms(rotation) * self.stretch_per_arm(np.abs(rotation))[:, None])
+
+    def _with_attached(self, states: Array, elongations: Array) -> Array:
+        """Return elongations, shape (n, E), with those of attached elements."""
+        moving = states[:, HEADER : HEADER + self.layout.moving]
+        for place, row in self.attached.items():
+            elongations[:, place] = moving @ row[:-2] + row[-1]
+        return elongations
+
+    def stretch(self, place: int, side: int) -> Array:
+        """Return the elongation of an element in m, for small rotations: a row, shape (C,)."""
+        if place in self.attached:
+            return self.attached[place].copy()
+        row = np.zeros(self.layout.columns)
+        if side != CLOSED:
+            row[self.layout.rotation] = side * arm_of(self.properties, self.elements[place], side)
+        return row
+
+    def tension(self, place: int, key: Key) -> Array:
+        """Return the tension of an element in a phase in N, for small rotations: a row, shape (C,)."""
+        each, stretch = self.elements[place], self.stretch(place, key[0])
+        pull, known = each.pull(self.element_key(key)[1 + place]), internal_places(self.elements)
+        row = pull.stiffness * stretch + pull.damping * rate_of(stretch, self.layout)
+        row[-1] += pull.force
+        if place in known:
+            row[self.layout.memory + known[place]] += pull.recall
+        return row
+
+    def attached_forces(self, key: Key, *, stories_only: bool = False) -> tuple[Array, Array]:
+        """Return what attached elements add in a phase: rows.
+
+        Returns
+        -------
+        accelerations : ndarray, shape (N, C)
+            Of the modes in m/s², -r F/m* with the elongation r of an element per unit of D.
+        forces : ndarray, shape (b, C)
+            On the degrees of freedom of the base.
+        """
+        layout, p = self.layout, self.properties
+        accelerations, forces = np.zeros((p.n_modes, layout.columns)), np.zeros((layout.freedoms, layout.columns))
+        base = layout.rotation + 2 * np.arange(layout.freedoms)
+        for place, row in self.attached.items():
+            if stories_only and place < len(p.elements):
+                continue
+            tension = self.tension(place, key)
+            accelerations -= np.outer(row[: p.n_modes] / p.effective_mass, tension)
+            forces -= np.outer(row[base], tension)
+        return accelerations, forces
+
+    def ties(self, key: Key) -> Array:
+        """Return the horizontal force of the ground on the base that ties from a height demand in N: a row, (C,)."""
+        row = np.zeros(self.layout.columns)
+        for place, each in enumerate(self.properties.elements):
+            if each.height is not None:
+                row += each.cosine * self.tension(place, key)
+        return row
 
     def uplifted(self, states: Array) -> Bools:
         """Return whether the base is off the ground, on springs whether an edge has left its spring, shape (n,)."""
@@ -199,7 +295,8 @@ class ModalModel(Value):
         spin, rotation = (self.layout.of(states, place) for place in (self.layout.spin, self.layout.rotation))
         time, side = states[:, TIME], states[:, SIDE]
         landed = (time[1:] == time[:-1]) & (side[:-1] != 0.0) & (rotation[:-1] == 0.0)
-        return landed & ((side[1:] != side[:-1]) | (spin[1:] != spin[:-1]))
+        # A base that bounces turns back; in an event of an element at the same instant rounding may change θ'.
+        return landed & ((side[1:] != side[:-1]) | (spin[1:] * spin[:-1] < 0.0))
 
     def stayed_uplifted(self, largest: float, final: Array) -> bool:  # noqa: ARG002
         """Return whether the base of a run without uplift and impact was off the ground all the time.
@@ -273,7 +370,7 @@ class ModalModel(Value):
             stiffness=equations.stiffness,
             constant=equations.constant,
             drive=equations.ground + leverage.sum(axis=1) if free else equations.ground,
-            recall=equations.recall if free else np.zeros((1, self.layout.n_internal)),
+            recall=equations.recall if free else np.zeros((1, internal_count(self.elements))),
             freed=np.array([free]),
         )
 
@@ -295,13 +392,27 @@ class ModalModel(Value):
         rows.setflags(write=False)
         return rows
 
-    def overturning_moment(self) -> Array:
-        """Return the overturning moment in contact (left-hand side of Eq. 24 or 16) in N m: a row, shape (C,)."""
-        p = self.properties
-        row = self._moment.copy()
+    def restoring_in(self, key: Key) -> Array:
+        """Return the restoring accelerations in a phase, with those of stories that yield: rows, shape (N, C)."""
+        if not self.properties.stories:
+            return self.restoring
+        return self.restoring - self.attached_forces(key, stories_only=True)[0]
+
+    def overturning_moment(self, key: Key) -> Array:
+        """Return the overturning moment of a phase (left-hand side of Eq. 24 or 16) in N m: a row, shape (C,).
+
+        That is of a base that does not rotate; attached elements are included.
+        """
+        row = self._moment_in(key).copy()
         if self.complete:
-            row[: p.n_modes] -= p.effective_mass * self.gravity
+            row[: self.properties.n_modes] -= self.properties.effective_mass * self.gravity
         return row
+
+    def _moment_in(self, key: Key) -> Array:
+        if not self.attached:
+            return self._moment
+        p, (accelerations, forces) = self.properties, self.attached_forces(key)
+        return self._moment + (p.effective_mass * p.effective_height) @ accelerations - forces[0]
 
     @cached_property
     def _moment(self) -> Array:
@@ -342,13 +453,15 @@ class ModalModel(Value):
         rows[:n] -= self.restoring
         rows[modes, n + modes] -= 2.0 * p.zeta * p.omega
         rows[:n, -2] = -1.0
+        if self.attached:
+            rows[:n] += self.attached_forces(key)[0]
         if self.is_free(key):
             bordered_system, turn = self.bordered_system(key), rows[n]
-            turn -= self._moment
+            turn -= self._moment_in(key)
             turn[self.layout.rotation] -= bordered_system.stiffness[0, 0]
             turn[self.layout.spin] -= bordered_system.damping[0, 0]
             turn[-1] += bordered_system.constant[0]
-            turn[self.layout.memory : self.layout.memory + self.layout.n_internal] += bordered_system.recall[0]
+            turn[self.layout.memory : self.layout.memory + bordered_system.recall.size] += bordered_system.recall[0]
             turn *= bordered_system.flexibility[0, 0]
             rows[:n] -= np.outer(p.effective_height, turn)
         return rows
@@ -373,26 +486,24 @@ class ModalModel(Value):
             return row
         if self.is_free(key):
             row -= side * p.m_tot * p.pivot(side).arm * self.angular_acceleration(key)
-        row -= self.tensions(key).sum(axis=0)
-        row[-1] += sum(each.pull(each.branches[0]).force for each in self.elements)
+        row -= self.vertical_tension(key)
+        row[-1] += self.properties.prestress
         row[-1] -= p.m_tot * (self.gravity - GRAVITY)
         return row
 
     def tensions(self, key: Key) -> Array:
         """Return the tension of every element in a phase in N, for small rotations: rows, shape (E, C)."""
-        branches, side, layout = self.element_key(key), key[0], self.layout
-        rows, known = np.zeros((len(self.elements), layout.columns)), internal_places(self.elements)
-        if is_held(self.properties, self.elements, branches):
+        rows = np.zeros((len(self.elements), self.layout.columns))
+        for place in range(len(self.elements)):
+            rows[place] = self.tension(place, key)
+        if is_held(self.properties, self.elements, self.element_key(key)):
             self._hold(key, rows)
-        for place, (each, branch) in enumerate(zip(self.elements, branches[1:], strict=True)):
-            pull = each.pull(branch)
-            rows[place, -1] += pull.force
-            if place in known:
-                rows[place, layout.memory + known[place]] = pull.recall
-            if side != CLOSED:
-                reach = side * arm_of(self.properties, each, side)
-                rows[place, layout.rotation], rows[place, layout.spin] = pull.stiffness * reach, pull.damping * reach
         return rows
+
+    def vertical_tension(self, key: Key) -> Array:
+        """Return the sum of the tensions of the elements under the base in a phase in N: a row, shape (C,)."""
+        under = [place for place, each in enumerate(self.elements) if each.position is not None]
+        return self.tensions(key)[under].sum(axis=0)
 
     def _hold(self, key: Key, rows: Array) -> None:
         """Add the tensions of friction dampers that hold the base: together they balance all other moments.
@@ -400,123 +511,12 @@ class ModalModel(Value):
         Each takes a part in proportion to its force F_0, as at the instant in which they slide.
         """
         side, layout, p = key[0], self.layout, self.properties
-        moment = -self.overturning_moment()
+        moment = -self.overturning_moment(key)
         others = base_equations_of(p, self.elements, key, self.gravity)
         moment[layout.rotation] -= others.stiffness[0, 0]
         moment[-1] += others.constant[0]
-        moment[layout.memory : layout.memory + layout.n_internal] += others.recall[0]
+        moment[layout.memory : layout.memory + others.recall.size] += others.recall[0]
         sliders = {k: each for k, each in enumerate(self.elements) if isinstance(each, Slider)}
         capacity = sum(each.force * abs(arm_of(p, each, side)) for each in sliders.values())
         for place, each in sliders.items():
             rows[place] = side * np.sign(arm_of(p, each, side)) * each.force / capacity * moment
-
-
-@dataclass(frozen=True, eq=False)
-class LinearModel(ModalModel):
-    """N modes on a base that may uplift: Eqs. 15, 23, 24 and 25.
-
-    Parameters
-    ----------
-    label
-        Label of the model, such as ``"2DOF-S"``.
-    properties
-        Parameters of the structure, with only the modes of this model.
-    lifts
-        Whether the base can lift; otherwise it is fixed.
-    law
-        Impact law.
-    missing_mass
-        Whether base shear and base moment include the mass that the modes leave out, as if it moved with the base.
-    gravity
-        Gravitational acceleration in m/s².
-    """
-
-    label: str
-    properties: RockingProperties
-    lifts: bool = True
-    law: ImpactLaw = field(default_factory=VVELSimplified)
-    missing_mass: bool = False
-    gravity: float = GRAVITY
-
-    @property
-    def linear(self) -> "LinearModel":
-        """The simplified, elastic model of the same modes: the model itself."""
-        return self
-
-
-def bordered_system_of(model: ModalModel, equations: BaseEquations, freed: Bools) -> BorderedSystem:
-    """Return the equations of motion with the equations of the base, of which some degrees of freedom are free.
-
-    The couplings are c = h* for the rotation, 1 for the slip and 0 for the heave.
-
-    Raises
-    ------
-    InputError
-        If friction leaves a free base without inertia: it jams.
-    """
-    p, layout = model.properties, model.layout
-    coupling = np.zeros((layout.freedoms, p.n_modes))
-    coupling[0] = p.effective_height
-    if layout.slip >= 0:
-        coupling[1] = 1.0
-    leverage = p.effective_mass * coupling
-    inertia = equations.inertia - leverage @ coupling.T
-    free = np.flatnonzero(freed)
-    flexibility = np.zeros_like(inertia)
-    if free.size:
-        kept = inertia[np.ix_(free, free)]
-        if not np.linalg.det(kept) > JAMMED * np.prod(np.diag(kept)):
-            raise InputError(_jammed(model))
-        flexibility[np.ix_(free, free)] = np.linalg.inv(kept)
-    return BorderedSystem(
-        coupling=coupling,
-        leverage=leverage,
-        flexibility=flexibility,
-        damping=equations.damping,
-        stiffness=equations.stiffness,
-        constant=equations.constant,
-        drive=equations.ground + leverage.sum(axis=1),
-        recall=equations.recall,
-        freed=freed,
-    )
-
-
-def _jammed(model: ModalModel) -> str:
-    p = model.properties
-    if p.horizontal_mass - p.effective_mass.sum() <= JAMMED * p.m_tot:
-        return (
-            f"{model.label} with {p.n_modes} modes leaves no mass in the base that slides: Σ m* = m_tot = "
-            f"{p.m_tot:.6g} kg. Give the structure a base_mass, or keep fewer modes."
-        )
-    return (
-        f"The base of {model.label} jams: with so large a friction coefficient, no acceleration of a sliding and "
-        "rocking base satisfies Coulomb's law. Give a smaller friction, or None for a base that cannot slide."
-    )
-
-
-def accelerations_of(model: ModalModel, bordered_system: BorderedSystem) -> Array:
-    """Return D'' of every mode and q'' of the base as rows, shape (N + b, C)."""
-    p, layout = model.properties, model.layout
-    n, b, modes = p.n_modes, layout.freedoms, np.arange(p.n_modes)
-    rows = np.zeros((n + b, layout.columns))
-    rows[:n] -= model.restoring
-    rows[modes, n + modes] -= 2.0 * p.zeta * p.omega
-    forces = -bordered_system.leverage @ rows[:n]
-    rows[:n, -2] = -1.0
-    places = layout.rotation + 2 * np.arange(b)
-    forces[:, places] -= bordered_system.stiffness
-    forces[:, places + 1] -= bordered_system.damping
-    forces[:, layout.memory : layout.memory + layout.n_internal] += bordered_system.recall
-    forces[:, -2] += bordered_system.drive
-    forces[:, -1] += bordered_system.constant
-    rows[n:] = bordered_system.flexibility @ forces
-    rows[:n] -= bordered_system.coupling.T @ rows[n:]
-    return rows
-
-
-def horizontal_reaction(model: ModalModel, accelerations: Array) -> Array:
-    """Return the horizontal force of the ground on the base, m_tot (a + x'') + L_0^r θ'' + Σ m* D'': a row, (C,)."""
-    p, n = model.properties, model.properties.n_modes
-    row = p.effective_mass @ accelerations[:n] + p.l0r * accelerations[n] + p.horizontal_mass * accelerations[n + 1]
-    row[-2] += p.horizontal_mass
-    return row

@@ -6,6 +6,7 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex.modal import FloorModes
+from rockflex.models._elements import CLOSED
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._quantities import HORIZONTAL, LEFT_OUT, LINEAR, SWAY, SWING, Quantities, Share, collected, joined
 
@@ -49,9 +50,9 @@ def _total_top_displacement(model: ModalModel) -> Share:
 
 
 def _horizontal_reaction(model: ModalModel) -> Share:
-    """ΣF_x = (m_tot + Σ l) a + L_0^r θ'' + Σ m* D''."""
+    """ΣF_x = (m_tot + Σ l) a + L_0^r θ'' + Σ m* D'', and what ties from a height pull."""
     p = model.properties
-    return HORIZONTAL, {"acceleration": p.effective_mass, "turn": p.l0r, "ground": p.horizontal_mass}
+    return HORIZONTAL, {"acceleration": p.effective_mass, "turn": p.l0r, "ground": p.horizontal_mass, "ties": 1.0}
 
 
 def _slip(_model: ModalModel) -> Share:
@@ -99,17 +100,38 @@ def rotation_by_side(model: ModalModel) -> Quantities:
     return Quantities.of(2, model.properties.n_modes, rotation=[0.0, 1.0], right=[1.0, -1.0])
 
 
+def tracked_elements(model: ModalModel) -> tuple[int, ...]:
+    """Return the places of elements whose elongation does not follow from the rotation: attached ones and stories.
+
+    On springs that is every element.
+    """
+    return model.attached_places if model.springs is None else tuple(range(len(model.elements)))
+
+
 def element_moves(model: ModalModel) -> Quantities:
-    """Return the elongation of each element of a base on springs and its negative in m, less what it had at rest."""
-    places = np.repeat([each.position for each in model.elements], 2)
-    signs = np.tile([1.0, -1.0], len(model.elements))
-    return Quantities.of(places.size, model.properties.n_modes, heave=signs, rotation=-signs * places)
+    """Return δ of each of `tracked_elements` and its negative in m, less what it has in the state zero."""
+    rows = _elongation_rows(model)
+    shares = _shares_of(model, np.stack((rows, -rows), axis=1).reshape(-1, rows.shape[1]))
+    return Quantities.of(2 * len(rows), model.properties.n_modes, LINEAR, **shares)
 
 
 def element_speeds(model: ModalModel) -> Quantities:
-    """Return the rate of elongation of each element of a base on springs in m/s."""
-    places = np.array([each.position for each in model.elements])
-    return Quantities.of(places.size, model.properties.n_modes, heaving=1.0, swing=-places)
+    """Return δ' of each of `tracked_elements` in m/s."""
+    names = {"displacement": "velocity", "slip": "slipping", "heave": "heaving", "rotation": "swing"}
+    shares = {names[name]: share for name, share in _shares_of(model, _elongation_rows(model)).items()}
+    return Quantities.of(len(tracked_elements(model)), model.properties.n_modes, LINEAR, **shares)
+
+
+def _elongation_rows(model: ModalModel) -> Array:
+    places = tracked_elements(model)
+    return np.array([model.stretch(place, CLOSED) for place in places]).reshape(len(places), -1)
+
+
+def _shares_of(model: ModalModel, rows: Array) -> dict[str, Array]:
+    layout = model.layout
+    found = {"displacement": rows[:, : layout.modes], "rotation": rows[:, layout.rotation]}
+    shifts = {"slip": layout.slip, "heave": layout.heave}
+    return found | {name: rows[:, place] for name, place in shifts.items() if place >= 0}
 
 
 def rotation_rate_by_side(model: ModalModel) -> Quantities:
@@ -118,6 +140,6 @@ def rotation_rate_by_side(model: ModalModel) -> Quantities:
     That is θ' for small rotations; zero while rotated to the other side. It is one quantity if the sides do not differ.
     """
     n = model.properties.n_modes
-    if all(each.position == 0.0 for each in model.properties.elements) and model.properties.symmetric:
+    if not any(each.position for each in model.properties.elements) and model.properties.symmetric:
         return Quantities.of(1, n, SWING, swing=1.0)
     return Quantities.of(2, n, SWING, swing=[0.0, 1.0], right_swing=[1.0, -1.0])

@@ -10,7 +10,8 @@ from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._impact import ImpactLaw, VVELSimplified
-from rockflex.models._modal_model import LinearModel, ModalModel
+from rockflex.models._linear_model import LinearModel
+from rockflex.models._modal_model import ModalModel
 
 
 @dataclass(frozen=True, eq=False)

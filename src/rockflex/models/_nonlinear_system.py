@@ -167,7 +167,7 @@ class Rocks:
         equations_after = [base_equations_of(p, model.elements, each, model.gravity) for each in following]
         rows = np.zeros((2, layout.size + 2))
         for row, equations, sign in zip(rows, equations_after, (1.0, -1.0), strict=True):
-            row[[*range(layout.moving), -2, -1]] = sign * model.overturning_moment()
+            row[[*range(layout.moving), -2, -1]] = sign * model.overturning_moment(key)
             row[layout.memory : layout.memory + layout.n_internal] -= sign * equations.recall[0]
             row[-1] -= sign * equations.constant[0]
             if key[0] != CLOSED:

@@ -28,11 +28,11 @@ VERTICAL = 5
 
 Share = tuple[int, dict[str, Any]]  # the kind of a quantity, and its shares by name
 
-OF_MODES = ("displacement", "restoring", "acceleration")
-OF_BASE = ("rotation", "right", "turn", "ground")
+OF_MODES = ("displacement", "restoring", "acceleration", "velocity")
+OF_BASE = ("ties", "rotation", "right", "turn", "ground")
 OF_SWING = ("swing", "right_swing")
-OF_SHIFT = ("slip", "heave", "heaving")
-ROTATION, RIGHT_ROTATION, TURN, GROUND = -4, -3, -2, -1  # columns of `Quantities.shares`
+OF_SHIFT = ("slip", "slipping", "heave", "heaving")
+TIES, ROTATION, RIGHT_ROTATION, TURN, GROUND = -5, -4, -3, -2, -1  # columns of `Quantities.shares`
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,15 +41,16 @@ class Quantities:
 
     Attributes
     ----------
-    shares : ndarray, shape (F, 3 N + 4)
+    shares : ndarray, shape (F, 4 N + 5)
         Weights of D_n (`displacement`), of the restoring acceleration of each mode (`restoring`: ω_n² D_n, or that of
-        Eq. 37), of D''_n (`acceleration`), of θ (`rotation`), of θ while the base rotates about its right pivot
-        (`right`), of θ'' (`turn`) and of the acceleration of the base (`ground`).
+        Eq. 37 or of stories that yield), of D''_n (`acceleration`), of D'_n (`velocity`), of the pull of ties from a
+        height (`ties`), of θ (`rotation`), of θ while the base rotates about its right pivot (`right`), of θ''
+        (`turn`) and of the acceleration of the base (`ground`).
     swings : ndarray, shape (F, 2)
         Weights of θ' (`swing`), and of θ' while the base rotates about its right pivot (`right_swing`).
-    shifts : ndarray, shape (F, 3)
-        Weights of the `slip` and the `heave` of the base and of the rate of the heave (`heaving`), in models that have
-        them.
+    shifts : ndarray, shape (F, 4)
+        Weights of the `slip` and the `heave` of the base and of their rates (`slipping`, `heaving`), in models that
+        have them.
     kinds : ndarray, shape (F,)
         Kind of the quantity for large rotations; see `rockflex.models._quantities`.
     """
@@ -62,7 +63,7 @@ class Quantities:
     @classmethod
     def of(cls, count: int, modes: int, kind: int = LINEAR, **shares: ArrayLike) -> "Quantities":
         """Return `count` quantities of a model with the given number of modes; shares not given are zero."""
-        values = np.zeros((count, 3 * modes + len(OF_BASE)))
+        values = np.zeros((count, len(OF_MODES) * modes + len(OF_BASE)))
         swings, shifts = np.zeros((count, len(OF_SWING))), np.zeros((count, len(OF_SHIFT)))
         for name, share in shares.items():
             if name in OF_SWING:
@@ -102,7 +103,7 @@ def _columns(modes: int) -> dict[str, slice | int]:
 def collected(modes: int, shares: Sequence[Share]) -> Quantities:
     """Return one quantity for each pair of kind and shares."""
     count, columns = len(shares), _columns(modes)
-    values, shifts = np.zeros((count, 3 * modes + len(OF_BASE))), np.zeros((count, len(OF_SHIFT)))
+    values, shifts = np.zeros((count, len(OF_MODES) * modes + len(OF_BASE))), np.zeros((count, len(OF_SHIFT)))
     for row, shift, (_, given) in zip(values, shifts, shares, strict=True):
         for name, share in given.items():
             if name in OF_SHIFT:
@@ -138,7 +139,7 @@ def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
     if model.is_free(key) and quantities.swings.any():
         rows[:, model.layout.spin] += quantities.swings @ (1.0, float(key[0] == RIGHT))
     slip, heave = model.layout.slip, model.layout.heave
-    places = slip, heave, heave + 1 if heave >= 0 else -1
+    places = slip, slip + 1 if slip >= 0 else -1, heave, heave + 1 if heave >= 0 else -1
     for place, weights in zip(places, quantities.shifts.T, strict=True):
         if place >= 0:
             rows[:, place] += weights
@@ -146,12 +147,13 @@ def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
 
 
 def _moving(model: ModalModel, key: Key, *, large: bool) -> Array:
-    """Return the rows, in one phase, that `Quantities.shares` multiply, (3 N + 4, C); no accelerations if `large`."""
+    """Return the rows, in one phase, that `Quantities.shares` multiply, (4 N + 5, C); no accelerations if `large`."""
     n, layout = model.properties.n_modes, model.layout
-    rows = np.zeros((3 * n + len(OF_BASE), layout.columns))
+    rows = np.zeros((len(OF_MODES) * n + len(OF_BASE), layout.columns))
     modes = np.arange(n)
-    rows[modes, modes] = 1.0
-    rows[n : 2 * n] = model.restoring
+    rows[modes, modes] = rows[3 * n + modes, n + modes] = 1.0
+    rows[n : 2 * n] = model.restoring_in(key)
+    rows[TIES] = model.ties(key)
     rows[ROTATION, layout.rotation] = 1.0
     rows[RIGHT_ROTATION, layout.rotation] = key[0] == RIGHT
     rows[GROUND, -2] = 1.0

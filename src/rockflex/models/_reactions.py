@@ -39,9 +39,14 @@ def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     horizontal = p.horizontal_mass * states[:, GROUND] + p.l0r * turn + push
     if layout.slip >= 0:
         horizontal += p.horizontal_mass * rates[:, n + 1]
+    pulls = element_forces(model, states)
+    for place, each in enumerate(p.elements):
+        if each.height is not None:
+            horizontal += each.cosine * pulls[:, place]
     if model.springs is not None:
         return Reactions(horizontal, spring_forces(model, states).sum(axis=1))
-    vertical = p.m_tot * (model.gravity + states[:, RISE]) + element_forces(model, states).sum(axis=1)
+    under = [place for place, each in enumerate(model.elements) if each.position is not None]
+    vertical = p.m_tot * (model.gravity + states[:, RISE]) + pulls[:, under].sum(axis=1)
     for each in (1, -1):
         on = side == each
         vertical[on] += each * p.m_tot * p.pivot(each).arm * turn[on]

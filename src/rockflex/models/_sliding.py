@@ -12,8 +12,8 @@ from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties
 from rockflex.models._elements import CLOSED, base_equations_of, internal_count
 from rockflex.models._impact import ImpactLaw, VVELSimplified
-from rockflex.models._layout import HEADER, StateLayout, layout_of
-from rockflex.models._modal_model import LinearModel, accelerations_of, bordered_system_of
+from rockflex.models._layout import HEADER, StateLayout, codes_for, layout_of
+from rockflex.models._linear_model import LinearModel, accelerations_of, bordered_system_of
 from rockflex.models._phase import BaseEquations, BorderedSystem, Key
 
 STICK = 0  # the last branch of a key: it sticks, slips to the right (1) or left (-1), or does so without friction (±2)
@@ -46,7 +46,8 @@ class SlidingModel(LinearModel):
     @cached_property
     def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Layout of the state vector."""
-        return layout_of(self.properties.n_modes, n_internal=internal_count(self.elements) + 1, slides=True)
+        n_internal = internal_count(self.elements) + codes_for(len(self.attached_places)) + 1
+        return layout_of(self.properties.n_modes, n_internal=n_internal, slides=True)
 
     @property
     def ground_parameters(self) -> dict[str, Any]:
@@ -61,10 +62,13 @@ class SlidingModel(LinearModel):
         """Return the branches on which a run starts in contact, or as the base begins to rotate about a pivot."""
         return (*super().start(side), STICK)
 
-    def begin(self, rotation: float, spin: float) -> tuple[Key, Array]:
-        """Return the branches and the internal variables at the start of a run, in which the base does not slip."""
-        key, kept = super().begin(rotation, spin)
-        return (*key, STICK), np.append(kept, STICK)
+    def from_rest(self, key: Key) -> Key:
+        """Return the key of a base that does not slip, from its branches and those of the elements."""
+        return (*key, STICK)
+
+    def marks(self, key: Key) -> tuple[float, ...]:
+        """Return the last internal variables of the state: the branches of attached elements and that of the slip."""
+        return (*super().marks(key), float(key[-1]))
 
     def is_free(self, key: Key) -> bool:
         """Return whether the base rotates in a phase."""
@@ -90,7 +94,7 @@ class SlidingModel(LinearModel):
             turning = base_equations_of(p, self.elements, elements, self.gravity)
             equations.inertia[0, 0] = turning.inertia[0, 0]
             equations.damping[0, 0], equations.stiffness[0, 0] = turning.damping[0, 0], turning.stiffness[0, 0]
-            equations.constant[0], equations.recall[0, :-1] = turning.constant[0], turning.recall[0]
+            equations.constant[0], equations.recall[0, : turning.recall.size] = turning.constant[0], turning.recall[0]
         if abs(slip) == 1:
             self._add_friction(equations, key)
         return equations
@@ -98,7 +102,7 @@ class SlidingModel(LinearModel):
     def _add_friction(self, equations: BaseEquations, key: Key) -> None:
         """Add -sign(x') μ N with N = m_tot (g + s B θ'') + the tensions of the elements."""
         p, side, layout = self.properties, key[0], self.layout
-        drag, pull = key[-1] * self.friction, self.tensions(key).sum(axis=0)
+        drag, pull = key[-1] * self.friction, self.vertical_tension(key)
         equations.constant[1] -= drag * (p.m_tot * self.gravity + pull[-1])
         equations.recall[1] -= drag * pull[layout.memory : layout.memory + layout.n_internal]
         if side != CLOSED:
@@ -107,7 +111,7 @@ class SlidingModel(LinearModel):
             equations.damping[1, 0] += drag * pull[layout.spin]
 
     def _new_accelerations(self, key: Key) -> Array:
-        return accelerations_of(self, self.bordered_system(key))
+        return accelerations_of(self, key)
 
     def pressure(self, key: Key) -> Array:
         """Return the vertical reaction m_tot (g + s B θ'') and the tensions of the elements in N: a row, shape (C,)."""

@@ -11,21 +11,16 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array, Bools
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties, Springs
-from rockflex.models._element import Element
-from rockflex.models._elements import CLOSED, internal_count, internal_places
+from rockflex.models._elements import CLOSED, internal_count
 from rockflex.models._impact import ImpactLaw, VVELSimplified
-from rockflex.models._layout import HEADER, SIDE, TIME, StateLayout, layout_of
-from rockflex.models._modal_model import LEVEL, LinearModel, Pose, accelerations_of, bordered_system_of
+from rockflex.models._layout import HEADER, SIDE, TIME, StateLayout, code_of, codes_for, decoded, layout_of
+from rockflex.models._linear_model import LinearModel, accelerations_of, bordered_system_of
+from rockflex.models._modal_model import LEVEL, Pose
 from rockflex.models._phase import BaseEquations, BorderedSystem, Key
 
 # Branches of a spring. RECEDING: still compressed, but unloaded, since its dashpot would have to pull the base.
 LOADED, LIFTED, RECEDING = 0, 1, 2
 STICK = 0  # the branch of the slip; 1 and -1: it slips to the right or left
-
-
-# Branches of many elements are kept in the state as a few numbers.
-BASE, DIGITS = 8, 17  # a double holds 17 octal digits exactly
-SHIFT = 1  # the lowest branch is -1
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,9 +135,9 @@ class SpringModel(LinearModel):
 
     def elongations_at(self, states: Array) -> Array:
         """Return how far the base has risen at every element since it was at rest, in m, shape (n, E)."""
-        rotation, heave = self.layout.of(states, self.layout.rotation), self.heave(states)
-        positions = np.array([each.position for each in self.elements])
-        return (heave - self.rest.heave)[:, None] - positions * (rotation - self.rest.rotation)[:, None]
+        moving = states[:, HEADER : HEADER + self.layout.moving]
+        rows = np.array([self.stretch(place, CLOSED) for place in range(len(self.elements))])
+        return moving @ rows[:, :-2].T + rows[:, -1] if len(rows) else np.zeros((len(states), 0))
 
     def raised_weight(self, states: Array) -> Array:
         """Return the gravity energy per unit of gravity in kg m, shape (n,)."""
@@ -172,35 +167,14 @@ class SpringModel(LinearModel):
         rows[:, self.layout.heave], rows[:, self.layout.rotation] = 1.0, -self.springs.positions
         return rows
 
-    def risen(self, position: float) -> tuple[Array, Array]:
-        layout = self.layout
-        place, speed = np.zeros((2, layout.columns))
-        place[layout.heave], place[layout.rotation] = 1.0, -position
-        speed[layout.heave + 1], speed[layout.spin] = 1.0, -position
-        return place, speed
-
-    def stretch(self, element: Element) -> Array:
-        """Return the elongation of an element as a row, shape (C,): zero at rest."""
-        place, _ = self.risen(element.position)
-        place[-1] = element.position * self.rest.rotation - self.rest.heave
-        return place
-
-    def tension(self, place: int, branch: int) -> Array:
-        """Return the tension of an element on a branch in N as a row, shape (C,)."""
-        each, known = self.elements[place], internal_places(self.elements)
-        pull = each.pull(branch)
-        row = pull.stiffness * self.stretch(each) + pull.damping * self.risen(each.position)[1]
-        row[-1] += pull.force
-        if place in known:
-            row[self.layout.memory + known[place]] += pull.recall
+    def stretch(self, place: int, side: int) -> Array:
+        """Return the elongation of an element in m as a row, shape (C,): zero at rest."""
+        position = self.elements[place].position
+        row = super().stretch(place, side)
+        if position is not None:
+            row[self.layout.heave], row[self.layout.rotation] = 1.0, -position
+        row[-1] -= row[self.layout.rotation] * self.rest.rotation + row[self.layout.heave] * self.rest.heave
         return row
-
-    def tensions(self, key: Key) -> Array:
-        """Return the tension of every element in a phase in N: rows, shape (E, C)."""
-        rows = np.zeros((len(self.elements), self.layout.columns))
-        for place, branch in enumerate(self.element_key(key)[1:]):
-            rows[place] = self.tension(place, branch)
-        return rows
 
     def lost_support(self, key: Key) -> Array:
         """Return the decrease of the sum of the spring forces below its value at rest, in N: a row, shape (C,)."""
@@ -227,10 +201,11 @@ class SpringModel(LinearModel):
         forces = self.spring_forces(key)
         self._add_to(equations, 0, -self.springs.positions @ forces)
         self._add_to(equations, z, forces.sum(axis=0))
-        for place, branch in enumerate(self.element_key(key)[1:]):
-            tension = self.tension(place, branch)
-            self._add_to(equations, 0, self.elements[place].position * tension)
-            self._add_to(equations, z, -tension)
+        for place, each in enumerate(self.elements):
+            if each.position is not None:
+                tension = self.tension(place, key)
+                self._add_to(equations, 0, each.position * tension)
+                self._add_to(equations, z, -tension)
         if self.friction is not None:
             slip = key[self.springs.n + 1]
             self._add_to(equations, 1, -slip * self.grip(key))
@@ -271,23 +246,26 @@ class SpringModel(LinearModel):
         force = -springs.stiffness * depth - springs.damping * speed
         branches = np.where(depth >= 0.0, LIFTED, np.where(force > 0.0, LOADED, RECEDING))
         kept, of_elements = list[float](), list[int]()
-        for each in self.elements:
-            stretch = self.stretch(each)
-            elongation = float(stretch[-1] + stretch[layout.rotation] * rotation + stretch[layout.heave] * heave)
-            branch, remembered = each.brought(elongation)
+        moving = np.append(start[: layout.moving], (0.0, 1.0))
+        for place, each in enumerate(self.elements):
+            branch, remembered = each.brought(float(self.stretch(place, CLOSED) @ moving))
             of_elements.append(branch)
             kept += remembered
         key = (CLOSED, *(int(branch) for branch in branches), STICK, *of_elements)
-        start[layout.memory :] = (*kept, *code_of(key[1:]))
+        start[layout.memory :] = (*kept, *self.marks(key))
         return key, start
+
+    def marks(self, key: Key) -> tuple[float, ...]:
+        """Return the last internal variables of the state, which tell all branches."""
+        return code_of(key[1:])
 
     @property
     def _weight(self) -> float:
-        """Weight with the initial tensions of the elements, N."""
-        return self.properties.m_tot * GRAVITY + sum(each.pull(each.branches[0]).force for each in self.elements)
+        """Weight with the initial tensions of the elements under the base, N."""
+        return self.properties.resting_reaction
 
     def _new_accelerations(self, key: Key) -> Array:
-        return accelerations_of(self, self.bordered_system(key))
+        return accelerations_of(self, key)
 
 
 def heave_at(springs: Springs, rotation: float, weight: float) -> float:
@@ -298,21 +276,3 @@ def heave_at(springs: Springs, rotation: float, weight: float) -> float:
     heaves = (np.cumsum(springs.stiffness[order] * ends[order]) - weight) / stiffness
     fits = np.append(heaves[:-1] >= ends[order][1:], True)
     return float(heaves[np.argmax(fits)])
-
-
-def codes_for(size: int) -> int:
-    """Return how many numbers hold the branches of `size` elements."""
-    return -(-size // DIGITS)
-
-
-def code_of(branches: tuple[int, ...]) -> tuple[float, ...]:
-    """Return the numbers that stand for branches from -1 to 6."""
-    parts = (branches[first : first + DIGITS] for first in range(0, len(branches), DIGITS))
-    return tuple(float(sum((branch + SHIFT) * BASE**k for k, branch in enumerate(part))) for part in parts)
-
-
-def decoded(codes: Array, size: int) -> NDArray[np.int64]:
-    """Return the branches of `size` elements from their numbers, (n, codes_for(size)), as (n, size)."""
-    whole = codes.astype(np.int64)
-    columns = [whole[:, k // DIGITS] // BASE ** (k % DIGITS) % BASE - SHIFT for k in range(size)]
-    return np.stack(columns, axis=1)

@@ -188,7 +188,7 @@ def _element_name(elements: Sequence[BaseElement], place: int) -> str:
     """Name of an element in a figure, with its number, counted from 1, and its position."""
     element = elements[place]
     words = element.words if isinstance(element, ElementLaw) else _ELEMENT_NAMES[type(element)]
-    return f"{place + 1} {words}, x = {short_number(element.position)} m"
+    return f"{place + 1} {words}, {element.where}"
 
 
 def plot_loops(

@@ -31,6 +31,7 @@ from rockflex.models import (
     element_energies,
     horizontal_reaction,
     inside,
+    rate_of,
     soil_strain,
     stored_energies,
     under_more_gravity,
@@ -55,8 +56,8 @@ class EnergyLedger(Value):
         Energy dissipated by modal damping, and work of the ground, up to each state; found by quadrature of the exact
         states, or integrated with the motion.
     yielded
-        Energy absorbed by the hysteretic spring of a Bouc-Wen superstructure; `strain` is then that of its elastic
-        part.
+        Energy absorbed by the hysteretic spring of a Bouc-Wen superstructure, `strain` is then that of its elastic
+        part; or dissipated by stories that yield.
     elements
         Energy dissipated by each element up to each state, in the order of `RockingProperties.elements`, shape
         (n_states, E). An element that breaks dissipates what it had stored.
@@ -145,15 +146,17 @@ def energy_ledger(model: RockingModel, states: Array) -> EnergyLedger:
         if model.layout.swept >= 0:
             swept = np.diff(model.layout.of(states, model.layout.swept))
             work = work._replace(swing=np.where(integrated, swept, work.swing))
-    element_strain, element_losses = element_energies(model, states, sweeps_of(model, states, work))
+    stored, losses_of = element_energies(model, states, sweeps_of(model, states, work))
+    count = len(model.properties.elements)  # stories that yield follow
+    yielded += losses_of[:, count:].sum(axis=1)
     return EnergyLedger(
         kinetic=kinetic,
-        strain=strain,
+        strain=strain + stored[:, count:].sum(axis=1),
         gravity=gravity,
-        element_strain=element_strain.sum(axis=1),
+        element_strain=stored[:, :count].sum(axis=1),
         damped=_summed(damped),
         yielded=_summed(yielded),
-        elements=_summed(element_losses),
+        elements=_summed(losses_of[:, :count]),
         input=_summed(given),
         lost=np.cumsum(lost),
         impact_losses=losses,
@@ -183,7 +186,7 @@ class Work(NamedTuple):
     friction: Array  # lost by sliding
     swing: Array  # ∫ (δ'/r)² dt in rad²/s, with the rate of an element's elongation per unit distance from the pivot
     soil: Array  # (n_states - 1, n_springs): lost by each spring under the base
-    sweeps: Array  # (n_states - 1, E): ∫ δ'² dt of each element in m²/s; only on springs
+    sweeps: Array  # (n_states - 1, E): ∫ δ'² dt of each element in m²/s; on rigid ground only of attached dampers
 
 
 def work_between(model: RockingModel, states: Array) -> Work:
@@ -206,12 +209,13 @@ def _work_of(model: RockingModel, motion: MotionBetween, states: Array) -> Work:
     for part in motion.intervals(states).parts:
         found = PhaseWork(model, part.key, part.motion).of(part)
         damped[part.rows], ground[part.rows], friction[part.rows], swing[part.rows] = found[:, :4].T
-        if model.springs is None:
-            continue
-        # The force of a spring that is loaded is that of its stiffness, which is stored, and that of its dashpot.
-        loaded = np.flatnonzero(np.array(part.key[1 : model.springs.n + 1]) == LOADED)
-        soil[np.ix_(part.rows, loaded)] = model.springs.damping[loaded] * found[:, 4 + loaded]
-        sweeps[part.rows] = found[:, 4 + model.springs.n :]
+        swept, first = swept_elements(model), 4
+        if model.springs is not None:
+            # The force of a spring that is loaded is that of its stiffness, which is stored, and that of its dashpot.
+            loaded = np.flatnonzero(np.array(part.key[1 : model.springs.n + 1]) == LOADED)
+            soil[np.ix_(part.rows, loaded)] = model.springs.damping[loaded] * found[:, 4 + loaded]
+            first += model.springs.n
+        sweeps[part.rows[:, None], swept] = found[:, first:]
     return Work(damped, ground, friction, swing, soil, sweeps)
 
 
@@ -219,7 +223,13 @@ def sweeps_of(model: RockingModel, states: Array, work: Work) -> Array:
     """Return ∫ δ'² dt of each element between adjacent states in m²/s, shape (n_states - 1, E)."""
     if model.springs is not None or not model.elements:
         return work.sweeps
-    return model.arms(states[:-1, SIDE]) ** 2 * work.swing[:, None]
+    return work.sweeps + model.arms(states[:-1, SIDE]) ** 2 * work.swing[:, None]
+
+
+def swept_elements(model: RockingModel) -> list[int]:
+    """Return the places of viscous elements whose elongation does not follow from the rotation."""
+    places = range(len(model.elements)) if model.springs is not None else model.attached_places
+    return [place for place in places if model.elements[place].pull(0).damping > 0.0]
 
 
 class Table(NamedTuple):
@@ -235,7 +245,7 @@ class PhaseWork:
     """The work in intervals of one phase.
 
     A result has a column for each of damping, ground, friction and swing, and one with ∫ z_j'² dt for each spring under
-    the base, and for each element on springs.
+    the base, and for each of `swept_elements`.
 
     Parameters
     ----------
@@ -252,25 +262,29 @@ class PhaseWork:
         self._drag = np.sqrt(2.0 * p.zeta * p.omega * p.effective_mass)[:, None] * unit[N : 2 * N]
         self._push = p.l0r * unit[layout.spin] + p.effective_mass @ unit[N : 2 * N]
         self._tilt, self._lift = p.l0r * unit[layout.rotation], np.zeros(len(unit))
-        self._base, self._places = unit[[layout.spin]], np.zeros(0)
+        rates = [unit[layout.spin]]
         if model.springs is not None:
-            self._base = unit[[layout.spin, layout.heave + 1]]
-            self._places = np.array([*model.springs.positions, *(each.position for each in model.elements)])
+            rates += [unit[layout.heave + 1] - x * unit[layout.spin] for x in model.springs.positions.tolist()]
             self._lift = p.m_tot * unit[layout.heave + 1]
         elif key[0] != CLOSED:
             self._lift = key[0] * p.m_tot * p.pivot(key[0]).arm * unit[layout.spin]
+        for place in swept_elements(model):
+            rates.append(motion.taken(rate_of(model.stretch(place, CLOSED), layout)))
+        self._rates = np.array(rates)
+        # Few independent rates, of which all others are sums: θ', the heave's and those of the modes.
+        self._base, self._shares = _independent(self._rates)
         self._slide, self._held, self._heavier = np.zeros((3, len(unit)))
         if layout.slip >= 0:
             self._push += p.horizontal_mass * unit[layout.slip + 1]
         if layout.slip >= 0 and model.bordered_system(key).freed[1]:
             heavier = under_more_gravity(model)
             self._slide = unit[layout.slip + 1]
-            self._held = motion.taken(horizontal_reaction(model, model.accelerations(key)))
-            self._heavier = motion.taken(horizontal_reaction(heavier, heavier.accelerations(key))) - self._held
+            self._held = motion.taken(horizontal_reaction(model, key))
+            self._heavier = motion.taken(horizontal_reaction(heavier, key)) - self._held
 
     def of(self, part: Part) -> Array:
-        """Return the work in intervals, shape (n, 4 + n_springs + E)."""
-        found = np.zeros((part.rows.size, 4 + self._places.size))
+        """Return the work in intervals, shape (n, 4 + n_springs + number of `swept_elements`)."""
+        found = np.zeros((part.rows.size, 3 + len(self._rates)))
         rows = np.flatnonzero(part.steps)
         z, left = part.z[rows], part.steps[rows]
         if part.shaking is not None:
@@ -284,14 +298,14 @@ class PhaseWork:
         return found
 
     def _by_table(self, z: Array, table: Table) -> Array:
-        found = np.zeros((len(z), 4 + self._places.size))
+        found = np.zeros((len(z), 3 + len(self._rates)))
         found[:, 0] = _squares(z @ table.drag.T)
         found[:, 1] = -(z[:, -3:-1] * (z @ table.push.T)).sum(axis=1)
         if self._slide.any():
             found[:, 2] = -((z @ table.friction) * z).sum(axis=1)
-        spin, *heaving = (z @ each.T for each in table.base.swapaxes(0, 1))
-        for column, rate in enumerate((spin, *(heaving[0] - place * spin for place in self._places.tolist())), 3):
-            found[:, column] = _squares(rate)
+        base = z @ table.base.swapaxes(0, 1).swapaxes(1, 2)  # (B, n, r)
+        for column, shares in enumerate(self._shares, 3):
+            found[:, column] = _squares(np.einsum("b,bnr->nr", shares, base))
         return found
 
     @cached_property
@@ -323,7 +337,7 @@ class PhaseWork:
 
     def _by_series(self, z: Array, steps: Array, shaking: Shaking | None = None) -> Array:
         longest = float(steps.max(initial=0.0))
-        found, parts = np.zeros((len(z), 4 + self._places.size)), self._motion.parts(longest)
+        found, parts = np.zeros((len(z), 3 + len(self._rates))), self._motion.parts(longest)
         if parts > MAX_SERIES:
             raise InputError(
                 f"The energy ledger of {self._label} needs {parts} power series per step, above the limit of "
@@ -335,19 +349,25 @@ class PhaseWork:
         weights = h * WEIGHTS
         for k, terms in enumerate(self._motion.developed(z, steps, shaking)):
             z = inside(terms, POINTS).swapaxes(0, 1)  # (n, P, Z)
-            spin, *heaving = (z @ each for each in self._base)
+            rates = z @ self._rates.T
             push, held = z[..., -3] * (z @ self._push), z @ self._held
             if shaking is not None:
                 up = shaking.rise[:, None] + (k + POINTS) * h * shaking.slope[:, None]
-                push += up * (z @ self._lift - (z @ self._tilt) * spin)
+                push += up * (z @ self._lift - (z @ self._tilt) * rates[..., 0])
                 held += up * (z @ self._heavier)
-            rates = (spin, *(heaving[0] - place * spin for place in self._places.tolist()))
             found[:, 0] += (_squares(z @ self._drag.T) * weights).sum(axis=1)
             found[:, 1] -= (push * weights).sum(axis=1)
             found[:, 2] -= (held * (z @ self._slide) * weights).sum(axis=1)
-            for column, rate in enumerate(rates, 3):
-                found[:, column] += (rate**2 * weights).sum(axis=1)
+            found[:, 3:] += (rates**2 * weights[..., None]).sum(axis=1)
         return found
+
+
+def _independent(rates: Array) -> tuple[Array, Array]:
+    """Return few functionals, (B, Z), and the shares of which given ones, (K, Z), are sums, (K, B)."""
+    columns = np.flatnonzero(rates.any(axis=0))
+    if columns.size < len(rates):  # of few rates of the state
+        return np.eye(rates.shape[1])[columns], rates[:, columns]
+    return rates, np.eye(len(rates))
 
 
 def _squares(values: Array) -> Array:

@@ -28,6 +28,8 @@ from rockflex.modal import (
     Tendon,
     ViscousDamper,
     YieldingDissipator,
+    YieldingStory,
+    element_parameters,
 )
 from rockflex.models import (
     HEADER,
@@ -51,6 +53,7 @@ from rockflex.response._history import History
 from rockflex.response._peaks import (
     ELEMENT_PEAKS,
     NONE,
+    OF_STORIES,
     balance_ratio,
     element_peaks,
     extremes_about_pivots,
@@ -121,7 +124,10 @@ def save(
                 arrays[f"springs.{name}"] = value
             else:
                 scalars[name] = value
-        scalars["elements"] = [{"kind": type(each).__name__, **asdict(each)} for each in model.properties.elements]
+        scalars["stories"] = [asdict(each) for each in model.properties.stories]
+        scalars["elements"] = [
+            {"kind": type(each).__name__, **element_parameters(each)} for each in model.properties.elements
+        ]
         arrays["states"] = history.states
         arrays |= {f"properties.{name}": getattr(model.properties, name) for name in PROPERTIES}
         if model.properties.floors is not None:
@@ -181,12 +187,15 @@ def _kept(scalars: dict[str, Any], arrays: dict[str, Any], kinds: dict[str, type
 
 def _of_elements(arrays: dict[str, Any], history: History | None) -> dict[str, Any]:
     """Return the peaks of the elements."""
-    found = {name: arrays[f"elements.{name}"] for name in ELEMENT_PEAKS}
+    older = dict.fromkeys((f"elements.{name}" for name in OF_STORIES), np.zeros(0))
+    found = {name: (older | arrays)[f"elements.{name}"] for name in ELEMENT_PEAKS}
     found["element_yielded"] = found["element_yielded"] != 0.0
     elements = () if history is None else history.model.properties.elements
     for name, values in found.items():
         values.setflags(write=False)
         known = sum(isinstance(each, Tendon) for each in elements) if name == "remaining_prestress" else len(elements)
+        if name in OF_STORIES:
+            known = values.size
         if values.ndim != 1 or (history is not None and values.size != known):
             raise InputError(f"{name} must have the shape ({known},), but its shape is {values.shape}.")
     return found
@@ -271,6 +280,7 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     elements = [_element(**each) for each in _typed(scalars, name, list)]
     known = {name: scalars[name] for name in KNOWN_OR_NOT}
     known |= {name: scalars.get(name, 0.0) for name in ("eccentricity", "leaning_mass")}  # older files may lack them
+    known["stories"] = [YieldingStory(**each) for each in scalars.get("stories", [])]
     properties = RockingProperties(**values, floors=floors, elements=elements, **known)
     lifts, parameters = _typed(scalars, "lifts", bool), dict(_typed(scalars, "law", dict))
     missing = _typed(scalars, "missing_mass", bool)

@@ -288,18 +288,21 @@ class History(Value):
 
     @cached_property
     def element_force(self) -> Array:
-        """Force of each element of the base in N, positive if it pulls the base down, shape (n_states, E).
+        """Force of each element in N, positive if it pulls, shape (n_states, E).
 
         The order is that of `RockingProperties.elements`.
         """
-        values = element_forces(self.model, self.states)
+        values = element_forces(self.model, self.states)[:, : len(self.model.properties.elements)]
         values.setflags(write=False)
         return values
 
     @property
     def element_elongation(self) -> Array:
-        """Elongation r |θ| of each element in m, in complete models 2 r sin(|θ|/2), shape (n_states, E)."""
-        return self.model.elongations_at(self.states)
+        """Elongation of each element in m, shape (n_states, E).
+
+        r |θ| under the base, in complete models 2 r sin(|θ|/2); as in `Attachment` for others.
+        """
+        return self.model.elongations_at(self.states)[:, : len(self.model.properties.elements)]
 
     @property
     def vertical_ground_acceleration(self) -> Array:

@@ -354,10 +354,10 @@ def weight_resistance(properties: RockingProperties, side: NDArray[np.integer], 
 
 
 def element_resistance(properties: RockingProperties, side: NDArray[np.integer], force: Array) -> Array:
-    """Return s F r of each element in N m for small rotations, shape (n, E); zero in contact."""
-    positions = np.array([each.position for each in properties.elements])
-    arms = [properties.pivot(turned).arm - turned * positions for turned in (1, -1)]
-    return np.array([np.zeros(positions.size), arms[0], -arms[1]])[side] * force
+    """Return s F r of each element in N m for small rotations, shape (n, E); zero in contact, but for ties."""
+    arms = [np.array([each.arm(properties.pivot(way).arm, way) for each in properties.elements]) for way in (1, -1)]
+    ties = np.array([each.cosine * (each.height or 0.0) for each in properties.elements])
+    return np.array([ties, ties + arms[0], ties - arms[1]])[side] * force
 
 
 def large_resistance(
@@ -394,5 +394,5 @@ def resistance_on_springs(history: History) -> SpringsResistance | None:
     return SpringsResistance(
         history.spring_force @ model.springs.positions,
         -p.l0r * gravity * history.rotation,
-        -history.element_force * np.array([each.position for each in p.elements]),
+        history.element_force * np.array([(each.height or 0.0) * each.cosine - each.position for each in p.elements]),
     )

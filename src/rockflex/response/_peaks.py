@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._arrays import Array, Bools
 from rockflex.modal import BaseElement, ElementLaw, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.models import (
+    CLOSED,
     HEADER,
     SIDE,
     Quantities,
@@ -23,6 +24,7 @@ from rockflex.models import (
     quantities,
     rotation_by_side,
     rotation_rate_by_side,
+    tracked_elements,
     values_of,
 )
 from rockflex.solve import Solution
@@ -96,23 +98,26 @@ def tracked_quantities(
 ) -> Tracked:
     """Return the quantities for a run of a model: `GLOBAL`, those of its base, optionally `FLOORS`, and `more` by name.
 
-    Elements need the largest rotation to each side if the sides differ, and viscous dampers the velocities. On springs
-    the largest values of `EDGES` and of `element_moves` are tracked, too. Floor accelerations are not linear
-    functionals of the state for large rotations, so for an integrated model they are computed from its history.
+    Elements need the largest rotation to each side if the sides differ, and viscous dampers the velocities. Those of
+    `tracked_elements` need the largest values of `element_moves`, and on springs `EDGES` are tracked, too. Floor
+    accelerations are not linear functionals of the state for large rotations, so for an integrated model they are
+    computed from its history.
     """
     p = model.properties
     parts: list[tuple[tuple[str, ...] | str, Quantities]] = [(GLOBAL, quantities(model, GLOBAL))]
     most: list[tuple[tuple[str, ...] | str, Quantities]] = []
+    under = [each for each in p.elements if not each.attached]
     if model.springs is not None:
-        most = [(EDGES, _edges(model)), ("element_moves", element_moves(model))]
-    elif not p.symmetric or any(each.position != 0.0 for each in p.elements):
+        most = [(EDGES, _edges(model))]
+    elif not p.symmetric or any(each.position != 0.0 for each in under):
         parts.append((ROTATIONS, rotation_by_side(model)))
-    if model.springs is None and model.lifts and any(isinstance(each, ViscousDamper) for each in p.elements):
+    if tracked_elements(model):
+        most.append(("element_moves", element_moves(model)))
+        parts.append(("element_speeds", element_speeds(model)))
+    if model.springs is None and model.lifts and any(isinstance(each, ViscousDamper) for each in under):
         parts.append(("rotation_rate_by_side", rotation_rate_by_side(model)))
     if model.layout.slip >= 0:
         parts.append((("slip",), quantities(model, ("slip",))))
-    if model.springs is not None:
-        parts.append(("element_speeds", element_speeds(model)))
     if floors and p.floors is not None:
         names = FLOORS[:-1] if model.integrated else FLOORS
         parts += [(name, floor_quantities(model, p.floors, (name,))) for name in names]
@@ -165,6 +170,8 @@ class ElementPeaks(NamedTuple):
     tendon_utilisation: float
     tendon_yield: bool
     tendon_overload: bool
+    ductility: Array
+    residual_drift: Array
 
 
 def _fixed(values: ArrayLike) -> NDArray[Any]:
@@ -173,9 +180,13 @@ def _fixed(values: ArrayLike) -> NDArray[Any]:
     return array
 
 
-ELEMENT_PEAKS = ("max_element_force", "max_element_elongation", "element_yielded", "remaining_prestress")
+OF_STORIES = ("ductility", "residual_drift")
+ELEMENT_PEAKS = (
+    *("max_element_force", "max_element_elongation", "element_yielded", "remaining_prestress"),
+    *OF_STORIES,
+)
 EMPTY: Array = _fixed(np.zeros(0))
-NONE = ElementPeaks(EMPTY, EMPTY, _fixed(np.zeros(0, dtype=np.bool_)), EMPTY, 0.0, 0.0, False, False)
+NONE = ElementPeaks(EMPTY, EMPTY, _fixed(np.zeros(0, dtype=np.bool_)), EMPTY, 0.0, 0.0, False, False, EMPTY, EMPTY)
 
 
 class ElementExtremes(NamedTuple):
@@ -189,9 +200,10 @@ class ElementExtremes(NamedTuple):
 def element_peaks(model: RockingModel, moves: Sequence[ElementExtremes], final_state: Array) -> ElementPeaks:
     """Return the peaks of the elements of a run, and what is left of them in its last state."""
     given = model.properties.elements
+    of_stories = _of_stories(model, moves[len(given) :], final_state)
     if not given:
-        return NONE
-    extremes = [_force_and_yielding(each, move) for each, move in zip(given, moves, strict=True)]
+        return NONE._replace(**of_stories)
+    extremes = [_force_and_yielding(each, move) for each, move in zip(given, moves, strict=False)]  # stories follow
     forces, yielded = [force for force, _ in extremes], [beyond for _, beyond in extremes]
     tendons = [
         (each, force, beyond)
@@ -201,22 +213,48 @@ def element_peaks(model: RockingModel, moves: Sequence[ElementExtremes], final_s
     shares = [force / each.yield_force for each, force, _ in tendons if each.yield_force]
     return ElementPeaks(
         max_element_force=_fixed(forces),
-        max_element_elongation=_fixed([max(-move.low, move.high) for move in moves]),
+        max_element_elongation=_fixed([max(-move.low, move.high) for move in moves[: len(given)]]),
         element_yielded=_fixed(yielded),
         remaining_prestress=_fixed(_remaining_prestress(model, final_state)),
         max_tendon_force=max((force for _, force, _ in tendons), default=0.0),
         tendon_utilisation=max(shares, default=math.nan) if tendons else 0.0,
         tendon_yield=any(beyond for _, _, beyond in tendons),
         tendon_overload=any(beyond and each.post_yield_ratio is None for each, _, beyond in tendons),
+        **of_stories,
     )
 
 
+def _of_stories(model: RockingModel, moves: Sequence[ElementExtremes], final_state: Array) -> dict[str, Array]:
+    """Return the ductility of each story and its drift at rest after the run; nothing if no story yields."""
+    p = model.properties
+    if not p.stories or p.floors is None:
+        return {"ductility": EMPTY, "residual_drift": EMPTY}
+    ductility = np.zeros(p.floors.heights.size)
+    for story, move in zip(p.stories, moves, strict=True):
+        ductility[story.floor - 1] = max(-move.low, move.high) * story.stiffness / story.yield_force
+    left = model.bent_at_rest(plastic_stretches(model, _as_history(model, final_state)[None])[0])
+    return {
+        "ductility": _fixed(ductility),
+        "residual_drift": _fixed(np.diff(p.floors.displacement @ left, prepend=0.0)),
+    }
+
+
+def _as_history(model: RockingModel, final_state: Array) -> Array:
+    """Return the last state of a run as one of a history."""
+    row = np.concatenate((np.zeros(HEADER), final_state))
+    row[SIDE] = np.sign(final_state[model.layout.rotation])  # on springs it means nothing
+    return row
+
+
 def element_extremes(model: RockingModel, peaks: Mapping[str, Array]) -> list[ElementExtremes]:
-    """Return the extremes of the elements of a run."""
+    """Return the extremes of the elements of a run, and then those of the stories that yield."""
+    tracked = tracked_elements(model)
+    known = dict(zip(tracked, _extremes_of(model, peaks), strict=True)) if tracked else {}
     if model.springs is not None:
-        return _on_springs(model, peaks["element_moves"], peaks["element_speeds"])
+        return [known[place] for place in range(len(model.elements))]
     swing = peaks.get("rotation_rate_by_side", np.zeros(1))  # one value if the sides do not differ
-    return extremes_about_pivots(model, largest_rotations(peaks), (float(swing[0]), float(swing[-1])))
+    under = extremes_about_pivots(model, largest_rotations(peaks), (float(swing[0]), float(swing[-1])))
+    return [known.get(place) or under[place] for place in range(len(model.elements))]
 
 
 def extremes_about_pivots(
@@ -234,19 +272,20 @@ def extremes_about_pivots(
     found = list[ElementExtremes]()
     stretch = model.stretch_per_arm(np.array(rotation)).tolist()
     for each in model.properties.elements:
-        arms = [model.properties.pivot(side).arm - side * each.position for side in (1, -1)]
+        arms = [each.arm(model.properties.pivot(side).arm, side) for side in (1, -1)]
         ends = [r * delta for r, delta in zip(arms, stretch, strict=True)]
         speeds = [abs(r) * rate for r, rate in zip(arms, swing, strict=True)]
         found.append(ElementExtremes(min(0.0, *ends), max(0.0, *ends), max(speeds)))
     return found
 
 
-def _on_springs(model: RockingModel, moves: Array, speeds: Array) -> list[ElementExtremes]:
-    """Return the extremes of the elements of a base on springs, from the peaks of `element_moves` and their speeds."""
+def _extremes_of(model: RockingModel, peaks: Mapping[str, Array]) -> list[ElementExtremes]:
+    """Return the extremes of `tracked_elements`, from the peaks of `element_moves` and of their speeds."""
     found = list[ElementExtremes]()
-    for each, (high, low), speed in zip(model.elements, moves.reshape(-1, 2).tolist(), speeds.tolist(), strict=True):
-        rest = model.rest.heave - each.position * model.rest.rotation
-        found.append(ElementExtremes(min(0.0, -(low + rest)), max(0.0, high - rest), speed))
+    moves, speeds = peaks["element_moves"].reshape(-1, 2).tolist(), peaks["element_speeds"].tolist()
+    for place, (high, low), speed in zip(tracked_elements(model), moves, speeds, strict=True):
+        first = float(model.stretch(place, CLOSED)[-1])
+        found.append(ElementExtremes(min(0.0, first - low), max(0.0, first + high), speed))
     return found
 
 
@@ -299,11 +338,9 @@ def _pulls_only(element: Tendon | YieldingDissipator) -> bool:
 
 def _remaining_prestress(model: RockingModel, final_state: Array) -> list[float]:
     """Return the force of each tendon in contact after the end of a run, in N; zero if it is slack or broken."""
-    row = np.concatenate((np.zeros(HEADER), final_state))
-    row[SIDE] = np.sign(final_state[model.layout.rotation])  # on springs it means nothing
-    plastic = plastic_stretches(model, row[None])[0]
+    plastic = plastic_stretches(model, _as_history(model, final_state)[None])[0]
     found: list[float] = []
-    for each, lost in zip(model.properties.elements, plastic.tolist(), strict=True):
+    for each, lost in zip(model.properties.elements, plastic.tolist(), strict=False):  # stories follow
         if isinstance(each, Tendon):  # the plastic stretch of an elastic one is zero
             share = (1.0 - (each.post_yield_ratio or 0.0)) * each.stiffness * lost
             found.append(0.0 if math.isnan(lost) else max(each.initial_force - share, 0.0))

@@ -312,7 +312,8 @@ def _moved(base: SprungBase, state: Equilibrium, turn: float, lift: float, lengt
     The way ends after `length`, or where a spring becomes empty or is met, or an element ends its branch.
     """
     springs, elements = base.springs, base.elements
-    positions = np.array([*springs.positions, *(each.position for each in elements)])
+    at = [each.position or 0.0 for each in elements]
+    positions = np.array([*springs.positions, *at])
     onward = [
         {way: _onward(each, place, way) for way in (1, -1)} for each, place in zip(elements, state.places, strict=True)
     ]
@@ -331,8 +332,8 @@ def _moved(base: SprungBase, state: Equilibrium, turn: float, lift: float, lengt
         for each, place, rate in zip(elements, places, rates[springs.n :], strict=True)
     ]
     depth = state.heave - springs.positions * state.rotation
-    left = [at[0] - place.elongation if at else 0.0 for at, place in zip(stops, places, strict=True)]
-    ends = np.array([*(pressed == (rates[: springs.n] > 0.0)), *(at is not None for at in stops)])
+    left = [stop[0] - place.elongation if stop else 0.0 for stop, place in zip(stops, places, strict=True)]
+    ends = np.array([*(pressed == (rates[: springs.n] > 0.0)), *(stop is not None for stop in stops)])
     ahead = np.full(positions.size, np.inf)
     np.divide(np.append(-depth, left), rates, out=ahead, where=ends & (rates != 0.0))
     np.maximum(ahead, 0.0, out=ahead)
@@ -342,13 +343,13 @@ def _moved(base: SprungBase, state: Equilibrium, turn: float, lift: float, lengt
     happens = ahead <= path + near
     rotation, heave = state.rotation + turn * path, state.heave + rise * path
     carried = state.carried.copy()
-    for k, (each, at) in enumerate(zip(elements, stops, strict=True)):
-        stretch = heave - base.rest.heave - each.position * (rotation - base.rest.rotation)
+    for k, (each, stop) in enumerate(zip(elements, stops, strict=True)):
+        stretch = heave - base.rest.heave - at[k] * (rotation - base.rest.rotation)
         places[k] = places[k]._replace(elongation=stretch)
-        if at is not None and happens[springs.n + k]:
+        if stop is not None and happens[springs.n + k]:
             force = tension(each, places[k])
-            places[k] = next_branch(each, places[k]._replace(elongation=at[0]), at[1])
-            carried[k] = force if each.broken(at[1]) else 0.0
+            places[k] = next_branch(each, places[k]._replace(elongation=stop[0]), stop[1])
+            carried[k] = force if each.broken(stop[1]) else 0.0
     empty = happens[: springs.n] | (state.empty & (path <= near))
     return Equilibrium(rotation, heave, pressed, empty, tuple(places), carried), path
 

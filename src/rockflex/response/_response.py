@@ -169,17 +169,23 @@ class Response(HtmlTable, Value):
     settled
         Whether the run ended at rest (``free_vibration="settle"``).
     max_element_force
-        Largest |F| of each element of the base in N, in the order of `RockingProperties.elements`, shape (E,). A
+        Largest |F| of each element in N, in the order of `RockingProperties.elements`, shape (E,). A
         friction damper counts with its F_0 once it slides.
     max_element_elongation
         Largest |δ| of each element in m, shape (E,): r |θ| at the distance r from the pivot, in the complete models
-        2 r sin(|θ|/2). The base goes on beyond the elongation at which an element breaks.
+        2 r sin(|θ|/2), or as in `Attachment`. It goes on beyond the elongation at which an element breaks.
     element_yielded
         Whether each element ever yielded or slid, shape (E,); of a tendon that stays elastic in the model, whether it
         carries more than its yield force.
     remaining_prestress
         Force of each tendon in N once the base is closed after the run, shape (n_tendons,): the initial force, less
         what its plastic stretch took; zero if it is slack or broken.
+    ductility
+        Largest drift of each story that yields over its drift at first yield, bottom to top, shape (N_floors,): zero
+        for a story that stays elastic by definition. Without `YieldingStories` the shape is (0,).
+    residual_drift
+        Drift of each story in m at rest after the run, with what yielded as it is and everything else elastic, shape
+        (N_floors,), or (0,).
     floors
         Floor peaks if the structure has floors and ``output="history"`` was requested; otherwise None.
     history
@@ -235,6 +241,8 @@ class Response(HtmlTable, Value):
     max_element_elongation: Array
     element_yielded: Bools
     remaining_prestress: Array
+    ductility: Array
+    residual_drift: Array
     floors: FloorPeaks | None = None
     history: History | None = None
 

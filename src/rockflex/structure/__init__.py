@@ -10,6 +10,7 @@ from rockflex.structure._leaning import Leaning
 from rockflex.structure._structure import Eccentric, ModalStructure, Restrained, structure_warnings
 from rockflex.structure._towers import CantileverWithTipMass, TaperedTower, rigid_block
 from rockflex.structure._wall_frame import WallFrame
+from rockflex.structure._yielding_stories import YieldingStories
 
 __all__ = [
     "Beam",
@@ -26,6 +27,7 @@ __all__ = [
     "Section",
     "TaperedTower",
     "WallFrame",
+    "YieldingStories",
     "cosine_shapes",
     "from_matrices",
     "from_modes",

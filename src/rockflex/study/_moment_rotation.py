@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import overload
 
 import numpy as np
@@ -55,6 +56,9 @@ def moment_rotation(
     On springs the base heaves so that they carry the weight and the tensions, and M = Σ x N - Σ x F - L_0^r g θ with
     the force N of each spring at x from the axis of the masses. Dashpots and friction under the base contribute
     nothing. The path begins at rest, settled; θ counts from the level base, as in a run.
+
+    The structure is rigid here, so that elements between its floors and stories that yield do not matter; `pushover`
+    has them.
 
     Parameters
     ----------
@@ -118,7 +122,7 @@ def moment_rotation(
             f"rotations[{beyond[0]}] = {path[beyond[0]]:g} rad was given. Check the units: one degree is 0.01745 rad.",
             field="rotations",
         )
-    properties = rocking_properties_of(structure)
+    properties = _held_at_base(rocking_properties_of(structure))
     check_run_options(None, None, ground)
     under = ground_under_structure(properties, ground)
     if under is None:
@@ -132,3 +136,22 @@ def moment_rotation(
     still = Ground(springs=under.springs, base_inertia=under.base_inertia)  # no horizontal force: nothing slides
     model = Model(n_modes=None if properties.n_modes else 0).of(properties, ground=still)
     return static_path(model.properties, path, model.springs, model.rest)
+
+
+def _held_at_base(properties: RockingProperties) -> RockingProperties:
+    """Return the structure with the elements under its base alone.
+
+    Raises
+    ------
+    InputError
+        If a tie holds it from a height.
+    """
+    for each in properties.elements:
+        if each.height is not None:
+            raise InputError(
+                f"moment_rotation is for elements under the base, but a {type(each).__name__} acts from {each.where}. "
+                "Use pushover, which has elements anywhere.",
+                field="elements",
+            )
+    under = tuple(each for each in properties.elements if not each.attached)
+    return replace(properties, elements=under, stories=())

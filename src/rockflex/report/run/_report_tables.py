@@ -14,6 +14,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex._number_format import moment_unit, rounded_number
 from rockflex._shown import shown
 from rockflex.modal import (
+    PLACE,
     BaseElement,
     ElementLaw,
     FrictionDamper,
@@ -21,7 +22,7 @@ from rockflex.modal import (
     Tendon,
     UpliftedModes,
     ViscousDamper,
-    law_parameters,
+    element_parameters,
     uplifted_modes,
 )
 from rockflex.models import Restitution, RockingModel, SidedRestitution
@@ -397,7 +398,7 @@ def _element_table_row(place: int, elements: Sequence[BaseElement], runs: Sequen
     name, properties, state = _describe_element(element)
     return [
         ReportCell(f"{place + 1} {name}"),
-        value_cell(element.position, "position"),
+        ReportCell(element.where) if element.attached else value_cell(element.position, "position"),
         ReportCell(properties),
         value_cell(force, f"max_element_force_{place + 1}", 1e3),
         value_cell(elongation, f"max_element_elongation_{place + 1}", 1e-3),
@@ -408,7 +409,7 @@ def _element_table_row(place: int, elements: Sequence[BaseElement], runs: Sequen
 def _describe_element(element: BaseElement) -> tuple[str, str, tuple[str, str]]:
     """Return kind, properties, and the words for an element that did not, or did, yield."""
     if isinstance(element, ElementLaw):
-        values = {name: value for name, value in law_parameters(element).items() if name != "position"}
+        values = {name: value for name, value in element_parameters(element).items() if name not in PLACE}
         return element.words, ", ".join(f"{name} = {shown(value)}" for name, value in values.items()), ("", "yielded")
     if isinstance(element, ViscousDamper):
         return "viscous damper", f"c = {rounded_number(element.coefficient / 1e3)} kN s/m", ("", "")

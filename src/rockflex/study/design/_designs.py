@@ -80,13 +80,13 @@ class TendonLevel:
 
     def held(self, properties: RockingProperties) -> RockingProperties:
         """The structure with this tendon in place of any other; without one if both ratios are zero."""
-        others = tuple(each for each in properties.elements if not isinstance(each, Tendon))
+        others = tuple(each for each in properties.elements if each.attached or not isinstance(each, Tendon))
         if not (self.prestress_ratio or self.stiffness_ratio):
             return replace(properties, elements=others)
         weight = properties.m_tot * GRAVITY
         stiffness = self.stiffness_ratio * properties.l0r * GRAVITY / properties.half_width**2
         limit = None if self.yield_ratio is None else self.yield_ratio * weight
-        tendon = Tendon(self.prestress_ratio * weight, stiffness, yield_force=limit)
+        tendon = Tendon(initial_force=self.prestress_ratio * weight, stiffness=stiffness, yield_force=limit)
         return replace(properties, elements=(tendon, *others))
 
 
@@ -367,7 +367,9 @@ def element_moved_with_base_edges(
     The middle of the base is at -e from the axis of the masses, from which positions are measured.
     """
     e, ratio = properties.eccentricity, half_width / properties.half_width
-    return element if ratio == 1.0 else replace(element, position=(element.position + e) * ratio - e)
+    return (
+        element if ratio == 1.0 or element.attached else replace(element, position=(element.position + e) * ratio - e)
+    )
 
 
 def total_dissipator_force(properties: RockingProperties) -> float:

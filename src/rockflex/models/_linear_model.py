@@ -1,0 +1,137 @@
+"""The simplified models on rigid ground, and the equations of motion of bases with several degrees of freedom."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from rockflex._arrays import Array, Bools
+from rockflex._constants import GRAVITY
+from rockflex._errors import InputError
+from rockflex.modal import RockingProperties
+from rockflex.models._impact import ImpactLaw, VVELSimplified
+from rockflex.models._modal_model import ModalModel
+from rockflex.models._phase import BaseEquations, BorderedSystem, Key
+
+JAMMED = 1e-12  # relative: determinant below which the base has no inertia against a motion
+
+
+@dataclass(frozen=True, eq=False)
+class LinearModel(ModalModel):
+    """N modes on a base that may uplift: Eqs. 15, 23, 24 and 25.
+
+    Parameters
+    ----------
+    label
+        Label of the model, such as ``"2DOF-S"``.
+    properties
+        Parameters of the structure, with only the modes of this model.
+    lifts
+        Whether the base can lift; otherwise it is fixed.
+    law
+        Impact law.
+    missing_mass
+        Whether base shear and base moment include the mass that the modes leave out, as if it moved with the base.
+    gravity
+        Gravitational acceleration in m/s².
+    """
+
+    label: str
+    properties: RockingProperties
+    lifts: bool = True
+    law: ImpactLaw = field(default_factory=VVELSimplified)
+    missing_mass: bool = False
+    gravity: float = GRAVITY
+
+    @property
+    def linear(self) -> "LinearModel":
+        """The simplified, elastic model of the same modes: the model itself."""
+        return self
+
+
+def bordered_system_of(model: ModalModel, equations: BaseEquations, freed: Bools) -> BorderedSystem:
+    """Return the equations of motion with the equations of the base, of which some degrees of freedom are free.
+
+    The couplings are c = h* for the rotation, 1 for the slip and 0 for the heave.
+
+    Raises
+    ------
+    InputError
+        If friction leaves a free base without inertia: it jams.
+    """
+    p, layout = model.properties, model.layout
+    coupling = np.zeros((layout.freedoms, p.n_modes))
+    coupling[0] = p.effective_height
+    if layout.slip >= 0:
+        coupling[1] = 1.0
+    leverage = p.effective_mass * coupling
+    inertia = equations.inertia - leverage @ coupling.T
+    free = np.flatnonzero(freed)
+    flexibility = np.zeros_like(inertia)
+    if free.size:
+        kept = inertia[np.ix_(free, free)]
+        if not np.linalg.det(kept) > JAMMED * np.prod(np.diag(kept)):
+            raise InputError(_jammed(model))
+        flexibility[np.ix_(free, free)] = np.linalg.inv(kept)
+    return BorderedSystem(
+        coupling=coupling,
+        leverage=leverage,
+        flexibility=flexibility,
+        damping=equations.damping,
+        stiffness=equations.stiffness,
+        constant=equations.constant,
+        drive=equations.ground + leverage.sum(axis=1),
+        recall=equations.recall,
+        freed=freed,
+    )
+
+
+def _jammed(model: ModalModel) -> str:
+    p = model.properties
+    if p.horizontal_mass - p.effective_mass.sum() <= JAMMED * p.m_tot:
+        return (
+            f"{model.label} with {p.n_modes} modes leaves no mass in the base that slides: Σ m* = m_tot = "
+            f"{p.m_tot:.6g} kg. Give the structure a base_mass, or keep fewer modes."
+        )
+    return (
+        f"The base of {model.label} jams: with so large a friction coefficient, no acceleration of a sliding and "
+        "rocking base satisfies Coulomb's law. Give a smaller friction, or None for a base that cannot slide."
+    )
+
+
+def accelerations_of(model: ModalModel, key: Key) -> Array:
+    """Return D'' of every mode and q'' of the base in a phase as rows, shape (N + b, C)."""
+    bordered_system = model.bordered_system(key)
+    p, layout = model.properties, model.layout
+    n, b, modes = p.n_modes, layout.freedoms, np.arange(p.n_modes)
+    rows = np.zeros((n + b, layout.columns))
+    rows[:n] -= model.restoring
+    rows[modes, n + modes] -= 2.0 * p.zeta * p.omega
+    attached, pulls = model.attached_forces(key)
+    rows[:n] += attached
+    forces = pulls - bordered_system.leverage @ rows[:n]
+    rows[:n, -2] = -1.0
+    places = layout.rotation + 2 * np.arange(b)
+    forces[:, places] -= bordered_system.stiffness
+    forces[:, places + 1] -= bordered_system.damping
+    forces[:, layout.memory : layout.memory + layout.n_internal] += bordered_system.recall
+    forces[:, -2] += bordered_system.drive
+    forces[:, -1] += bordered_system.constant
+    rows[n:] = bordered_system.flexibility @ forces
+    rows[:n] -= bordered_system.coupling.T @ rows[n:]
+    return rows
+
+
+def horizontal_reaction(model: ModalModel, key: Key) -> Array:
+    """Return the horizontal force of the ground on the base in a phase: a row, (C,).
+
+    (m_tot + Σ l) (a + x'') + L_0^r θ'' + Σ m* D'', and what ties from a height pull.
+    """
+    p, n, accelerations = model.properties, model.properties.n_modes, model.accelerations(key)
+    row = (
+        model.ties(key)
+        + p.effective_mass @ accelerations[:n]
+        + p.l0r * accelerations[n]
+        + p.horizontal_mass * accelerations[n + 1]
+    )
+    row[-2] += p.horizontal_mass
+    return row

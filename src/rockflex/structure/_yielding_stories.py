@@ -1,0 +1,141 @@
+"""Structures whose stories yield."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rockflex._arrays import Array
+from rockflex._checks import real_or_nan
+from rockflex._errors import InputError
+from rockflex._shown import shown
+from rockflex._values import Value
+from rockflex.modal import YieldingStory
+from rockflex.structure._frames import LumpedStructure
+from rockflex.structure._leaning import Leaning, lumped_of
+from rockflex.structure._structure import ModifiedStructure, Structure
+
+COUPLED = 1e-9  # relative: stiffness between drifts that is attributed to rounding
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class YieldingStories(ModifiedStructure, Value):
+    """A shear structure whose stories yield: F = α k u + (1 - α) z of the drift u, z elastic up to the strength.
+
+    The modes are those of the elastic structure, and so is the damping, which is overestimated while stories yield.
+    Base shear, base moment and story shears are those of the stories as they are.
+
+    Attributes
+    ----------
+    structure
+        A shear structure: a `Frame` or a `FishBone` whose beams are rigid, a `LumpedStructure` with such a stiffness,
+        or one of them with `Leaning` mass. Elements and an eccentricity come afterwards.
+    strengths : ndarray, shape (N,)
+        Story shears at first yield in N, bottom to top; infinite for a story that stays elastic. A single number
+        applies to all stories.
+    post_yield_ratio : ndarray, shape (N,)
+        α of each story, the stiffness after yielding over the elastic one, from 0 to below 1; or a single number.
+
+    Raises
+    ------
+    InputError
+        If `structure` is none of these or no shear structure, or a value is outside its range.
+
+    Notes
+    -----
+    The strength and stiffness of a story are those of all its columns. P-Δ of the drifts is neglected, as in the paper.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> frame = rf.Frame(
+    ...     n_stories=3, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=float("inf"),
+    ...     period=0.6, aspect_ratio=6.0, damping_ratio=0.03,
+    ... )
+    >>> yields = rf.YieldingStories(frame, strengths=[150e3, 120e3, 70e3], post_yield_ratio=0.05)
+    >>> pulse = rf.one_sine_pulse(amplitude=4.0, period=0.8)
+    >>> rf.simulate(yields, pulse, free_vibration=5.0).ductility.round(2)
+    array([3.39, 1.08, 0.97])
+    """
+
+    structure: Structure
+    strengths: Array
+    post_yield_ratio: Array
+
+    def __init__(self, structure: Structure, strengths: ArrayLike, post_yield_ratio: ArrayLike) -> None:
+        lumped = lumped_of(structure.structure if isinstance(structure, Leaning) else structure)
+        stiffness = story_stiffness(lumped)
+        count = stiffness.size
+        found = _by_story("strengths", strengths, count)
+        if not (found > 0.0).all():
+            raise InputError(
+                f"strengths must be positive story shears in N from the bottom to the top, but {shown(strengths)} was "
+                "given. An infinite one keeps a story elastic.",
+                field="strengths",
+            )
+        ratio = _by_story("post_yield_ratio", post_yield_ratio, count)
+        if not ((ratio >= 0.0) & (ratio < 1.0)).all():
+            raise InputError(
+                f"post_yield_ratio must be from 0 to below 1, but {shown(post_yield_ratio)} was given: the stiffness "
+                "of a story after yielding over its elastic stiffness.",
+                field="post_yield_ratio",
+            )
+        vars(self).update(structure=structure, strengths=found, post_yield_ratio=ratio)
+
+    @cached_property
+    def stiffness(self) -> Array:
+        """Elastic stiffness of each story in N/m, bottom to top, shape (N,)."""
+        inner = self.structure.structure if isinstance(self.structure, Leaning) else self.structure
+        return story_stiffness(lumped_of(inner))
+
+    @property
+    def yield_drift(self) -> Array:
+        """Drift of each story at first yield in m, shape (N,)."""
+        return self.strengths / self.stiffness
+
+    def __getstate__(self) -> dict[str, object]:
+        return {name: getattr(self, name) for name in ("structure", "strengths", "post_yield_ratio")}
+
+    def _changes(self) -> dict[str, Any]:
+        values = zip(self.stiffness.tolist(), self.strengths.tolist(), self.post_yield_ratio.tolist(), strict=True)
+        return {"stories": tuple(YieldingStory(k, *each) for k, each in enumerate(values, 1) if np.isfinite(each[1]))}
+
+
+def story_stiffness(lumped: LumpedStructure) -> Array:
+    """Return the stiffness of each story of a shear structure in N/m, bottom to top.
+
+    Raises
+    ------
+    InputError
+        If a story is coupled with others: the structure bends as a whole.
+    """
+    count = lumped.heights.size
+    order = np.argsort(lumped.heights)
+    below = np.tril(np.ones((count, count)))  # displacements of the floors from drifts
+    of_drifts = below.T @ lumped.stiffness[np.ix_(order, order)] @ below
+    found = np.diag(of_drifts).copy()
+    rest = np.abs(of_drifts - np.diag(found)).max(initial=0.0)
+    if (order != np.arange(count)).any() or rest > COUPLED * found.max():
+        raise InputError(
+            "structure must be a shear structure, whose story shears depend only on their own drifts, with its floors "
+            "from the bottom to the top: a Frame with stiffness_ratio = inf, for example. With flexible beams a story "
+            "that yields can take more stiffness than there is.",
+            field="structure",
+        )
+    return found
+
+
+def _by_story(name: str, given: ArrayLike, count: int) -> Array:
+    found = np.array([real_or_nan(each) for each in np.atleast_1d(np.asarray(given, dtype=object)).ravel()])
+    if found.size == 1:
+        found = np.full(count, found[0])
+    if found.size != count or np.isnan(found).any():
+        raise InputError(
+            f"{name} must be one number, or one for each of the {count} stories from the bottom to the top, but "
+            f"{shown(given)} was given.",
+            field=name,
+        )
+    found.setflags(write=False)
+    return found
