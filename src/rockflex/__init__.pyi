@@ -123,11 +123,14 @@ from .plot import plot_tower as plot_tower
 from .plot import plot_yielding as plot_yielding
 from .plot import save_figure as save_figure
 from .report import write_report as write_report
+from .response import BilinearFit as BilinearFit
 from .response import EnergyLedger as EnergyLedger
 from .response import FloorPeaks as FloorPeaks
 from .response import History as History
 from .response import MomentRotation as MomentRotation
 from .response import MomentRotationOnSprings as MomentRotationOnSprings
+from .response import Pushover as Pushover
+from .response import PushoverEvent as PushoverEvent
 from .response import Response as Response
 from .response import SampledHistory as SampledHistory
 from .structure import Beam as Beam
@@ -161,6 +164,7 @@ from .study import modal_combination as modal_combination
 from .study import moment_rotation as moment_rotation
 from .study import overturning_scales as overturning_scales
 from .study import overturning_spectrum as overturning_spectrum
+from .study import pushover as pushover
 from .study import rocking_spectrum as rocking_spectrum
 from .study import simulate as simulate
 from .study import simulate_many as simulate_many

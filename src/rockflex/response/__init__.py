@@ -13,6 +13,7 @@ from rockflex.response._moment_rotation import (
     weight_resistance,
 )
 from rockflex.response._peaks import GLOBAL, Tracked, tracked_quantities
+from rockflex.response._pushover import BilinearFit, Pushover, PushoverEvent, pushover_path
 from rockflex.response._quasi_static import static_path
 from rockflex.response._respond import NAMES, STATUSES, columns_among, columns_of, respond
 from rockflex.response._response import (
@@ -35,11 +36,14 @@ __all__ = [
     "STATUSES",
     "UNITS_OF_GROUND",
     "UNITS_OF_HISTORY",
+    "BilinearFit",
     "EnergyLedger",
     "FloorPeaks",
     "History",
     "MomentRotation",
     "MomentRotationOnSprings",
+    "Pushover",
+    "PushoverEvent",
     "Response",
     "SampledHistory",
     "Tracked",
@@ -52,6 +56,7 @@ __all__ = [
     "history_columns",
     "large_resistance",
     "leaves_range",
+    "pushover_path",
     "resistance_on_springs",
     "respond",
     "static_path",

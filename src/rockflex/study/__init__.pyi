@@ -24,6 +24,7 @@ from ._prepared_case import PreparedCase as PreparedCase
 from ._prepared_case import RunOptions as RunOptions
 from ._prepared_case import solutions_of_runs as solutions_of_runs
 from ._prepared_case import yielding_model_labels as yielding_model_labels
+from ._pushover import pushover as pushover
 from ._result_tables import Columns as Columns
 from ._result_tables import PivotLifts as PivotLifts
 from ._result_tables import Row as Row
