@@ -9,6 +9,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 from rockflex._json import as_json_value
+from rockflex.modal import PLACE
 from rockflex.structure.file import (
     ELEMENTS,
     KINDS,
@@ -73,7 +74,8 @@ def forms_of_structures() -> dict[str, Any]:
 
 def _form_fields(table: type[TomlTable]) -> list[dict[str, Any]]:
     left_out = ("kind", "parts")  # chosen in a list; of a composite section
-    return [_form_field(name, field) for name, field in table.model_fields.items() if name not in left_out]
+    names = sorted(table.model_fields, key=lambda name: name in PLACE[1:])  # where else an element may act, at the end
+    return [_form_field(name, table.model_fields[name]) for name in names if name not in left_out]
 
 
 def _form_field(name: str, field: FieldInfo) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rockflex.fragility import NOMINAL, ROCKING
-from rockflex.modal import BaseElement
+from rockflex.modal import BaseElement, element_parameters
 from rockflex.structure import LumpedMasses, Section
 from rockflex.structure.file import StructureEntry
 from rockflex.study import yielding_model_labels
@@ -180,6 +180,12 @@ def _structure_code_lines(entry: StructureEntry) -> list[str]:
     given: Any = entry.table
     lines = [f"structure = {_python_call(type(given).makes.__name__, given.arguments(''))}"]
     elements = [each.element() for each in entry.elements or []]
+    if entry.leaning_masses is not None:
+        lines.append(f"structure = rf.Leaning(structure, {_python_literal(entry.leaning_masses)})")
+    if entry.stories is not None:
+        lines.append(
+            f"structure = rf.YieldingStories(structure, {_python_named_arguments(entry.stories.model_dump())})"
+        )
     based = {name: value for name, value in (("eccentricity", entry.eccentricity), ("elements", elements)) if value}
     if based and entry.kind in ("properties", "block"):
         return [
@@ -220,7 +226,9 @@ def _python_named_arguments(values: Mapping[str, Any]) -> str:
 def _python_literal(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return _python_literal(value.tolist())
-    if isinstance(value, LumpedMasses | Section | BaseElement):
+    if isinstance(value, BaseElement):
+        return _python_call(type(value).__name__, element_parameters(value))
+    if isinstance(value, LumpedMasses | Section):
         return _python_call(type(value).__name__, {each.name: getattr(value, each.name) for each in fields(value)})
     if isinstance(value, dict):
         return f"{{{', '.join(f'{key!r}: {_python_literal(each)}' for key, each in value.items())}}}"

@@ -1,4 +1,4 @@
-"""A structure in a TOML file, with its place on the base and the elements between base and ground."""
+"""A structure in a TOML file: leaning mass, stories that yield, its place on the base, and its elements."""
 
 import tomllib
 from collections.abc import Callable
@@ -14,6 +14,7 @@ from rockflex._registry import registered
 from rockflex._schema import PLAIN, Eccentricity, SchemaKey, one_for_each
 from rockflex._shown import shortened
 from rockflex.modal import (
+    PLACE,
     BaseElement,
     ElementLaw,
     FlagShapedBar,
@@ -25,8 +26,9 @@ from rockflex.modal import (
     ViscousDamper,
     YieldingDissipator,
 )
-from rockflex.structure import Eccentric, Restrained
+from rockflex.structure import Eccentric, Leaning, Restrained, YieldingStories
 from rockflex.structure._from_matrices import matrix_file_checksum
+from rockflex.structure._structure import Structure
 from rockflex.structure.file._structure_tables import (
     BeamTable,
     Built,
@@ -63,6 +65,18 @@ class ElementTable(TomlTable):
     makes: ClassVar[Callable[..., BaseElement]]
     title: ClassVar[str]
 
+    between: Annotated[
+        list[int] | None,
+        SchemaKey("the two floors that it connects, in place of a position", form="{}, such as [0, 2]; 0 is the base"),
+    ] = None
+    cosine: Annotated[
+        float | None,
+        SchemaKey("the cosine of its inclination between floors or from a height, negative to the other side"),
+    ] = None
+    height: Annotated[
+        float | None, SchemaKey("the height of a tie to the ground, in place of a position", "m", label="Tie at height")
+    ] = None
+
     def element(self) -> BaseElement:
         """Return the element.
 
@@ -71,7 +85,8 @@ class ElementTable(TomlTable):
         InputError
             If a value is outside its range, or the values contradict each other.
         """
-        return type(self).makes(**self.model_dump(exclude={"kind"}))
+        values = self.model_dump(exclude={"kind"})
+        return type(self).makes(**{name: value for name, value in values.items() if value is not None})
 
     def describe(self) -> dict[str, Any]:
         """Return the given values, and the defaults of the others."""
@@ -191,6 +206,7 @@ def registered_table(made: Any, base: type[AnyTable], **more: Any) -> type[AnyTa
             ... if part.default is MISSING else part.default,
         )
         for part in fields(made)
+        if part.name not in base.model_fields
     }
     found: Any = create_model(f"{made.__name__}Table", __base__=base, **keys, **more)
     found.makes, found.title = made, made.__name__
@@ -216,8 +232,17 @@ AnyElementTable: TypeAlias = Annotated[Union[tuple(ELEMENTS.values())], Field(di
 """The table of any element, chosen by its `kind`."""
 
 
+class StoriesTable(TomlTable):
+    """The arguments of `YieldingStories`."""
+
+    strengths: Annotated[
+        float | list[float], SchemaKey("the shear at which a story yields first", "N", form=one_for_each("story"))
+    ]
+    post_yield_ratio: Annotated[float | list[float], SchemaKey(_POST_YIELD_RATIO, form=one_for_each("story"))] = 0.0
+
+
 class _OwnStructures(TomlTable):
-    """A structure, with its optional name, its place on the base, and the elements that hold the base.
+    """A structure, with its name, leaning mass, yielding stories, its place on the base, and its elements.
 
     Attributes
     ----------
@@ -225,6 +250,10 @@ class _OwnStructures(TomlTable):
         Empty where none was given.
     frame, fish_bone, wall_frame, tapered_tower, cantilever, beam, lumped, matrices, modes, properties, block
         One of them is a table, the others are None.
+    leaning_masses : float, list or None
+        In kg, of each floor; None if all mass stands on the base.
+    stories : StoriesTable or None
+        None if no story yields.
     eccentricity : float or None
         In m; None in the middle of the base.
     tendons : list of TendonTable
@@ -245,6 +274,11 @@ class _OwnStructures(TomlTable):
     modes: Annotated[ModesTable | None, _TABLE_KEY] = None
     properties: Annotated[RockingPropertiesTable | None, _TABLE_KEY] = None
     block: Annotated[RigidBlockTable | None, _TABLE_KEY] = None
+    leaning_masses: Annotated[
+        float | list[float] | None,
+        SchemaKey("the mass of each floor that stands on other columns", "kg", form=one_for_each("floor")),
+    ] = None
+    stories: Annotated[StoriesTable | None, _TABLE_KEY] = None
     eccentricity: Eccentricity = None
     tendons: Annotated[
         list[TendonTable], SchemaKey("a list of tables, each under a heading [[tendons]]", form=PLAIN)
@@ -295,6 +329,10 @@ class _OwnStructures(TomlTable):
             built = self.table.build(Path(folder))
         except InputError as error:
             raise InputError(str(error), place=f"[{self.kind}]", field=error.field) from error
+        if self.leaning_masses is not None:
+            built = _wrapped("leaning_masses", lambda: Leaning(_floors_of(built), self.leaning_masses or 0.0))
+        if (stories := self.stories) is not None:
+            built = _wrapped("stories", lambda: YieldingStories(_floors_of(built), **stories.model_dump()))
         if self.eccentricity:
             e = self.eccentricity
             built = replace(built, eccentricity=e) if isinstance(built, RockingProperties) else Eccentric(built, e)
@@ -326,8 +364,9 @@ class _OwnStructures(TomlTable):
                 raise InputError(str(error), place=f"[[{key}]] no. {place}", field=f"{row}.{error.field}") from error
             try:
                 replace(alone, elements=elements[-1:])
-            except InputError as error:  # it is outside the base
-                raise InputError(str(error), place=f"[[{key}]] no. {place}", field=f"{row}.position") from error
+            except InputError as error:  # it is outside the base, or at no floor
+                name = error.field if error.field in PLACE else "position"
+                raise InputError(str(error), place=f"[[{key}]] no. {place}", field=f"{row}.{name}") from error
         return replace(built, elements=elements) if known else Restrained(built, elements)
 
     def checksums(self, folder: Path | str = "") -> dict[str, str]:
@@ -342,12 +381,33 @@ class _OwnStructures(TomlTable):
         return {f"{self.kind}.{name}": matrix_file_checksum(name, path) for name, path in files.items()}
 
     def describe(self) -> dict[str, Any]:
-        """Return the values of the structure's table, with eccentricity, tendons and elements if given."""
-        more: dict[str, Any] = {"eccentricity": self.eccentricity} if self.eccentricity else {}
+        """Return the values of the structure's table, and everything else that is given, but for the name."""
+        more: dict[str, Any] = {} if self.leaning_masses is None else {"leaning_masses": self.leaning_masses}
+        more |= {"stories": self.stories.model_dump()} if self.stories else {}
+        more |= {"eccentricity": self.eccentricity} if self.eccentricity else {}
         for key, tables in (("tendons", self.tendons), ("elements", self.elements)):
             if tables:
                 more[key] = [each.describe() for each in tables]
         return {**self.table.values(), **more}
+
+
+def _floors_of(built: Built) -> Structure:
+    if isinstance(built, RockingProperties):
+        raise InputError(
+            "Leaning masses and stories that yield need floors, which a [properties] or [block] table does not have. "
+            "Use [frame], [fish_bone] or [lumped]; the leaning mass of [properties] is its key leaning_mass.",
+            field="structure",
+        )
+    return built
+
+
+def _wrapped(key: str, make: Callable[[], Built]) -> Built:
+    try:
+        return make()
+    except InputError as error:
+        place = f"[{key}]" if key == "stories" else key
+        inner = key if error.field in ("", "masses", "structure") or key == "leaning_masses" else f"{key}.{error.field}"
+        raise InputError(str(error), place=place, field=inner) from error
 
 
 if TYPE_CHECKING:
@@ -383,7 +443,10 @@ def read_structure(path: str | Path) -> Built:
     "tendon" (`Tendon`), "yielding_dissipator" (`YieldingDissipator`), "viscous_damper" (`ViscousDamper`),
     "friction_damper" (`FrictionDamper`), "flag_shaped_bar" (`FlagShapedBar`), "gap_bar" (`GapBar`), "multilinear_bar"
     (`MultilinearBar`), or the name that another package registers (`ElementLaw`). Tables ``[[tendons]]`` are tendons
-    without that key. A number ``eccentricity`` above all tables moves the structure from the middle of its base
+    without that key. In place of a ``position`` an element takes ``between`` (two floors) or the ``height`` of a tie,
+    with a ``cosine`` (`Attachment`). ``leaning_masses`` above all tables is mass on other columns (`Leaning`), a table
+    ``[stories]`` with ``strengths`` and ``post_yield_ratio`` makes stories yield (`YieldingStories`), and a number
+    ``eccentricity`` moves the structure from the middle of its base
     (`Eccentric`). Units are kg, m, s, N and rad; paths of matrices are relative to the folder of the file.
 
     Parameters

@@ -236,6 +236,10 @@ class RockingPropertiesTable(StructureTable):
     base_mass: Annotated[float | None, SchemaKey("the mass of the base, a part of m_tot", "kg", low=0.0, high=1e12)] = (
         None
     )
+    leaning_mass: Annotated[
+        float | None,
+        SchemaKey("the mass that stands on other columns, not in m_tot but in the modes", "kg", low=0.0, high=1e12),
+    ] = None
 
 
 class TaperedTowerTable(StructureTable):
