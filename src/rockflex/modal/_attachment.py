@@ -29,6 +29,13 @@ class Attachment:
     height : float or None
         Height z in m above the base of a tie to the ground; between floors their displacements are interpolated. None
         for other elements.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> brace = rf.YieldingDissipator(stiffness=50e6, yield_force=200e3, between=(0, 1), cosine=0.8)
+    >>> brace.attached, brace.where
+    (True, 'floors 0 to 1')
     """
 
     if TYPE_CHECKING:

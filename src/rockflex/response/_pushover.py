@@ -33,6 +33,16 @@ class PushoverEvent(NamedTuple):
     """A change on the way of a pushover, at a displacement of the top in m and a base shear in N.
 
     `name` is ``"uplift"``, ``"story 1 yields"``, ``"element 2 yields"``, ``"element 2 breaks"`` and so on.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> column = rf.CantileverWithTipMass(
+    ...     height=10.0, tip_mass=50e3, bending_stiffness=2e8, base_mass=10e3, half_width=1.0, damping_ratio=0.02
+    ... )
+    >>> (event,) = rf.pushover(column, top_displacement=0.5, lifts=True).events
+    >>> event.name, round(event.base_shear / 1e3, 1)
+    ('uplift', 58.9)
     """
 
     name: str
@@ -54,6 +64,14 @@ class BilinearFit:
         α, the slope of the second line over that of the first.
     top_ordinate : float
         Γ_1 φ_top,1: displacement of the top per unit of the first modal coordinate D_1.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> one = rf.LumpedStructure([50e3], [[5e7]], [3.0], base_mass=30e3, half_width=1.0, damping_ratio=0.03)
+    >>> fit = rf.pushover(rf.YieldingStories(one, strengths=150e3, post_yield_ratio=0.1), 0.05).fit()
+    >>> round(fit.yield_displacement, 6), round(fit.yield_force), round(fit.post_yield_ratio, 6)
+    (0.003, 150000, 0.1)
     """
 
     yield_displacement: float
@@ -111,6 +129,17 @@ class Pushover(Value):
         What changes on the way, in this order.
     top_ordinate : float
         Γ_1 φ_top,1.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> one = rf.LumpedStructure([50e3], [[5e7]], [3.0], base_mass=30e3, half_width=1.0, damping_ratio=0.03)
+    >>> push = rf.pushover(rf.YieldingStories(one, strengths=150e3, post_yield_ratio=0.1), 0.05)
+    >>> print((push.to_frame()[["top_displacement", "base_shear"]] / [1.0, 1e3]).round(3))
+       top_displacement  base_shear
+    0             0.000         0.0
+    1             0.003       150.0
+    2             0.050       385.0
     """
 
     top_displacement: Array

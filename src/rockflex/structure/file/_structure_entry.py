@@ -70,9 +70,8 @@ class ElementTable(TomlTable):
         SchemaKey("the two floors that it connects, in place of a position", form="{}, such as [0, 2]; 0 is the base"),
     ] = None
     cosine: Annotated[
-        float | None,
-        SchemaKey("the cosine of its inclination between floors or from a height, negative to the other side"),
-    ] = None
+        float, SchemaKey("the cosine of its inclination between floors or from a height, negative to the other side")
+    ] = 1.0
     height: Annotated[
         float | None, SchemaKey("the height of a tie to the ground, in place of a position", "m", label="Tie at height")
     ] = None
@@ -90,7 +89,8 @@ class ElementTable(TomlTable):
 
     def describe(self) -> dict[str, Any]:
         """Return the given values, and the defaults of the others."""
-        return self.model_dump(exclude_none=True)
+        attached = self.between is not None or self.height is not None
+        return self.model_dump(exclude_none=True, exclude=set() if attached else {"cosine"})
 
 
 class TendonTable(ElementTable):
