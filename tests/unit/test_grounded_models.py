@@ -8,7 +8,8 @@ import pytest
 import rockflex as rf
 from builders import make_frame
 from rockflex.models import parse_model
-from rockflex.models._spring_model import code_of, codes_for, decoded, heave_at
+from rockflex.models._layout import code_of, codes_for, decoded
+from rockflex.models._spring_model import heave_at
 from rockflex.study._prepared_case import PreparedCase
 
 FRAME = make_frame(n_stories=3, base_mass=120e3, stiffness_ratio=0.125, period=0.4, aspect_ratio=6.0)

@@ -47,7 +47,7 @@ def test_contact_satisfies_equations_15_and_24(n):
     np.testing.assert_allclose(modal, -a - 2.0 * p.zeta * p.omega * v - p.omega**2 * d, rtol=1e-13)
     assert not tied.angular_acceleration(tied.start(0)).any()
     moment = (p.effective_mass * p.effective_height) @ modal + p.l0r * a
-    assert tied.overturning_moment() @ x == pytest.approx(moment, rel=1e-12)
+    assert tied.overturning_moment(tied.start(0)) @ x == pytest.approx(moment, rel=1e-12)
 
 
 def test_at_uplift_the_rotation_starts_from_what_the_weight_cannot_hold():
@@ -56,7 +56,7 @@ def test_at_uplift_the_rotation_starts_from_what_the_weight_cannot_hold():
     x[4:6] = 0.0
     resistance = tied.properties.m_tot * GRAVITY * tied.properties.half_width
     for side in (1, -1):
-        excess = -tied.overturning_moment() @ x - side * resistance
+        excess = -tied.overturning_moment(tied.start(0)) @ x - side * resistance
         turn = tied.angular_acceleration(tied.start(side)) @ x
         assert turn == pytest.approx(excess / tied.free_inertia(side), rel=1e-12)
 

@@ -96,7 +96,7 @@ def test_phases_end_at_the_resisting_moments_of_the_pivots_and_at_a_quarter_turn
     assert [event.target for event in uplifts] == [(*tied.start(side), *sign) for side in (1, -1)]
     for side, event in zip((1, -1), uplifts, strict=True):
         assert float(np.squeeze(event.constant)) == pytest.approx(p.pivot(side).resisting_moment, rel=1e-14)
-        row, moment = np.squeeze(event.row)[moving], side * tied.overturning_moment()
+        row, moment = np.squeeze(event.row)[moving], side * tied.overturning_moment(tied.start(0))
         assert np.array_equal(row, moment[:-2])
         assert float(np.squeeze(event.direct)) == moment[-2]
         ends = {each.name: each for each in phase_of((*tied.start(side), *sign)).events}

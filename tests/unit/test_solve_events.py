@@ -110,7 +110,7 @@ def test_a_moment_that_culminates_at_a_sample(excess):
     record = np.concatenate((np.linspace(0.0, 1.0, 41), np.linspace(1.0, 0.0, 41)[1:]))
     fixed = simulate(p, GroundMotion(record, 0.05), "fixed").history.states
     vector = np.column_stack((fixed[:, HEADER:], fixed[:, GROUND], np.ones(len(fixed))))
-    moment = np.abs(vector @ Model().of(p).overturning_moment())
+    moment = np.abs(vector @ Model().of(p).overturning_moment((0,)))
     assert moment.argmax() == 40
     record *= p.resisting_moment / moment[40] * (1.0 + excess)
     run = simulate(p, GroundMotion(record, 0.05))
