@@ -8,9 +8,9 @@ import pytest
 from builders import frame_values
 from rockflex import Frame, GroundMotion, InitialState, RockingProperties, quiet_motion, simulate
 from rockflex.models import GROUND, HEADER, Model
+from twins.controlled import ControlledTwin
 from twins.fine_step import simulate_fine
 from twins.frame import frame_properties
-from twins.ode import simulate_ode
 
 GRAVITY = 9.81
 PEAKS = ("rotation", "top_displacement", "base_moment", "base_shear")
@@ -145,14 +145,7 @@ def test_a_jump_at_the_start_lifts_at_once(sign):
     mine, twin = both(given, record, 0.01, 1, free_vibration=1.0)
     assert mine.uplift_times[0] == 0.0
     assert_same(mine, twin)
-    ode = simulate_ode(
-        **frame_properties(**given, n_modes=1).kwargs(),
-        acceleration=record,
-        dt=0.01,
-        free_vibration=1.0,
-        rtol=1e-12,
-        restart_every_sample=True,
-    )
+    ode = ControlledTwin.of(p, []).run(record, 0.01, 1.0)
     assert_same(mine, ode, rtol=1e-9, atol=1e-9)
     # From a jump the rotation grows with the square of time.
     lift = 0.2 * p.resisting_moment / (p.i_theta - float(p.effective_mass @ p.effective_height**2))
