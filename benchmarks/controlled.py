@@ -2,7 +2,6 @@
 
 import time
 
-import numpy as np
 from rich.table import Table
 from timing import frame, least, milliseconds
 

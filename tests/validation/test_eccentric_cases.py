@@ -14,12 +14,11 @@ import pytest
 
 import rockflex as rf
 from twins import impact_laws
-from twins.complete import complete_frame, simulate_complete
+from twins.complete import simulate_complete
 
 CASES = json.loads((Path(__file__).parent / "eccentric_cases.json").read_text("utf-8"))["cases"]
 PEAKS = ("max_rotation", "max_top_displacement", "max_base_moment")
 BLOCK = rf.RockingProperties([], [], [], [], i_theta=24e6, l0r=1.8e6, m_tot=240e3, half_width=1.2, zeta=0.02)
-MODES = {"2DOF-S": 1, "3DOF-S": 2, "MDOF-S": None}
 
 
 def label(case):
@@ -46,19 +45,6 @@ def test_peaks(case):
         assert response.n_uplifts == case["n_uplifts"]
         for name in PEAKS:
             assert getattr(response, name) == pytest.approx(case[name], rel=bound(case, name)), name
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("case", CASES, ids=label)
-def test_the_twin_meets_them(case):
-    frame, motion = inputs(case)
-    twin = simulate_complete(
-        **complete_frame(**frame, n_modes=MODES[case["model"]]), acceleration=motion.acceleration, dt=motion.dt,
-        eccentricity=case["eccentricity"], complete=False, law=impact_laws.SimplifiedVVEL(),
-    )  # fmt: skip
-    assert twin.n_uplifts == case["n_uplifts"]
-    for name in PEAKS:
-        assert getattr(twin, name) == pytest.approx(case[name], rel=bound(case, name)), name
 
 
 def landing(eccentricity, side, share):
