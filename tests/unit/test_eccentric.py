@@ -192,12 +192,3 @@ def test_the_forces_of_tendons_go_by_the_side():
     # The largest rotation lies between two samples.
     dense = rf.simulate(structure, rf.GroundMotion(shaking(), 0.02).refined(40), "MDOF-S")
     assert run.max_tendon_force == pytest.approx(dense.tendon_force.max(), rel=1e-6)
-
-
-@pytest.mark.parametrize("model", ["MDOF-S", "2DOF-C"])
-def test_a_saved_response_keeps_the_eccentricity(model, tmp_path):
-    run = rf.simulate(made(0.3, "two"), rf.GroundMotion(shaking(), 0.02), model)
-    loaded = rf.Response.load(run.save(tmp_path / "moved"))
-    assert loaded.history.model.properties == run.history.model.properties
-    assert loaded.history.model.properties.eccentricity == 0.3
-    np.testing.assert_array_equal(loaded.energy.gravity, run.energy.gravity)

@@ -11,7 +11,6 @@ from rockflex import (
     InitialState,
     InputError,
     LumpedStructure,
-    Response,
     Restitution,
     RockingProperties,
     half_sine_pulse,
@@ -184,15 +183,9 @@ def test_one_node_alone():
 @pytest.mark.parametrize(
     ("ask", "text"),
     [
-        (
-            lambda run: run.required_friction_excluding_impacts(window=-0.1),
-            r"window must be a zero or positive, finite number in s, but -0\.1 was given",
-        ),
+        (lambda run: run.required_friction_excluding_impacts(window=-0.1), r"window must be a zero or positive"),
         (lambda run: run.required_friction_excluding_impacts(math.nan), "window must be a zero or positive.*but nan"),
-        (
-            lambda run: run.sliding_time(0.0),
-            r"mu must be a friction coefficient above zero, such as 0\.5, but 0\.0 was",
-        ),
+        (lambda run: run.sliding_time(0.0), r"mu must be a friction coefficient above zero, such as 0\.5, but 0\.0"),
         (lambda run: run.sliding_time(math.inf), "mu must be a friction coefficient above zero.*but inf was given"),
         (lambda run: run.sliding_time("much"), "mu must be a friction coefficient above zero.*but 'much' was given"),
     ],
@@ -224,10 +217,3 @@ def test_peaks_alone_know_no_friction(name):
     assert not hasattr(run, name)
     with pytest.raises(InputError, match=f'contains only peaks, so it has no {name}. Simulate with output="history"'):
         getattr(run, name)
-
-
-def test_a_loaded_response_needs_the_same_friction(tmp_path):
-    run = simulate(FRAME, EL_CENTRO, "2DOF-C")
-    again = Response.load(run.save(tmp_path / "run.npz"))
-    assert again.required_friction == run.required_friction
-    assert again.sliding_time(0.1) == run.sliding_time(0.1)

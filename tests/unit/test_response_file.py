@@ -28,6 +28,7 @@ ELEMENTS = [
     rf.YieldingDissipator(2e7, 3e4),
     rf.ViscousDamper(2e4, 0.3),
 ]
+SPRINGS = rf.Springs([-FRAME.half_width, FRAME.half_width], 3e8, 3e6)
 OF_ELEMENTS = ("max_element_force", "max_element_elongation", "element_yielded", "remaining_prestress")
 SIDED = SidedRestitution(rf.Restitution(0.4, 2e-3), rf.Restitution(0.55, 1e-3))
 
@@ -53,6 +54,11 @@ RUNS = {
     "restitution": (FRAME, "MDOF-S", {"impact": rf.Restitution(0.6)}),
     "a restitution to each side": (FRAME, "2DOF-S", {"impact": SIDED}),
     "eccentric": (rf.Eccentric(FRAME, 0.2), "rigid", {}),
+    "eccentric, complete": (rf.Eccentric(FRAME, 0.2), "2DOF-C", {}),
+    "tendons": (rf.Restrained(FRAME, ELEMENTS[:2]), "MDOF-S", {}),
+    "slides": (FRAME, "2DOF-S", {"ground": rf.Ground(0.2)}),
+    "on springs": (FRAME, "2DOF-S", {"ground": rf.Ground(springs=SPRINGS, base_inertia=60e3)}),
+    "slides on springs": (FRAME, "2DOF-S", {"ground": rf.Ground(0.2, SPRINGS, 60e3)}),
     "a law and a spring": (FRAME, "2DOF-S", {"impact": rf.VVELComplete(), "bouc_wen": SPRING}),
     "complete with a spring": (FRAME, "2DOF-C-BW", {"bouc_wen": SPRING}),
     "fixed with a spring": (FRAME, "1DOF-fixed-BW", {"bouc_wen": SPRING}),
@@ -78,7 +84,8 @@ def assert_same(back, run):
     if run.history is None:
         return
     names = ["time", "rotation", "top_displacement", "yielding", "base_moment", "base_shear", "modal_acceleration"]
-    names += ["rotation_acceleration", "impact_times", "element_force"]
+    names += ["rotation_acceleration", "impact_times", "element_force", "tendon_force", "friction_demand", "slip"]
+    names += ["heave", "edge_uplift", "spring_force", "vertical_reaction"]
     for name in names + ["floor_acceleration", "story_shear"] * (run.floors is not None):
         assert np.array_equal(getattr(back, name), getattr(run, name)), name
     for name in ("kinetic", "strain", "gravity", "damped", "yielded", "elements", "input", "lost"):
@@ -93,7 +100,7 @@ def assert_same(back, run):
 @pytest.mark.parametrize(("structure", "model", "options"), RUNS.values(), ids=RUNS)
 def test_what_is_saved_comes_back(tmp_path, structure, model, options):
     run = rf.simulate(structure, MOTION, model, **options)
-    assert run.n_impacts > 0 or "fixed" in model
+    assert run.n_uplifts > 0 or "fixed" in model
     path = run.save(tmp_path / "run")
     assert list(tmp_path.iterdir()) == [path]
     back = rf.Response.load(str(path))

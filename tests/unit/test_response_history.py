@@ -172,9 +172,7 @@ def test_no_floors_no_story_drifts():
     assert run.floors is None
     for name in ("story_drift", "story_shear", "floor_acceleration"):
         for source in (run, run.history):
-            with pytest.raises(
-                InputError, match=r"include no floors, so there are no story drifts.*Simulate a Frame or"
-            ):
+            with pytest.raises(InputError, match=r"include no floors, so there are no story drifts.*Simulate a Frame"):
                 getattr(source, name)
             assert not hasattr(source, name)
     assert run.base_shear.shape == run.time.shape
@@ -232,10 +230,7 @@ def test_a_history_in_short(response):
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        (
-            lambda states: states[:, 1:],
-            r"states must have the shape \(\d+, 14\), but an array of shape \(\d+, 13\) was given",
-        ),
+        (lambda states: states[:, 1:], r"states must have the shape \(\d+, 14\), but an array of shape \(\d+, 13\)"),
         (lambda states: states[:0], r"states must have the shape \(1, 14\), but an array of shape \(0, 14\)"),
         (lambda states: 3.0, r"states must have the shape \(1, 14\), but an array of shape \(\)"),
         (lambda states: states + np.inf, r"states must be finite, but its entry \[0, 0\] is inf"),

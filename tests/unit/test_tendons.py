@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-import pickle
 
 import numpy as np
 import pytest
@@ -88,10 +87,7 @@ def test_asymmetric_tendons_make_two_sides(tendons):
 
 
 def test_other_refusals():
-    with pytest.raises(
-        rf.InputError,
-        match=r"Elements must act within half_width = 1\.2 m to each side of .*, but a Tendon is at 1\.3 m\.",
-    ):
+    with pytest.raises(rf.InputError, match=r"Elements must act within half_width = 1\.2 m to each side of .*"):
         held([rf.Tendon(1.0, 1.0, 1.3), rf.Tendon(1.0, 1.0, -1.3)])
     with pytest.raises(rf.InputError, match=r"elements must be Tendon, .* objects, .*but 3 was given\. Write Tendon\("):
         held(3)
@@ -125,15 +121,6 @@ def test_without_tendons_there_is_no_force():
     assert response.tendon_utilisation == 0.0
     assert response.tendon_force.shape == (response.time.size, 0)
     assert math.isnan(rf.simulate(held(rf.Tendon(1e5, 1e6)), MOTION, "2DOF-S").tendon_utilisation)
-
-
-def test_a_saved_response_keeps_its_tendons(tmp_path):
-    response = rf.simulate(held([CENTRAL, *PAIR]), MOTION, "MDOF-S")
-    loaded = rf.Response.load(response.save(tmp_path / "held"))
-    assert loaded.history.model.properties.tendons == (CENTRAL, *PAIR)
-    np.testing.assert_array_equal(loaded.tendon_force, response.tendon_force)
-    np.testing.assert_array_equal(loaded.energy.tendons, response.energy.tendons)
-    assert pickle.loads(pickle.dumps(held(PAIR))).tendons == tuple(PAIR)
 
 
 def test_tables_have_the_forces():
