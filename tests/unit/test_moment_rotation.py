@@ -9,27 +9,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rockflex as rf
+from builders import BY_HAND
 
 WEIGHT, ARM = 240e3 * 9.81, 1.2
 WEIGHT_SLOPE = 1.8e6 * 9.81
-BASE = {
-    "omega": [6.0, 25.0],
-    "effective_mass": [150e3, 30e3],
-    "effective_height": [11.0, 3.0],
-    "top_ordinate": [1.3, -0.5],
-    "i_theta": 24e6,
-    "l0r": 1.8e6,
-    "m_tot": 240e3,
-    "half_width": ARM,
-    "zeta": 0.02,
-}
 TENDON = rf.Tendon(initial_force=1.0e6, stiffness=30e6)
 K, FY = 200e6, 0.4e6  # of the fuse
 FUSE = rf.YieldingDissipator(K, FY)
 
 
 def base(*elements, **changes):
-    return rf.RockingProperties(**BASE | changes, elements=elements)
+    return rf.RockingProperties(**BY_HAND | changes, elements=elements)
 
 
 def plastic_work(curve, place, force):

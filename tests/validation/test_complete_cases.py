@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from builders import frame_values
+from builders import NO_MODES, frame_values
 from twins import impact_laws
 from twins.complete import complete_frame, simulate_complete
 from twins.complete_model import BoucWen, CompleteModel, Structure
@@ -27,7 +27,6 @@ CASES = [
 LAWS = {"2DOF-C": impact_laws.CompleteVVEL(), "2DOF-C-SI": impact_laws.SimplifiedVVEL()}
 PEAKS = ("max_rotation", "max_top_displacement", "max_base_moment", "max_base_shear")
 FRAME = frame_values(n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.6, aspect_ratio=6.0)
-NO_FLEXURE = dict.fromkeys(("omega", "effective_mass", "effective_height", "top_ordinate", "zeta"), ())
 
 
 def label(case):
@@ -133,7 +132,7 @@ def test_against_the_twin(name):
     modes, mine, model, options = SHORT[name]
     given = structure(**(modes or {}))
     record = {"acceleration": shaking(), "dt": 0.02}
-    twin = simulate_complete(**{**given, **({} if modes is not None else NO_FLEXURE)}, **record, **mine, free=1.0)
+    twin = simulate_complete(**{**given, **({} if modes is not None else NO_MODES)}, **record, **mine, free=1.0)
     options = {key: getattr(rf, kind)(*values) for key, (kind, values) in options.items()}
     motion = rf.GroundMotion(record["acceleration"], record["dt"])
     response = rf.simulate(rf.Frame(**FRAME), motion, model, free_vibration=1.0, **options)

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import NO_MODES
 from twins import impact_laws
 from twins.complete import simulate_complete
 
@@ -57,9 +58,8 @@ def landing(eccentricity, side, share):
 
 def twin_block(eccentricity, rotation, law):
     given = {name: getattr(BLOCK, name) for name in ("i_theta", "l0r", "m_tot", "half_width", "translational_inertia")}
-    no_modes = dict.fromkeys(("omega", "effective_mass", "effective_height", "top_ordinate", "zeta"), ())
     return simulate_complete(
-        **given, **no_modes, acceleration=np.zeros(2), dt=0.1, free=12.0, rotation=rotation, complete=False,
+        **given, **NO_MODES, acceleration=np.zeros(2), dt=0.1, free=12.0, rotation=rotation, complete=False,
         eccentricity=eccentricity, law=law,
     )  # fmt: skip
 

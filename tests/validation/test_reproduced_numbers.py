@@ -29,7 +29,7 @@ from rockflex.papers.silva_stojadinovic_2024._section_3_2 import (
 )
 from rockflex.papers.silva_stojadinovic_2024._section_3_3 import COUNTS, population_intervals, population_pool
 
-PAIRS = 300  # of a population, in place of the report's thousand
+PAIRS = 120  # of a population, in place of the report's thousand
 SLOW = {"sliding"}  # tested with few records
 MISSES = {
     "figure-3": {"friction that 2DOF-C needs, Eq. 22 as printed"},

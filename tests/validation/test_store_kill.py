@@ -1,4 +1,4 @@
-"""A study killed at twenty random moments is resumed, and its table is that of the undisturbed one."""
+"""A study killed at random moments is resumed, and its table is that of the undisturbed one."""
 
 import multiprocessing
 import os
@@ -49,9 +49,9 @@ def kill(process: BaseProcess) -> None:
     process.join()
 
 
-def test_killed_at_twenty_random_moments_and_resumed(tmp_path: Path, start: Start) -> None:
+def test_killed_at_ten_random_moments_and_resumed(tmp_path: Path, start: Start) -> None:
     names, cut_short = [f"part-{number:05d}.parquet" for number in range(PLAN.n_chunks)], 0
-    for attempt in range(20):
+    for attempt in range(10):
         study = tmp_path / f"study-{attempt}"
         process = start(run_study, str(study), PLAN)
         await_file(study)
@@ -65,7 +65,7 @@ def test_killed_at_twenty_random_moments_and_resumed(tmp_path: Path, start: Star
         assert sorted(after) == names
         assert before.items() <= after.items()
         pd.testing.assert_frame_equal(StudyFolder.load(study).frame(), PLAN.whole())
-    assert cut_short > 10  # a few may have been faster than this process
+    assert cut_short > 4  # a few may have been faster than this process
 
 
 def test_killed_again_and_again_it_ends(tmp_path: Path, start: Start) -> None:
@@ -82,14 +82,14 @@ def test_killed_again_and_again_it_ends(tmp_path: Path, start: Start) -> None:
 @pytest.mark.parametrize(
     "content",
     [
-        'study = "population"\npairs = 120\nruns_per_chunk = 12\n' + RECORDS,
-        'study = "monte_carlo"\ncount = 120\nruns_per_chunk = 6\nrecords_per_structure = 1\nmodels = ["rigid"]\n'
+        'study = "population"\npairs = 60\nruns_per_chunk = 12\n' + RECORDS,
+        'study = "monte_carlo"\ncount = 60\nruns_per_chunk = 6\nrecords_per_structure = 1\nmodels = ["rigid"]\n'
         "variables = { b = { uniform = [0.1, 0.2] }, fuse = { uniform = [0.1, 0.5] } }\n"
         'structure.block = { slenderness = "= b", half_diagonal = 3.0 }\n'
         'structure.elements = [{ kind = "yielding_dissipator", stiffness = "= 100 * weight", '
         'yield_force = "= fuse * weight" }]\n' + RECORDS,
         WALLS.read_text("utf-8")
-        .replace("count = 1000", "count = 8")
+        .replace("count = 1000", "count = 4")
         .replace("records_per_structure = 4", "runs_per_chunk = 72"),
     ],
     ids=["population", "monte_carlo", "walls"],
