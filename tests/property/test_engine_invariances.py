@@ -75,7 +75,7 @@ def mirrored(structure, motion, model, **options):
 
 def assert_mirrored(one, other):
     """To the last bit; of the peaks, the residual rotation alone has a sign."""
-    turned = pytest.approx(-one.residual_rotation, rel=0.0, abs=0.0, nan_ok=True)
+    turned = pytest.approx(-other.residual_rotation, rel=0.0, abs=0.0, nan_ok=True)
     assert one.peaks() == other.peaks() | {"residual_rotation": turned}
     nodes, opposite = one.history.states, other.history.states
     n = one.history.model.properties.n_modes
