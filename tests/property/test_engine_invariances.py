@@ -200,7 +200,7 @@ def test_the_twin_agrees(given_, motion, data):
     """Dense exponentials on 64 exact sub-samples a sample; the bound is that of a record changed by 1e-14."""
     n = data.draw(st.integers(1, given_["n_stories"]))
     mine = simulate(Frame(**given_), motion, f"{n + 1}DOF-S")
-    parameters = frame_properties(**given_, n_modes=n).kwargs()
+    parameters = frame_properties(**given_, n_modes=n)
     looks = 64 if motion.dt < 0.05 else 256
 
     def look(factor):

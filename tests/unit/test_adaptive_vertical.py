@@ -80,7 +80,7 @@ def test_reactions(case):
     states = found.history.states
     forces = reactions(model, states, accelerations(model, states))
     if model.complete:
-        twin = CompleteModel(Structure.of(**complete_frame(**FRAME, n_modes=n_modes)), complete=True)
+        twin = CompleteModel(Structure(**complete_frame(**FRAME, n_modes=n_modes)), complete=True)
         side = acting_side(states)
         for k in range(0, states.shape[0], 7):
             y = np.concatenate((states[k, 4 + 2 * n_modes : 6 + 2 * n_modes], states[k, 4 : 4 + 2 * n_modes]))

@@ -78,7 +78,7 @@ def both(model, elements, eccentricity=0.0, motion=MOTION, output="history"):
     if n_modes == 0:
         given |= NO_MODES
     twin = simulate_controlled(
-        Structure.of(**given, eccentricity=eccentricity),
+        Structure(**given, eccentricity=eccentricity),
         [of_twin(each) for each in elements],
         motion.acceleration,
         motion.dt,

@@ -33,7 +33,7 @@ def pair(n, *, complete, spring=None):
     choice = Model(None if n else 0, complete=complete, closure="SI" if complete and n else None)
     model = choice.of(RockingProperties(**given), bouc_wen=BoucWen(*spring) if spring else None)
     other = twin.CompleteModel(
-        twin.Structure.of(**given), complete=complete, bouc_wen=twin.BoucWen(*spring) if spring else None
+        twin.Structure(**given), complete=complete, bouc_wen=twin.BoucWen(*spring) if spring else None
     )
     return model, other
 

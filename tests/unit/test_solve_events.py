@@ -25,7 +25,7 @@ def both(given, record, dt, n_modes=None, *, substeps=64, **options):
     """A run and its twin on the same frame; 64 looks a sample."""
     label = "MDOF-S" if n_modes is None else f"{n_modes + 1}DOF-S"
     mine = simulate(Frame(**given), GroundMotion(record, dt), label, **options)
-    parameters = frame_properties(**given, n_modes=n_modes).kwargs()
+    parameters = frame_properties(**given, n_modes=n_modes)
     return mine, simulate_fine(**parameters, acceleration=record, dt=dt, substeps=substeps, **options)
 
 
@@ -194,7 +194,7 @@ def test_overturning_of_a_flexible_frame():
     p = Frame(**given).rocking()
     start = 1.5 * p.m_tot * p.half_width / p.l0r
     from_twin = simulate_fine(
-        **frame_properties(**given).kwargs(),
+        **frame_properties(**given),
         acceleration=np.zeros(1001),
         dt=0.02,
         initial=InitialState(rotation=start),

@@ -140,7 +140,7 @@ def test_chattering(seed, stiffness_ratio):
     given = frame(n_stories=2, period=0.1, aspect_ratio=2.0, damping_ratio=0.1, stiffness_ratio=stiffness_ratio)
     record = 6.0 * np.random.default_rng(seed).standard_normal(1500)
     mine = rf.simulate(rf.Frame(**given), rf.GroundMotion(record, 0.01))
-    twin = simulate_fine(**frame_properties(**given).kwargs(), acceleration=record, dt=0.01, substeps=64)
+    twin = simulate_fine(**frame_properties(**given), acceleration=record, dt=0.01, substeps=64)
     assert mine.n_impacts >= 100
     assert (mine.status, mine.n_uplifts, mine.n_impacts) == (twin.status, twin.n_uplifts, twin.n_impacts)
     assert mine.max_rotation == pytest.approx(twin.max_rotation, rel=1e-8)

@@ -29,7 +29,7 @@ def both(n_modes, record, dt=0.02, **changes):
 
 
 def properties(n_modes, **changes):
-    return frame_properties(**FRAME | OTHERS | changes, n_modes=n_modes).kwargs()
+    return frame_properties(**FRAME | OTHERS | changes, n_modes=n_modes)
 
 
 def shaking(dt=0.02, duration=4.0):
@@ -77,9 +77,9 @@ def test_series_is_the_dense_exponential(phase):
 def test_rotation_grows_with_the_cube_of_time_after_a_continuous_uplift(tau):
     p = properties(1)
     ex = Exact(**p, dt=0.02, substeps=64)
-    w, moment_arm, zeta, v = p["omega"][0], (p["m_eff"] * p["h_eff"])[0], p["zeta"], 0.5
+    w, moment_arm, zeta, v = p["omega"][0], (p["effective_mass"] * p["effective_height"])[0], p["zeta"], 0.5
     d = ex.resisting / (moment_arm * w**2) - 2 * zeta * v / w  # no excitation: Eq. 24 as an equality
     z = np.array([0.0, d, 0.0, v, 1.0, 0.0, 0.0])
     guard_rate = moment_arm * (w**2 * v - 2 * zeta * w * (2 * zeta * w * v + w**2 * d))
-    inertia = p["i_theta"] - p["m_eff"] @ p["h_eff"] ** 2
+    inertia = p["i_theta"] - p["effective_mass"] @ p["effective_height"] ** 2
     assert ex.inside(z, tau)[0] == pytest.approx(guard_rate / inertia * tau**3 / 6, rel=1e-3)

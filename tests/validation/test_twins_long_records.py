@@ -43,9 +43,7 @@ def test_nothing_is_lost(case):
     given, record = setting(case)
     assert record.duration > 60.0
     mine = simulate(Frame(**given), record)
-    twin = simulate_fine(
-        **frame_properties(**given).kwargs(), acceleration=record.acceleration, dt=record.dt, substeps=64
-    )
+    twin = simulate_fine(**frame_properties(**given), acceleration=record.acceleration, dt=record.dt, substeps=64)
     assert mine.modal_displacement.shape[1] == 15
     assert (mine.status, mine.n_uplifts, mine.n_impacts) == ("rocking", twin.n_uplifts, twin.n_impacts)
     assert mine.n_impacts >= 15
