@@ -2,7 +2,6 @@
 
 import time
 
-import numpy as np
 from rich.table import Table
 from timing import frame, least, milliseconds
 
@@ -67,19 +66,4 @@ def twin_of(structure: rf.Restrained) -> ControlledTwin:
             made.append(Bar(each.stiffness, each.yield_force, each.post_yield_ratio, 0.0, stretched, no_push=True))
         elif isinstance(each, rf.YieldingDissipator):
             made.append(Bar(each.stiffness, each.yield_force, each.post_yield_ratio, each.position))
-    b = p.half_width
-    return ControlledTwin(
-        p.omega,
-        p.effective_mass,
-        p.effective_height,
-        p.top_ordinate,
-        np.broadcast_to(p.zeta, p.omega.shape),
-        (p.i_theta, p.i_theta),
-        (b, b),
-        p.l0r,
-        p.m_tot,
-        made,
-        rtol=1e-7,
-        method="LSODA",
-        whole=True,
-    )
+    return ControlledTwin.of(p, made, rtol=1e-7, method="LSODA", whole=True)

@@ -23,7 +23,7 @@ from timing import frame, least, milliseconds
 import rockflex as rf
 from rockflex.models import parse_model
 from rockflex.study import PreparedCase
-from twins.ode import simulate_ode
+from twins.controlled import ControlledTwin
 
 MODES = (1, 5, 15)
 BATCH = 400
@@ -90,24 +90,9 @@ def measure(n: int, motion: rf.GroundMotion) -> dict[str, str]:
 
 def ode(structure: rf.Frame, motion: rf.GroundMotion, method: str) -> float:
     """Seconds of one run of the independent reference implementation, as a user would write it."""
-    p = structure.rocking()
+    twin = ControlledTwin.of(structure.rocking(), [], rtol=1e-10, method=method, whole=True)
     started = time.perf_counter()
-    simulate_ode(
-        p.omega,
-        p.effective_mass,
-        p.effective_height,
-        p.top_ordinate,
-        p.i_theta,
-        p.l0r,
-        p.m_tot,
-        p.half_width,
-        p.zeta,
-        motion.acceleration,
-        motion.dt,
-        method=method,
-        rtol=1e-10,
-        max_step=motion.dt,
-    )
+    twin.run(motion.acceleration, motion.dt)
     return time.perf_counter() - started
 
 

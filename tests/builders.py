@@ -35,6 +35,22 @@ PROPERTIES = {
     "zeta": 0.02,
 }
 
+# The same of a base for which moments are easily known by hand: M g = 240e3 * 9.81 N, B = 1.2 m, L_0^r = 1.8e6 kg m.
+BY_HAND = {
+    "omega": [6.0, 25.0],
+    "effective_mass": [150e3, 30e3],
+    "effective_height": [11.0, 3.0],
+    "top_ordinate": [1.3, -0.5],
+    "i_theta": 24e6,
+    "l0r": 1.8e6,
+    "m_tot": 240e3,
+    "half_width": 1.2,
+    "zeta": 0.02,
+}
+
+# In place of the modes of a structure, to make it a rigid block.
+NO_MODES = dict.fromkeys(("omega", "effective_mass", "effective_height", "top_ordinate", "zeta"), ())
+
 
 def frame_values(**changes: Any) -> dict[str, Any]:
     """Arguments of structure #1, changed."""

@@ -3,7 +3,6 @@
 The integration starts afresh at every sample and every event, so that its field is smooth throughout.
 """
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -12,7 +11,7 @@ from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, minimize_scalar
 
-from twins.complete_model import GRAVITY, BoucWen, CompleteModel, Ground, Rope, Shaking, Structure
+from twins.complete_model import GRAVITY, BoucWen, CompleteModel, Ground, Shaking, Structure
 from twins.frame import frame_properties
 from twins.impact_laws import CompleteVVEL, Law
 from twins.result import Vector
@@ -238,22 +237,10 @@ def first_root(value, grid: Vector, values: Vector, *, fresh: bool) -> float | N
 
 
 def simulate_complete(
-    omega: ArrayLike,
-    effective_mass: ArrayLike,
-    effective_height: ArrayLike,
-    top_ordinate: ArrayLike,
-    i_theta: float,
-    l0r: float,
-    m_tot: float,
-    half_width: float,
-    zeta: ArrayLike,
-    translational_inertia: float,
+    *,
     acceleration: ArrayLike,
     dt: float,
-    *,
     vertical: ArrayLike | None = None,
-    eccentricity: float = 0.0,
-    ropes: Iterable[Rope] = (),
     complete: bool = True,
     lifts: bool = True,
     bouc_wen: BoucWen | None = None,
@@ -263,17 +250,14 @@ def simulate_complete(
     modal_displacement: ArrayLike | None = None,
     modal_velocity: ArrayLike | None = None,
     free: float = 0.0,
+    **structure: object,
 ) -> CompleteResult:
-    """Run one structure; ``law`` defaults to ``CompleteVVEL``.
+    """Run one `Structure`, given by its fields; ``law`` defaults to ``CompleteVVEL``.
 
     The first sample acts at once, and the ground comes to rest after the last, for ``free`` seconds. Without
     them the run ends with the last sample still acting.
     """
-    structure = Structure.of(
-        omega, effective_mass, effective_height, top_ordinate, i_theta, l0r, m_tot, half_width, zeta,
-        translational_inertia, eccentricity, ropes,
-    )  # fmt: skip
-    model = CompleteModel(structure, complete=complete, bouc_wen=bouc_wen)
+    model = CompleteModel(Structure(**structure), complete=complete, bouc_wen=bouc_wen)
     n, record = model.n, np.asarray(acceleration, float)
     y = np.zeros(model.size)
     y[0], y[1] = rotation, rotation_velocity
@@ -305,6 +289,5 @@ def sizes(model: CompleteModel, record: Vector) -> Vector:
 
 def complete_frame(**frame: object) -> dict[str, object]:
     """The benchmark frame as keyword arguments of ``simulate_complete``."""
-    given = frame_properties(**frame).kwargs()
-    given["effective_mass"], given["effective_height"] = given.pop("m_eff"), given.pop("h_eff")
+    given = frame_properties(**frame)
     return {**given, "translational_inertia": given["i_theta"] - given["m_tot"] * given["half_width"] ** 2}

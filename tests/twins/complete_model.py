@@ -4,12 +4,10 @@ Source: Silva & Stojadinović 2024, Eqs. 13-16, 21-24, 37 and 38. State ``[θ, �
 at its end Bouc-Wen's z where there is one. N = 0 is the rigid block. A state may hold one column an instant.
 """
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from twins.result import Vector
 
@@ -78,28 +76,10 @@ class Structure:
     eccentricity: float = 0.0
     ropes: tuple[Rope, ...] = ()
 
-    @classmethod
-    def of(
-        cls,
-        omega: ArrayLike,
-        effective_mass: ArrayLike,
-        effective_height: ArrayLike,
-        top_ordinate: ArrayLike,
-        i_theta: float,
-        l0r: float,
-        m_tot: float,
-        half_width: float,
-        zeta: ArrayLike,
-        translational_inertia: float,
-        eccentricity: float = 0.0,
-        ropes: Iterable[Rope] = (),
-    ) -> "Structure":
-        w = np.asarray(omega, float)
-        modal = (np.asarray(values, float) for values in (effective_mass, effective_height, top_ordinate))
-        damping = np.broadcast_to(np.asarray(zeta, float), w.shape) if w.size else np.zeros(0)
-        return cls(
-            w, *modal, i_theta, l0r, m_tot, half_width, damping, translational_inertia, eccentricity, tuple(ropes)
-        )
+    def __post_init__(self) -> None:
+        modal = {name: np.asarray(getattr(self, name), float) for name in list(self.__dataclass_fields__)[:4]}
+        damping = np.broadcast_to(np.asarray(self.zeta, float), modal["omega"].shape) if modal["omega"].size else []
+        self.__dict__.update(modal, zeta=np.asarray(damping, float), ropes=tuple(self.ropes))
 
     def edge(self, side: int) -> float:
         """Where the pivot of a side is, from the axis of the masses; the axis itself for side 0."""

@@ -145,6 +145,14 @@ class ControlledTwin:
         self.outputs[2, d] = self.mass * self.height * self.omega**2
         self.outputs[3, d] = self.mass * self.omega**2
 
+    @classmethod
+    def of(cls, p, elements, **more) -> "ControlledTwin":
+        """The twin of a structure with the properties p."""
+        arms = (p.half_width - p.eccentricity, p.half_width + p.eccentricity)
+        inertia = tuple(p.i_theta + p.m_tot * (arm**2 - p.half_width**2) for arm in arms)
+        modes = p.omega, p.effective_mass, p.effective_height, p.top_ordinate, np.broadcast_to(p.zeta, p.omega.shape)
+        return cls(*modes, inertia, arms, p.l0r, p.m_tot, list(elements), **more)
+
     def arm(self, element, side: int) -> float:
         return self.arms[0] - element.position if side > 0 else self.arms[1] + element.position
 

@@ -20,8 +20,8 @@ class Exact:
     def __init__(
         self,
         omega,
-        m_eff,
-        h_eff,
+        effective_mass,
+        effective_height,
         top_ordinate,
         i_theta,
         l0r,
@@ -31,7 +31,9 @@ class Exact:
         dt: float,
         substeps: int,
     ) -> None:
-        w, m, h, top = (np.atleast_1d(np.asarray(v, float)) for v in (omega, m_eff, h_eff, top_ordinate))
+        w, m, h, top = (
+            np.atleast_1d(np.asarray(v, float)) for v in (omega, effective_mass, effective_height, top_ordinate)
+        )
         n = self.n = w.size
         q = n + 1
         self.h, self.resisting = h, m_tot * GRAVITY * half_width

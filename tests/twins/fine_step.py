@@ -172,29 +172,21 @@ def _advance(ex: Exact, ledger: Ledger, z: Vector, start: float, *, fixed: bool)
 
 
 def simulate_fine(
-    omega: Vector,
-    m_eff: Vector,
-    h_eff: Vector,
-    top_ordinate: Vector,
-    i_theta: float,
-    l0r: float,
-    m_tot: float,
-    half_width: float,
-    zeta: float | Vector,
+    *,
     acceleration: Vector,
     dt: float,
-    *,
     free_vibration: float = 0.0,
     substeps: int = 64,
     fixed: bool = False,
     initial: InitialState | None = None,
+    **structure: object,
 ) -> TwinResult:
-    """Peaks, events and last state on ``substeps`` exact sub-samples a sample.
+    """Peaks, events and last state of a ``structure`` as `Exact` takes it, on ``substeps`` exact sub-samples a sample.
 
     ``free_vibration`` is rounded up to whole samples. Raises ValueError if a sub-step is longer than 2/ω of
     the fastest uplifted mode: events could then hide, and the series would lose digits.
     """
-    ex = Exact(omega, m_eff, h_eff, top_ordinate, i_theta, l0r, m_tot, half_width, zeta, dt, substeps)
+    ex = Exact(**structure, dt=dt, substeps=substeps)
     if ex.fastest * ex.step > 2.0:
         msg = f"substeps={substeps} is too coarse: take at least {int(np.ceil(ex.fastest * dt / 2.0))}"
         raise ValueError(msg)

@@ -1,30 +1,10 @@
 """The benchmark frame of Silva & Stojadinović 2024 (Table 1), assembled from beam elements, and its modes."""
 
-from dataclasses import asdict, dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
 Vector = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class FrameProperties:
-    """Parameters of the simplified model: N modes of a frame on a rigid base that may lift off."""
-
-    omega: Vector
-    m_eff: Vector
-    h_eff: Vector
-    top_ordinate: Vector
-    i_theta: float
-    l0r: float
-    m_tot: float
-    half_width: float
-    zeta: float
-
-    def kwargs(self) -> dict[str, object]:
-        return asdict(self)
 
 
 def frame_stiffness(n_stories: int, story_height: float, stiffness_ratio: float) -> Vector:
@@ -63,25 +43,25 @@ def frame_properties(
     aspect_ratio: float,
     damping_ratio: float,
     n_modes: int | None = None,
-) -> FrameProperties:
-    """Modal parameters (definitions under Eq. 12); k is scaled to T_1, and B = h*_1 / aspect ratio."""
+) -> dict[str, object]:
+    """Modal parameters (definitions under Eq. 12), as the twins take them; k is scaled to T_1, B = h*_1/aspect."""
     height = story_height * np.arange(1.0, n_stories + 1.0)
     mass = np.full(n_stories, float(story_mass))
     square, shape = eigh(frame_stiffness(n_stories, story_height, stiffness_ratio), np.diag(mass))
     omega = np.sqrt(square / square[0]) * 2.0 * np.pi / period
     l_h, l_theta, norm = shape.T @ mass, shape.T @ (mass * height), (shape**2).T @ mass
-    gamma, h_eff = l_h / norm, l_theta / l_h
-    half_width = float(h_eff[0]) / aspect_ratio
+    gamma, effective_height = l_h / norm, l_theta / l_h
+    half_width = float(effective_height[0]) / aspect_ratio
     m_tot = float(mass.sum()) + base_mass
     keep = slice(n_modes)
-    return FrameProperties(
-        omega=omega[keep],
-        m_eff=(gamma * l_h)[keep],
-        h_eff=h_eff[keep],
-        top_ordinate=(gamma * shape[-1])[keep],
-        i_theta=float(mass @ height**2) + m_tot * half_width**2,
-        l0r=float(mass @ height),
-        m_tot=m_tot,
-        half_width=half_width,
-        zeta=damping_ratio,
-    )
+    return {
+        "omega": omega[keep],
+        "effective_mass": (gamma * l_h)[keep],
+        "effective_height": effective_height[keep],
+        "top_ordinate": (gamma * shape[-1])[keep],
+        "i_theta": float(mass @ height**2) + m_tot * half_width**2,
+        "l0r": float(mass @ height),
+        "m_tot": m_tot,
+        "half_width": half_width,
+        "zeta": damping_ratio,
+    }

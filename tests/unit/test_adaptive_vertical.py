@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from builders import frame_values
+from builders import NO_MODES, frame_values
 from rockflex.models import LinearModel, Model, accelerations, acting_side, parse_model, reactions
 from rockflex.response import respond, tracked_quantities
 from rockflex.solve import Engine
@@ -17,7 +17,6 @@ from twins.complete_model import BoucWen, CompleteModel, Shaking, Structure
 FRAME = frame_values(stiffness_ratio=0.125, period=0.7, aspect_ratio=7.0)
 SPRING = (0.04, 0.02, 0.5, 0.5, 8.0)
 SIMPLE, COMPLETE = impact_laws.SimplifiedVVEL(), impact_laws.CompleteVVEL()
-NO_FLEXURE = dict.fromkeys(("omega", "effective_mass", "effective_height", "top_ordinate", "zeta"), ())
 YIELDING = {"bouc_wen": BoucWen(*SPRING)}
 CASES = {
     # label: modes, impact law and further options of the twin
@@ -53,7 +52,7 @@ def run(model, acceleration, dt, vertical=None, *, history=True, **options):
 def test_against_scipy(case):
     n_modes, told = CASES[case]
     horizontal, vertical, dt = record()
-    given = complete_frame(**FRAME, n_modes=max(n_modes, 1)) | (NO_FLEXURE if n_modes == 0 else {})
+    given = complete_frame(**FRAME, n_modes=max(n_modes, 1)) | (NO_MODES if n_modes == 0 else {})
     twin = simulate_complete(**given, **told, acceleration=horizontal, vertical=vertical, dt=dt, free=0.4)
     level = simulate_complete(**given, **told, acceleration=horizontal, dt=dt, free=0.4)
     model = model_of(case, **({"impact": rf.Restitution(0.9)} if n_modes == 0 else {}))
@@ -81,7 +80,7 @@ def test_reactions(case):
     states = found.history.states
     forces = reactions(model, states, accelerations(model, states))
     if model.complete:
-        twin = CompleteModel(Structure.of(**complete_frame(**FRAME, n_modes=n_modes)), complete=True)
+        twin = CompleteModel(Structure(**complete_frame(**FRAME, n_modes=n_modes)), complete=True)
         side = acting_side(states)
         for k in range(0, states.shape[0], 7):
             y = np.concatenate((states[k, 4 + 2 * n_modes : 6 + 2 * n_modes], states[k, 4 : 4 + 2 * n_modes]))

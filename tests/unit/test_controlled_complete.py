@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from builders import frame_values
+from builders import NO_MODES, frame_values
 from rockflex.models import HEADER
 from twins import impact_laws
 from twins.complete import complete_frame
@@ -76,9 +76,9 @@ def both(model, elements, eccentricity=0.0, motion=MOTION, output="history"):
     n_modes, told, options = MODELS[model]
     given = complete_frame(**FRAME, n_modes=max(n_modes, 1))
     if n_modes == 0:
-        given |= dict.fromkeys(("omega", "effective_mass", "effective_height", "top_ordinate", "zeta"), ())
+        given |= NO_MODES
     twin = simulate_controlled(
-        Structure.of(**given, eccentricity=eccentricity),
+        Structure(**given, eccentricity=eccentricity),
         [of_twin(each) for each in elements],
         motion.acceleration,
         motion.dt,

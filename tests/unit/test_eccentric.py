@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 
 import rockflex as rf
-from builders import frame_values
+from builders import NO_MODES, frame_values
 from twins import impact_laws, newton
 from twins.complete import complete_frame, simulate_complete
 from twins.complete_model import Rope
 
 FRAME = frame_values(n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.6, aspect_ratio=6.0)
 P = rf.Frame(**FRAME).rocking()  # B = 1.59 m
-NO_FLEXURE = dict.fromkeys(("omega", "effective_mass", "effective_height", "top_ordinate", "zeta"), ())
 PEAKS = ("max_rotation", "max_top_displacement", "max_base_moment", "max_base_shear")
 # Force at rest in N, stiffness in N/m and distance from the axis in m.
 ROPES = {
@@ -104,7 +103,7 @@ def test_a_rigid_block_keeps_the_angular_momentum_of_each_side(label):
     block = dataclasses.replace(P.truncated(0), eccentricity=0.35)
     momentum = block.translational_inertia - block.m_tot * (block.half_width**2 - 0.35**2)
     right, left = (momentum / block.pivot(-side).i_theta for side in (1, -1))
-    given = complete_frame(**FRAME) | NO_FLEXURE
+    given = complete_frame(**FRAME) | NO_MODES
     twin = simulate_complete(
         **given, acceleration=shaking(), dt=0.02, eccentricity=0.35, complete=label == "rigid-C", free=2.0,
         law=impact_laws.SidedRestitution(right, left, 1e-4),
@@ -123,7 +122,7 @@ def newton_twin(kind, eccentricity, ropes):
 
 
 @pytest.mark.parametrize(("label", "kind"), [("MDOF-S", newton.Simplified), ("MDOF-C", newton.Complete)])
-@pytest.mark.parametrize(("eccentricity", "ropes"), [(0.3, "free"), (0.0, "one"), (-0.25, "two")])
+@pytest.mark.parametrize(("eccentricity", "ropes"), [(-0.25, "two")])
 def test_against_the_masses_and_tendons_in_place(label, kind, eccentricity, ropes):
     twin = newton_twin(kind, eccentricity, ropes)
     other = twin_of(eccentricity, ropes, label, None, "SI", duration=3.0, free=0.0)
@@ -192,12 +191,3 @@ def test_the_forces_of_tendons_go_by_the_side():
     # The largest rotation lies between two samples.
     dense = rf.simulate(structure, rf.GroundMotion(shaking(), 0.02).refined(40), "MDOF-S")
     assert run.max_tendon_force == pytest.approx(dense.tendon_force.max(), rel=1e-6)
-
-
-@pytest.mark.parametrize("model", ["MDOF-S", "2DOF-C"])
-def test_a_saved_response_keeps_the_eccentricity(model, tmp_path):
-    run = rf.simulate(made(0.3, "two"), rf.GroundMotion(shaking(), 0.02), model)
-    loaded = rf.Response.load(run.save(tmp_path / "moved"))
-    assert loaded.history.model.properties == run.history.model.properties
-    assert loaded.history.model.properties.eccentricity == 0.3
-    np.testing.assert_array_equal(loaded.energy.gravity, run.energy.gravity)

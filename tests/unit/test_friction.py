@@ -5,24 +5,11 @@ import math
 import numpy as np
 import pytest
 
+import rockflex as rf
 from builders import make_frame
-from rockflex import (
-    GroundMotion,
-    InitialState,
-    InputError,
-    LumpedStructure,
-    Response,
-    Restitution,
-    RockingProperties,
-    half_sine_pulse,
-    load_suite,
-    quiet_motion,
-    rectangular_pulse,
-    simulate,
-)
 
 GRAVITY = 9.81
-EL_CENTRO = load_suite("el-centro-1940")[0]
+EL_CENTRO = rf.load_suite("el-centro-1940")[0]
 FRAME = make_frame()
 MASS, HEIGHTS = 40e3, 3.0 * np.arange(1, 6)
 TOTAL, ARM = 6 * MASS, MASS * HEIGHTS.sum()
@@ -35,9 +22,9 @@ def half_width(structure=FRAME):
 def test_a_rigid_block_in_contact_needs_the_ground_acceleration_over_g():
     """|Σ m a| / (m_tot g), up to the uplift at a = m_tot g B / L_0^r."""
     threshold = GRAVITY * TOTAL * half_width() / ARM
-    motion = half_sine_pulse(0.9 * threshold, 1.0)
+    motion = rf.half_sine_pulse(0.9 * threshold, 1.0)
     for model in ("rigid", "rigid-C"):
-        run = simulate(FRAME, motion, model)
+        run = rf.simulate(FRAME, motion, model)
         assert run.status == "no_uplift"
         np.testing.assert_allclose(run.friction_demand, np.abs(motion.acceleration) / GRAVITY, rtol=1e-13)
         np.testing.assert_allclose(run.vertical_reaction, TOTAL * GRAVITY, rtol=1e-13)
@@ -52,7 +39,7 @@ def test_a_rigid_block_at_uplift(model, direction):
     """I_θ s θ'' = |a| L - m_tot g B in the first instant, about the pivot s = -sign(a)."""
     p, width = FRAME.rocking(), half_width()
     a = 1.3 * GRAVITY * TOTAL * width / ARM
-    run = simulate(FRAME, rectangular_pulse(direction * a, 0.5), model)
+    run = rf.simulate(FRAME, rf.rectangular_pulse(direction * a, 0.5), model)
     turn = (a * ARM - TOTAL * GRAVITY * width) / p.i_theta
     push, support = TOTAL * a - ARM * turn, TOTAL * (GRAVITY + width * turn)
     first = int(np.flatnonzero(run.side)[0])
@@ -65,7 +52,7 @@ def test_a_rigid_block_at_uplift(model, direction):
 def test_a_rigid_block_let_go_at_an_angle():
     """At rest at θ_0: I_θ θ'' = m_tot g (L/m_tot sin θ - B cos θ), and the mass centre is all there is."""
     p, width, theta = FRAME.rocking(), half_width(), 0.05
-    run = simulate(FRAME, quiet_motion(0.1), "rigid-C", initial=InitialState(rotation=theta))
+    run = rf.simulate(FRAME, rf.quiet_motion(0.1), "rigid-C", initial=rf.InitialState(rotation=theta))
     turn = GRAVITY * (ARM * math.sin(theta) - TOTAL * width * math.cos(theta)) / p.i_theta
     radius, slope = math.hypot(ARM / TOTAL, width), math.atan2(width, ARM / TOTAL) - theta
     # The mass centre lies at `radius` from the pivot, `slope` from the vertical, and moves at right angles to that.
@@ -78,8 +65,8 @@ def test_a_rigid_block_let_go_at_an_angle():
 @pytest.mark.parametrize("model", ["2DOF-S", "2DOF-C", "MDOF-S", "1DOF-fixed", "fixed"])
 def test_a_slow_push_needs_its_acceleration_over_g(model):
     """Static limit: the masses follow the ground, so Σ m (a + u'') is m_tot a."""
-    motion = half_sine_pulse(0.4, 400.0, dt=0.1)
-    run = simulate(FRAME, motion, model)
+    motion = rf.half_sine_pulse(0.4, 400.0, dt=0.1)
+    run = rf.simulate(FRAME, motion, model)
     assert run.status == "no_uplift"
     late = run.time > 200.0  # once what the start left has died away
     expected = np.abs(run.ground_acceleration) / GRAVITY
@@ -89,7 +76,7 @@ def test_a_slow_push_needs_its_acceleration_over_g(model):
 
 @pytest.mark.parametrize("model", ["MDOF-S", "2DOF-C", "rigid-C"])
 def test_a_mirrored_record_needs_the_same(model):
-    run, mirrored = (simulate(FRAME, EL_CENTRO.scaled(s), model) for s in (1.3, -1.3))
+    run, mirrored = (rf.simulate(FRAME, EL_CENTRO.scaled(s), model) for s in (1.3, -1.3))
     assert run.n_impacts > 5
     assert mirrored.required_friction == pytest.approx(run.required_friction, rel=1e-8)
     assert mirrored.required_friction_excluding_impacts() == pytest.approx(
@@ -108,10 +95,10 @@ def test_a_mirrored_record_needs_the_same(model):
 @pytest.mark.parametrize("model", ["2DOF-S", "2DOF-C"])
 def test_equation_22_as_printed(model):
     """Summed mass by mass, with -g; and by its magnitude, as Eq. 20 has it."""
-    structure = LumpedStructure(
+    structure = rf.LumpedStructure(
         [30e3, 20e3], [[9e6, -5e6], [-5e6, 5e6]], [3.0, 6.0], base_mass=25e3, half_width=0.6, damping_ratio=0.03
     )
-    run = simulate(structure, EL_CENTRO.scaled(1.5), model)
+    run = rf.simulate(structure, EL_CENTRO.scaled(1.5), model)
     p = run.history.model.properties
     s, theta, spin, turn = run.side, run.rotation, run.rotation_velocity, run.rotation_acceleration
     inside = run.time < run.end_time
@@ -148,7 +135,7 @@ def test_equation_22_as_printed(model):
 
 def test_infinite_where_the_base_would_lose_contact():
     """Bouncing from side to side, a flexible structure on a light base would jump."""
-    run = simulate(FRAME, EL_CENTRO, "2DOF-C", impact=Restitution(0.9))
+    run = rf.simulate(FRAME, EL_CENTRO, "2DOF-C", impact=rf.Restitution(0.9))
     assert run.vertical_reaction.min() < 0.0
     assert np.array_equal(np.isinf(run.friction_demand), run.vertical_reaction <= 0.0)
     assert run.required_friction == math.inf
@@ -156,24 +143,24 @@ def test_infinite_where_the_base_would_lose_contact():
 
 
 def test_nothing_moves_nothing_is_needed():
-    run = simulate(FRAME, quiet_motion(1.0), "MDOF-S")
+    run = rf.simulate(FRAME, rf.quiet_motion(1.0), "MDOF-S")
     assert run.required_friction == 0.0
     assert run.required_friction_excluding_impacts(window=2.0) == 0.0
     assert run.sliding_time(1e-9) is None
 
 
 def test_a_window_as_long_as_the_run_leaves_what_is_before_the_first_impact():
-    run = simulate(FRAME, EL_CENTRO, "2DOF-S")
+    run = rf.simulate(FRAME, EL_CENTRO, "2DOF-S")
     before = run.time <= run.impact_times[0]
     reached = run.required_friction_excluding_impacts(window=1e3)
     assert reached >= run.friction_demand[before][:-1].max()
     assert reached <= run.required_friction
-    falling = simulate(FRAME, quiet_motion(5.0), "2DOF-S", initial=InitialState(rotation=0.01))
+    falling = rf.simulate(FRAME, rf.quiet_motion(5.0), "2DOF-S", initial=rf.InitialState(rotation=0.01))
     assert falling.required_friction_excluding_impacts(window=1e3) <= falling.required_friction
 
 
 def test_one_node_alone():
-    run = simulate(FRAME, EL_CENTRO, "2DOF-S")
+    run = rf.simulate(FRAME, EL_CENTRO, "2DOF-S")
     moment = int(np.argmax(run.friction_demand))
     history = type(run.history)(run.history.model, run.history.states[moment : moment + 1])
     assert history.required_friction == pytest.approx(run.friction_demand[moment], rel=1e-12)
@@ -184,30 +171,24 @@ def test_one_node_alone():
 @pytest.mark.parametrize(
     ("ask", "text"),
     [
-        (
-            lambda run: run.required_friction_excluding_impacts(window=-0.1),
-            r"window must be a zero or positive, finite number in s, but -0\.1 was given",
-        ),
+        (lambda run: run.required_friction_excluding_impacts(window=-0.1), r"window must be a zero or positive"),
         (lambda run: run.required_friction_excluding_impacts(math.nan), "window must be a zero or positive.*but nan"),
-        (
-            lambda run: run.sliding_time(0.0),
-            r"mu must be a friction coefficient above zero, such as 0\.5, but 0\.0 was",
-        ),
+        (lambda run: run.sliding_time(0.0), r"mu must be a friction coefficient above zero, such as 0\.5, but 0\.0"),
         (lambda run: run.sliding_time(math.inf), "mu must be a friction coefficient above zero.*but inf was given"),
         (lambda run: run.sliding_time("much"), "mu must be a friction coefficient above zero.*but 'much' was given"),
     ],
 )
 def test_bad_input(ask, text):
-    run = simulate(FRAME, quiet_motion(0.1), "2DOF-S")
-    with pytest.raises(InputError, match=text):
+    run = rf.simulate(FRAME, rf.quiet_motion(0.1), "2DOF-S")
+    with pytest.raises(rf.InputError, match=text):
         ask(run)
 
 
 def test_a_model_too_fast_for_its_sampling():
-    p = RockingProperties([1e6], [1e4], [5.0], [1.0], 4e5, 6e4, 1.2e4, 0.8, 0.02)
-    run = simulate(p, GroundMotion([0.0, 1.0, 0.0], 0.01), "2DOF-S")
+    p = rf.RockingProperties([1e6], [1e4], [5.0], [1.0], 4e5, 6e4, 1.2e4, 0.8, 0.02)
+    run = rf.simulate(p, rf.GroundMotion([0.0, 1.0, 0.0], 0.01), "2DOF-S")
     text = r"The friction demand of 2DOF-S needs \d+ points per step, above the limit of 2000:"
-    with pytest.raises(InputError, match=text):
+    with pytest.raises(rf.InputError, match=text):
         _ = run.required_friction
     assert np.isfinite(run.friction_demand).all()
 
@@ -220,14 +201,9 @@ def test_a_model_too_fast_for_its_sampling():
     ],
 )  # fmt: skip
 def test_peaks_alone_know_no_friction(name):
-    run = simulate(FRAME, EL_CENTRO, "2DOF-S", output="peaks")
+    run = rf.simulate(FRAME, EL_CENTRO, "2DOF-S", output="peaks")
     assert not hasattr(run, name)
-    with pytest.raises(InputError, match=f'contains only peaks, so it has no {name}. Simulate with output="history"'):
+    with pytest.raises(
+        rf.InputError, match=f'contains only peaks, so it has no {name}. Simulate with output="history"'
+    ):
         getattr(run, name)
-
-
-def test_a_loaded_response_needs_the_same_friction(tmp_path):
-    run = simulate(FRAME, EL_CENTRO, "2DOF-C")
-    again = Response.load(run.save(tmp_path / "run.npz"))
-    assert again.required_friction == run.required_friction
-    assert again.sliding_time(0.1) == run.sliding_time(0.1)

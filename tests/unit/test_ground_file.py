@@ -70,45 +70,30 @@ SPRINGS = "[ground]\nbase_inertia = 3e4\n[ground.springs]\nstiffness = 4e8\n"
 @pytest.mark.parametrize(
     ("text", "message", "field"),
     [
-        ("[ground]", "[ground]: Ground needs friction, springs or both: Ground(friction=0.4), for example. Leave the "
-         "ground out for a base on rigid ground that cannot slide.", "ground.friction"),
-        ("[ground]\nfriction = -0.4", "[ground]: friction must be a positive Coulomb coefficient, such as 0.4, or "
-         "infinity for no sliding, but -0.4 was given.", "ground.friction"),
-        ("[ground]\nfriction = 'rough'", "[ground] friction must be the Coulomb coefficient between base and ground, a "
-         "number or, with springs, one for each, but 'rough' was given.", None),
-        ("[ground]\nfrction = 0.4", "[ground] frction is not known; there are friction, base_inertia, mat_mass, "
-         "springs, bed. Did you mean friction?", None),
-        ("[ground]\nsprings = { damping = 1e6 }", "[ground.springs] stiffness is missing: the stiffness in N/m, a "
-         "number or one for each spring.", None),
-        ("[ground]\nbed = { n = 3.5 }", "[ground.bed] breadth is missing: the dimension of the base perpendicular to "
-         "the plane of rocking, a number in m. [ground.bed] n must be the number of springs, a whole number, but 3.5 "
-         "was given.", None),
-        (SPRINGS + "damping = -1.0", "[ground.springs]: damping must be zero or positive, but",
-         "ground.springs.damping"),
-        (SPRINGS.replace("base_inertia = 3e4", ""), "[ground]: A base without rotary inertia on springs has no inertia "
-         "against rotation once all modes are included. Give mat_mass in kg for a rigid mat as wide as the base, or "
-         "base_inertia in kg m² for base and floors together.", "ground.base_inertia"),
-        (SPRINGS.replace("base", "mat_mass = 4e4\nbase"), "[ground]: mat_mass was given besides the base_inertia. "
-         "Leave one of them out.", "ground.mat_mass"),
-        ("[ground]\nmat_mass = 4e4\nfriction = 0.3", "[ground]: base_inertia belongs to springs",
-         "ground.base_inertia"),
-        (SPRINGS + "positions = []", "[ground.springs]: positions must have 2 to 200 springs, but 0 were given.",
-         "ground.springs.positions"),
+        ("[ground]", "[ground]: Ground needs friction, springs or both: Ground(friction=0.4)", "ground.friction"),
+        ("[ground]\nfriction = -0.4", "[ground]: friction must be a positive Coulomb coefficient", "ground.friction"),
+        ("[ground]\nfriction = 'rough'", "[ground] friction must be the Coulomb coefficient between base", None),
+        ("[ground]\nfrction = 0.4", "[ground] frction is not known; there are friction, base_inertia", None),
+        ("[ground]\nsprings = { damping = 1e6 }", "[ground.springs] stiffness is missing: the stiffness", None),
+        ("[ground]\nbed = { n = 3.5 }", "[ground.bed] breadth is missing: the dimension of the base", None),
+        (SPRINGS + "damping = -1.0", "[ground.springs]: damping must be zero or positive", "ground.springs.damping"),
+        (SPRINGS.replace("base_inertia = 3e4", ""), "[ground]: A base without rotary inertia", "ground.base_inertia"),
+        (SPRINGS.replace("base", "mat_mass = 4e4\nbase"), "[ground]: mat_mass was given besides", "ground.mat_mass"),
+        ("[ground]\nmat_mass = 4e4\nfriction = 0.3", "[ground]: base_inertia belongs", "ground.base_inertia"),
+        (SPRINGS + "positions = []", "[ground.springs]: positions must have 2 to 200", "ground.springs.positions"),
         (SPRINGS + "damping = 1e6\nheave_damping_ratio = 0.1", "[ground.springs]: heave_damping_ratio was given "
          "besides the damping. Leave one of them out.", "ground.springs.heave_damping_ratio"),
         (SPRINGS + "heave_damping_ratio = -0.1", "[ground.springs]: heave_damping_ratio must be a zero or positive, "
          "finite number in fractions of critical damping, but -0.1 was given.", "ground.springs.heave_damping_ratio"),
         (SPRINGS + "[ground.bed]\nbreadth = 3.0\nsubgrade_modulus = 4e7", "[ground]: The ground has springs and a bed. "
          "Give one of the two tables.", "ground.bed"),
-        (BED, "[ground.bed]: A bed needs its stiffness. Give subgrade_modulus in N/m³; or shear_modulus in N/m² and "
-         "poisson_ratio, for the stiffened ends of ASCE 41.", "ground.bed.subgrade_modulus"),
+        (BED, "[ground.bed]: A bed needs its stiffness. Give subgrade_modulus", "ground.bed.subgrade_modulus"),
         (BED + "shear_modulus = 2e7", "[ground.bed]: A bed needs its stiffness.", "ground.bed.subgrade_modulus"),
         (BED + "subgrade_modulus = 4e7\npoisson_ratio = 0.3", "[ground.bed]: subgrade_modulus was given besides the "
          "shear_modulus and poisson_ratio. Leave one of them out.", "ground.bed.subgrade_modulus"),
         (BED + "shear_modulus = 2e7\npoisson_ratio = 0.3\nend_ratio = 2.0", "[ground.bed]: end_ratio was given besides "
          "the shear_modulus, whose end zones are those of ASCE 41. Leave one of them out.", "ground.bed.end_ratio"),
-        (BED + "subgrade_modulus = -4e7", "[ground.bed]: subgrade_modulus must be a positive, finite number in N/m³, "
-         "but -40000000.0 was given.", "ground.bed.subgrade_modulus"),
+        (BED + "subgrade_modulus = -4e7", "[ground.bed]: subgrade_modulus", "ground.bed.subgrade_modulus"),
     ],
 )  # fmt: skip
 def test_messages(text, message, field):

@@ -57,18 +57,6 @@ def test_no_vertical_motion_changes_no_bit():
     np.testing.assert_array_equal(one.history.states, other.history.states)
 
 
-@pytest.mark.parametrize("ground", ["slides", "springs", "both"])
-def test_a_saved_response_knows_its_ground(ground, tmp_path):
-    motion = rf.GroundMotion(SHAKING, 0.01, vertical=0.5 * SHAKING[::-1])
-    run = rf.simulate(FRAME, motion, "2DOF-S", ground=GROUNDS[ground])
-    back = rf.Response.load(run.save(tmp_path / "run"))
-    assert back.history.model == run.history.model
-    assert {k: v for k, v in back.peaks().items() if v == v} == {k: v for k, v in run.peaks().items() if v == v}
-    for name in ("slip", "heave", "edge_uplift", "spring_force", "vertical_reaction", "base_moment"):
-        np.testing.assert_array_equal(getattr(back, name), getattr(run, name))
-    assert back.energy.closing_error < 1e-10
-
-
 def test_a_run_on_springs_settles_where_it_stood():
     run = rf.simulate(
         FRAME, rf.GroundMotion(SHAKING, 0.01), "2DOF-S", ground=GROUNDS["springs"], free_vibration="settle"

@@ -12,27 +12,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rockflex as rf
+from builders import BY_HAND
 from rockflex.modal import Pivot
 
 G = 9.81
 B, E = 1.2, 0.3
-BASE = {
-    "omega": [6.0, 25.0],
-    "effective_mass": [150e3, 30e3],
-    "effective_height": [11.0, 3.0],
-    "top_ordinate": [1.3, -0.5],
-    "i_theta": 24e6,
-    "l0r": 1.8e6,
-    "m_tot": 240e3,
-    "half_width": B,
-    "zeta": 0.02,
-}
 TENDONS = [rf.Tendon(0.4e6, 5e6, -1.4), rf.Tendon(0.2e6, 3e6, 0.5), rf.Tendon(0.1e6, 2e6)]
 PAIRS = [rf.Tendon(0.1e6 * f, 1.1e6 * f, side * 0.37 * f) for side in (1, -1) for f in (1.0, 1.7, 2.3)]
 
 
 def made(**changes) -> rf.RockingProperties:
-    return rf.RockingProperties(**BASE | changes)
+    return rf.RockingProperties(**BY_HAND | changes)
 
 
 def mirrored(p: rf.RockingProperties) -> rf.RockingProperties:
@@ -154,19 +144,11 @@ def test_there_are_two_sides(side):
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
-        (
-            {"eccentricity": 1.2},
-            "eccentricity must be smaller than half_width, 1.2 m, to either side, but 1.2 m was given. It is the "
-            "distance of the axis of the masses to the right of the middle of the base; check the units too.",
-        ),
+        ({"eccentricity": 1.2}, "eccentricity must be smaller than half_width, 1.2 m, to either side, but 1.2 m was"),
         ({"eccentricity": -90.0}, "to either side, but -90 m was given"),
         ({"eccentricity": math.nan}, "eccentricity must be a finite number in m, but nan was given"),
         ({"eccentricity": "left"}, "eccentricity must be a finite number in m, but 'left' was given"),
-        (
-            {"eccentricity": 0.3, "elements": rf.Tendon(1.0, 1.0, 1.6)},
-            "Elements must act within half_width + |eccentricity| = 1.5 m to each side of the axis of the masses, but "
-            "a Tendon is at 1.6 m.",
-        ),
+        ({"eccentricity": 0.3, "elements": rf.Tendon(1.0, 1.0, 1.6)}, "Elements must act within half_width +"),
         ({"elements": rf.ViscousDamper(1.0, -1.3)}, "but a ViscousDamper is at -1.3 m."),
         (
             {"eccentricity": B * (1.0 - 1e-15), "i_theta": 150e3 * 121.0 + 30e3 * 9.0 + 240e3 * B**2},

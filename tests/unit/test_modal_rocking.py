@@ -138,30 +138,18 @@ def test_truncation_out_of_range(n_modes):
         ({"omega": [1.66, np.nan]}, r"omega must be finite, but 1 of 2"),
         ({"omega": []}, r"effective_mass must contain one value per mode, as omega does \(0\), but 2 were given"),
         ({"effective_mass": [8.48e6]}, r"effective_mass must contain one value per mode.*\(2\), but 1 were given"),
-        (
-            {"effective_mass": [8.48e6, -1.0]},
-            r"must be positive, but effective_mass\[1\] = -1 kg",
-        ),
+        ({"effective_mass": [8.48e6, -1.0]}, r"must be positive, but effective_mass\[1\] = -1 kg"),
         ({"effective_height": [np.inf, 51.3]}, r"effective_height must be finite"),
         ({"top_ordinate": [1.0, 2.0, 3.0]}, r"top_ordinate must contain one value per mode.*\(2\), but 3"),
-        (
-            {"i_theta": 1e11},
-            r"i_theta must exceed .*1.78\d+e\+11 kg m², but 1e\+11 .*no inertia is left",
-        ),
+        ({"i_theta": 1e11}, r"i_theta must exceed .*1.78\d+e\+11 kg m², but 1e\+11 .*no inertia is left"),
         ({"i_theta": 0.0}, r"i_theta must be a positive, finite number in kg m², but 0.0 was given"),
         ({"l0r": -1.0}, r"l0r must be a positive, finite number in kg m, but -1.0 was given"),
         ({"m_tot": 1.1e7}, r"m_tot must be at least the sum of effective_mass, 11800000 kg, but 11000000 kg"),
         ({"m_tot": math.inf}, r"m_tot must be a positive, finite number in kg, but inf was given"),
         ({"half_width": 0.0}, r"half_width must be a positive, finite number in m, but 0.0 was given"),
         ({"half_width": math.inf}, r"half_width must be a positive, finite number in m, but inf was given"),
-        (
-            {"half_width": 20.0},
-            r"translational_inertia .*but i_theta - m_tot \* half_width\*\*2, its default",
-        ),
-        (
-            {"translational_inertia": 1.7e11},
-            r"translational_inertia .*the given value is 1.7e\+11.*Give the",
-        ),
+        ({"half_width": 20.0}, r"translational_inertia .*but i_theta - m_tot \* half_width\*\*2, its default"),
+        ({"translational_inertia": 1.7e11}, r"translational_inertia .*the given value is 1.7e\+11.*Give the"),
         ({"translational_inertia": 1.83e11}, r"below i_theta, 1.82e\+11 kg m², but the given value is 1.83e"),
         ({"translational_inertia": math.nan}, r"translational_inertia must be a positive, finite number"),
         ({"zeta": 2.0}, r"zeta must lie in \[0, 1\), but 2.0 was given\. Give the fraction .* 2 % is 0.02"),
@@ -170,10 +158,7 @@ def test_truncation_out_of_range(n_modes):
         ({"zeta": [0.02, 1.0]}, r"zeta\[1\] must lie in \[0, 1\), but 1.0 was given"),
         ({"zeta": [0.02]}, r"zeta must be one number, or one for each of the 2 modes, but 1 were given"),
         ({"zeta": "low"}, r"zeta must be a number, but 'low' was given"),
-        (
-            {"floors": FloorModes([1.0], [[1.0]], [[1.0]])},
-            r"floors must hold the same 2 modes as omega, but it holds 1",
-        ),
+        ({"floors": FloorModes([1.0], [[1.0]], [[1.0]])}, r"floors must hold the same 2 modes as omega, but it holds"),
     ],
 )
 def test_errors(change, text):
@@ -184,15 +169,9 @@ def test_errors(change, text):
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
-        (
-            ([1.0, 2.0], [1.0, 2.0], [[1.0], [2.0]]),
-            r"floors.displacement must have the shape \(2, 1\), .*\(2,\)",
-        ),
+        (([1.0, 2.0], [1.0, 2.0], [[1.0], [2.0]]), r"floors.displacement must have the shape \(2, 1\), .*\(2,\)"),
         (([1.0, 2.0], [[1.0], [2.0]], [[1.0]]), r"floors.force must have the shape \(2, 1\), but.*\(1, 1\)"),
-        (
-            ([1.0, 2.0], [[1.0], [2.0, 3.0]], [[1.0]]),
-            r"floors.displacement must be a matrix of numbers",
-        ),
+        (([1.0, 2.0], [[1.0], [2.0, 3.0]], [[1.0]]), r"floors.displacement must be a matrix of numbers"),
         (([np.nan], [[1.0]], [[1.0]]), r"floors.heights must be finite"),
         (([1.0], [[1.0]], [[np.nan]]), r"floors.force must be finite, but its entry \[0, 0\] is nan"),
     ],
@@ -274,10 +253,7 @@ def test_first_mode_that_takes_part_in_the_base_moment_alone():
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        (
-            {"heights": [2.0, 5.0, 8.0]},
-            r"heights must .*, \[2. 5. 7.\], but \[2. 5. 8.\] was given",
-        ),
+        ({"heights": [2.0, 5.0, 8.0]}, r"heights must .*, \[2. 5. 7.\], but \[2. 5. 8.\] was given"),
         ({"mass": [1.0, 2.0]}, r"one mass for each of the 3 heights, but 2 were given"),
         ({"base_mass": -1.0}, r"base_mass must be a zero or positive, finite number in kg, but -1.0"),
         ({"half_width": -1.0}, r"half_width must be a positive, finite number in m, but -1.0"),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from builders import frame_values, vector_field
+from builders import NO_MODES, frame_values, vector_field
 from rockflex import BoucWen
 from rockflex.modal import RockingProperties
 from rockflex.models import (
@@ -23,7 +23,6 @@ from twins.complete import complete_frame
 FRAME = frame_values(
     n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.6, aspect_ratio=6.0, damping_ratio=0.04
 )
-NO_MODES = dict.fromkeys(("omega", "effective_mass", "effective_height", "top_ordinate", "zeta"), ())
 SPRING = (0.03, 0.05, 0.7, 0.3, 2.5)
 LEVERS = np.array([[9.0, 0.0], [1.2, 3.4], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]])
 
@@ -34,7 +33,7 @@ def pair(n, *, complete, spring=None):
     choice = Model(None if n else 0, complete=complete, closure="SI" if complete and n else None)
     model = choice.of(RockingProperties(**given), bouc_wen=BoucWen(*spring) if spring else None)
     other = twin.CompleteModel(
-        twin.Structure.of(**given), complete=complete, bouc_wen=twin.BoucWen(*spring) if spring else None
+        twin.Structure(**given), complete=complete, bouc_wen=twin.BoucWen(*spring) if spring else None
     )
     return model, other
 

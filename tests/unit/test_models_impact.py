@@ -238,10 +238,7 @@ class Odd:
     ("answer", "text"),
     [
         (ArithmeticError("no idea"), "no idea"),
-        (
-            None,
-            "after must return the modal velocities in m/s and the rotation velocity in rad/s, but it returned None.",
-        ),
+        (None, "after must return the modal velocities in m/s and the rotation velocity in rad/s, but it returned"),
         (([1.0], 0.0), "The modal velocity after an impact must have 2 values, but 1 were returned."),
         ((1.0, 0.0), "the modal velocity after an impact must be one-dimensional, but an array of shape () was given."),
         (([1.0, math.nan], 0.0), "the modal velocity after an impact must be finite, but 1 of 2 values are not"),

@@ -130,10 +130,7 @@ def test_the_mass_of_the_base_must_be_known():
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        (
-            {"base_mass": 7e4},
-            r"base_mass must leave the effective mass of the modes, 100000 kg, but 70000 kg of m_tot",
-        ),
+        ({"base_mass": 7e4}, r"base_mass must leave the effective mass of the modes, 100000 kg, but 70000 kg of m_tot"),
         ({"base_mass": -1.0}, r"base_mass must be a zero or positive, finite number in kg, but -1\.0 was given"),
         ({"top_height": 0.0}, r"top_height must be a positive, finite number in m, but 0\.0 was given"),
     ],

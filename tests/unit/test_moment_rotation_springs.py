@@ -9,29 +9,19 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 import rockflex as rf
+from builders import BY_HAND
 from twins import ground_answers as answers
 
 GRAVITY = 9.81
 WEIGHT, ARM = 240e3 * GRAVITY, 1.2
 SLOPE = 1.8e6 * GRAVITY  # L_0^r g
-BASE = {
-    "omega": [6.0, 25.0],
-    "effective_mass": [150e3, 30e3],
-    "effective_height": [11.0, 3.0],
-    "top_ordinate": [1.3, -0.5],
-    "i_theta": 24e6,
-    "l0r": 1.8e6,
-    "m_tot": 240e3,
-    "half_width": ARM,
-    "zeta": 0.02,
-}
 TENDON = rf.Tendon(initial_force=0.5e6, stiffness=20e6)
 FUSE = rf.YieldingDissipator(200e6, 0.3e6)
 K = 400e6
 
 
 def base(*elements, **changes):
-    return rf.RockingProperties(**BASE | changes, elements=elements)
+    return rf.RockingProperties(**BY_HAND | changes, elements=elements)
 
 
 def on(springs):
@@ -280,19 +270,14 @@ def test_the_path_as_a_table():
 def test_springs_without_area_have_no_pressure():
     curve = rf.moment_rotation(base(), [0.02], ground=TWO)
     assert not hasattr(curve, "soil_pressure")
-    with pytest.raises(
-        rf.InputError, match=r"^The springs under the base have no area, so there is no soil pressure\."
-    ):
+    with pytest.raises(rf.InputError, match=r"^The springs under the base have no area, so there is no soil"):
         _ = curve.soil_pressure
 
 
 def test_a_ground_without_springs_is_refused():
     with pytest.raises(rf.InputError) as caught:
         rf.moment_rotation(base(), [0.02], ground=rf.Ground(friction=0.4))
-    assert str(caught.value) == (
-        "ground must have springs, but one with friction alone was given. A base that is pushed slowly does not slide: "
-        "leave the ground out, or give it springs."
-    )
+    assert str(caught.value).startswith("ground must have springs, but one with friction alone was given. A base")
     assert caught.value.field == "ground"
 
 

@@ -61,7 +61,7 @@ def history(ground, *, vertical):
 def twin_of(name, side):
     """The model and independent rates of [D, D', θ, θ', a, a', s]."""
     n, changes = FRAMES[name]
-    twin = Exact(**frame_properties(**FRAME, **changes, n_modes=n).kwargs(), dt=DT, substeps=1)
+    twin = Exact(**frame_properties(**FRAME, **changes, n_modes=n), dt=DT, substeps=1)
     order = [*range(1, n + 1), *range(n + 2, 2 * n + 2), 0, n + 1, twin.a, twin.slope, twin.side]
     matrix = twin.generator[int(side != 0)][np.ix_(order, order)]
     return Model(n).of(rf.Frame(**FRAME, **changes).rocking()), matrix

@@ -6,6 +6,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
+from rockflex._html import html_table
 
 FRAME = make_frame(n_stories=8, period=0.6, aspect_ratio=8.0)
 SUITE = rf.load_suite("fema-p695-far-field")
@@ -26,6 +27,7 @@ VALUES = [
     rf.one_sine_pulse(3.0, 1.0),
     FRAME.modal(),
     CHOSEN,
+    rf.LognormalFragility(0.5, 0.4),
 ]
 each_value = pytest.mark.parametrize("value", VALUES, ids=lambda value: type(value).__name__)
 
@@ -91,3 +93,23 @@ def test_a_suite_of_pulses_has_no_magnitudes():
     pulses = rf.Suite([rf.ricker_pulse(2.0, 1.0)])
     assert cells(pulses)["pga"] == f"{pulses[0].pga:.4g} m/s²"
     assert "magnitude" not in cells(pulses)
+
+
+def test_properties_in_a_notebook():
+    rows = cells(FRAME.rocking())
+    assert rows["half_width"] == f"{FRAME.rocking().half_width:.5g}"
+    assert rows["omega"].endswith(", ... (8)")
+    assert "floors" not in rows
+
+
+def test_a_response_with_a_name_that_is_markup():
+    motion = rf.GroundMotion(rf.one_sine_pulse(3.0, 1.0).acceleration, 0.005, "<b>&")
+    response = rf.simulate(FRAME, motion, "2DOF-S")
+    rows = cells(response)
+    assert (rows["motion"], rows["status"]) == ("<b>&", response.status)
+    assert rows["max_rotation"] == f"{response.max_rotation:.5g}"
+    assert "<b>" not in response._repr_html_()
+
+
+def test_long_texts_are_shortened():
+    assert len(html_table("t", {"text": "x" * 9999, "none": None})) < 400

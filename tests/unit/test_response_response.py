@@ -14,24 +14,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import rockflex as rf
 from builders import make_frame
-from rockflex import (
-    EnergyLedger,
-    FloorPeaks,
-    GroundMotion,
-    History,
-    InitialState,
-    InputError,
-    Response,
-    load_suite,
-    quiet_motion,
-    simulate,
-)
 from rockflex.models import Model
 from rockflex.response import respond, tracked_quantities
 from rockflex.solve import Solution
 
-MOTION = GroundMotion(load_suite("el-centro-1940")[0].acceleration[:400] * 2.0, 0.02, name="El Centro")
+MOTION = rf.GroundMotion(rf.load_suite("el-centro-1940")[0].acceleration[:400] * 2.0, 0.02, name="El Centro")
 FRAME = make_frame(n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.5, aspect_ratio=8.0, damping_ratio=0.03)
 QUANTITIES = (
     "time", "rotation", "rotation_velocity", "side", "ground_acceleration", "modal_displacement", "modal_velocity",
@@ -57,12 +46,12 @@ METHODS = (
 
 @pytest.fixture(scope="module")
 def response():
-    return simulate(FRAME, MOTION, free_vibration=1.0)
+    return rf.simulate(FRAME, MOTION, free_vibration=1.0)
 
 
 @pytest.fixture(scope="module")
 def peaks_only():
-    return simulate(FRAME, MOTION, output="peaks")
+    return rf.simulate(FRAME, MOTION, output="peaks")
 
 
 def test_a_response_has_the_quantities_of_its_history(response):
@@ -71,21 +60,21 @@ def test_a_response_has_the_quantities_of_its_history(response):
             getattr(response, name), getattr(response.history, name)
         )
     assert response.energy is response.energy
-    assert isinstance(response.energy, EnergyLedger)
+    assert isinstance(response.energy, rf.EnergyLedger)
     assert repr(response).startswith("Response(MDOF-S under 'El Centro': rocking, θ_max=")
 
 
 def test_no_quantity_is_forgotten():
     """Every public property of a history, with its documentation, completed by editors and named in the docstring."""
-    own = [(name, kind) for name, kind in vars(History).items() if not name.startswith("_")]
+    own = [(name, kind) for name, kind in vars(rf.History).items() if not name.startswith("_")]
     public = {name for name, kind in own if isinstance(kind, property | cached_property)}
     assert public == {*QUANTITIES, "soil_pressure", "bearing_pressure"}  # which rigid ground has not
     methods = {name for name, kind in own if isfunction(kind)}
     assert methods == set(METHODS)
     for name in (*QUANTITIES, *METHODS):
-        assert name in dir(Response)
-        assert getattr(Response, name).__doc__ == getattr(History, name).__doc__
-        assert f"`{name}`" in Response.__doc__ or f"`{name}()`" in Response.__doc__
+        assert name in dir(rf.Response)
+        assert getattr(rf.Response, name).__doc__ == getattr(rf.History, name).__doc__
+        assert f"`{name}`" in rf.Response.__doc__ or f"`{name}()`" in rf.Response.__doc__
 
 
 def test_nothing_else_is_an_attribute(response):
@@ -108,7 +97,7 @@ def test_copies_are_whole(response, peaks_only):
 
 def test_floor_peaks_are_read_only(response):
     for each in (response.floors, copy.deepcopy(response.floors), pickle.loads(pickle.dumps(response.floors))):
-        for field in fields(FloorPeaks):
+        for field in fields(rf.FloorPeaks):
             values = getattr(each, field.name)
             assert np.array_equal(values, getattr(response.floors, field.name))
             with pytest.raises(ValueError, match="read-only"):
@@ -124,8 +113,8 @@ def test_floor_peaks_are_read_only(response):
     ],
 )
 def test_floor_peaks_that_do_not_fit(peaks, text):
-    with pytest.raises(InputError, match=text):
-        FloorPeaks(*peaks)
+    with pytest.raises(rf.InputError, match=text):
+        rf.FloorPeaks(*peaks)
 
 
 def test_peaks_are_a_row_of_a_table(response):
@@ -142,7 +131,7 @@ def test_peaks_alone_have_no_history(peaks_only):
         assert not hasattr(peaks_only, name)
         assert getattr(peaks_only, name, None) is None
         text = f'This response contains only peaks, so it has no {name}. Simulate with output="history".'
-        for kind in (InputError, AttributeError):
+        for kind in (rf.InputError, AttributeError):
             with pytest.raises(kind) as caught:
                 getattr(peaks_only, name)
             assert str(caught.value) == text
@@ -177,7 +166,7 @@ def test_type_checkers_know_the_quantities(tmp_path):
 
 def test_nominal_overturning_is_a_flag_of_its_own():
     for factor in (1.0, 8.0):
-        run = simulate(FRAME, MOTION.scaled(factor), output="peaks")
+        run = rf.simulate(FRAME, MOTION.scaled(factor), output="peaks")
         limit = 0.7 * np.arctan(1.0 / 8.0)
         assert run.nominal_overturning == (run.max_rotation > limit)
     assert run.nominal_overturning
@@ -239,7 +228,7 @@ def test_peaks_of_the_solver_are_named_in_their_order():
 
 def test_a_start_off_the_ground_is_no_uplift():
     """It counts as rocking, and the base may come back once more often than it left."""
-    run = simulate(FRAME, quiet_motion(20.0, dt=0.01), "2DOF-S", initial=InitialState(rotation=0.01))
+    run = rf.simulate(FRAME, rf.quiet_motion(20.0, dt=0.01), "2DOF-S", initial=rf.InitialState(rotation=0.01))
     assert run.status == "rocking"
     assert run.n_impacts == run.n_uplifts + 1
 
@@ -248,19 +237,19 @@ def test_a_simplified_run_beyond_the_balance_rotation_warns():
     """It goes on as if it rocked, at any rotation below π/2, where the structure would long have fallen."""
     balance = FRAME.rocking().pivot(1).balance_rotation
     for turn, warned in ((0.9, False), (1.1, True), (6.0, True)):
-        start = InitialState(rotation=turn * balance)
-        run = simulate(FRAME, quiet_motion(0.02), "2DOF-S", initial=start)
+        start = rf.InitialState(rotation=turn * balance)
+        run = rf.simulate(FRAME, rf.quiet_motion(0.02), "2DOF-S", initial=start)
         assert run.status == "rocking"
         assert run.balance_ratio == pytest.approx(run.max_rotation / balance, rel=1e-12)
         assert any("static moment vanishes" in text for text in run.warnings) == warned
-        peaks = simulate(FRAME, quiet_motion(0.02), "2DOF-S", "peaks", initial=start)
+        peaks = rf.simulate(FRAME, rf.quiet_motion(0.02), "2DOF-S", "peaks", initial=start)
         assert peaks.warnings == run.warnings
         assert "such as MDOF-C" in "".join(run.warnings) or not warned
-        assert not simulate(FRAME, quiet_motion(0.02), "2DOF-C", initial=start).warnings
-        block = simulate(FRAME, quiet_motion(0.02), "rigid", initial=start)
+        assert not rf.simulate(FRAME, rf.quiet_motion(0.02), "2DOF-C", initial=start).warnings
+        block = rf.simulate(FRAME, rf.quiet_motion(0.02), "rigid", initial=start)
         assert "such as rigid-C" in "".join(block.warnings) or not warned
-    fell = simulate(
-        FRAME, quiet_motion(1.0), "2DOF-S", initial=InitialState(rotation=3.0 * balance), free_vibration=9.0
+    fell = rf.simulate(
+        FRAME, rf.quiet_motion(1.0), "2DOF-S", initial=rf.InitialState(rotation=3.0 * balance), free_vibration=9.0
     )
     assert fell.status == "overturned"
     assert not fell.warnings

@@ -118,55 +118,23 @@ def test_a_flexible_structure_overturns_too():
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (
-            lambda: rf.rocking_spectrum(RECORD, [], [1.0]),
-            "slendernesses must be one or more positive numbers in rad, but [] was given.",
-        ),
-        (
-            lambda: rf.rocking_spectrum(RECORD, [0.1], [1.0, -1.0]),
-            "periods must be one or more positive numbers in s, but [1.0, -1.0] was given.",
-        ),
-        (
-            lambda: rf.rocking_spectrum(RECORD, [0.1], [1.0], "2DOF-S"),
-            'Blocks have no modes, but the model 2DOF-S was given. Use "rigid" or "rigid-C".',
-        ),
-        (
-            lambda: rf.rocking_spectrum(RECORD, [0.1, 1.2], [1.0]),
-            "Housner's coefficient 1 - 2 m_tot B²/I_θ is -0.303: a block this squat stops at its first impact. "
-            "Give impact=VVELSimplified().",
-        ),
-        (
-            lambda: rf.overturning_scales(BLOCK, RECORD, (2.0, 1.0)),
-            "scales must rise, two at least, but (2.0, 1.0) was given. They are the grid that is searched.",
-        ),
-        (
-            lambda: rf.overturning_scales(BLOCK, RECORD, (0.0, 1.0)),
-            "scales must be one or more positive numbers, but (0.0, 1.0) was given.",
-        ),
-        (
-            lambda: rf.overturning_scales(BLOCK, RECORD, (1.0, 2.0), tolerance=0.5),
-            "tolerance must lie in [1e-12, 0.1), but 0.5 was given.",
-        ),
-        (
-            lambda: rf.overturning_scales(BLOCK, 3.0, (1.0, 2.0)),
-            "motion must be a GroundMotion, but float was given. Read or build one first.",
-        ),
+        (lambda: rf.rocking_spectrum(RECORD, [], [1.0]), "slendernesses must be one or more positive numbers in rad"),
+        (lambda: rf.rocking_spectrum(RECORD, [0.1], [1.0, -1.0]), "periods must be one or more positive numbers"),
+        (lambda: rf.rocking_spectrum(RECORD, [0.1], [1.0], "2DOF-S"), "Blocks have no modes, but the model 2DOF-S"),
+        (lambda: rf.rocking_spectrum(RECORD, [0.1, 1.2], [1.0]), "Housner's coefficient 1 - 2 m_tot B²/I_θ"),
+        (lambda: rf.overturning_scales(BLOCK, RECORD, (2.0, 1.0)), "scales must rise, two at least, but (2.0, 1.0)"),
+        (lambda: rf.overturning_scales(BLOCK, RECORD, (0.0, 1.0)), "scales must be one or more positive numbers"),
+        (lambda: rf.overturning_scales(BLOCK, RECORD, (1.0, 2.0), tolerance=0.5), "tolerance must lie in [1e-12"),
+        (lambda: rf.overturning_scales(BLOCK, 3.0, (1.0, 2.0)), "motion must be a GroundMotion, but float was given."),
         (
             lambda: rf.overturning_scales(rf.equivalent_s1(0.3, 0.02, 0.2, 1.0), RECORD, (1.0, 2.0), "fixed"),
             "fixed has a base that cannot lift, so nothing overturns it. Give a model that rocks.",
         ),
-        (
-            lambda: rf.overturning_spectrum(BLOCK, lambda a, t: a * t, [2.0]),
-            "pulse must make a GroundMotion of an amplitude and a period, but it made float. "
-            "Give one_sine_pulse, for instance.",
-        ),
-        (
-            lambda: rf.overturning_spectrum(BLOCK, full_sine, [0.0]),
-            "frequency_ratios must be one or more positive numbers, but [0.0] was given.",
-        ),
+        (lambda: rf.overturning_spectrum(BLOCK, lambda a, t: a * t, [2.0]), "pulse must make a GroundMotion"),
+        (lambda: rf.overturning_spectrum(BLOCK, full_sine, [0.0]), "frequency_ratios must be one or more positive"),
     ],
 )
 def test_what_makes_no_spectrum_is_named(call, message):
     with pytest.raises(rf.InputError) as caught:
         call()
-    assert str(caught.value) == message
+    assert str(caught.value).startswith(message)

@@ -15,7 +15,7 @@ def errors(motion, **changes):
     frame = frame_values(n_stories=3, stiffness_ratio=1.0, period=0.3, aspect_ratio=6.0, damping_ratio=0.05)
     given = {**frame, **changes}
     mine = simulate(Frame(**given), motion, output="peaks")
-    parameters = frame_properties(**given).kwargs()
+    parameters = frame_properties(**given)
     twin, moved = (
         simulate_fine(**parameters, acceleration=factor * motion.acceleration, dt=motion.dt)
         for factor in (1.0, 1.0 + 1e-15)

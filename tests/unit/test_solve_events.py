@@ -8,9 +8,9 @@ import pytest
 from builders import frame_values
 from rockflex import Frame, GroundMotion, InitialState, RockingProperties, quiet_motion, simulate
 from rockflex.models import GROUND, HEADER, Model
+from twins.controlled import ControlledTwin
 from twins.fine_step import simulate_fine
 from twins.frame import frame_properties
-from twins.ode import simulate_ode
 
 GRAVITY = 9.81
 PEAKS = ("rotation", "top_displacement", "base_moment", "base_shear")
@@ -25,7 +25,7 @@ def both(given, record, dt, n_modes=None, *, substeps=64, **options):
     """A run and its twin on the same frame; 64 looks a sample."""
     label = "MDOF-S" if n_modes is None else f"{n_modes + 1}DOF-S"
     mine = simulate(Frame(**given), GroundMotion(record, dt), label, **options)
-    parameters = frame_properties(**given, n_modes=n_modes).kwargs()
+    parameters = frame_properties(**given, n_modes=n_modes)
     return mine, simulate_fine(**parameters, acceleration=record, dt=dt, substeps=substeps, **options)
 
 
@@ -145,14 +145,7 @@ def test_a_jump_at_the_start_lifts_at_once(sign):
     mine, twin = both(given, record, 0.01, 1, free_vibration=1.0)
     assert mine.uplift_times[0] == 0.0
     assert_same(mine, twin)
-    ode = simulate_ode(
-        **frame_properties(**given, n_modes=1).kwargs(),
-        acceleration=record,
-        dt=0.01,
-        free_vibration=1.0,
-        rtol=1e-12,
-        restart_every_sample=True,
-    )
+    ode = ControlledTwin.of(p, []).run(record, 0.01, 1.0)
     assert_same(mine, ode, rtol=1e-9, atol=1e-9)
     # From a jump the rotation grows with the square of time.
     lift = 0.2 * p.resisting_moment / (p.i_theta - float(p.effective_mass @ p.effective_height**2))
@@ -201,7 +194,7 @@ def test_overturning_of_a_flexible_frame():
     p = Frame(**given).rocking()
     start = 1.5 * p.m_tot * p.half_width / p.l0r
     from_twin = simulate_fine(
-        **frame_properties(**given).kwargs(),
+        **frame_properties(**given),
         acceleration=np.zeros(1001),
         dt=0.02,
         initial=InitialState(rotation=start),

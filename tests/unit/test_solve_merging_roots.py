@@ -27,7 +27,7 @@ def assert_same_peaks(one, other, rtol):
 
 def discriminant(damping_ratio):
     """Of the three roots of the rocking phase with one mode that are left beside its growing one."""
-    parameters = frame_properties(**frame(damping_ratio=damping_ratio), n_modes=1).kwargs()
+    parameters = frame_properties(**frame(damping_ratio=damping_ratio), n_modes=1)
     matrix = Exact(**parameters, dt=0.02, substeps=1).generator[True][:4, :4]
     characteristic = np.poly(matrix)
     growing = max(np.roots(characteristic), key=lambda root: root.real).real
@@ -40,7 +40,7 @@ def test_where_two_eigenvalues_merge():
     damping_ratio = brentq(discriminant, 0.1, 0.6, xtol=1e-15, rtol=1e-15)
     given = frame(damping_ratio=damping_ratio)
     run = simulate(Frame(**given), MOTION, "2DOF-S", free_vibration=1.0)
-    parameters = frame_properties(**given, n_modes=1).kwargs()
+    parameters = frame_properties(**given, n_modes=1)
     twin = simulate_fine(**parameters, acceleration=MOTION.acceleration, dt=MOTION.dt, free_vibration=1.0)
     assert run.n_impacts > 3
     assert_same_peaks(run, twin, 1e-9)
@@ -52,5 +52,5 @@ def test_close_to_the_merger(offset):
     damping_ratio = brentq(discriminant, 0.1, 0.6, xtol=1e-15, rtol=1e-15) * (1.0 + offset)
     given = frame(damping_ratio=damping_ratio)
     run = simulate(Frame(**given), MOTION, "2DOF-S", output="peaks")
-    parameters = frame_properties(**given, n_modes=1).kwargs()
+    parameters = frame_properties(**given, n_modes=1)
     assert_same_peaks(run, simulate_fine(**parameters, acceleration=MOTION.acceleration, dt=MOTION.dt), 1e-9)

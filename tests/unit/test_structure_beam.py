@@ -122,8 +122,7 @@ def test_shapes_of_equation_36():
 
 
 REFUSED = [
-    ({"mass": ([0, 15], [500, 500])}, r"mass: a table must extend from the base \(0 m\) to the top \(20 m\), but it "
-     r"covers 0 m to 15 m. Add the missing rows."),
+    ({"mass": ([0, 15], [500, 500])}, r"mass: a table must extend from the base \(0 m\) to the top \(20 m\)"),
     ({"mass": ([2, 20], [500, 500])}, "but it covers 2 m to 20 m"),
     ({"mass": ([0, 12, 9, 20], [5, 5, 5, 5])}, "mass: the heights of a table must not decrease, but 9 m follows"),
     ({"mass": ([0, 20], [500, 500, 500])}, "at least two rows, but 2 heights and 3 values were given"),
@@ -133,10 +132,8 @@ REFUSED = [
     ({"mass": 0.0}, "mass must be a positive, finite number in kg/m, but 0.0 was given"),
     ({"mass": lambda z: 10.0 - z}, "mass must be positive and finite along the whole height, but it is 0 kg/m at 10 m"),
     ({"rotary_inertia": lambda z: z - 1.0}, "rotary_inertia must be zero or positive and finite along the whole"),
-    ({"mass": lambda z: np.ones(3)}, r"mass must return one number for each height, an array of "
-     r"shape \(65,\), but it did not"),
-    ({"lumped_masses": rf.LumpedMasses([25.0], [1.0])}, "must lie on the beam, at most 20 m above the base, but one "
-     "lies at 25 m"),
+    ({"mass": lambda z: np.ones(3)}, r"mass must return one number for each height, an array of shape \(65,\)"),
+    ({"lumped_masses": rf.LumpedMasses([25.0], [1.0])}, "must lie on the beam, at most 20 m above the base, but one"),
     ({"lumped_masses": ([3.0], [1.0])}, r"lumped_masses must be LumpedMasses\(heights, masses\), but tuple was given"),
     ({"method": "fem"}, 'method must be "fe" or "ritz", but \'fem\' was given'),
     ({"method": "ritz", "n_elements": 10}, 'n_elements does not apply to method="ritz". Leave it out, or use'),
@@ -159,19 +156,10 @@ def test_refused(changes, words):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (
-            ([1.0], [1.0, 2.0]),
-            "must contain one mass and one rotary inertia for each of its 1 heights, but 2 and 1 were",
-        ),
-        (
-            ([0.0], [1.0]),
-            r"lumped_masses.heights must be positive, but heights\[0\] = 0 m was given. A mass at the base",
-        ),
+        (([1.0], [1.0, 2.0]), "must contain one mass and one rotary inertia for each of its 1 heights, but 2 and 1"),
+        (([0.0], [1.0]), r"lumped_masses.heights must be positive, but heights\[0\] = 0 m was given. A mass"),
         (([1.0], [-1.0]), r"lumped_masses.masses must be positive, but masses\[0\] = -1 kg was given"),
-        (
-            ([1.0], [1.0], [-2.0]),
-            r"lumped_masses.rotary must be zero or positive, but rotary\[0\] = -2 kg m² was given",
-        ),
+        (([1.0], [1.0], [-2.0]), r"lumped_masses.rotary must be zero or positive, but rotary\[0\] = -2 kg m² was"),
     ],
 )
 def test_bodies_refused(arguments, words):
@@ -186,12 +174,7 @@ def column(function):
 SHAPES = [
     (lambda z: z + 1.0, np.ones_like, np.zeros_like, "Shape 1 must vanish at the base"),
     (lambda z: z, np.ones_like, np.zeros_like, "Shape 1 must have no slope at the base"),
-    (
-        lambda z: z**2,
-        lambda z: 3.0 * z,
-        lambda z: np.full_like(z, 3.0),
-        "Shape 1 is not the integral of its slope: check",
-    ),
+    (lambda z: z**2, lambda z: 3.0 * z, lambda z: np.full_like(z, 3.0), "Shape 1 is not the integral of its slope"),
     (lambda z: z**2, lambda z: 2.0 * z, np.ones_like, "Shape 1 has a slope that is not the integral of its curvature"),
     (lambda z: z**2, lambda z: 2.0 * z, lambda z: z * np.nan, "shapes.curvature must be finite along the height"),
 ]
@@ -206,9 +189,7 @@ def test_shapes_refused(value, slope, curvature, words):
 
 def test_shape_of_shapes_refused():
     flat = rf.RitzShapes(lambda z: z**2, lambda z: 2.0 * z, np.ones_like)
-    with pytest.raises(
-        InputError, match=r"shapes.value must return one row per height and one column per shape, \(2, n_sha"
-    ):
+    with pytest.raises(InputError, match=r"shapes.value must return one row per height and one column per shape"):
         beam(method="ritz", shapes=flat)
 
 

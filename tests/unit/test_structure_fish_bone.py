@@ -129,17 +129,11 @@ def test_height_and_modes():
     ("changes", "words"),
     [
         ({"story_heights": []}, "story_heights must contain at least one height in m, but none was given"),
-        (
-            {"story_heights": [4.0, -3.0, 2.0]},
-            r"story_heights must be positive, but story_heights\[1\] = -3 m was given",
-        ),
+        ({"story_heights": [4.0, -3.0, 2.0]}, r"story_heights must be positive, but story_heights\[1\] = -3 m was"),
         ({"masses": [1.0, 2.0]}, "masses must be one number, or one for each of the 3 stories, but 2 were given"),
         ({"masses": [1.0, 2.0, 0.0]}, r"masses must be positive, but masses\[2\] = 0 kg was given"),
         ({"column_stiffness": 0.0}, "column_stiffness must be a positive, finite number in N m²"),
-        (
-            {"beam_stiffness": [1.0, -1.0, 2.0]},
-            r"beam_stiffness must be one number, or one for each of the 3 stories, from 0",
-        ),
+        ({"beam_stiffness": [1.0, -1.0, 2.0]}, r"beam_stiffness must be one number, or one for each of the 3"),
         ({"beam_stiffness": "stiff"}, "rigid beams\\) in N m/rad, but 'stiff' was given"),
         ({"damping_ratio": 1.0}, r"damping_ratio must lie in \[0, 1\)"),
     ],

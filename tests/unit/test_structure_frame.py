@@ -218,10 +218,7 @@ def test_frames_are_values():
         ({"story_height": 0.0}, r"story_height must be a positive, finite number in m, but 0.0"),
         ({"story_mass": -1.0}, r"story_mass must be a positive, finite number in kg, but -1.0"),
         ({"base_mass": -1.0}, r"base_mass must be a zero or positive, finite number in kg, but -1.0"),
-        (
-            {"stiffness_ratio": -0.1},
-            r"from 0 \(two cantilever columns\) to float\('inf'\).*but -0.1 was",
-        ),
+        ({"stiffness_ratio": -0.1}, r"from 0 \(two cantilever columns\) to float\('inf'\).*but -0.1 was"),
         ({"stiffness_ratio": math.nan}, r"stiffness_ratio must be from 0 .* but nan was given"),
         ({"stiffness_ratio": "stiff"}, r"stiffness_ratio must be from 0 .* but 'stiff' was given"),
         ({"period": 0.0}, r"period must be a positive, finite number in s, but 0.0"),

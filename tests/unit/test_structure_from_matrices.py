@@ -235,49 +235,25 @@ def test_heights_of_translations_in_any_layout(heights, tmp_path):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        (
-            {"stiffness": [[1.0, 1.0], [1.0, 1.0]]},
-            "stiffness must be positive definite, but its smallest eigenvalue is",
-        ),
+        ({"stiffness": [[1.0, 1.0], [1.0, 1.0]]}, "stiffness must be positive definite, but its smallest eigenvalue"),
         ({"stiffness": [[3.0, -1.0], [-2.0, 1.0]]}, r"stiffness must be symmetric, but stiffness\[0, 1\] = -1"),
         ({"stiffness": [1.0, 2.0]}, r"stiffness must have the shape \(1, 1\)"),
         ({"mass": [[1.0, 1.0], [1.0, 1.0]]}, "mass must be positive definite, but its smallest eigenvalue is"),
         ({"mass": [1.0]}, "mass must contain one mass for each of the 2 degrees of freedom, but 1 were given"),
         ({"mass": [1.0, -1.0]}, "mass must not be negative, but it is -1 at degree of freedom 1"),
-        (
-            {"mass": [0.0, 0.0]},
-            "mass must be assigned to at least one degree of freedom that translates horizontally, but it is zero",
-        ),
-        (
-            {"mass": [0.0, 1.0], "heights": {0: 1.0}},
-            "mass must be assigned to at least one degree of freedom that translates",
-        ),
-        (
-            {"heights": [1.0]},
-            "heights must contain one height for each of the 2 degrees of freedom, but 1 were given. List",
-        ),
-        (
-            {"heights": {}},
-            "heights must contain at least one height in m above the base, all positive, but none was given",
-        ),
+        ({"mass": [0.0, 0.0]}, "mass must be assigned to at least one degree of freedom that translates"),
+        ({"mass": [0.0, 1.0], "heights": {0: 1.0}}, "mass must be assigned to at least one degree of freedom"),
+        ({"heights": [1.0]}, "heights must contain one height for each of the 2 degrees of freedom, but 1 were"),
+        ({"heights": {}}, "heights must contain at least one height in m above the base, all positive, but none was"),
         ({"heights": {0: -1.0}}, "all positive, but -1 m was given. A mass at the base belongs to base_mass"),
         ({"heights": {2: 1.0}}, "heights, index must be a whole number from 0 to 1, but 2 was given"),
-        (
-            {"heights": {0: 1.0, 1: 2.0}, "rotations": [1]},
-            "rotations must list each degree of freedom once, and none that has a height, but 1 is listed twice",
-        ),
+        ({"heights": {0: 1.0, 1: 2.0}, "rotations": [1]}, "rotations must list each degree of freedom once, and none"),
         ({"heights": {0: 1.0}, "rotations": [1, 1]}, "but 1 is listed twice"),
-        (
-            {"heights": {0: 1.0}, "rotations": [5]},
-            "rotations, index must be a whole number from 0 to 1, but 5 was given",
-        ),
+        ({"heights": {0: 1.0}, "rotations": [5]}, "rotations, index must be a whole number from 0 to 1, but 5 was"),
         ({"n_modes": 3}, "n_modes must be a whole number from 1 to 2, but 3 was given"),
         ({"half_width": -1.0}, "half_width must be a positive, finite number in m"),
         ({"base_mass": -1.0}, "base_mass must be a zero or positive, finite number in kg"),
-        (
-            {"damping_ratio": [0.1]},
-            "damping_ratio must be one number, or one for each of the 2 modes, but 1 were given",
-        ),
+        ({"damping_ratio": [0.1]}, "damping_ratio must be one number, or one for each of the 2 modes, but 1 were"),
     ],
 )
 def test_matrices_refused(changes, words):
@@ -288,10 +264,7 @@ def test_matrices_refused(changes, words):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        (
-            {"shapes": [[1.0, 1.0], [2.0, -1.1]]},
-            r"The mode shapes must be orthogonal with respect to the mass, but φ_1\^T M",
-        ),
+        ({"shapes": [[1.0, 1.0], [2.0, -1.1]]}, r"The mode shapes must be orthogonal with respect to the mass"),
         ({"shapes": [[1.0, 0.0], [2.0, 0.0]]}, r"Mode shape 2 moves no mass \(φ\^T M φ = 0\). Check that both"),
         ({"omega": [3.0, 2.0]}, "omega must contain positive frequencies in rad/s in ascending order, but"),
         ({"omega": [0.0, 2.0]}, "omega must contain positive frequencies in rad/s in ascending order"),
@@ -322,16 +295,12 @@ def test_one_shape_may_be_a_vector():
 
 def test_sparse_matrices_too_large_to_be_dense(tmp_path):
     (tmp_path / "k.mtx").write_text("%%MatrixMarket matrix coordinate real general\n900000 900000 1\n1 1 2.0\n")
-    with pytest.raises(
-        InputError, match=r"stiffness: .*k\.mtx contains a sparse matrix of shape \(900000, 900000\), but"
-    ):
+    with pytest.raises(InputError, match=r"stiffness: .*k\.mtx contains a sparse matrix of shape \(900000, 900000\)"):
         rf.from_matrices([1.0], tmp_path / "k.mtx", [1.0], base_mass=1.0, half_width=1.0, damping_ratio=0.02)
 
 
 def test_ragged_shapes_are_told():
-    with pytest.raises(
-        InputError, match=r"shapes must be a sequence of numbers in any unit, but list whose rows differ"
-    ):
+    with pytest.raises(InputError, match=r"shapes must be a sequence of numbers in any unit, but list whose rows"):
         rf.from_modes([1.0], [[1.0], [1.0, 2.0]], [1.0], [1.0], base_mass=1.0, half_width=1.0, damping_ratio=0.02)
 
 
@@ -339,19 +308,13 @@ def test_ragged_shapes_are_told():
     ("text", "words"),
     [
         ("", "its first line must declare a matrix"),
-        (
-            "%%MatrixMarket matrix coordinate complex general\n1 1 1\n1 1 2.0 0.0\n",
-            "its first line must declare a matrix",
-        ),
+        ("%%MatrixMarket matrix coordinate complex general\n1 1 1\n1 1 2.0", "its first line must declare a matrix"),
         ("%%MatrixMarket matrix coordinate real general\n1 1\n", "its size line must give the numbers of rows"),
         (
             "%%MatrixMarket matrix coordinate real general\n2 2 3\n1 1 2.0\n",
             r"it must contain 3 entries of three numbers",
         ),
-        (
-            "%%MatrixMarket matrix coordinate real general\n2 2 1\n3 1 2.0\n",
-            "its entries must lie in 2 rows and",
-        ),
+        ("%%MatrixMarket matrix coordinate real general\n2 2 1\n3 1 2.0\n", "its entries must lie in 2 rows and"),
         (
             "%%MatrixMarket matrix array real symmetric\n2 2\n1\n2\n",
             "it must contain 3 numbers for a matrix of 2 by 2",

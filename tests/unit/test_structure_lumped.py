@@ -79,10 +79,7 @@ def test_frozen_and_read_only():
         ({"base_mass": -1.0}, r"base_mass must be a zero or positive, finite number in kg, but -1.0"),
         ({"base_mass": np.nan}, r"base_mass must be a zero or positive, finite number in kg, but nan"),
         ({"half_width": 0.0}, r"half_width must be a positive, finite number in m, but 0.0"),
-        (
-            {"damping_ratio": 1.0},
-            r"damping_ratio must lie in \[0, 1\), but 1.0 .* Give the fraction",
-        ),
+        ({"damping_ratio": 1.0}, r"damping_ratio must lie in \[0, 1\), but 1.0 .* Give the fraction"),
         ({"damping_ratio": [0.1, -0.1]}, r"damping_ratio\[1\] must lie in \[0, 1\), but -0.1 was given"),
         ({"damping_ratio": [0.1] * 3}, r"damping_ratio must be one number, or one for each of the 2 modes"),
     ],

@@ -140,10 +140,7 @@ def test_a_beam_takes_stiffness_and_mass_from_its_section():
     [
         ({}, "bending_stiffness is missing: give it, or a section."),
         ({"section": 3.0}, "section must be a Section, such as Section.circle(...), but 3.0 was given."),
-        (
-            {"section": PIER, "bending_stiffness": 1e9},
-            "bending_stiffness is 1.5e+10 by the section, but 1000000000.0 was given too. Leave one of them out",
-        ),
+        ({"section": PIER, "bending_stiffness": 1e9}, "bending_stiffness is 1.5e+10 by the section, but 1000000000.0"),
         ({"section": PIER, "mass_per_length": 1e3}, "without a section, such as section.mass_per_length."),
     ],
 )

@@ -40,20 +40,10 @@ def task(label="MDOF-S", structure=None, motion=EL_CENTRO, free=0.0, bouc_wen=No
             {"model": "1DOF-fixed", "bouc_wen": rf.BoucWen(0.04)},
             "(scale), or a larger yield_",
         ),
-        (
-            {},
-            rf.GroundMotion(np.zeros(9), 1e-7),
-            {"free_vibration": 1e6},
-            "free_vibration = 1e+06 s is 1e+13 time steps",
-        ),
+        ({}, rf.GroundMotion(np.zeros(9), 1e-7), {"free_vibration": 1e6}, "free_vibration = 1e+06 s is 1e+13 time"),
         ({"period": 1e-6}, EL_CENTRO, {}, "advances by 1.18e+06 rad in every time step of 0.02 s"),
         ({"period": 1e-6}, EL_CENTRO, {"model": "MDOF-C"}, "Give fewer modes, a longer period, or a wider base"),
-        (
-            {"period": 1e9},
-            EL_CENTRO,
-            {"free_vibration": "settle"},
-            "with a slowest period of 1e+09 s, is 5e+10 time st",
-        ),
+        ({"period": 1e9}, EL_CENTRO, {"free_vibration": "settle"}, "with a slowest period of 1e+09 s, is 5e+10 time"),
         ({"aspect_ratio": 1e5}, EL_CENTRO, {}, "(half_width, or aspect_ratio): the narrower the base, the faster it"),
     ],
 )
@@ -68,9 +58,7 @@ def test_what_would_take_minutes_is_refused_at_once_and_says_why(structure, moti
 
 def test_a_long_motion_is_named_where_it_is_what_takes_long() -> None:
     found = task(motion=rf.GroundMotion(np.zeros(200_000), 0.001))
-    with pytest.raises(
-        WorkLimitError, match=r"the motion has 200000 samples\. Give a shorter motion, or one with a lo"
-    ):
+    with pytest.raises(WorkLimitError, match=r"the motion has 200000 samples\. Give a shorter motion, or one"):
         found.check(0.001)
 
 
@@ -146,9 +134,7 @@ def test_work_grows_with_what_it_is_said_to_grow_with() -> None:
 
 @pytest.mark.parametrize("value", [0.0, -1.0, math.nan, "60", "never", True])
 def test_a_limit_that_is_none_is_refused(value) -> None:
-    with pytest.raises(
-        InputError, match="work_limit must be a positive number of seconds of computing for one run, or N"
-    ):
+    with pytest.raises(InputError, match="work_limit must be a positive number of seconds of computing for one run"):
         rf.simulate(frame(), EL_CENTRO, work_limit=value)
 
 
@@ -207,10 +193,7 @@ def test_a_study_file_has_a_limit() -> None:
     ("make", "words"),
     [
         (lambda: frame(n_stories=10**9), "n_stories must be a whole number from 1 to 1000, but 1000000000 was given"),
-        (
-            lambda: rf.TaperedTower(200, 8, 4, 1, 2400, 25e9, 0.02, n_modes=10**9),
-            "n_modes must be a whole number from 1 to 200, but 1000000000 was given",
-        ),
+        (lambda: rf.TaperedTower(200, 8, 4, 1, 2400, 25e9, 0.02, n_modes=10**9), "n_modes must be a whole number"),
         (
             lambda: rf.Beam(
                 height=9.0, mass=1.0, bending_stiffness=1.0, half_width=1.0, damping_ratio=0.02, n_modes=10**9
@@ -223,10 +206,7 @@ def test_a_study_file_has_a_limit() -> None:
             ),
             "n_elements must be a whole number from 5 to 10000",
         ),
-        (
-            lambda: rf.WallFrame(50.0, 1e6, 3.0, 1e4, 1.0, 5.0, 0.02, n_modes=10**9),
-            "n_modes must be a whole number from 1 to 200",
-        ),
+        (lambda: rf.WallFrame(50.0, 1e6, 3.0, 1e4, 1.0, 5.0, 0.02, n_modes=10**9), "n_modes must be a whole number"),
         (lambda: rf.cosine_shapes(10.0, 10**9), "n_shapes must be a whole number from 1 to 200"),
         (lambda: rf.pinned_beam("shear", n_modes=10**9), "n_modes must be a whole number from 1 to 200"),
     ],

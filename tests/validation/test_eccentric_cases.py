@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 
 import rockflex as rf
+from builders import NO_MODES
 from twins import impact_laws
-from twins.complete import complete_frame, simulate_complete
+from twins.complete import simulate_complete
 
 CASES = json.loads((Path(__file__).parent / "eccentric_cases.json").read_text("utf-8"))["cases"]
 PEAKS = ("max_rotation", "max_top_displacement", "max_base_moment")
 BLOCK = rf.RockingProperties([], [], [], [], i_theta=24e6, l0r=1.8e6, m_tot=240e3, half_width=1.2, zeta=0.02)
-MODES = {"2DOF-S": 1, "3DOF-S": 2, "MDOF-S": None}
 
 
 def label(case):
@@ -48,19 +48,6 @@ def test_peaks(case):
             assert getattr(response, name) == pytest.approx(case[name], rel=bound(case, name)), name
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("case", CASES, ids=label)
-def test_the_twin_meets_them(case):
-    frame, motion = inputs(case)
-    twin = simulate_complete(
-        **complete_frame(**frame, n_modes=MODES[case["model"]]), acceleration=motion.acceleration, dt=motion.dt,
-        eccentricity=case["eccentricity"], complete=False, law=impact_laws.SimplifiedVVEL(),
-    )  # fmt: skip
-    assert twin.n_uplifts == case["n_uplifts"]
-    for name in PEAKS:
-        assert getattr(twin, name) == pytest.approx(case[name], rel=bound(case, name)), name
-
-
 def landing(eccentricity, side, share):
     """Start and time of the first impact from rest at θ_0: cosh(p t) = 1/(1 - θ_0/α), each pivot with its p and α."""
     arm = 1.2 - side * eccentricity
@@ -71,9 +58,8 @@ def landing(eccentricity, side, share):
 
 def twin_block(eccentricity, rotation, law):
     given = {name: getattr(BLOCK, name) for name in ("i_theta", "l0r", "m_tot", "half_width", "translational_inertia")}
-    no_modes = dict.fromkeys(("omega", "effective_mass", "effective_height", "top_ordinate", "zeta"), ())
     return simulate_complete(
-        **given, **no_modes, acceleration=np.zeros(2), dt=0.1, free=12.0, rotation=rotation, complete=False,
+        **given, **NO_MODES, acceleration=np.zeros(2), dt=0.1, free=12.0, rotation=rotation, complete=False,
         eccentricity=eccentricity, law=law,
     )  # fmt: skip
 

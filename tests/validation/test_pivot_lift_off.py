@@ -29,18 +29,21 @@ def by_equation_22(run):
     """Least ΣF_z of Eq. 22 along a history, between its nodes too where it comes near zero."""
     history = run.history
     model, nodes = history.model, history.states
-    motion, lasting = MotionBetween(model), np.diff(nodes[:, 0]) > 0.0
+    motion, near = MotionBetween(model).intervals(nodes), np.diff(nodes[:, 0]) > 0.0
     weight = model.properties.m_tot * GRAVITY
     least = math.inf
     for place in PLACES:
-        if place > 0.0 and least > 0.5 * weight and run.min_vertical_reaction > 0.25 * weight:
+        if not near.any():
             break
         rows = nodes[:-1].copy()
-        rows[:, HEADER:] = motion.intervals(nodes).at(place)
+        rows[:, HEADER:] = motion.at(place)
         rows[:, [TIME, GROUND]] += place * np.diff(nodes[:, [TIME, GROUND]], axis=0)
-        rows = rows[lasting]
-        vertical = printed_reactions(model, rows, accelerations(model, rows)).vertical
-        least = min(least, float(vertical.min()) + 2.0 * weight)
+        vertical = printed_reactions(model, rows[near], accelerations(model, rows[near])).vertical + 2.0 * weight
+        least = min(least, float(vertical.min()))
+        if place == 0.0:  # where it is far from zero at both ends, it does not come there between
+            ends = np.full(nodes.shape[0], math.inf)
+            ends[:-1][near] = vertical
+            near &= np.minimum(ends[:-1], ends[1:]) < 0.5 * weight
     return least
 
 

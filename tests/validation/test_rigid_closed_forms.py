@@ -1,4 +1,4 @@
-"""The rigid block against closed forms: quarter period, overturning by pulses, decay of the peaks.
+"""The rigid block against closed forms: quarter period, overturning by pulses, overturning spectra, decay of the peaks.
 
 In p² = L g/I_θ, α = m_tot B/L and φ = θ/α the linearised block moves by φ'' = p² (φ - s - a/(g α)). The pulses'
 thresholds follow from the growing part of φ, which must vanish; the decay from 1 - (1 - φ)², the squared speed
@@ -125,7 +125,7 @@ def pulse(form, frequency, r, samples=4000):
 
 def after_pulse(motion, rest):
     """Peaks of a block that sticks at its first impact: it overturns before, or never."""
-    return rf.simulate(block(), motion, model="rigid", output="peaks", free_vibration=rest, impact=rf.Restitution(0.0))
+    return rf.simulate(block(), motion, model="rigid", output="peaks", free_vibration=rest, impact=STICKS)
 
 
 @pytest.mark.parametrize(("form", "frequency", "printed"), THRESHOLDS)
@@ -143,6 +143,40 @@ def test_least_sine_pulse_that_overturns(form, frequency, printed, sign):
     assert (over.status, over.n_impacts) == ("overturned", 0)
     assert back.n_impacts >= 1
     assert back.status == "rocking"
+
+
+BLOCK = rf.rigid_block(0.18, 2.0)
+STICKS = rf.Restitution(0.0)  # no rotation is left after an impact, so it overturns before it, or never
+PULSES = {  # of an amplitude and a whole period
+    half_sine: lambda a, t: rf.half_sine_pulse(a, t / 2, t / 2 / 4000),
+    full_sine: lambda a, t: rf.one_sine_pulse(a, t, t / 4000),
+}
+
+
+def thresholds(form, frequencies):
+    return [brentq(form, 1.0, 100.0, args=(each,), xtol=1e-13) for each in frequencies]
+
+
+@pytest.mark.parametrize(("form", "ratios"), [(half_sine, [2.0, 5.0, 10.0]), (full_sine, [2.0, 3.0, 5.0])])
+def test_an_overturning_spectrum_without_impact_is_the_closed_form(form, ratios):
+    table = rf.overturning_spectrum(BLOCK, PULSES[form], ratios, impact=STICKS, tolerance=1e-8)
+    # The pulse is piecewise linear: its amplitude is short by some (2 π/steps)²/12.
+    np.testing.assert_allclose(table["lowest"], thresholds(form, ratios), rtol=2e-6)
+    assert (table["impacts"] == 0).all()
+    np.testing.assert_allclose(table["highest_standing"], table["lowest"], rtol=1e-7)
+
+
+def test_with_housners_impact_the_upper_boundary_is_the_one_without_impact():
+    table = rf.overturning_spectrum(BLOCK, PULSES[full_sine], [3.0, 5.0], tolerance=1e-8)
+    np.testing.assert_allclose(table["highest_standing"], thresholds(full_sine, [3.0, 5.0]), rtol=2e-6)
+    assert (table["lowest"] < 0.5 * table["highest_standing"]).all()
+
+
+def test_a_half_sine_overturns_without_impact_whatever_the_impact():
+    stuck, rocking = (
+        rf.overturning_spectrum(BLOCK, PULSES[half_sine], [2.0, 5.0], impact=law) for law in (STICKS, None)
+    )
+    np.testing.assert_allclose(stuck["lowest"], rocking["lowest"], rtol=2e-6)
 
 
 @pytest.mark.parametrize("r", [1.05, 2.0, 6.0])

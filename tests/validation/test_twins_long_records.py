@@ -18,7 +18,6 @@ PEAKS = ("rotation", "top_displacement", "base_moment", "base_shear")
 
 CASES = {
     "shear": ({"stiffness_ratio": np.inf, "aspect_ratio": 9.0, "period": 1.5}, FAR, ["FF-19-a"], 1.0),
-    "flexure": ({"stiffness_ratio": 0.0, "aspect_ratio": 9.0, "period": 1.5}, FAR, ["FF-5-b"], 1.5),
     "shear, stiff": ({"stiffness_ratio": np.inf, "aspect_ratio": 8.0, "period": 0.7}, NEAR, ["NFNP-26-a"], 2.0),
     "flexure, three shocks": (
         {"stiffness_ratio": 0.0, "aspect_ratio": 8.0, "period": 1.2},
@@ -44,9 +43,7 @@ def test_nothing_is_lost(case):
     given, record = setting(case)
     assert record.duration > 60.0
     mine = simulate(Frame(**given), record)
-    twin = simulate_fine(
-        **frame_properties(**given).kwargs(), acceleration=record.acceleration, dt=record.dt, substeps=64
-    )
+    twin = simulate_fine(**frame_properties(**given), acceleration=record.acceleration, dt=record.dt, substeps=64)
     assert mine.modal_displacement.shape[1] == 15
     assert (mine.status, mine.n_uplifts, mine.n_impacts) == ("rocking", twin.n_uplifts, twin.n_impacts)
     assert mine.n_impacts >= 15
@@ -59,7 +56,7 @@ def test_nothing_is_lost(case):
 
 
 def test_many_modes_turn_within_a_sample():
-    given, record = setting("flexure")
+    given, record = setting("flexure, three shocks")
     turns = Frame(**given).modal().omega * record.dt
     assert turns[-1] > 15.0
     assert np.count_nonzero(turns > 1.0) >= 10
