@@ -348,7 +348,7 @@ def test_values_of_elements_out_of_range_name_the_element(failing, kind, changes
         (element("friction_damper").replace("kind = 'friction_damper'", ""), 'no. 1, kind is missing: "tendon",'),
         (element("friction_damper").replace("'friction_damper'", "[1]"), 'no. 1, kind must be "tendon",'),
         (element("yielding_dissipator", stiffness="stiff"), "no. 1, stiffness must be the elastic stiffness, a number"),
-        (element("yielding_dissipator", fy=1.0), "no. 1, fy is not known; there are , position, stiffness,"),
+        (element("yielding_dissipator", fy=1.0), "no. 1, fy is not known; there are "),
         (element("yielding_dissipator", tension_only=1), "no. 1, tension_only must be true or false"),
         (element("viscous_damper", coefficient=None), "no. 1, coefficient is missing: the force over the velocity"),
         (
