@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rockflex._files import write_file_atomically
-from rockflex.report._document import ConstructionCheck, PublicationReport, ReproducedResult
+from rockflex.report._document import PublicationReport, ReproducedResult
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -23,19 +23,10 @@ COLUMNS = ("target", "place", "name", "printed", "rockflex", "unit", "difference
 
 
 def inline_svg(drawing: str, stem: str, label: str) -> str:
-    """Turn an SVG file into an element of a page.
+    """Turn the text of an SVG file into an element of a page, which fills the available width.
 
-    The prolog, metadata and namespaces of a separate file are removed. Identifiers get the stem as a prefix, because
-    other figures in the page may use the same ones. The element fills the available width.
-
-    Parameters
-    ----------
-    drawing
-        The file's text.
-    stem
-        A name that no other figure in the page has.
-    label
-        Alternative text for readers who cannot see the figure, without quotes or markup.
+    The prolog, metadata and namespaces of a separate file are removed. Identifiers get the stem, which no other figure
+    in the page has, as a prefix. `label` is the text for readers who cannot see the figure, without quotes or markup.
     """
     body = drawing[drawing.index("<svg") :]
     body = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", body, flags=re.DOTALL)
@@ -69,16 +60,12 @@ def report_to_html(document: PublicationReport, drawings: Mapping[str, str]) -> 
 
     labels = {stem: str(escape(s.title)) for s in document.sections for stem in s.figures}
     figures = {stem: Markup(inline_svg(drawings[stem], stem, label)) for stem, label in labels.items()}
-    verdicts = list(document.verdicts)
-    last = len(verdicts) - 1
-    looks = {name: CLASSES[-1 if place == last else min(place, 3)] for place, name in enumerate(verdicts)}
-    failing = [line for s in document.sections for line in s.numbers if line.verdict == verdicts[-1]]
-    return (
-        jinja_templates_in(TEMPLATES)
-        .get_template("report.html.jinja")
-        .render(
-            document=document, figures=figures, looks=looks, counts=document.counts, failing=failing, worst=verdicts[-1]
-        )
+    *better, worst = document.verdicts
+    looks = {name: CLASSES[min(place, 3)] for place, name in enumerate(better)} | {worst: CLASSES[-1]}
+    failing = [line for s in document.sections for line in s.numbers if line.verdict == worst]
+    template = jinja_templates_in(TEMPLATES).get_template("report.html.jinja")
+    return template.render(
+        document=document, figures=figures, looks=looks, counts=document.counts, failing=failing, worst=worst
     )
 
 
@@ -103,23 +90,17 @@ def report_to_markdown(document: PublicationReport) -> str:
     >>> report_to_markdown(document).splitlines()[0]
     '# A title'
     """
-    counts = document.counts
+    counts, plain = document.counts, _escaped_markdown
+    versions = ", ".join(f"{name} {plain(version)}" for name, version in document.versions.items())
+    verdicts = [(name, str(counts[name]), meaning) for name, meaning in document.verdicts.items()]
     parts = [
-        f"# {_escaped_markdown(document.title)}",
-        _escaped_markdown(document.source),
-        f"Records. {_escaped_markdown(document.records)}",
-        "Versions. "
-        + ", ".join(f"{name} {_escaped_markdown(version)}" for name, version in document.versions.items())
-        + ".",
-        _table_in_markdown(
-            ("verdict", "numbers", "meaning"),
-            [(name, str(counts[name]), meaning) for name, meaning in document.verdicts.items()],
-        ),
-        _escaped_markdown(document.checks),
-        "\n".join(
-            f"- *Remark, {_escaped_markdown(kind)}.* {_escaped_markdown(meaning)}"
-            for kind, meaning in document.remarks.items()
-        ),
+        f"# {plain(document.title)}",
+        plain(document.source),
+        f"Records. {plain(document.records)}",
+        f"Versions. {versions}.",
+        _table_in_markdown(("verdict", "numbers", "meaning"), verdicts),
+        plain(document.checks),
+        "\n".join(f"- *Remark, {plain(kind)}.* {plain(meaning)}" for kind, meaning in document.remarks.items()),
         *(part for section in document.sections for part in _section_in_markdown(section)),
     ]
     return "\n\n".join(parts) + "\n"
@@ -142,17 +123,19 @@ def _section_in_markdown(section: ReproducedResult) -> Iterable[str]:
         yield _table_in_markdown(HEAD, rows)
     if section.checks:
         yield "Checks of ourselves, not counted:"
-        yield _table_in_markdown(CHECKS, [_check_row_in_markdown(check) for check in section.checks])
+        rows = [
+            (
+                line.place, line.name, line.printed, line.ours_as_text, line.unit, "yes" if line.holds else "**no**",
+                line.remarks,
+            )
+            for line in section.checks
+        ]  # fmt: skip
+        yield _table_in_markdown(CHECKS, rows)
     for remark in section.remarks:
         kind, title, text = map(_escaped_markdown, (remark.kind, remark.title, remark.text))
         yield f"**Remark, {kind}: {title}.** {text}"
         if remark.head:
             yield _table_in_markdown(remark.head, remark.rows)
-
-
-def _check_row_in_markdown(check: ConstructionCheck) -> tuple[str, ...]:
-    holds = "yes" if check.holds else "**no**"
-    return check.place, check.name, check.printed, check.ours_as_text, check.unit, holds, check.remarks
 
 
 def _table_in_markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

@@ -25,7 +25,6 @@ from rockflex.report.run._report_tables import (
     ReportTable,
     assumption_lines,
     element_table,
-    follows_impact_law,
     mode_table,
     peak_table,
     reported_record,
@@ -34,13 +33,12 @@ from rockflex.report.run._report_tables import (
 )
 from rockflex.report.run._reported_runs import ReportedRuns, checked_reported_runs
 from rockflex.report.run._run_checks import (
-    ground_friction_range,
-    has_bearing_area,
     labels_of_long_runs,
     run_check_legend,
     run_check_table,
 )
 from rockflex.response import Response, friction_coefficient, warnings_of
+from rockflex.structure import structure_warnings
 
 WIDTH, HEIGHT = 186.0, 272.0  # of a sheet of A4 within its margins, in mm
 FIGURE_HEIGHTS = (58.0, 160.0)  # least and largest height of the figure in mm
@@ -113,52 +111,7 @@ class RunReportPage:
         return min(max(HEIGHT / self.scale - self.height, low), high)
 
 
-def run_report_page(
-    report: ReportedRuns,
-    *,
-    title: str | None,
-    date: str,
-    friction: float | None,
-    warnings: Sequence[str],
-    notes: Sequence[str],
-    omitted: Collection[str] = (),
-) -> RunReportPage:
-    """Collect the contents of a page, without energies and friction of the labels in `omitted`."""
-    left_out = labels_of_long_runs(report).union(omitted)
-    known = report.properties if report.structure is None else report.structure
-    record, kind = reported_record(report), structure_kind_text(known)
-    if not title:
-        title = f"{kind} under {record.name or 'a ground motion'}"
-    fell = any(run.status == "overturned" for run in report.responses)
-    own = [f"{DAGGER} The values of a run that overturned include its fall."] * fell
-    sliding = [ground_friction_range(each.model) is not None for each in report.histories]
-    texts = run_check_legend(
-        friction, sided=report.properties.eccentricity != 0.0, slides=any(sliding), stays=not all(sliding),
-        omitted=bool(left_out), held=bool(report.properties.elements),
-        bedded=any(map(has_bearing_area, report.histories)),
-        impacts=any(follows_impact_law(each.model) for each in report.histories),
-    )  # fmt: skip
-    return RunReportPage(
-        title=shortened(title, MAX_LETTERS["title"]),
-        date=date,
-        kind=kind,
-        facts=structure_facts(report.properties),
-        modes=mode_table(report.properties),
-        record=record,
-        lines=assumption_lines(report),
-        elements=element_table(report),
-        peaks=peak_table(report),
-        checks=run_check_table(report, friction, left_out),
-        legend=[*own, *texts],
-        warnings=_first_warnings_of_report([*warnings, *_warnings_of_runs(report, left_out)]),
-        notes=_joined_notes(notes),
-        versions=", ".join(f"{name} {version}" for name, version in _report_versions().items()),
-        inputs=report_fingerprint(report, record),
-    )
-
-
-def run_report_page_as_html(page: RunReportPage, report: ReportedRuns) -> str:
-    """Return a page as HTML with its figures."""
+def _run_report_page_as_html(page: RunReportPage, report: ReportedRuns) -> str:
     from markupsafe import Markup
 
     from rockflex.plot import draw_record_strip, draw_run_sheet, figure_as_svg
@@ -198,10 +151,10 @@ def _first_warnings_of_report(texts: Sequence[str]) -> list[str]:
     ]
 
 
-def _report_versions() -> dict[str, str]:
+def _report_versions() -> str:
     found = package_versions(("rockflex", "numpy"))
-    python = found.pop("python")
-    return found | {"Python": python}
+    found["Python"] = found.pop("python")
+    return ", ".join(f"{name} {version}" for name, version in found.items())
 
 
 def _symbols_as_html(text: str) -> str:
@@ -308,16 +261,31 @@ def run_report_as_html(
     coefficient = None if friction is None else _checked_friction_coefficient(friction)
     texts = _checked_report_notes(notes)
     report = checked_reported_runs(responses, structure, motion)
-    page = run_report_page(
-        report,
-        title=heading,
+    known = report.properties if structure is None else structure
+    record, kind = reported_record(report), structure_kind_text(known)
+    left_out = labels_of_long_runs(report).union(omitted)
+    fell = any(run.status == "overturned" for run in report.responses)
+    page = RunReportPage(
+        title=shortened(heading or f"{kind} under {record.name or 'a ground motion'}", MAX_LETTERS["title"]),
         date=day,
-        friction=coefficient,
-        warnings=_structure_warnings(report.properties if structure is None else structure),
-        notes=texts,
-        omitted=omitted,
+        kind=kind,
+        facts=structure_facts(report.properties),
+        modes=mode_table(report.properties),
+        record=record,
+        lines=assumption_lines(report),
+        elements=element_table(report),
+        peaks=peak_table(report),
+        checks=run_check_table(report, coefficient, left_out),
+        legend=[
+            *[f"{DAGGER} The values of a run that overturned include its fall."] * fell,
+            *run_check_legend(report, coefficient, omitted=bool(left_out)),
+        ],
+        warnings=_first_warnings_of_report([*structure_warnings(known), *_warnings_of_runs(report, left_out)]),
+        notes=_joined_notes(texts),
+        versions=_report_versions(),
+        inputs=report_fingerprint(report, record),
     )
-    return run_report_page_as_html(page, report)
+    return _run_report_page_as_html(page, report)
 
 
 def checked_report_path(name: str, path: str | Path) -> Path:
@@ -374,12 +342,6 @@ def _checked_report_notes(notes: Any) -> list[str]:
             f"The page has room for notes of {MAX_NOTES} letters, but {size} were given. Shorten them.", field="notes"
         )
     return texts
-
-
-def _structure_warnings(structure: Any) -> tuple[str, ...]:
-    from rockflex.structure import structure_warnings
-
-    return structure_warnings(structure)
 
 
 def report_fingerprint(report: ReportedRuns, record: ReportedRecord) -> str:
