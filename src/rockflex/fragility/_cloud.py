@@ -146,18 +146,15 @@ def fit_cloud_line(x: Array, y: Array, recordings: RecordingGroups | None = None
             f"A cloud needs at least 3 runs with different responses, but {x.size} runs with {np.unique(y).size} "
             "different responses were given."
         )
-    c1, c2, mean, n, sxx, syy, residual = (
-        float(value[0]) for value in fit_least_squares_lines(x, y, np.ones((1, x.size)))
-    )
+    line = fit_least_squares_lines(x, y, np.ones((1, x.size)))
+    c1, c2, mean, n, sxx, syy, residual = (float(value[0]) for value in line)
     variance = residual / (n - 2.0)
     count, replicates = 0, None
     if recordings is None:
         covariance = variance * np.array([[1.0 / n + mean**2 / sxx, -mean / sxx], [-mean / sxx, 1.0 / sxx]])
     else:
-        count, replicates = (
-            int(recordings.held.sum()),
-            recordings.without_each(lambda some: _cloud_parameters(x, y, some)),
-        )
+        count = int(recordings.held.sum())
+        replicates = recordings.without_each(lambda some: _cloud_parameters(x, y, some))
         covariance = jackknife_covariance(replicates[recordings.held])[:2, :2]
     fit = CloudFit(c1, c2, math.sqrt(variance), 1.0 - residual / syy, x.size, covariance, count)
     return fit, replicates

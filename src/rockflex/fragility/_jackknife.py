@@ -34,13 +34,7 @@ class RecordingGroups(NamedTuple):
 
     @classmethod
     def of(cls, groups: ArrayLike) -> Self:
-        """Number a column of names or numbers.
-
-        Raises
-        ------
-        InputError
-            If it is no such column, or a name is missing.
-        """
+        """Number a column of names or numbers."""
         import pandas as pd
 
         try:
@@ -62,13 +56,7 @@ class RecordingGroups(NamedTuple):
 
     @classmethod
     def beside(cls, groups: ArrayLike | None, **columns: NDArray[np.generic]) -> Self | None:
-        """Number the recordings of runs with these columns; None without `groups`.
-
-        Raises
-        ------
-        InputError
-            If it is no column of names or numbers, or not all columns have the same number of rows.
-        """
+        """Number the recordings of runs with these columns, all of one length; None without `groups`."""
         found = None if groups is None else cls.of(groups)
         check_same_column_length(**columns, **({} if found is None else {"groups": found.codes}))
         return found

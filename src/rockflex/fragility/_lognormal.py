@@ -197,21 +197,16 @@ def fit_capacities(
         )
     if above.any():
         mean, beta = _censored_lognormal_fit(known, x[above])
-        method, covariance = (
-            "censored capacities, maximum likelihood",
-            _censored_lognormal_covariance(known, x[above], mean, beta),
-        )
+        method = "censored capacities, maximum likelihood"
+        covariance = _censored_lognormal_covariance(known, x[above], mean, beta)
     else:
         mean, beta, n = float(known.mean()), float(known.std(ddof=1)), known.size
         method, covariance = "capacities, moments", np.diag([beta**2 / n, beta**2 / (2.0 * (n - 1))])
-    if recordings is None:
-        return LognormalFragility(math.exp(mean), beta, covariance, x.size, method, damping=damping)
-    median, replicates = (
-        math.exp(mean),
-        recordings.without_each(lambda some: _normal_score_lines(x, above, some, mean, beta)),
-    )
-    covariance = lognormal_fit_covariance(replicates, median, beta)
-    return LognormalFragility(median, beta, covariance, x.size, method, recordings.n, damping)
+    median, count = math.exp(mean), 0
+    if recordings is not None:
+        replicates = recordings.without_each(lambda some: _normal_score_lines(x, above, some, mean, beta))
+        covariance, count = lognormal_fit_covariance(replicates, median, beta), recordings.n
+    return LognormalFragility(median, beta, covariance, x.size, method, count, damping)
 
 
 def _normal_score_lines(x: Array, above: Bools, weights: Array, mean: float, beta: float) -> Array:
