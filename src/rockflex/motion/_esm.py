@@ -64,11 +64,8 @@ def parse_esm(file: Path, lines: list[str]) -> list[GroundMotion]:
     )
     if values.size != n_samples:
         raise wrong_sample_count_error(file, values.size, n_samples, f"NDATA = {n_samples:g}")
-    return [
-        motion_from_samples(
-            file, values, AccelerationUnit(unit), dt, _esm_record_info(file, header), "Check UNITS in the header."
-        )
-    ]
+    info = _esm_record_info(file, header)
+    return [motion_from_samples(file, values, AccelerationUnit(unit), dt, info, "Check UNITS in the header.")]
 
 
 def _esm_record_info(file: Path, header: dict[str, str]) -> RecordInfo:

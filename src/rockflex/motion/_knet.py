@@ -57,20 +57,15 @@ def parse_knet(file: Path, lines: list[str]) -> list[GroundMotion]:
             f"{file}: a sampling frequency and a duration are expected in lines 11 and 12, but they are "
             f"{header['Sampling Freq(Hz)'][:40]!r} and {header['Duration Time(s)'][:40]!r}. Download the record again."
         )
-    counts = np.array(
-        [parse_decimal(word, file, i) for i, line in enumerate(lines[HEADER_LINES:], 18) for word in line.split()]
-    )
+    places = enumerate(lines[HEADER_LINES:], HEADER_LINES + 1)
+    counts = np.array([parse_decimal(word, file, i) for i, line in places for word in line.split()])
     if not counts.size or abs(counts.size - duration * rate) > rate:
         raise wrong_sample_count_error(file, counts.size, duration * rate, f"{duration:g} s at {rate:g} Hz")
-    gal = float(scale[1]) / float(scale[2])
+    unit = AccelerationUnit("cm/s2", float(scale[1]) / float(scale[2]))
     info = _knet_record_info(file, header)
     remedy = "Check the scale factor in line 14."
     name = file.stem + file.suffix.replace(".", "-") if COMPONENT_SUFFIX.fullmatch(file.suffix) else file.stem
-    return [
-        motion_from_samples(
-            file, counts - counts.mean(), AccelerationUnit("cm/s2", gal), 1.0 / rate, info, remedy, name
-        )
-    ]
+    return [motion_from_samples(file, counts - counts.mean(), unit, 1.0 / rate, info, remedy, name)]
 
 
 def _knet_header(file: Path, lines: list[str]) -> dict[str, str]:
@@ -128,11 +123,8 @@ def _knet_start_time(text: str) -> datetime | None:
 
 def _epicentral_distance(header: dict[str, str]) -> float | None:
     """Return the distance along the surface of a sphere, in km, to a metre."""
-    degrees = [
-        parse_optional_decimal(header.get(name, "")) for name in ("Lat.", "Lon.", "Station Lat.", "Station Long.")
-    ]
-    if None in degrees:
-        degrees[3] = degrees[3] if degrees[3] is not None else parse_optional_decimal(header.get("Station Lon.", ""))
+    names = ("Lat.", "Lon.", "Station Lat.", "Station Lon.")
+    degrees = [parse_optional_decimal(header.get(name, "")) for name in names]
     places = [math.radians(each) for each in degrees if each is not None]
     if len(places) < 4:
         return None
