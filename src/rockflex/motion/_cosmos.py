@@ -61,15 +61,15 @@ class CosmosChannel:
     values: Array | None = None
     announced: str = ""
 
+    def real(self, place: int, header: Array | None = None) -> float | None:
+        """Return a value of the real header, or of another one; None if it is unknown."""
+        values = self.reals if header is None else header
+        return float(values[place - 1]) if place <= values.size and values[place - 1] != -999.0 else None
+
     def integer(self, place: int) -> int | None:
         """Return a value of the integer header; None if it is unknown."""
-        value = self.integers[place - 1] if place <= self.integers.size else -999.0
-        return None if value == -999.0 else int(value)
-
-    def real(self, place: int) -> float | None:
-        """Return a value of the real header; None if it is unknown."""
-        value = self.reals[place - 1] if place <= self.reals.size else -999.0
-        return None if value == -999.0 else float(value)
+        value = self.real(place, self.integers)
+        return None if value is None else int(value)
 
     @property
     def counts(self) -> bool:
@@ -87,9 +87,8 @@ def channel_unit(file: Path, channel: CosmosChannel) -> AccelerationUnit:
                 f"{file} holds raw counts, and its real header does not state the value of one count (places 22 "
                 "and 42). Download the corrected record (V2)."
             )
-        return AccelerationUnit(
-            "g", step * MICROVOLT / abs(sensitivity) / (non_negative_or_none(channel.real(47)) or 1.0)
-        )
+        gain = non_negative_or_none(channel.real(47)) or 1.0
+        return AccelerationUnit("g", step * MICROVOLT / abs(sensitivity) / gain)
     if code in UNIT_CODES:
         return UNIT_CODES[code]
     written = re.search(r"units\s*+=\s*+([^(,]++)", channel.announced)
@@ -197,10 +196,7 @@ def is_cosmos(lines: list[str]) -> bool:
 
 
 def parse_cosmos(file: Path, lines: list[str]) -> list[GroundMotion]:
-    """Build the motions of all channels of acceleration in a COSMOS file; other series are passed over.
-
-    From raw counts the mean is subtracted.
-    """
+    """Build the motions of all channels of acceleration; from raw counts the mean is subtracted."""
     channels = [each for each in _read_cosmos_channels(file, lines) if each.values is not None]
     if not channels:
         raise InputError(
@@ -248,16 +244,11 @@ def _read_cosmos_block(file: Path, lines: list[str], i: int, block: re.Match[str
         )
     count, columns = int(block[1]), int(form[1] or 1)
     end = i + 1 + -(-count // max(columns, 1))
-    match block[2].lower():
-        case "integer-header":
-            channel.integers = _fixed_width_numbers(file, lines, i + 1, end, count, int(form[2]))
-        case "real-header":
-            channel.reals = _fixed_width_numbers(file, lines, i + 1, end, count, int(form[2]))
-        case "acceleration":
-            channel.values = _fixed_width_numbers(file, lines, i + 1, end, count, int(form[2]))
-            channel.announced = lines[i]
-        case _:
-            pass  # velocity, displacement
+    name = {"integer-header": "integers", "real-header": "reals", "acceleration": "values"}.get(block[2].lower())
+    if name is not None:  # velocities and displacements are passed over
+        setattr(channel, name, _fixed_width_numbers(file, lines, i + 1, end, count, int(form[2])))
+    if name == "values":
+        channel.announced = lines[i]
     return end
 
 

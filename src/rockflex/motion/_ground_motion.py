@@ -249,7 +249,14 @@ class GroundMotion(HtmlTable, Value):
         InputError
             If there is no vertical component.
         """
-        return GroundMotion(_vertical_samples(self), self.dt, self.name, _vertical_record_info(self.metadata))
+        if self.vertical is None:
+            raise InputError(
+                f"The motion {shown(self.name)} has no vertical component. Give one: "
+                "read_motion(path, vertical=...), or motion.with_vertical(...)."
+            )
+        known = info_of(self)
+        info = replace(known, component=None, direction="vertical", source=known.vertical_source, vertical_source=None)
+        return GroundMotion(self.vertical, self.dt, self.name, info)
 
     def vertical_ratio(self, periods: ArrayLike, damping_ratio: float = 0.05) -> Array:
         """Vertical over horizontal pseudo-acceleration, V/H, at periods (s) as in `spectrum`.
@@ -299,7 +306,7 @@ class GroundMotion(HtmlTable, Value):
         >>> along.with_vertical(upwards).vertical.tolist()
         [0.0, 0.5, 0.0, 0.0]
         """
-        if self.metadata is not None and self.metadata.is_vertical:
+        if is_vertical_component(self):
             raise InputError(
                 f"{shown(self.name)} is itself a vertical component according to the header or name of the file. Give "
                 "the horizontal one first: horizontal.with_vertical(vertical)."
@@ -465,31 +472,9 @@ def _checked_vertical_samples(vertical: ArrayLike, n_samples: int) -> Array:
     return samples
 
 
-def _vertical_samples(motion: GroundMotion) -> Array:
-    """Return the vertical samples, or raise an InputError if there are none."""
-    if motion.vertical is None:
-        raise InputError(
-            f"The motion {shown(motion.name)} has no vertical component. Give one: read_motion(path, vertical=...), or "
-            "motion.with_vertical(...)."
-        )
-    return motion.vertical
-
-
-def _vertical_record_info(info: RecordInfo | None) -> RecordInfo:
-    """Return the metadata of the vertical component as a motion of its own."""
-    info = info or RecordInfo()
-    return replace(info, component=None, direction="vertical", source=info.vertical_source, vertical_source=None)
-
-
 def _vertical_sign_and_info(vertical: GroundMotion, info: RecordInfo | None) -> tuple[int, RecordInfo | None]:
-    """Return the sign that makes a vertical record positive upwards, and the metadata with its source.
-
-    Raises
-    ------
-    InputError
-        If the record is known to be horizontal.
-    """
-    given = vertical.metadata or RecordInfo()
+    """Return the sign that makes a vertical record positive upwards, and the metadata with its source."""
+    given = info_of(vertical)
     if given.direction == "horizontal":
         raise InputError(
             f"A vertical ground motion is expected, but {shown(vertical.name)} is a horizontal component according to "
@@ -497,22 +482,13 @@ def _vertical_sign_and_info(vertical: GroundMotion, info: RecordInfo | None) -> 
             'dataclasses.replace(motion, metadata=RecordInfo(direction="vertical")).',
             field="vertical",
         )
-    down = given.direction == "down"
+    sign, note = (-1, " (reversed: it is positive downwards)") if given.direction == "down" else (1, "")
     source = vertical.name or given.source
-    if source is None:
-        return -1 if down else 1, info
-    note = " (reversed: it is positive downwards)" if down else ""
-    return -1 if down else 1, replace(info or RecordInfo(), vertical_source=f"{source}{note}")
+    return sign, info if source is None else replace(info or RecordInfo(), vertical_source=f"{source}{note}")
 
 
 def _aligned_components(along: GroundMotion, upwards: GroundMotion) -> tuple[Array, Array]:
-    """Return the samples of both components of a motion, with zeros after the end of the shorter one.
-
-    Raises
-    ------
-    InputError
-        If the steps differ.
-    """
+    """Return the samples of both components of a motion, with zeros after the end of the shorter one."""
     if abs(along.dt - upwards.dt) > 1e-9 * along.dt:
         finer = min(along.dt, upwards.dt)
         raise InputError(
@@ -534,9 +510,14 @@ def _aligned_components(along: GroundMotion, upwards: GroundMotion) -> tuple[Arr
     return first, second
 
 
+def info_of(motion: GroundMotion) -> RecordInfo:
+    """Return what is known about a motion."""
+    return motion.metadata or RecordInfo()
+
+
 def is_vertical_component(motion: GroundMotion) -> bool:
     """Return whether a motion is known to be a vertical component."""
-    return motion.metadata is not None and motion.metadata.is_vertical
+    return info_of(motion).is_vertical
 
 
 def check_horizontal_component(*motions: GroundMotion) -> None:

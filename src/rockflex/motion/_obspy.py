@@ -64,14 +64,10 @@ def parse_obspy(file: Path, content: bytes, form: str, units: AccelerationUnit |
         raise ObsPyError(f"{file} cannot be read by ObsPy as {form}: {str(error)[:200]}.") from error
     traces = list(stream)
     names = unique_record_names([str(trace.stats.channel).strip() or "channel" for trace in traces])
-    motions: list[GroundMotion] = []
-    for trace, name in zip(traces, names, strict=True):
-        motions.append(
-            _motion_of_trace(file, trace, form, units, file.stem if len(traces) == 1 else f"{file.stem}-{name}")
-        )
-    if not motions:
+    if not traces:
         raise InputError(f"{file} holds no samples, according to ObsPy ({form}). Download the record again.")
-    return motions
+    wholes = [file.stem if len(traces) == 1 else f"{file.stem}-{name}" for name in names]
+    return [_motion_of_trace(file, trace, form, units, name) for trace, name in zip(traces, wholes, strict=True)]
 
 
 def _motion_of_trace(file: Path, trace: Any, form: str, units: AccelerationUnit | None, name: str) -> GroundMotion:

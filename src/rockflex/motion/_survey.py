@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rockflex._shown import number_with_noun
 from rockflex._values import Value
-from rockflex.motion._ground_motion import GroundMotion
+from rockflex.motion._ground_motion import GroundMotion, info_of
 from rockflex.motion._read_suite import (
     ChosenComponents,
     RecordFileContent,
@@ -18,12 +18,14 @@ from rockflex.motion._read_suite import (
     read_record_files,
     record_files,
 )
-from rockflex.motion._record_info import RecordInfo
+from rockflex.motion._readers import stated_peak_mismatch
 from rockflex.motion._recordings import StationRecord, file_names_text, group_stations
 from rockflex.motion._suite import Suite
 
 if TYPE_CHECKING:
     import pandas as pd
+
+COPIED_FACTS = ("station", "component", "direction", "stated_pga", "magnitude", "distance_km", "vs30")  # of RecordInfo
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -239,40 +241,28 @@ def _survey_entries(each: RecordFileContent, result: ChosenComponents, names: li
     if each.fault is not None:
         reason = str(each.fault).replace(str(each.file), each.file.name)
         return [SurveyEntry(file=each.file.name, taken=False, reason=reason)]
-    return [_survey_entry(each, path, motion, result) for path, motion in each.motions.items()]
+    return [
+        SurveyEntry(
+            file=each.file.name,
+            taken=path in result.taken or path in result.paired,
+            reason="; ".join(filter(None, (_survey_reason(path, result), stated_peak_mismatch(motion)[1]))),
+            name=motion.name,
+            format=info_of(motion).source_format,
+            dt=motion.dt,
+            n_samples=motion.acceleration.size,
+            pga=motion.pga,
+            **{name: getattr(info_of(motion), name) for name in COPIED_FACTS},
+        )
+        for path, motion in each.motions.items()
+    ]
 
 
-def _survey_entry(each: RecordFileContent, path: Path, motion: GroundMotion, result: ChosenComponents) -> SurveyEntry:
-    info = motion.metadata or RecordInfo()
-    return SurveyEntry(
-        file=each.file.name,
-        taken=path in result.taken or path in result.paired,
-        reason=_survey_reason(each, path, result),
-        name=motion.name,
-        format=info.source_format,
-        station=info.station,
-        component=info.component,
-        direction=info.direction,
-        dt=motion.dt,
-        n_samples=motion.acceleration.size,
-        pga=motion.pga,
-        stated_pga=info.stated_pga,
-        magnitude=info.magnitude,
-        distance_km=info.distance_km,
-        vs30=info.vs30,
-    )
-
-
-def _survey_reason(each: RecordFileContent, path: Path, result: ChosenComponents) -> str:
-    parts: list[str] = []
+def _survey_reason(path: Path, result: ChosenComponents) -> str:
+    """Return why a component is not taken, or has no vertical one."""
     if path in result.copies:
-        parts.append(f"a copy of {result.copies[path].name}")
-    elif path in result.boreholes:
-        parts.append("borehole component beneath a record at the surface")
-    elif path in result.vertical:
-        parts.append("vertical component")
-    elif path in result.unpaired:
-        parts.append(result.unpaired[path] or "without a vertical component")
-    if each.notes.get(path):
-        parts.append(each.notes[path])
-    return "; ".join(parts)
+        return f"a copy of {result.copies[path].name}"
+    if path in result.boreholes:
+        return "borehole component beneath a record at the surface"
+    if path in result.vertical:
+        return "vertical component"
+    return (result.unpaired[path] or "without a vertical component") if path in result.unpaired else ""
