@@ -225,22 +225,7 @@ def draw_recording_groups(n_groups: int, n: int, seed: int) -> Iterator[Integers
 def bootstrap_weights(groups: Integers, n: int, seed: int) -> Array:
     """How often each run occurs in each resample of its groups, shape (n, n_runs), drawn as in `bootstrap_band`.
 
-    Parameters
-    ----------
-    groups : ndarray, shape (n_runs,)
-        Number of the group of every run, from 0 in the order in which the groups first appear.
-    n, seed
-        As in `bootstrap_band`.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from rockflex.fragility import bootstrap_weights
-    >>> weights = bootstrap_weights(np.array([0, 0, 1]), n=20, seed=0)
-    >>> weights.shape
-    (20, 3)
-    >>> bool((weights[:, 0] + weights[:, 2] == 2.0).all())
-    True
+    `groups` numbers the group of every run, from 0 in the order in which the groups first appear.
     """
     count = int(groups.max()) + 1
     return np.array(
@@ -256,16 +241,6 @@ def resampled_exceedance(
 
     The same as `fit_outcomes` of each resample and its `exceedance`; P(OV) where the limit is π/2. NaN where a factor
     that matters cannot be fitted.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from rockflex.fragility import fit_outcomes, resampled_exceedance
-    >>> im, overturned = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]), np.array([False] * 6 + [True])
-    >>> rotation = np.array([0.0, 0.0, 0.01, 0.0, 0.02, 0.05, 1.6])
-    >>> found = resampled_exceedance(im, rotation, overturned, np.ones((1, 7)), np.array([0.5]), 0.02)
-    >>> print(f"{found[0, 0]:.3g}, {fit_outcomes(im, rotation, overturned).exceedance(0.5, 0.02):.3g}")
-    0.759, 0.759
     """
     scaled = StandardisedLogs(np.log(im))
     nodes, moves = scaled.of(np.log(at)), rotation > threshold

@@ -100,8 +100,12 @@ def _structure_fragility_function(name: Any, states: Any, rotations: Mapping[str
             field="curves",
         )
     if isinstance(states, OutcomeFragility):
+
+        def rocks(im: Array) -> Array:  # or overturns
+            return 1.0 - states.probabilities(im).no_rocking
+
         given: Mapping[Any, Any] = {
-            "rocking": lambda im: 1.0 - states.probabilities(im).no_rocking,  # rocking or overturning
+            "rocking": rocks,
             **{limit: partial(states.exceedance, limit=rotation) for limit, rotation in rotations.items()},
             "overturning": states.overturning,
         }
@@ -196,11 +200,6 @@ def write_nrml(
         Measure in SI units below which OpenQuake takes all probabilities as zero. Default: none.
     description, asset_category, loss_category
         Texts about the model in the file.
-
-    Returns
-    -------
-    Path
-        The file written.
 
     Raises
     ------
@@ -322,11 +321,6 @@ def write_pelicun(
         distributions.
     rotations : dict, optional
         Limit states of each `OutcomeFragility` between "rocking" and "overturning": names, and rotations in rad.
-
-    Returns
-    -------
-    Path
-        The file written.
 
     Raises
     ------

@@ -332,14 +332,6 @@ def measure_damping_of_runs(runs: "pd.DataFrame", measure: str) -> float | None:
     """Return the damping ratio of an intensity measure of a study's runs; None of one that has none.
 
     NaN if the runs do not state it, or it differs between their structures.
-
-    Examples
-    --------
-    >>> import pandas as pd
-    >>> from rockflex.fragility import measure_damping_of_runs
-    >>> runs = pd.DataFrame({"zeta_1": [0.02, 0.02]})
-    >>> [measure_damping_of_runs(runs, measure) for measure in ("pgv", "sa_t1", "sa_t1_5")]
-    [None, 0.02, 0.05]
     """
     if measure == "sa_t1_5":
         return HAZARD_DAMPING

@@ -213,11 +213,6 @@ class GroundMotion(HtmlTable, Value):
         damping_ratio : float
             Fraction of critical damping, 0 <= ζ < 1.
 
-        Returns
-        -------
-        ResponseSpectrum
-            Peaks of relative displacement and velocity, and the pseudo-acceleration.
-
         Raises
         ------
         InputError
@@ -406,11 +401,6 @@ class GroundMotion(HtmlTable, Value):
         degree : int
             Degree of the polynomial removed from the acceleration.
 
-        Returns
-        -------
-        GroundMotion
-            The corrected motion.
-
         Raises
         ------
         InputError
@@ -429,11 +419,6 @@ class GroundMotion(HtmlTable, Value):
             Corner frequencies in Hz, 0 < low < high < 1/(2 dt).
         order : int
             Order of the filter of one pass.
-
-        Returns
-        -------
-        GroundMotion
-            The filtered motion, of the same length.
 
         Raises
         ------

@@ -53,13 +53,7 @@ def record_files(paths: str | Path | Iterable[str | Path]) -> tuple[str, list[Pa
 
 
 def record_files_in_folder(folder: Path) -> list[Path]:
-    """Return the record files of a directory, by suffix or by their first lines, sorted by name.
-
-    Raises
-    ------
-    InputError
-        If there are none.
-    """
+    """Return the record files of a directory, by suffix or by their first lines, sorted by name."""
     files = [file for file in folder.iterdir() if file.is_file() and is_record_file(file)]
     if not files:
         raise InputError(

@@ -171,13 +171,7 @@ def read_components(path: str | Path, units: str | None = None, dt: float | None
 
 
 def read_motion_without_obspy(path: str | Path, units: str | None = None, dt: float | None = None) -> GroundMotion:
-    """Read a record as `read_motion` does, but without ObsPy, whose readers are not made for files of strangers.
-
-    Raises
-    ------
-    InputError
-        As for `read_motion`.
-    """
+    """Read a record as `read_motion` does, but without ObsPy, whose readers are not made for files of strangers."""
     file = checked_file_path("path", path)
     found = components_in_file(file, *_checked_unit_and_step(units, dt), use_obspy=False)
     return select_component(file, found, None, vertical=False)

@@ -141,14 +141,7 @@ def component_direction(file: Path, component: str | None = None) -> Direction |
 
     A component is vertical if the header calls it UP, DWN, V, UD and the like, or if the file name ends in such a word
     after a hyphen or an underscore. PEER files may also join station and component, as in TCU078V.AT2; this is accepted
-    unless the header names a horizontal component, for example an azimuth.
-
-    Parameters
-    ----------
-    file
-        The file; only its name is used.
-    component
-        Name of the component in the header.
+    unless the header (`component`) names a horizontal component, for example an azimuth.
     """
     stated = (component or "").strip()
     if VERTICAL_NAME.fullmatch(stated):

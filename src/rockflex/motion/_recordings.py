@@ -371,11 +371,6 @@ def rotated_spectrum(
     damping_ratio : float
         Fraction of critical damping, 0 <= ζ < 1.
 
-    Returns
-    -------
-    RotatedSpectrum
-        The ordinates of pseudo-acceleration by period and direction.
-
     Raises
     ------
     InputError

@@ -161,11 +161,6 @@ def survey_records(
     paths, units, dt, vertical, table
         As in `read_suite`.
 
-    Returns
-    -------
-    RecordSurvey
-        The entries, the motions that are taken, and the components by station.
-
     Raises
     ------
     InputError
@@ -196,15 +191,7 @@ def survey_without_obspy(
 ) -> tuple[RecordSurvey, RecordSurvey]:
     """Survey a folder as `survey_records` does, but without ObsPy, whose readers are not made for files of strangers.
 
-    Returns
-    -------
-    tuple of RecordSurvey
-        With the horizontal components alone, and with the vertical ones of their stations.
-
-    Raises
-    ------
-    InputError
-        As for `survey_records`.
+    The first survey has the horizontal components alone, the second the vertical ones of their stations, too.
     """
     name, files = record_files(folder)
     found = read_record_files(files, units, dt, use_obspy=False)

@@ -109,11 +109,6 @@ def ec8_spectrum(
     damping_ratio : float
         Fraction of critical damping, 0 <= ζ < 1.
 
-    Returns
-    -------
-    TargetSpectrum
-        The spectrum from 0 to 4 s.
-
     Raises
     ------
     InputError
@@ -156,14 +151,14 @@ def _damping_correction(damping_ratio: float) -> float:
 
 
 def asce7_spectrum(sds: float, sd1: float, tl: float, *, mce: bool = False) -> TargetSpectrum:
-    """Design spectrum of ASCE 7-16, 11.4.6, or the risk-targeted maximum considered one (11.4.7).
+    """Design spectrum of ASCE 7-16, 11.4.6, or the risk-targeted maximum considered one (11.4.7), for 5 % damping.
 
     With T_0 = 0.2 S_D1/S_DS and T_S = S_D1/S_DS:
 
     - 0 <= T <= T_0: S_a = S_DS (0.4 + 0.6 T/T_0)
     - T_0 <= T <= T_S: S_a = S_DS
     - T_S <= T <= T_L: S_a = S_D1/T
-    - T_L <= T: S_a = S_D1 T_L/T²
+    - T_L <= T <= 100 s: S_a = S_D1 T_L/T²
 
     Parameters
     ----------
@@ -173,11 +168,6 @@ def asce7_spectrum(sds: float, sd1: float, tl: float, *, mce: bool = False) -> T
         Long-period transition T_L of the maps, in s.
     mce : bool
         Multiply by 1.5, which gives the spectrum of the risk-targeted maximum considered earthquake, MCE_R.
-
-    Returns
-    -------
-    TargetSpectrum
-        The spectrum from 0 to 100 s, for 5 % damping.
 
     Raises
     ------
@@ -234,11 +224,6 @@ def asce7_site_spectrum(ss: float, s1: float, site: str, tl: float, *, mce: bool
         Long-period transition T_L of the maps, in s.
     mce : bool
         As in `asce7_spectrum`.
-
-    Returns
-    -------
-    TargetSpectrum
-        The spectrum of `asce7_spectrum`.
 
     Raises
     ------

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rockflex._files import write_file_atomically
-from rockflex.report._document import PublicationReport, ReproducedResult
+from rockflex.report._document import PublicationReport, PublishedLine, ReproducedResult
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -40,22 +40,7 @@ def inline_svg(drawing: str, stem: str, label: str) -> str:
 
 
 def report_to_html(document: PublicationReport, drawings: Mapping[str, str]) -> str:
-    """Write the document as a page.
-
-    Parameters
-    ----------
-    document
-        The report.
-    drawings
-        Text of the SVG file of each figure, by its stem.
-
-    Examples
-    --------
-    >>> from rockflex.report import PublicationReport, report_to_html
-    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> "<h1>A title</h1>" in report_to_html(document, drawings={})
-    True
-    """
+    """Write the document as a page; `drawings` has the text of the SVG file of each figure, by its stem."""
     from markupsafe import Markup, escape
 
     labels = {stem: str(escape(s.title)) for s in document.sections for stem in s.figures}
@@ -81,15 +66,7 @@ def jinja_templates_in(folder: Path) -> "Environment":
 
 
 def report_to_markdown(document: PublicationReport) -> str:
-    """Write the document as GitHub-flavoured Markdown; figures are links to ``<stem>.svg``.
-
-    Examples
-    --------
-    >>> from rockflex.report import PublicationReport, report_to_markdown
-    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> report_to_markdown(document).splitlines()[0]
-    '# A title'
-    """
+    """Write the document as GitHub-flavoured Markdown; figures are links to ``<stem>.svg``."""
     counts, plain = document.counts, _escaped_markdown
     versions = ", ".join(f"{name} {plain(version)}" for name, version in document.versions.items())
     verdicts = [(name, str(counts[name]), meaning) for name, meaning in document.verdicts.items()]
@@ -112,30 +89,22 @@ def _section_in_markdown(section: ReproducedResult) -> Iterable[str]:
         yield _escaped_markdown(section.note)
     for stem in section.figures:
         yield f"![{_escaped_markdown(section.title)}]({stem}.svg)"
-    rows = [
-        (
-            line.place, line.name, line.printed, line.ours_as_text, line.unit, line.difference_as_text,
-            f"**{line.verdict}**", line.remarks,
-        )
-        for line in section.numbers
-    ]  # fmt: skip
-    if rows:
-        yield _table_in_markdown(HEAD, rows)
-    if section.checks:
+    numbers = [(line, (line.difference_as_text, f"**{line.verdict}**")) for line in section.numbers]
+    checks = [(check, ("yes" if check.holds else "**no**",)) for check in section.checks]
+    if numbers:
+        yield _table_in_markdown(HEAD, [_row_of_line(*each) for each in numbers])
+    if checks:
         yield "Checks of ourselves, not counted:"
-        rows = [
-            (
-                line.place, line.name, line.printed, line.ours_as_text, line.unit, "yes" if line.holds else "**no**",
-                line.remarks,
-            )
-            for line in section.checks
-        ]  # fmt: skip
-        yield _table_in_markdown(CHECKS, rows)
+        yield _table_in_markdown(CHECKS, [_row_of_line(*each) for each in checks])
     for remark in section.remarks:
         kind, title, text = map(_escaped_markdown, (remark.kind, remark.title, remark.text))
         yield f"**Remark, {kind}: {title}.** {text}"
         if remark.head:
             yield _table_in_markdown(remark.head, remark.rows)
+
+
+def _row_of_line(line: PublishedLine, found: Iterable[str]) -> tuple[str, ...]:
+    return line.place, line.name, line.printed, line.ours_as_text, line.unit, *found, line.remarks
 
 
 def _table_in_markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -150,15 +119,7 @@ def _escaped_markdown(text: str) -> str:
 
 
 def report_numbers_to_csv(document: PublicationReport) -> str:
-    """Write one row per number, with a header, in UTF-8; `rockflex` has all digits, or "inf" or "nan".
-
-    Examples
-    --------
-    >>> from rockflex.report import PublicationReport, report_numbers_to_csv
-    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> report_numbers_to_csv(document).split(",")[:3]
-    ['target', 'place', 'name']
-    """
+    """Write one row per number, with a header, in UTF-8; `rockflex` has all digits, or "inf" or "nan"."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(COLUMNS)
@@ -179,28 +140,7 @@ def write_publication_report(
 ) -> list[Path]:
     """Draw every figure, and write ``report.html``, ``report.md``, ``numbers.csv`` and the figures as SVG.
 
-    Parameters
-    ----------
-    document
-        The report.
-    folder
-        The folder; it is created if needed.
-    progress
-        Called with the stem of every figure that is drawn.
-
-    Returns
-    -------
-    list of Path
-        The files, figures first.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> from rockflex.report import PublicationReport, write_publication_report
-    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> [path.name for path in write_publication_report(document, Path(tempfile.mkdtemp()))]
-    ['report.html', 'report.md', 'numbers.csv']
+    `progress` is called with the stem of every figure that is drawn. Returns the files, figures first.
     """
     from rockflex.plot import save_figure
 

@@ -289,13 +289,7 @@ def run_report_as_html(
 
 
 def checked_report_path(name: str, path: str | Path) -> Path:
-    """Return the path of a report.
-
-    Raises
-    ------
-    InputError
-        If it is a folder, or has another suffix than .html.
-    """
+    """Return the path of a report."""
     target = checked_file_path(name, path)
     if target.is_dir():
         raise InputError(

@@ -412,7 +412,12 @@ def peak_table(report: ReportedRuns) -> ReportTable:
         fell = run.status == "overturned"
         words = STATUS[run.status] if history.model.lifts else "fixed base"
         status = ReportCell(f"{words} {DAGGER}" if fell else words, None, "status", run.nominal_overturning)
-        cells = [value_cell(_peak_of_run(report, run, of), of, size) for of, (_, _, size) in columns.items()]
+        share = None if fell else nominal_rotation_share(report.properties, run, history)
+        values = {"nominal_share": share, "floor_acceleration": _peak_floor_acceleration(run)}
+        cells = [
+            value_cell(values[of] if of in values else float(getattr(run, of)), of, size)
+            for of, (_, _, size) in columns.items()
+        ]
         rows.append([ReportCell(label), status, *cells, ReportCell(str(run.n_uplifts), run.n_uplifts, "n_uplifts")])
     heads = [("model", ""), ("status", ""), *((name, unit) for name, unit, _ in columns.values()), ("uplifts", "")]
     return ReportTable(heads, rows)
@@ -440,10 +445,5 @@ def _peak_columns(report: ReportedRuns) -> dict[str, tuple[str, str, float]]:
     }
 
 
-def _peak_of_run(report: ReportedRuns, run: Response, of: str) -> float | None:
-    if of == "nominal_share":
-        known = run.status != "overturned" and run.history is not None
-        return nominal_rotation_share(report.properties, run, run.history) if known else None
-    if of == "floor_acceleration":
-        return None if run.floors is None else float(np.max(run.floors.floor_acceleration))
-    return float(getattr(run, of))
+def _peak_floor_acceleration(run: Response) -> float | None:
+    return None if run.floors is None else float(np.max(run.floors.floor_acceleration))

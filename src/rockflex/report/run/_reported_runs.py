@@ -35,14 +35,7 @@ class ReportedRuns:
 
 
 def checked_reported_runs(responses: Response | Iterable[Response], structure: Any, motion: Any) -> ReportedRuns:
-    """Check the input of a report.
-
-    Raises
-    ------
-    InputError
-        If there are no responses or too many, one has no history, they are not of one structure and one record, or
-        `structure` or `motion` are not theirs.
-    """
+    """Check the input of a report."""
     runs = _checked_responses(responses)
     histories = tuple(_history_of_run(place, run) for place, run in enumerate(runs))
     differing = _differing_ground_motions_text([run.motion for run in runs], histories)
