@@ -1,8 +1,9 @@
 """Reading many record files into a suite: which files are records, and which components are taken."""
 
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from pathlib import Path
 from typing import Literal, get_args
 
@@ -351,8 +352,8 @@ def read_components_by_file(
         if note := stated_peak_mismatch(motion)[1]:
             warnings.warn(f"{path}: {note}.", RecordWarning, stacklevel=3)
     result = choose_components(records, pair=vertical is not None)
-    _warn_of_unpaired_records(result, on_error, skip)
-    _warn_of_left_out_components(result)
+    for text in chain(_unpaired_records(result, on_error, skip), _left_out_components(result)):
+        warnings.warn(text, RecordWarning, stacklevel=3)
     taken = {each.file: [result.taken[path] for path in each.motions if path in result.taken] for each in records}
     return {file: motions for file, motions in taken.items() if motions}
 
@@ -367,33 +368,27 @@ def check_vertical_option(vertical: object) -> None:
         )
 
 
-def _warn_of_left_out_components(result: ChosenComponents) -> None:
-    """Warn of components that are left out, or raise an error if none is left."""
+def _left_out_components(result: ChosenComponents) -> Iterator[str]:
+    """Yield which components are left out, or raise an error if none is left."""
     if result.boreholes:
         count = number_with_noun(len(result.boreholes), "borehole component")
-        warnings.warn(
-            f"Left out: {count} beneath records at the surface, {file_names_text(result.boreholes)}.",
-            RecordWarning,
-            stacklevel=4,
-        )
+        yield f"Left out: {count} beneath records at the surface, {file_names_text(result.boreholes)}."
     if result.copies:
         names = first_texts_shown([f"{path.name} (of {kept.name})" for path, kept in result.copies.items()])
-        count = number_with_noun(len(result.copies), "copy", "copies")
-        warnings.warn(f"Left out: {count} of records in other files, {names}.", RecordWarning, stacklevel=4)
-    if not result.vertical:
-        return
+        yield f"Left out: {number_with_noun(len(result.copies), 'copy', 'copies')} of records in other files, {names}."
     names = ", ".join(path.name for path in result.vertical)
     components = number_with_noun(len(result.vertical), "vertical component")
-    if not result.taken:
+    if result.vertical and not result.taken:
         raise InputError(
             f"No horizontal component was given, only {components}: {names}. Give horizontal ones; if a "
             "header or file name is wrong, correct it."
         )
-    warnings.warn(f"Left out: {components}, {names}.", RecordWarning, stacklevel=4)
+    if result.vertical:
+        yield f"Left out: {components}, {names}."
 
 
-def _warn_of_unpaired_records(result: ChosenComponents, on_error: OnError, skip: str) -> None:
-    """Warn of records without a vertical component, or raise an error if there is none at all, or one does not fit."""
+def _unpaired_records(result: ChosenComponents, on_error: OnError, skip: str) -> Iterator[str]:
+    """Yield which records have no vertical component, or raise an error if there is none, or one does not fit."""
     both, without = result.taken, result.unpaired
     faults = {file: reason for file, reason in without.items() if reason}
     if faults:
@@ -401,7 +396,7 @@ def _warn_of_unpaired_records(result: ChosenComponents, on_error: OnError, skip:
         message = f"{len(faults)} of {len(both)} records cannot be paired with a vertical component. {reasons}"
         if on_error == "raise":
             raise InputError(f"{message} {skip} keeps them without it.", longest=MAX_MESSAGE_LENGTH, field="vertical")
-        warnings.warn(message, RecordWarning, stacklevel=4)
+        yield message
     if without and len(without) == len(both) and not faults:
         first = next(iter(both)).name
         which = first if len(both) == 1 else f"any of the {len(both)} records, such as {first}"
@@ -413,10 +408,7 @@ def _warn_of_unpaired_records(result: ChosenComponents, on_error: OnError, skip:
         )
     missing = [file for file, reason in without.items() if not reason]
     if missing:
-        count = f"{len(missing)} of {len(both)} records"
-        warnings.warn(
-            f"Without a vertical component: {count}, {file_names_text(missing)}.", RecordWarning, stacklevel=4
-        )
+        yield f"Without a vertical component: {len(missing)} of {len(both)} records, {file_names_text(missing)}."
 
 
 def _unreadable_files_message(faults: dict[Path, str], n_files: int) -> str:
