@@ -151,10 +151,7 @@ def rows(*lines):
         (rows("0 0.1", "0,1 0.2", "0.2 1"), "line 1: '0.1' has a decimal point, but other numbers have decimal commas"),
         (rows("0.O 1", "0.1 2", "0.2 3", "0.3 4"), "line 1: expected a finite number, but found '0.O'"),
         (rows("1x", "2", "3", "4"), "line 1: expected a finite number, but found '1x'"),
-        (
-            rows("0 1", "0.1 2", "0.3 3"),
-            r"line 3: the time step is 0.2 s, but 0.1 s before.*resample the record",
-        ),
+        (rows("0 1", "0.1 2", "0.3 3"), r"line 3: the time step is 0.2 s, but 0.1 s before.*resample the record"),
         (rows("0 1", "0.1 2", "0.1 3"), "line 3: time must increase, but it goes from 0.1 s to 0.1 s"),
         (rows("0 1", "0.1 2", "0.05 3"), "line 3: time must increase"),
         (rows("0 1", "0.1 2"), "has 2 samples, but a record needs at least 3"),
@@ -192,8 +189,7 @@ def test_dt_must_be_positive(tmp_path, dt):
 
 
 @pytest.mark.parametrize(
-    ("units", "value", "smaller"),
-    [("g", 9.7, "m/s² or cm/s²"), ("m/s2", 300.0, "cm/s²"), ("cm/s2", 9e4, "a smaller")],
+    ("units", "value", "smaller"), [("g", 9.7, "m/s² or cm/s²"), ("m/s2", 300.0, "cm/s²"), ("cm/s2", 9e4, "a smaller")]
 )
 def test_amplitudes_that_only_a_wrong_unit_explains(tmp_path, units, value, smaller):
     path = write(tmp_path, f"0 0\n0.1 {value}\n0.2 0\n")

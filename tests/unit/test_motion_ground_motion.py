@@ -123,8 +123,7 @@ def test_resampling_is_refining():
 
 
 @pytest.mark.parametrize(
-    ("dt", "steps"),
-    [(0.004, "0.005 s or 0.00333333333333 s"), (0.02, "0.01 s"), (0.0099, "0.01 s or 0.005 s")],
+    ("dt", "steps"), [(0.004, "0.005 s or 0.00333333333333 s"), (0.02, "0.01 s"), (0.0099, "0.01 s or 0.005 s")]
 )
 def test_resampling_names_the_steps_that_can_be_had(dt, steps):
     with pytest.raises(InputError, match=f"cannot be resampled exactly to dt = {dt} s.*Use {steps}\\."):
@@ -153,8 +152,7 @@ def test_baseline_removes_the_polynomial_and_nothing_else(degree):
 
 
 @pytest.mark.parametrize(
-    ("degree", "text"),
-    [(-1, "at least 0, but -1"), (1.5, "at least 0, but 1.5"), (399, "at most 398 for 400 samples")],
+    ("degree", "text"), [(-1, "at least 0, but -1"), (1.5, "at least 0, but 1.5"), (399, "at most 398 for 400 samples")]
 )
 def test_baseline_refuses(degree, text):
     with pytest.raises(InputError, match=text):

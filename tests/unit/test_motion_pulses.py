@@ -108,10 +108,7 @@ def test_names_tell_pulses_apart():
 @pytest.mark.parametrize(
     ("call", "text"),
     [
-        (
-            lambda: rm.ricker_pulse(1, 0.5, kind="odd"),
-            'kind must be "antisymmetric" or "symmetric", but \'odd\'',
-        ),
+        (lambda: rm.ricker_pulse(1, 0.5, kind="odd"), 'kind must be "antisymmetric" or "symmetric", but \'odd\''),
         (lambda: rm.ricker_pulse(1, 0), "period must be a positive, finite number in s"),
         (lambda: rm.ricker_pulse(1, 0.5, dt=0), "dt must be a positive"),
         (lambda: rm.ricker_pulse(math.nan, 0.5), "amplitude must be a finite number in m/s², but nan"),

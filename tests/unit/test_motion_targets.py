@@ -297,11 +297,7 @@ def test_default_factors(site, of_alpha, of_beta):
             {},
             r"T_B = 0\.05 s, T_C = 0\.02 s and T_D = 2 s, which must increase and stay below 10 s\. Check",
         ),
-        (
-            (5.0, 8.0, "D"),
-            {},
-            r"F_α = 1\.52 and F_β = 0\.59, below 1\. .*amplification=\(F_α, F_β",
-        ),
+        ((5.0, 8.0, "D"), {}, r"F_α = 1\.52 and F_β = 0\.59, below 1\. .*amplification=\(F_α, F_β"),
     ],
 )
 def test_refuses(arguments, options, text):

@@ -367,11 +367,7 @@ def test_the_vertical_component_is_compared(tmp_path):
             with pytest.raises(rf.InputError, match=r"differ in the vertical acceleration of the ground\. Write"):
                 rf.write_report(each, path)
     for motion, run, words in (
-        (
-            with_vertical(PULSE, 0.0),
-            shaken[0],
-            "were run with vertical acceleration, but 'named' is without it. Give",
-        ),
+        (with_vertical(PULSE, 0.0), shaken[0], "were run with vertical acceleration, but 'named' is without it. Give"),
         (with_vertical(PULSE, 0.4), plain, "run without vertical acceleration, but 'named' is with it. Give"),
         (with_vertical(PULSE, 0.4), shaken[1], "run with vertical acceleration, but 'named' is with it, or with an"),
     ):

@@ -148,11 +148,7 @@ def lognormal_fit_covariance(replicates: Array, median: float, beta: float) -> A
 
 
 def fit_capacities(
-    im: ArrayLike,
-    censored: ArrayLike | None = None,
-    groups: ArrayLike | None = None,
-    *,
-    damping: float | None = None,
+    im: ArrayLike, censored: ArrayLike | None = None, groups: ArrayLike | None = None, *, damping: float | None = None
 ) -> LognormalFragility:
     """Fit a lognormal fragility to the capacities of records.
 

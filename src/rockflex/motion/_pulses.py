@@ -25,10 +25,7 @@ MAX_SAMPLES = 100_000_000  # samples
 
 
 def ricker_pulse(
-    amplitude: float,
-    period: float,
-    dt: float = 0.005,
-    kind: Literal["antisymmetric", "symmetric"] = "antisymmetric",
+    amplitude: float, period: float, dt: float = 0.005, kind: Literal["antisymmetric", "symmetric"] = "antisymmetric"
 ) -> GroundMotion:
     """Ricker wavelet: the second (symmetric) or third (antisymmetric) derivative of a Gaussian.
 

@@ -30,12 +30,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 POWERS_OF_TEN = np.array([float(f"1e{k}") for k in range(23)])  # all exact in double precision
-SUITE_NAMES = (
-    "fema-p695-far-field",
-    "fema-p695-near-field-no-pulse",
-    "fema-p695-near-field-pulse",
-    "el-centro-1940",
-)
+SUITE_NAMES = ("fema-p695-far-field", "fema-p695-near-field-no-pulse", "fema-p695-near-field-pulse", "el-centro-1940")
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)

@@ -76,12 +76,7 @@ _EC8_2024_END = 10.0  # s, where the table ends
 
 
 def ec8_spectrum(
-    ag: float,
-    ground: str = "A",
-    kind: int = 1,
-    *,
-    importance: float = 1.0,
-    damping_ratio: float = 0.05,
+    ag: float, ground: str = "A", kind: int = 1, *, importance: float = 1.0, damping_ratio: float = 0.05
 ) -> TargetSpectrum:
     """Horizontal elastic spectrum of EN 1998-1:2004, 3.2.2.2, with the recommended parameters.
 

@@ -32,11 +32,7 @@ from rockflex.report.run._report_tables import (
     structure_kind_text,
 )
 from rockflex.report.run._reported_runs import ReportedRuns, checked_reported_runs
-from rockflex.report.run._run_checks import (
-    labels_of_long_runs,
-    run_check_legend,
-    run_check_table,
-)
+from rockflex.report.run._run_checks import labels_of_long_runs, run_check_legend, run_check_table
 from rockflex.response import Response, friction_coefficient, warnings_of
 from rockflex.structure import structure_warnings
 
