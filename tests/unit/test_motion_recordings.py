@@ -25,15 +25,10 @@ from rockflex.study import overturning_scales
 
 VERTICAL = (
     "RSN9_BORREGO_B-ELC-UP.AT2",
-    "RSN127_FRIULI_BUI-UP.AT2",
-    "RSN148_COYOTELK_G03-UP.AT2",
-    "RSN172_IMPVALL.H_H-E01-UP.AT2",
     "RSN1158_KOCAELI_DZC-UP.AT2",
     "RSN1294_CHICHI_HWA048-V.AT2",
-    "RSN1485_CHICHI_TCU045-V.AT2",
     "RSN2734_CHICHI.04_CHY074V.AT2",
     "RSN1_HELENA.A_A-HMCDWN.AT2",
-    "RSN100_NCALIF.AG_D-CPMDWN.AT2",
     "SED-V1.AT2",
     "RSN11341_10275733_N5471HNZ.AT2",
     "RSN5618_IWATE_IWT010UD.AT2",
@@ -47,42 +42,29 @@ VERTICAL = (
     "Kobe UP.csv",
     "RSN953_NORTHR_MUL-UP (1).AT2",
     "RSN9_BORREGO_B-ELC-DWN - Copy (2).AT2",
-    "DZC_UP - Copy.csv",
 )
 UNKNOWN = (
     "RSN1059_NORTHR_PTH090.AT2",
-    "RSN107_OROVILLE_B-OAP180.AT2",
     "RSN1180_CHICHI_CHY002-N.AT2",
-    "RSN1180_CHICHI_CHY002-W.AT2",
     "RSN140_TABAS_FER-L1.AT2",
-    "RSN140_TABAS_FER-T1.AT2",
     "RSN160_IMPVALL.H_059V2090.AT2",
     "RSN161_IMPVALL.H_LF1360.AT2",
     "RSN182_IMPVALL.H_H-VC6000.AT2",
     "RSN187_X_UPL090.AT2",
-    "RSN188_X_UPS000.AT2",
     "RSN189_X_CUP000.AT2",
     "RSN190_X_UP1-E.AT2",
     "RSN212_LIVERMOR_A-DVD156.AT2",
     "RSN3512_CHICHI.06_TCU141E.AT2",
-    "RSN3300_CHICHI.06_CHY074N.AT2",
     "RSN4886_CHUETSU_65058NS.AT2",
-    "RSN4200_NIIGATA_NIG013EW.AT2",
     "RSN6894_DARFIELD_DFHSS17E.AT2",
-    "RSN879_LANDERS_LCN345.AT2",
     "RSN4800_CHUETSU_ANLCEAS.AT2",
     "RSN11341_10275733_N5471HNE.AT2",
-    "RSN11341_10275733_N5471HNN.AT2",
-    "RSN126_GAZLI_GAZ000.AT2",
-    "RSN15_KERN_TAF021.AT2",
     "FAIGO-90.AT2",
     "elcentro.csv",
     "mine v.csv",
     "setup.csv",
-    "cup.txt",
     "rev.txt",
     "motion_v1.csv",
-    "group.dat",
     "ELCENTRO-NS.AT2",
     "uplift-1.csv",
     "ELC-NS (1).csv",
@@ -139,10 +121,7 @@ def test_nothing_is_shaken_by_a_vertical_component(direction):
         lambda: run_cloud({"a": STRUCTURE}, [motion], "2DOF-S"),
         lambda: overturning_scales(STRUCTURE, motion, [1.0, 2.0]),
     ):
-        with pytest.raises(
-            InputError,
-            match=r"A horizontal ground motion is expected, but 'M-UP' is a vertical component.*RecordInfo\(",
-        ):
+        with pytest.raises(InputError, match="'M-UP' is a vertical component"):
             call()
     with pytest.raises(InputError, match="'a', 'b', 'c' and 1 more are vertical components"):
         simulate_many(STRUCTURE, [dataclasses.replace(motion, name=name) for name in "abcd"], "2DOF-S")
@@ -266,14 +245,10 @@ def test_another_step_is_a_fault(tmp_path):
 def test_folders_without_pairs(tmp_path):
     write(tmp_path, "A000", "0", 0.1)
     write(tmp_path, "A090", "90", 0.1, event="Another")
-    with pytest.raises(
-        InputError, match=r"No vertical component was found for any of the 2 records, such as A000\.AT2"
-    ):
+    with pytest.raises(InputError, match=r"No vertical component was found for any of the 2 records, such as A000"):
         read_suite(tmp_path, vertical="pair")
     (tmp_path / "A090.AT2").unlink()
     with pytest.raises(InputError, match=r"No vertical component was found for A000\.AT2\. It is recognised by"):
         read_suite(tmp_path, vertical="pair")
-    with pytest.raises(
-        InputError, match=r'vertical must be "pair" or None, but .*B\.AT2.* was given\. A file of its own'
-    ):
+    with pytest.raises(InputError, match=r'vertical must be "pair" or None, but .*B\.AT2.* was given'):
         read_suite(tmp_path, vertical="B.AT2")

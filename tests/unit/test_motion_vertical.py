@@ -2,13 +2,12 @@
 
 import dataclasses
 import math
-import pickle
 import warnings
 
 import numpy as np
 import pytest
 
-from rockflex import GroundMotion, InputError, RecordInfo, RecordWarning, Suite, read_at2, read_motion
+from rockflex import GroundMotion, InputError, RecordInfo, RecordWarning, read_at2, read_motion
 from rockflex.motion import MEASURES, MeasureInput, check_horizontal_component, record_measures, vertical_measures
 
 ALONG = np.array([0.0, 2.0, -4.0, 1.0, 0.0])
@@ -34,23 +33,10 @@ def test_holds_a_read_only_copy_of_both():
     assert GroundMotion(ALONG, 0.1).vertical is None
 
 
-def test_is_part_of_the_value():
-    twin = pickle.loads(pickle.dumps(BOTH))
-    assert twin == BOTH
-    assert hash(twin) == hash(BOTH)
-    assert not twin.vertical.flags.writeable
-    assert dataclasses.replace(BOTH, vertical=2.0 * UPWARDS) != BOTH != BOTH.without_vertical()
-    assert dataclasses.replace(BOTH, name="other").vertical.tolist() == UPWARDS.tolist()
-
-
 def test_pickles_of_before_have_none():
     old = GroundMotion.__new__(GroundMotion)
     old.__setstate__({"acceleration": ALONG.copy(), "dt": 0.1, "name": "", "metadata": None})
     assert old == GroundMotion(ALONG, 0.1)
-
-
-def test_repr_tells_its_peak():
-    assert repr(BOTH) == "GroundMotion('both', 5 samples, dt=0.1 s, duration=0.4 s, pga=4 m/s², pva=3 m/s²)"
 
 
 @pytest.mark.parametrize(
@@ -158,16 +144,12 @@ def test_directions_that_do_not_fit_are_refused():
     assert along.with_vertical(upwards).metadata.direction == "horizontal"
     with pytest.raises(InputError, match=r"A vertical ground motion is expected, but 'H' is a horizontal component"):
         along.with_vertical(along)
-    with pytest.raises(
-        InputError, match=r"'U' is itself a vertical component .* horizontal\.with_vertical\(vertical\)"
-    ):
+    with pytest.raises(InputError, match="'U' is itself a vertical component"):
         upwards.with_vertical(upwards)
     with pytest.raises(InputError, match=r"'both' has a vertical component of its own\. Give one of both"):
         along.with_vertical(BOTH)
     coarse = dataclasses.replace(upwards, dt=0.2)
-    with pytest.raises(
-        InputError, match=r"dt = 0\.1 s and the vertical one 0\.2 s\. Resample .* motion\.resampled\(0\.1\)"
-    ):
+    with pytest.raises(InputError, match=r"dt = 0\.1 s and the vertical one 0\.2 s\. .* motion\.resampled\(0\.1\)"):
         along.with_vertical(coarse)
     assert along.with_vertical(coarse.resampled(0.1)).acceleration.size == 9
 
@@ -234,9 +216,3 @@ def test_columns_of_two_verticals_or_of_one_alone(tmp_path):
     file.write_text("time (s),vertical (g)\n0,0\n0.1,0.1\n0.2,0\n")
     assert read_motion(file).metadata.direction == "vertical"
     assert read_motion(file).vertical is None
-
-
-def test_suites_hold_both():
-    suite = Suite([BOTH, LONG], "two")
-    assert suite["both"].vertical.tolist() == UPWARDS.tolist()
-    assert suite[:1][0] == BOTH
