@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from design_case import STRUCTURE
+from record_samples import at2
 from rockflex import (
     GroundMotion,
     InputError,
@@ -69,8 +70,6 @@ UNKNOWN = (
     "uplift-1.csv",
     "ELC-NS (1).csv",
 )
-HEADER = "PEER NGA STRONG MOTION DATABASE RECORD\nSome Event, 1/1/2001, Some Station, {}\nACCELERATION IN UNITS OF G\n"
-AT2 = "{}, 1/1/2001, {}, {}\nACCELERATION IN UNITS OF G\nNPTS= 3, DT= {}\n0 {} 0\n"
 
 
 @pytest.mark.parametrize("name", VERTICAL)
@@ -104,7 +103,7 @@ def test_components_that_a_header_calls_horizontal(component):
 @pytest.mark.parametrize(("component", "direction"), [("UP", "vertical"), ("360", "horizontal"), ("Upland", None)])
 def test_readers_tell_the_direction(tmp_path, component, direction):
     file = tmp_path / "RSN1_X_ABC.AT2"
-    file.write_text(HEADER.format(component) + "NPTS= 3, DT= .1\n0 .2 0\n")
+    file.write_text(at2(component))
     assert read_at2(file).metadata.direction == direction
     assert read_motion(file).scaled(2.0).metadata.direction == direction
     named = tmp_path / "station-UD.csv"
@@ -129,8 +128,8 @@ def test_nothing_is_shaken_by_a_vertical_component(direction):
     assert simulate(STRUCTURE, said, "2DOF-S", output="peaks").status == "no_uplift"
 
 
-def write(folder, name, component, peak, *, event="Some Event", station="Some Station", dt=0.1):
-    (folder / f"{name}.AT2").write_text(AT2.format(event, station, component, dt, peak))
+def write(folder, name, component, peak=0.1, **changed):
+    (folder / f"{name}.AT2").write_text(at2(component, peak, **changed))
 
 
 def motion(name, **info):

@@ -7,6 +7,7 @@ import warnings
 import numpy as np
 import pytest
 
+from record_samples import at2
 from rockflex import GroundMotion, InputError, RecordInfo, RecordWarning, read_at2, read_motion
 from rockflex.motion import MEASURES, MeasureInput, check_horizontal_component, record_measures, vertical_measures
 
@@ -14,13 +15,6 @@ ALONG = np.array([0.0, 2.0, -4.0, 1.0, 0.0])
 UPWARDS = np.array([0.0, -1.0, 3.0, 0.5, 0.0])
 BOTH = GroundMotion(ALONG, 0.1, "both", RecordInfo(year=1999), UPWARDS)
 LONG = GroundMotion(np.sin(np.arange(400.0)), 0.01, "long", vertical=np.cos(0.7 * np.arange(400.0)))
-AT2 = "Some Event, 1/1/2001, Some Station, {}\nACCELERATION IN UNITS OF G\nNPTS= {}, DT= {}\n{}\n"
-
-
-def at2(folder, name, component, samples, dt=0.1):
-    file = folder / name
-    file.write_text(AT2.format(component, len(samples), dt, " ".join(map(str, samples))))
-    return file
 
 
 def test_holds_a_read_only_copy_of_both():
@@ -155,9 +149,10 @@ def test_directions_that_do_not_fit_are_refused():
 
 
 def test_read_from_two_files(tmp_path):
-    along = at2(tmp_path, "RSN1_X_ABC000.AT2", "0", [0, 0.2, 0.1, 0])
-    upwards = at2(tmp_path, "RSN1_X_ABC-UP.AT2", "UP", [0, 0.1, -0.3])
-    down = at2(tmp_path, "RSN1_X_ABCDWN.AT2", "DWN", [0, 0.1, -0.3])
+    along, upwards, down = (tmp_path / f"RSN1_X_ABC{end}.AT2" for end in ("000", "-UP", "DWN"))
+    along.write_text(at2("0", samples=[0, 0.2, 0.1, 0]))
+    upwards.write_text(at2("UP", samples=[0, 0.1, -0.3]))
+    down.write_text(at2("DWN", samples=[0, 0.1, -0.3]))
     for read in (read_at2, read_motion):
         both = read(along, vertical=str(upwards))
         assert both.vertical.tolist() == pytest.approx([0.0, 0.981, -2.943, 0.0])
@@ -194,15 +189,11 @@ def test_a_column_may_be_vertical(tmp_path, label):
     assert motion.pga == pytest.approx(0.981)
 
 
-@pytest.mark.parametrize("label", ["v (m/s)", "update", "velocity", "vel_up", "acc2"])
+@pytest.mark.parametrize("label", ["v (m/s)", "update", "velocity", "vel_up"])
 def test_other_columns_are_not(tmp_path, label):
     file = tmp_path / "a.csv"
     file.write_text(f"time (s),acc (g),{label}\n0,0,0\n0.1,0.1,1.5\n0.2,0,0\n")
-    if label == "acc2":
-        with pytest.raises(InputError, match=r'a vertical one may be added as "vertical \(g\)"'):
-            read_motion(file)
-    else:
-        assert read_motion(file).vertical is None
+    assert read_motion(file).vertical is None
 
 
 def test_columns_of_two_verticals_or_of_one_alone(tmp_path):
