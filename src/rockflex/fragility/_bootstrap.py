@@ -12,22 +12,17 @@ from rockflex._checks import checked_finite_vector, checked_whole_number, float_
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex._values import Value
+from rockflex.fragility import _regression
 from rockflex.fragility._arguments import check_same_column_length, checked_confidence
 from rockflex.fragility._jackknife import RecordingGroups
 from rockflex.fragility._limit_states import OVERTURNED, ROCKED
 from rockflex.fragility._outcomes import total_exceedance_probability
-from rockflex.fragility._regression import (
-    FirthScoringOptions,
-    StandardisedLogs,
-    fit_least_squares_lines,
-    fit_logistic_curves,
-)
 
 MAX_RESAMPLES = 1_000_000  # resamples
 MIN_RESAMPLES = 20  # fewest fitted resamples for meaningful quantiles
 MIN_GROUPS = 40  # blocks from which on percentiles are taken as they are
 Integers = NDArray[np.int64]
-RESAMPLE_SCORING = FirthScoringOptions(1e-8)
+RESAMPLE_SCORING = _regression.FirthScoringOptions(1e-8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,7 +237,7 @@ def resampled_exceedance(
     The same as `fit_outcomes` of each resample and its `exceedance`; P(OV) where the limit is π/2. NaN where a factor
     that matters cannot be fitted.
     """
-    scaled = StandardisedLogs(np.log(im))
+    scaled = _regression.StandardisedLogs(np.log(im))
     nodes, moves = scaled.of(np.log(at)), rotation > threshold
     falls = _resampled_outcome_curves(scaled.x, overturned, weights, nodes)
     if limit >= OVERTURNED:
@@ -266,7 +261,7 @@ def _resampled_outcome_curves(x: Array, outcome: Bools, weights: Array, nodes: A
     found[~yes & no], found[yes & ~no] = 0.0, 1.0
     mixed = np.flatnonzero(yes & no & varied)
     if mixed.size:
-        b = fit_logistic_curves(x, outcome, weights[mixed], RESAMPLE_SCORING).parameters
+        b = _regression.fit_logistic_curves(x, outcome, weights[mixed], RESAMPLE_SCORING).parameters
         found[mixed] = expit(b[:, :1] + b[:, 1:] * nodes)
     return found
 
@@ -275,7 +270,7 @@ def _resampled_limit_curves(x: Array, y: Array, weights: Array, at: Array, log_l
     """P(θ_max > limit | rocking) of each row at `at`; NaN for fewer than three runs or two x or y."""
     from scipy.special import ndtr
 
-    lines = fit_least_squares_lines(x, y, weights)
+    lines = _regression.fit_least_squares_lines(x, y, weights)
     with np.errstate(all="ignore"):
         above = lines.intercept[:, None] + lines.slope[:, None] * at - log_limit
         found = ndtr(above / lines.dispersion[:, None])

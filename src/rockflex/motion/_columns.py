@@ -14,6 +14,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import number_with_noun, shown
+from rockflex.motion import _text
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import (
     HORIZONTAL_NAME,
@@ -23,21 +24,6 @@ from rockflex.motion._record_info import (
     component_direction,
     is_horizontal_component_name,
     unique_record_names,
-)
-from rockflex.motion._text import (
-    BRACKET,
-    DECIMAL,
-    SECONDS,
-    TIME_LABEL,
-    AccelerationUnit,
-    NumericTable,
-    acceleration_unit_name,
-    checked_acceleration_in_si,
-    end_of_last_bracket,
-    is_number_cell,
-    motion_from_samples,
-    parse_decimal,
-    parse_optional_decimal,
 )
 
 PREFIX = r"(?:acc[a-z]*+|a)[\s_.-]++"
@@ -51,7 +37,7 @@ ACCELERATION_LABEL = re.compile(
     re.IGNORECASE,
 )
 STATED_UNIT = re.compile(r"\bunits?\s*+[:=]\s*+\(?([^\s,;()]++)", re.IGNORECASE)
-STATED_STEP = re.compile(rf"\bdt\s*+[:=]\s*+({DECIMAL.pattern})\s*+(?:s|sec|seconds)?+\s*+$", re.IGNORECASE)
+STATED_STEP = re.compile(rf"\bdt\s*+[:=]\s*+({_text.DECIMAL.pattern})\s*+(?:s|sec|seconds)?+\s*+$", re.IGNORECASE)
 REMEDY = 'Declare the unit of the file: units="m/s2" or units="cm/s2".'
 ZIP_MAGIC, OLD_EXCEL_MAGIC = b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 MAX_UNPACKED_BYTES = 100_000_000  # bytes of a workbook when unpacked
@@ -77,7 +63,7 @@ class ColumnRoles:
 
 
 def parse_columns(
-    file: Path, table: NumericTable, units: AccelerationUnit | None, dt: float | None, name: str
+    file: Path, table: _text.NumericTable, units: _text.AccelerationUnit | None, dt: float | None, name: str
 ) -> list[GroundMotion]:
     """Build the motions from rows of numbers; of several accelerations, each is a motion, the vertical one too."""
     roles = _column_roles(file, table.labels, len(table.rows[0][1]))
@@ -91,10 +77,10 @@ def parse_columns(
         direction = "vertical" if alone else component_direction(file)
         info = RecordInfo(source=file.name, direction=direction, source_format="columns")
         info = record_info_in_csv(file, table.heads).completed(info)
-        motion = motion_from_samples(file, values[column], stated[column], step, info, REMEDY, name)
+        motion = _text.motion_from_samples(file, values[column], stated[column], step, info, REMEDY, name)
         if vertical is None:
             return [motion]
-        upwards = checked_acceleration_in_si(file, values[vertical], stated[vertical], REMEDY, info.scale)
+        upwards = _text.checked_acceleration_in_si(file, values[vertical], stated[vertical], REMEDY, info.scale)
         return [motion.with_vertical(upwards)]
     names = [_component_in_label(table.labels[k]) or str(k + 1) for k in places]
     motions: list[GroundMotion] = []
@@ -106,23 +92,23 @@ def parse_columns(
             azimuth=None if k == roles.vertical else component_azimuth(component),
             source_format="columns",
         )
-        motions.append(motion_from_samples(file, values[k], stated[k], step, info, REMEDY, f"{name}-{apart}"))
+        motions.append(_text.motion_from_samples(file, values[k], stated[k], step, info, REMEDY, f"{name}-{apart}"))
     return motions
 
 
-def _column_samples(file: Path, table: NumericTable, k: int) -> Array:
-    return np.array([parse_decimal(cells[k], file, line) for line, cells in table.rows])
+def _column_samples(file: Path, table: _text.NumericTable, k: int) -> Array:
+    return np.array([_text.parse_decimal(cells[k], file, line) for line, cells in table.rows])
 
 
 def _component_in_label(label: str) -> str:
     """Return the label without the words for acceleration and the unit: the name of the component."""
-    end = end_of_last_bracket(label)
-    return ACCELERATION_LABEL.sub("", BRACKET.sub("", label[:end]) + label[end:], 1).strip(" _-.")
+    end = _text.end_of_last_bracket(label)
+    return ACCELERATION_LABEL.sub("", _text.BRACKET.sub("", label[:end]) + label[end:], 1).strip(" _-.")
 
 
 def _column_roles(file: Path, labels: list[str], n_columns: int) -> ColumnRoles:
     """Return which columns are which."""
-    times = [i for i, label in enumerate(labels) if TIME_LABEL.match(label)]
+    times = [i for i, label in enumerate(labels) if _text.TIME_LABEL.match(label)]
     along, upwards = _component_columns(labels, times)
     if len(upwards) > 1:
         given = ", ".join(shown(labels[i]) for i in upwards)
@@ -163,25 +149,27 @@ def _component_columns(labels: list[str], times: list[int]) -> tuple[list[int], 
     return (rest, [*upwards, *alone]) if all(is_horizontal_component_name(names[i]) for i in rest) else ([], upwards)
 
 
-def _column_unit(file: Path, table: NumericTable, k: int, units: AccelerationUnit | None) -> AccelerationUnit:
+def _column_unit(
+    file: Path, table: _text.NumericTable, k: int, units: _text.AccelerationUnit | None
+) -> _text.AccelerationUnit:
     """Return the unit stated by the label, a line above it, or the caller; they must agree."""
     written, where = _bracket_in_label(table.labels[k]) if table.labels else "", "column header"
     if not written:
         found = next((each for head in table.heads if (each := STATED_UNIT.search(head[:500]))), None)
         written, where = (found[1] if found else ""), "header"
-    stated = acceleration_unit_name(written)
+    stated = _text.acceleration_unit_name(written)
     if written and stated is None:
         raise InputError(
             f"{file}: the {where} gives the unit {shown(written)}, which is not known. "
             "Write it as g, m/s2 or cm/s2, and convert the values if necessary."
         )
-    if stated and units and AccelerationUnit(stated) != units:
+    if stated and units and _text.AccelerationUnit(stated) != units:
         raise InputError(
             f"{file}: the {where} says {stated}, but units={shown(str(units))} was given. Leave units out.",
             field="units",
         )
     if stated:
-        return AccelerationUnit(stated)
+        return _text.AccelerationUnit(stated)
     if units:
         return units
     raise InputError(
@@ -191,11 +179,11 @@ def _column_unit(file: Path, table: NumericTable, k: int, units: AccelerationUni
     )
 
 
-def _column_time_step(file: Path, table: NumericTable, column: int | None, dt: float | None) -> float:
+def _column_time_step(file: Path, table: _text.NumericTable, column: int | None, dt: float | None) -> float:
     """Return the time step in s, from the column of times, the caller or the header."""
     if column is None:
         found = next((each for head in table.heads if (each := STATED_STEP.search(head[:500]))), None)
-        stated = 0.0 if found is None else parse_decimal(found[1], file, 1)
+        stated = 0.0 if found is None else _text.parse_decimal(found[1], file, 1)
         if stated > 0.0 and dt not in (None, stated):
             raise InputError(
                 f"{file} states DT = {stated:g} s, but dt={shown(dt)} was given. Leave dt out.", field="dt"
@@ -209,7 +197,7 @@ def _column_time_step(file: Path, table: NumericTable, column: int | None, dt: f
             )
         return dt
     unit = _bracket_in_label(table.labels[column]) if table.labels else None
-    if unit is not None and unit.strip().lower() not in SECONDS:
+    if unit is not None and unit.strip().lower() not in _text.SECONDS:
         raise InputError(f"{file}: the times are in {shown(unit)}, but seconds are expected. Convert the column to s.")
     return _common_time_step(file, _column_samples(file, table, column), [line for line, _ in table.rows], dt)
 
@@ -249,7 +237,7 @@ def _common_time_step(file: Path, times: Array, lines: list[int], dt: float | No
 
 
 def _bracket_in_label(label: str) -> str | None:
-    bracket = BRACKET.search(label, 0, end_of_last_bracket(label))
+    bracket = _text.BRACKET.search(label, 0, _text.end_of_last_bracket(label))
     return bracket[1] if bracket else None
 
 
@@ -258,7 +246,9 @@ def is_excel_workbook(content: bytes) -> bool:
     return content.startswith((ZIP_MAGIC, OLD_EXCEL_MAGIC))
 
 
-def parse_excel(file: Path, content: bytes, units: AccelerationUnit | None, dt: float | None) -> list[GroundMotion]:
+def parse_excel(
+    file: Path, content: bytes, units: _text.AccelerationUnit | None, dt: float | None
+) -> list[GroundMotion]:
     """Build the motions from all sheets of a workbook that hold rows of numbers, read as columns of text are."""
     tables = {
         name: table
@@ -353,7 +343,7 @@ def _excel_cell_text(cell: object) -> str:
     return "" if cell is None else str(cell).strip()
 
 
-def _table_in_excel_sheet(cells: list[list[str]]) -> NumericTable | None:
+def _table_in_excel_sheet(cells: list[list[str]]) -> _text.NumericTable | None:
     """Return the rows of numbers in a sheet, without columns that are empty; None if there are none."""
     numbered = [(i, row) for i, row in enumerate(cells, 1)]
     begin = next((k for k, (_, row) in enumerate(numbered) if _is_numeric_row(row)), None)
@@ -367,14 +357,16 @@ def _table_in_excel_sheet(cells: list[list[str]]) -> NumericTable | None:
         return [row[k] if k < len(row) else "" for k in used]
 
     found = next((kept(row) for row in reversed(heads) if all(kept(row))), [])
-    labels = found if any(not DECIMAL.fullmatch(label) for label in found) else []
-    return NumericTable(labels, [(i, kept(row)) for i, row in rows], [" ".join(filter(None, row)) for row in heads])
+    labels = found if any(not _text.DECIMAL.fullmatch(label) for label in found) else []
+    return _text.NumericTable(
+        labels, [(i, kept(row)) for i, row in rows], [" ".join(filter(None, row)) for row in heads]
+    )
 
 
 def _is_numeric_row(row: list[str]) -> bool:
     """Return whether a row begins the numbers: its filled cells are all numbers."""
     filled = [cell for cell in row if cell]
-    return bool(filled) and all(map(is_number_cell, filled))
+    return bool(filled) and all(map(_text.is_number_cell, filled))
 
 
 def record_csv(motion: GroundMotion) -> str:
@@ -398,7 +390,7 @@ def record_info_in_csv(file: Path, heads: list[str]) -> RecordInfo:
         if name not in RECORD_FIELDS or not text:
             continue
         kind = RECORD_FIELDS[name]
-        value = text if kind is str else parse_optional_decimal(text)
+        value = text if kind is str else _text.parse_optional_decimal(text)
         if value is None or value != kind(value):
             raise InputError(f"{file}, line {line}: {name} must be a number, but {shown(text)} was given.")
         found[name] = kind(value)

@@ -12,24 +12,18 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
+from rockflex.motion import _text
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import Direction, RecordInfo, component_azimuth, unique_record_names
-from rockflex.motion._text import (
-    AccelerationUnit,
-    acceleration_unit_name,
-    motion_from_samples,
-    non_negative_or_none,
-    parse_decimal,
-)
 
 # Table 2 of the format: the units of accelerations.
 UNIT_CODES = {
-    2: AccelerationUnit("g"),
-    4: AccelerationUnit("cm/s2"),
-    7: AccelerationUnit("in/s2"),
-    10: AccelerationUnit("cm/s2"),
-    11: AccelerationUnit("mg"),
-    12: AccelerationUnit("mg", 1e-3),
+    2: _text.AccelerationUnit("g"),
+    4: _text.AccelerationUnit("cm/s2"),
+    7: _text.AccelerationUnit("in/s2"),
+    10: _text.AccelerationUnit("cm/s2"),
+    11: _text.AccelerationUnit("mg"),
+    12: _text.AccelerationUnit("mg", 1e-3),
 }
 COUNTS_CODE = 50
 # Table 9: directions of a sensor that are no azimuth.
@@ -77,7 +71,7 @@ class CosmosChannel:
         return self.integer(3) == COUNTS_CODE
 
 
-def channel_unit(file: Path, channel: CosmosChannel) -> AccelerationUnit:
+def channel_unit(file: Path, channel: CosmosChannel) -> _text.AccelerationUnit:
     """Return the unit of the samples; a count is converted with the constants of recorder and sensor."""
     code = channel.integer(3)
     if code == COUNTS_CODE:
@@ -87,18 +81,18 @@ def channel_unit(file: Path, channel: CosmosChannel) -> AccelerationUnit:
                 f"{file} holds raw counts, and its real header does not state the value of one count (places 22 "
                 "and 42). Download the corrected record (V2)."
             )
-        gain = non_negative_or_none(channel.real(47)) or 1.0
-        return AccelerationUnit("g", step * MICROVOLT / abs(sensitivity) / gain)
+        gain = _text.non_negative_or_none(channel.real(47)) or 1.0
+        return _text.AccelerationUnit("g", step * MICROVOLT / abs(sensitivity) / gain)
     if code in UNIT_CODES:
         return UNIT_CODES[code]
     written = re.search(r"units\s*+=\s*+([^(,]++)", channel.announced)
-    unit = acceleration_unit_name(written[1]) if written and code is None else None
+    unit = _text.acceleration_unit_name(written[1]) if written and code is None else None
     if unit is None:
         raise InputError(
             f"{file}: the unit of the acceleration is not known: code {code} in place 3 of the integer header, "
             f"{channel.announced.strip()[:80]!r}. Download the corrected record (V2)."
         )
-    return AccelerationUnit(unit)
+    return _text.AccelerationUnit(unit)
 
 
 def channel_time_step(file: Path, channel: CosmosChannel, n_samples: int) -> float:
@@ -109,7 +103,7 @@ def channel_time_step(file: Path, channel: CosmosChannel, n_samples: int) -> flo
         raise InputError(
             f"{file}: no positive time step is stated in place 62 of the real header. Download the record again."
         )
-    length = non_negative_or_none(channel.real(63))
+    length = _text.non_negative_or_none(channel.real(63))
     if length and abs(length - n_samples * dt) > max(2.0 * dt, 0.01 * length):
         raise InputError(
             f"{file}: the header states a length of {length:g} s, but {n_samples} samples at steps of {dt:g} s last "
@@ -126,13 +120,13 @@ def channel_record_info(file: Path, channel: CosmosChannel) -> RecordInfo:
     event, year = _event_in_cosmos_header(lines[1])
     magnitude, scale = _channel_magnitude(channel)
     peak = channel.real(64)
-    vs30 = non_negative_or_none(channel.real(4))
+    vs30 = _text.non_negative_or_none(channel.real(4))
     return RecordInfo(
         event=event,
         year=year,
         magnitude=magnitude,
         magnitude_type=scale,
-        epicentral_km=non_negative_or_none(channel.real(17)),
+        epicentral_km=_text.non_negative_or_none(channel.real(17)),
         vs30=None if not vs30 else 1e3 * vs30 if vs30 < MAX_VS30_KM_S else vs30,
         component=component,
         direction=direction,
@@ -174,7 +168,7 @@ def _event_in_cosmos_header(line: str) -> tuple[str | None, int | None]:
 
 def _channel_magnitude(channel: CosmosChannel) -> tuple[float | None, str | None]:
     for place, scale in ((13, "Mw"), (15, "ML"), (14, "Ms"), (16, None)):
-        value = non_negative_or_none(channel.real(place))
+        value = _text.non_negative_or_none(channel.real(place))
         if value:
             return value, scale
     return None, None
@@ -212,7 +206,7 @@ def parse_cosmos(file: Path, lines: list[str]) -> list[GroundMotion]:
         unit, step = channel_unit(file, channel), channel_time_step(file, channel, values.size)
         whole = file.stem if len(channels) == 1 else f"{file.stem}-{name}"
         remedy = "Check the units in the integer header."
-        motions.append(motion_from_samples(file, values, unit, step, info, remedy, whole))
+        motions.append(_text.motion_from_samples(file, values, unit, step, info, remedy, whole))
     return motions
 
 
@@ -259,7 +253,7 @@ def _fixed_width_numbers(file: Path, lines: list[str], begin: int, end: int, cou
         line = lines[i].rstrip()
         if line.startswith("End-of-data"):
             break
-        found += [parse_decimal(line[k : k + width].strip(), file, i + 1) for k in range(0, len(line), width)]
+        found += [_text.parse_decimal(line[k : k + width].strip(), file, i + 1) for k in range(0, len(line), width)]
     if len(found) != count:
         raise InputError(
             f"{file}, line {begin}: {count} numbers are announced, but {len(found)} follow. The file is truncated or "

@@ -16,17 +16,8 @@ from rockflex._errors import InputError, RecordWarning
 from rockflex._html import HtmlTable
 from rockflex._shown import first_texts_shown, shown
 from rockflex._values import Value
-from rockflex.motion import _signal
+from rockflex.motion import _signal, _spectra
 from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._spectra import (
-    ResponseSpectrum,
-    TargetSpectrum,
-    comparison_periods,
-    response_spectrum,
-    scalable_spectral_ordinate,
-    spectral_displacement,
-    spectrum_fitting_factor,
-)
 
 SHOWN_METADATA = ("event", "year", "magnitude", "distance_km", "vs30", "station", "component", "source", "scale")
 MAX_LENGTH_DIFFERENCE = 1.0  # s by which the lengths of two components may differ without a warning
@@ -203,7 +194,7 @@ class GroundMotion(HtmlTable, Value):
         """
         return _signal.significant_duration(self.acceleration, self.dt, low, high)
 
-    def spectrum(self, periods: ArrayLike, damping_ratio: float = 0.05) -> ResponseSpectrum:
+    def spectrum(self, periods: ArrayLike, damping_ratio: float = 0.05) -> _spectra.ResponseSpectrum:
         """Elastic response spectrum; see `ResponseSpectrum`.
 
         Parameters
@@ -218,11 +209,11 @@ class GroundMotion(HtmlTable, Value):
         InputError
             If a period is negative or not finite, or the damping ratio is out of range.
         """
-        return response_spectrum(self.acceleration, self.dt, periods, damping_ratio)
+        return _spectra.response_spectrum(self.acceleration, self.dt, periods, damping_ratio)
 
     def sd(self, period: float, damping_ratio: float = 0.05) -> float:
         """Spectral displacement in m at one period (s); see `spectrum`."""
-        return spectral_displacement(self.acceleration, self.dt, period, damping_ratio)
+        return _spectra.spectral_displacement(self.acceleration, self.dt, period, damping_ratio)
 
     def sa(self, period: float, damping_ratio: float = 0.05) -> float:
         """Spectral pseudo-acceleration in m/s² at one period (s); see `spectrum`."""
@@ -338,7 +329,7 @@ class GroundMotion(HtmlTable, Value):
 
     def scaled_to(
         self,
-        target: TargetSpectrum | None = None,
+        target: _spectra.TargetSpectrum | None = None,
         periods: ArrayLike | None = None,
         *,
         sa: float | None = None,
@@ -351,10 +342,10 @@ class GroundMotion(HtmlTable, Value):
         `periods`, as in `Suite.select`. `InputError` where neither, or both, are given, or the motion does not move.
         """
         if target is not None and periods is not None and sa is None and period is None and damping_ratio is None:
-            fitted = checked_instance("target", target, TargetSpectrum)
-            compared = comparison_periods(periods)
+            fitted = checked_instance("target", target, _spectra.TargetSpectrum)
+            compared = _spectra.comparison_periods(periods)
             spectrum = self.spectrum(compared, fitted.damping_ratio).sa
-            return self.scaled(spectrum_fitting_factor(spectrum, fitted.at(compared), self.name))
+            return self.scaled(_spectra.spectrum_fitting_factor(spectrum, fitted.at(compared), self.name))
         if sa is None or period is None or target is not None or periods is not None:
             raise InputError(
                 "scaled_to needs either a target and periods, or sa and period, with damping_ratio if it is not 0.05: "
@@ -363,7 +354,7 @@ class GroundMotion(HtmlTable, Value):
             )
         ordinate, at = checked_positive("sa", sa, "m/s²"), checked_positive("period", period, "s", zero=True)
         own = self.sa(at, 0.05 if damping_ratio is None else damping_ratio)
-        return self.scaled(ordinate / scalable_spectral_ordinate(own, self.name, at))
+        return self.scaled(ordinate / _spectra.scalable_spectral_ordinate(own, self.name, at))
 
     def refined(self, k: int) -> "GroundMotion":
         """Return the same piecewise linear function with every interval split into `k` equal ones.

@@ -9,7 +9,7 @@ from rockflex._checks import checked_instance, checked_positive
 from rockflex._errors import InputError, RecordWarning
 from rockflex._files import checked_file_path
 from rockflex._shown import shown
-from rockflex.motion import _obspy
+from rockflex.motion import _obspy, _text
 from rockflex.motion._at2 import find_at2_header, parse_at2
 from rockflex.motion._columns import is_excel_workbook, parse_columns, parse_excel
 from rockflex.motion._cosmos import is_cosmos, parse_cosmos
@@ -17,14 +17,6 @@ from rockflex.motion._esm import is_esm, parse_esm
 from rockflex.motion._geonet import is_geonet, parse_geonet
 from rockflex.motion._ground_motion import GroundMotion, info_of, is_vertical_component
 from rockflex.motion._knet import is_knet, parse_knet
-from rockflex.motion._text import (
-    AccelerationUnit,
-    declared_acceleration_unit,
-    decoded_text,
-    parse_numeric_table,
-    read_file_bytes,
-    text_lines,
-)
 
 # Formats that state unit and step, each known by its first lines, whatever the suffix of the file.
 FORMATS = (
@@ -178,7 +170,7 @@ def read_motion_without_obspy(path: str | Path, units: str | None = None, dt: fl
 
 
 def components_in_file(
-    file: Path, units: AccelerationUnit | None, dt: float | None, *, use_obspy: bool = True, common: bool = False
+    file: Path, units: _text.AccelerationUnit | None, dt: float | None, *, use_obspy: bool = True, common: bool = False
 ) -> list[GroundMotion]:
     """Return all components in a file, as `read_components` does.
 
@@ -202,18 +194,18 @@ def is_of_a_network(lines: list[str]) -> bool:
 
 
 def _read_components(
-    file: Path, units: AccelerationUnit | None, dt: float | None, *, use_obspy: bool, common: bool
+    file: Path, units: _text.AccelerationUnit | None, dt: float | None, *, use_obspy: bool, common: bool
 ) -> list[GroundMotion]:
-    content = read_file_bytes(file)
+    content = _text.read_file_bytes(file)
     if is_excel_workbook(content):
         return parse_excel(file, content, units, dt)
-    if use_obspy and decoded_text(content) is None:
+    if use_obspy and _text.decoded_text(content) is None:
         form = _obspy.obspy_format(content)
         if form is not None:
             return _with_stated_step(file, _obspy.parse_obspy(file, content, form, units), dt)
         if not _obspy.is_obspy_installed():
             raise InputError(f"{file} is a binary file, but a record is expected as text or .xlsx. {_obspy.INSTALL}")
-    lines = text_lines(file, content)
+    lines = _text.text_lines(file, content)
     for form, known, parse in FORMATS:
         if known(lines):
             found = parse(file, lines)
@@ -226,7 +218,7 @@ def _read_components(
             return found if common else _with_stated_step(file, found, dt)
     if find_at2_header(lines) is None and file.suffix.lower() != ".at2":
         try:
-            return parse_columns(file, parse_numeric_table(file, lines), units, dt, file.stem)
+            return parse_columns(file, _text.parse_numeric_table(file, lines), units, dt, file.stem)
         except InputError as error:
             form = _obspy.obspy_format(content) if use_obspy and error.field is None else None
             if form is None:
@@ -236,7 +228,7 @@ def _read_components(
             except _obspy.ObsPyError:
                 raise error from None
     motion = parse_at2(file, lines)
-    if units not in (None, AccelerationUnit("g")):
+    if units not in (None, _text.AccelerationUnit("g")):
         raise InputError(
             f"{file} is an AT2 file, in g by definition, but units={shown(str(units))} was given. Leave units out.",
             field="units",
@@ -252,9 +244,9 @@ def _with_stated_step(file: Path, found: list[GroundMotion], dt: float | None) -
     return found
 
 
-def _checked_unit_and_step(units: str | None, dt: float | None) -> tuple[AccelerationUnit | None, float | None]:
+def _checked_unit_and_step(units: str | None, dt: float | None) -> tuple[_text.AccelerationUnit | None, float | None]:
     step = None if dt is None else checked_positive("dt", dt, "s")
-    return None if units is None else declared_acceleration_unit(units), step
+    return None if units is None else _text.declared_acceleration_unit(units), step
 
 
 def _warn_of_stated_peak(file: Path, motion: GroundMotion) -> None:

@@ -14,16 +14,9 @@ from typing import TypeAlias, TypeVar
 
 from rockflex._checks import checked_positive
 from rockflex._errors import InputError
+from rockflex.motion import _text
 from rockflex.motion._columns import excel_sheet_cells, is_excel_workbook
 from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._text import (
-    AccelerationUnit,
-    declared_acceleration_unit,
-    decoded_text,
-    non_negative_or_none,
-    parse_optional_decimal,
-    read_file_bytes,
-)
 
 V = TypeVar("V")
 Recording: TypeAlias = tuple[str, str | None, str]  # event, network and station
@@ -68,7 +61,7 @@ class RecordTable:
     by_number: dict[int, RecordInfo] = field(default_factory=dict[int, RecordInfo])
     by_file: dict[str, RecordInfo] = field(default_factory=dict[str, RecordInfo])
     by_recording: dict[Recording, RecordInfo] = field(default_factory=dict[Recording, RecordInfo])
-    units: dict[str, AccelerationUnit] = field(default_factory=dict[str, AccelerationUnit])
+    units: dict[str, _text.AccelerationUnit] = field(default_factory=dict[str, _text.AccelerationUnit])
     steps: dict[str, float] = field(default_factory=dict[str, float])
 
     def joined(self, other: "RecordTable") -> "RecordTable":
@@ -108,7 +101,7 @@ def entry_for_file(by_name: Mapping[str, V], file: Path) -> V | None:
 
 def read_record_table(file: Path) -> RecordTable:
     """Read a table about records from a CSV file or a workbook."""
-    found = record_table_in_content(file, read_file_bytes(file))
+    found = record_table_in_content(file, _text.read_file_bytes(file))
     if found is None:
         raise InputError(
             f"{file} is no table about records: a header line is expected with a column of files or record sequence "
@@ -123,7 +116,7 @@ def record_table_in_content(file: Path, content: bytes) -> RecordTable | None:
     if is_excel_workbook(content):
         sheets = (_record_table_from_rows(file, rows) for rows in excel_sheet_cells(file, content).values())
         return next((found for found in sheets if found is not None), None)
-    lines = (decoded_text(content) or "").splitlines()
+    lines = (_text.decoded_text(content) or "").splitlines()
     for head in lines[:MAX_HEADER_LINE]:
         separator = max(";,\t", key=head.count)
         if _record_table_columns(_record_table_cells(head, separator)) is not None:
@@ -181,7 +174,7 @@ def _record_table_from_rows(file: Path, rows: Iterable[list[str]]) -> RecordTabl
             table.by_file.setdefault(name, replace(info, direction=direction, source=whole))  # pyright: ignore[reportArgumentType]
             try:
                 if "units" in stated:
-                    table.units.setdefault(name, declared_acceleration_unit(stated["units"]))
+                    table.units.setdefault(name, _text.declared_acceleration_unit(stated["units"]))
                 if "dt" in stated and "units" in columns.values():
                     step = _record_table_number(stated["dt"]) or 0.0
                     table.steps.setdefault(name, checked_positive("dt", step, "s"))
@@ -195,13 +188,13 @@ def _recording_key(info: RecordInfo) -> Recording | None:
 
 
 def _record_table_number(text: str) -> float | None:
-    return parse_optional_decimal(text.replace(",", "."))
+    return _text.parse_optional_decimal(text.replace(",", "."))
 
 
 def _record_info_of_row(stated: Mapping[str, str]) -> RecordInfo:
     texts = {name: stated.get(name) or stated.get(FALLBACK_LABELS.get(name, ""), "") for name in NUMBER_FIELDS}
-    numbers = {name: non_negative_or_none(_record_table_number(text)) for name, text in texts.items()}
-    whole = {name: non_negative_or_none(_record_table_number(stated.get(name, ""))) for name in ("rsn", "year")}
+    numbers = {name: _text.non_negative_or_none(_record_table_number(text)) for name, text in texts.items()}
+    whole = {name: _text.non_negative_or_none(_record_table_number(stated.get(name, ""))) for name in ("rsn", "year")}
     # PEER writes underscores for commas.
     words = {
         name: stated[name].replace("_ ", ", ") for name in TEXT_FIELDS if stated.get(name, "-") not in ("-", "-999")

@@ -471,7 +471,13 @@ def load_suite(name: str) -> Suite:
 
 @cache
 def _load_suite_cached(name: str) -> Suite:
-    return Suite((_embedded_motion(entry, samples) for entry, samples in read_embedded_suite(name)), name)
+    return Suite(
+        (
+            GroundMotion(samples * GRAVITY, entry["dt"], entry["name"], RecordInfo(**entry["info"]))
+            for entry, samples in read_embedded_suite(name)
+        ),
+        name,
+    )
 
 
 def read_embedded_suite(name: str) -> list[tuple[dict[str, Any], Array]]:
@@ -498,8 +504,3 @@ def pack_decimal_samples(samples: Array, digits: int) -> NDArray[np.uint8]:
     if unpack_decimal_samples(rows).tobytes() != samples.astype(np.float64).tobytes():
         raise ValueError(f"The samples are not decimals of {digits} significant digits.")
     return rows
-
-
-def _embedded_motion(entry: dict[str, Any], samples: Array) -> GroundMotion:
-    info = RecordInfo(**entry["info"])
-    return GroundMotion(samples * GRAVITY, entry["dt"], name=entry["name"], metadata=info)

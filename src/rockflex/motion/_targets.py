@@ -10,17 +10,8 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._files import checked_file_path
 from rockflex._shown import shown
+from rockflex.motion import _text
 from rockflex.motion._spectra import TargetSpectrum, checked_spectrum_damping
-from rockflex.motion._text import (
-    BRACKET,
-    SECONDS,
-    UNITS,
-    acceleration_unit_name,
-    end_of_last_bracket,
-    parse_decimal,
-    parse_numeric_table,
-    read_text_lines,
-)
 
 # EN 1998-1:2004, Tables 3.2 and 3.3 (recommended values): S, T_B, T_C, T_D by type and ground type.
 _EC8 = {
@@ -413,13 +404,13 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
     >>> rf.read_target("site.csv")
     TargetSpectrum('site', 0 to 2 s, up to 7.357 m/s², ζ = 0.05)
     """
-    if units is not None and not is_one_of(units, UNITS):
+    if units is not None and not is_one_of(units, _text.UNITS):
         raise InputError(
-            f"units must be one of {', '.join(map(repr, UNITS))}, but {shown(units)} was given.", field="units"
+            f"units must be one of {', '.join(map(repr, _text.UNITS))}, but {shown(units)} was given.", field="units"
         )
     file = checked_file_path("path", path)
-    table = parse_numeric_table(
-        file, read_text_lines(file), "a target spectrum is expected as two columns, period and S_a"
+    table = _text.parse_numeric_table(
+        file, _text.read_text_lines(file), "a target spectrum is expected as two columns, period and S_a"
     )
     line, cells = table.rows[0]
     if len(cells) != 2:
@@ -427,8 +418,8 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
             f"{file}, line {line}: a target spectrum has two columns, the period in s and the pseudo-acceleration, "
             f"but {len(cells)} were found. Keep these."
         )
-    values = np.array([[parse_decimal(cell, file, line) for cell in cells] for line, cells in table.rows])
-    unit = UNITS[_target_spectrum_unit(file, next((head for head in reversed(table.heads) if head), ""), units)]
+    values = np.array([[_text.parse_decimal(cell, file, line) for cell in cells] for line, cells in table.rows])
+    unit = _text.UNITS[_target_spectrum_unit(file, next((head for head in reversed(table.heads) if head), ""), units)]
     try:
         return TargetSpectrum(values[:, 0], values[:, 1] * unit, damping_ratio, file.stem)
     except InputError as error:
@@ -439,13 +430,13 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
 
 def _target_spectrum_unit(file: Path, head: str, units: str | None) -> str:
     """Return the unit in the last brackets of the header, or `units`; both must agree."""
-    found = BRACKET.findall(head[: end_of_last_bracket(head)])
-    written = found[-1] if found and found[-1].strip().lower() not in SECONDS else ""  # unit of the periods
-    stated = acceleration_unit_name(written)
+    found = _text.BRACKET.findall(head[: _text.end_of_last_bracket(head)])
+    written = found[-1] if found and found[-1].strip().lower() not in _text.SECONDS else ""  # unit of the periods
+    stated = _text.acceleration_unit_name(written)
     if written and stated is None:
         raise InputError(
             f"{file}: the header gives the unit {shown(written)}, which is not known. Write it as one of "
-            f"{', '.join(UNITS)}."
+            f"{', '.join(_text.UNITS)}."
         )
     if stated and units and stated != units:
         raise InputError(

@@ -18,19 +18,7 @@ from rockflex._shown import number_with_noun, shortened, shown
 from rockflex._versions import package_versions
 from rockflex.motion import GroundMotion
 from rockflex.report._publication_files import inline_svg, jinja_templates_in
-from rockflex.report.run._report_tables import (
-    DAGGER,
-    ReportedRecord,
-    ReportFact,
-    ReportTable,
-    assumption_lines,
-    element_table,
-    mode_table,
-    peak_table,
-    reported_record,
-    structure_facts,
-    structure_kind_text,
-)
+from rockflex.report.run import _report_tables
 from rockflex.report.run._reported_runs import ReportedRuns, checked_reported_runs
 from rockflex.report.run._run_checks import labels_of_long_runs, run_check_legend, run_check_table
 from rockflex.response import Response, friction_coefficient, warnings_of
@@ -56,7 +44,7 @@ def line_count_of_text(text: str) -> int:
     return math.ceil(len(text) / ROW_LETTERS)
 
 
-def line_count_of_table(table: ReportTable | None) -> int:
+def line_count_of_table(table: _report_tables.ReportTable | None) -> int:
     """Return about how many lines a table takes with its heading."""
     if table is None:
         return 0
@@ -72,13 +60,13 @@ class RunReportPage:
     title: str
     date: str
     kind: str
-    facts: Sequence[ReportFact]
-    modes: ReportTable | None
-    record: ReportedRecord
+    facts: Sequence[_report_tables.ReportFact]
+    modes: _report_tables.ReportTable | None
+    record: _report_tables.ReportedRecord
     lines: Sequence[tuple[str, str]]
-    elements: ReportTable | None
-    peaks: ReportTable
-    checks: ReportTable
+    elements: _report_tables.ReportTable | None
+    peaks: _report_tables.ReportTable
+    checks: _report_tables.ReportTable
     legend: Sequence[str]
     warnings: Sequence[str]
     notes: Sequence[str]
@@ -253,27 +241,29 @@ def run_report_as_html(
     omitted: Collection[str] = (),
 ) -> str:
     """Return the page of `write_report` as text; no energies and no friction of the models in `omitted`."""
-    heading, day = _checked_report_title(title), _checked_report_date(date)
+    if not isinstance(title, str | None):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise InputError(f"title must be a text, but {shown(title)} was given.", field="title")
+    day = _checked_report_date(date)
     coefficient = None if friction is None else _checked_friction_coefficient(friction)
     texts = _checked_report_notes(notes)
     report = checked_reported_runs(responses, structure, motion)
     known = report.properties if structure is None else structure
-    record, kind = reported_record(report), structure_kind_text(known)
+    record, kind = _report_tables.reported_record(report), _report_tables.structure_kind_text(known)
     left_out = labels_of_long_runs(report).union(omitted)
     fell = any(run.status == "overturned" for run in report.responses)
     page = RunReportPage(
-        title=shortened(heading or f"{kind} under {record.name or 'a ground motion'}", MAX_LETTERS["title"]),
+        title=shortened(title or f"{kind} under {record.name or 'a ground motion'}", MAX_LETTERS["title"]),
         date=day,
         kind=kind,
-        facts=structure_facts(report.properties),
-        modes=mode_table(report.properties),
+        facts=_report_tables.structure_facts(report.properties),
+        modes=_report_tables.mode_table(report.properties),
         record=record,
-        lines=assumption_lines(report),
-        elements=element_table(report),
-        peaks=peak_table(report),
+        lines=_report_tables.assumption_lines(report),
+        elements=_report_tables.element_table(report),
+        peaks=_report_tables.peak_table(report),
         checks=run_check_table(report, coefficient, left_out),
         legend=[
-            *[f"{DAGGER} The values of a run that overturned include its fall."] * fell,
+            *[f"{_report_tables.DAGGER} The values of a run that overturned include its fall."] * fell,
             *run_check_legend(report, coefficient, omitted=bool(left_out)),
         ],
         warnings=_first_warnings_of_report([*structure_warnings(known), *_warnings_of_runs(report, left_out)]),
@@ -298,12 +288,6 @@ def checked_report_path(name: str, path: str | Path) -> Path:
             field="path",
         )
     return target
-
-
-def _checked_report_title(title: Any) -> str | None:
-    if title is None or isinstance(title, str):
-        return title
-    raise InputError(f"title must be a text, but {shown(title)} was given.", field="title")
 
 
 def _checked_report_date(date: Any) -> str:
@@ -334,7 +318,7 @@ def _checked_report_notes(notes: Any) -> list[str]:
     return texts
 
 
-def report_fingerprint(report: ReportedRuns, record: ReportedRecord) -> str:
+def report_fingerprint(report: ReportedRuns, record: _report_tables.ReportedRecord) -> str:
     """Return a hash of structure, ground and record, and of the assumptions and the initial state of each run."""
     p = report.properties
     numbers: list[Any] = [record.time, record.acceleration, record.vertical]

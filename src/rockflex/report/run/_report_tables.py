@@ -413,7 +413,8 @@ def peak_table(report: ReportedRuns) -> ReportTable:
         words = STATUS[run.status] if history.model.lifts else "fixed base"
         status = ReportCell(f"{words} {DAGGER}" if fell else words, None, "status", run.nominal_overturning)
         share = None if fell else nominal_rotation_share(report.properties, run, history)
-        values = {"nominal_share": share, "floor_acceleration": _peak_floor_acceleration(run)}
+        shaken = None if run.floors is None else float(np.max(run.floors.floor_acceleration))
+        values = {"nominal_share": share, "floor_acceleration": shaken}
         cells = [
             value_cell(values[of] if of in values else float(getattr(run, of)), of, size)
             for of, (_, _, size) in columns.items()
@@ -443,7 +444,3 @@ def _peak_columns(report: ReportedRuns) -> dict[str, tuple[str, str, float]]:
         **(slip if any(layout.slip >= 0 for layout in layouts) else {}),
         **(edges if any(layout.heave >= 0 for layout in layouts) else {}),
     }
-
-
-def _peak_floor_acceleration(run: Response) -> float | None:
-    return None if run.floors is None else float(np.max(run.floors.floor_acceleration))
