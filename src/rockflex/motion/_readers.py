@@ -216,24 +216,35 @@ def _read_components(
                     field="units",
                 )
             return found if common else _with_stated_step(file, found, dt)
-    if find_at2_header(lines) is None and file.suffix.lower() != ".at2":
+    if find_at2_header(lines) is not None or file.suffix.lower() == ".at2":
+        return _with_stated_step(file, [_read_at2_in_g(file, lines, units)], dt)
+    return _read_columns(file, content if use_obspy else b"", lines, units, dt)
+
+
+def _read_columns(
+    file: Path, content: bytes, lines: list[str], units: _text.AccelerationUnit | None, dt: float | None
+) -> list[GroundMotion]:
+    """Return the columns of a text; without any, what ObsPy finds in the content."""
+    try:
+        return parse_columns(file, _text.parse_numeric_table(file, lines), units, dt, file.stem)
+    except InputError as error:
+        form = _obspy.obspy_format(content) if content and error.field is None else None
+        if form is None:
+            raise
         try:
-            return parse_columns(file, _text.parse_numeric_table(file, lines), units, dt, file.stem)
-        except InputError as error:
-            form = _obspy.obspy_format(content) if use_obspy and error.field is None else None
-            if form is None:
-                raise
-            try:
-                return _with_stated_step(file, _obspy.parse_obspy(file, content, form, units), dt)
-            except _obspy.ObsPyError:
-                raise error from None
+            return _with_stated_step(file, _obspy.parse_obspy(file, content, form, units), dt)
+        except _obspy.ObsPyError:
+            raise error from None
+
+
+def _read_at2_in_g(file: Path, lines: list[str], units: _text.AccelerationUnit | None) -> GroundMotion:
     motion = parse_at2(file, lines)
     if units not in (None, _text.AccelerationUnit("g")):
         raise InputError(
             f"{file} is an AT2 file, in g by definition, but units={shown(str(units))} was given. Leave units out.",
             field="units",
         )
-    return _with_stated_step(file, [motion], dt)
+    return motion
 
 
 def _with_stated_step(file: Path, found: list[GroundMotion], dt: float | None) -> list[GroundMotion]:

@@ -146,6 +146,8 @@ def _record_table_columns(cells: list[str]) -> dict[int, str] | None:
     keyed = bool(files) or "rsn" in names or {"event_id", "station"} <= names
     if not keyed or not names - {"rsn", "event", "event_id", "network", "station", "year"}:
         return None
+    if "units" not in names:  # steps are given beside units only
+        found = {k: name for k, name in found.items() if name != "dt"}
     return found | files | {plain.index(label): label for label in FALLBACK_LABELS.values() if label in plain}
 
 
@@ -165,22 +167,26 @@ def _record_table_from_rows(file: Path, rows: Iterable[list[str]]) -> RecordTabl
             table.by_number.setdefault(info.rsn, info)
         if recording := _recording_key(info):
             table.by_recording.setdefault(recording, info)
-        for label, direction in FILE_LABELS.items():
-            # Flatfiles give folders too, with either slash; search results write ----- for no file.
-            whole = re.split(r"[\\/]", stated.get(label, ""))[-1]
-            name = whole.casefold()
-            if not name.strip("- "):
-                continue
-            table.by_file.setdefault(name, replace(info, direction=direction, source=whole))  # pyright: ignore[reportArgumentType]
-            try:
-                if "units" in stated:
-                    table.units.setdefault(name, _text.declared_acceleration_unit(stated["units"]))
-                if "dt" in stated and "units" in columns.values():
-                    step = _record_table_number(stated["dt"]) or 0.0
-                    table.steps.setdefault(name, checked_positive("dt", step, "s"))
-            except InputError as error:
-                raise InputError(f"{file}, line {line}: {error}", field=error.field) from error
+        try:
+            _add_files_of_row(table, stated, info)
+        except InputError as error:
+            raise InputError(f"{file}, line {line}: {error}", field=error.field) from error
     return None if columns is None else table
+
+
+def _add_files_of_row(table: RecordTable, stated: Mapping[str, str], info: RecordInfo) -> None:
+    for label, direction in FILE_LABELS.items():
+        # Flatfiles give folders too, with either slash; search results write ----- for no file.
+        whole = re.split(r"[\\/]", stated.get(label, ""))[-1]
+        name = whole.casefold()
+        if not name.strip("- "):
+            continue
+        table.by_file.setdefault(name, replace(info, direction=direction, source=whole))  # pyright: ignore[reportArgumentType]
+        if "units" in stated:
+            table.units.setdefault(name, _text.declared_acceleration_unit(stated["units"]))
+        if "dt" in stated:
+            step = _record_table_number(stated["dt"]) or 0.0
+            table.steps.setdefault(name, checked_positive("dt", step, "s"))
 
 
 def _recording_key(info: RecordInfo) -> Recording | None:
