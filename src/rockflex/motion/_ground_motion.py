@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import checked_finite, checked_finite_vector, checked_instance, checked_positive
+from rockflex._checks import checked_finite, checked_finite_vector, checked_instance, checked_positive, real_or_nan
+from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, RecordWarning
 from rockflex._html import HtmlTable
 from rockflex._shown import first_texts_shown, shown
@@ -137,7 +138,8 @@ class GroundMotion(HtmlTable, Value):
     @property
     def displacement(self) -> Array:
         """Ground displacement at the samples in m, shape (n,): the exact second integral, starting from rest."""
-        return _signal.displacement_from_acceleration(self.acceleration, self.dt)
+        a, v, dt = self.acceleration, self.velocity, self.dt
+        return _signal.cumulative_sum(dt * v[:-1] + dt**2 / 6 * (2 * a[:-1] + a[1:]))
 
     @cached_property
     def pga(self) -> float:
@@ -147,12 +149,25 @@ class GroundMotion(HtmlTable, Value):
     @cached_property
     def pgv(self) -> float:
         """Peak ground velocity in m/s, including peaks between samples."""
-        return _signal.peak_velocity(self.acceleration, self.dt)
+        # Between samples v has an extreme where a crosses zero.
+        a, v = self.acceleration, self.velocity
+        k = np.flatnonzero(np.sign(a[:-1]) * np.sign(a[1:]) < 0)
+        inside = v[k] + 0.5 * self.dt * a[k] * (a[k] / (a[k] - a[k + 1]))
+        return float(np.max(np.abs(np.concatenate((v, inside)))))
 
     @cached_property
     def pgd(self) -> float:
         """Peak ground displacement in m up to the last sample, including peaks between samples."""
-        return _signal.peak_displacement(self.acceleration, self.dt)
+        # Between samples d has an extreme at the zeros of the quadratic v = c + b x + q x², with x = t/dt in [0, 1].
+        a, v, d, dt = self.acceleration, self.velocity, self.displacement, self.dt
+        c, b, q = v[:-1], dt * a[:-1], 0.5 * dt * np.diff(a)
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            w = -0.5 * (b + np.copysign(np.sqrt(b**2 - 4 * q * c), b))
+            roots = np.stack((w / q, c / w))
+            inside = (roots > 0) & (roots < 1)
+        x = np.where(inside, roots, 0.0)
+        extremes = d[:-1] + dt * x * (c + x * (b / 2 + x * q / 3))
+        return float(max(np.max(np.abs(d)), np.max(np.abs(extremes))))
 
     @cached_property
     def arias(self) -> float:
@@ -161,12 +176,17 @@ class GroundMotion(HtmlTable, Value):
         The integral is exact. Databases often sum a² dt over the samples instead, which gives a larger value,
         especially if the frequency content of the record is close to its Nyquist frequency.
         """
-        return _signal.arias_intensity(self.acceleration, self.dt)
+        return math.pi / (2 * GRAVITY) * float(np.sum(self._squares))
 
     @cached_property
     def cav(self) -> float:
         """Cumulative absolute velocity ∫|a| dt in m/s (EPRI 1988, without a threshold)."""
-        return _signal.cumulative_absolute_velocity(self.acceleration, self.dt)
+        left, right = self.acceleration[:-1], self.acceleration[1:]
+        total = np.abs(left) + np.abs(right)
+        # Where a changes sign, two triangles of heights |left| and |right| divide the interval in proportion to these.
+        crossing = np.sign(left) * np.sign(right) < 0
+        ratio = np.divide(left**2 + right**2, total, out=total.copy(), where=crossing)
+        return float(np.sum(0.5 * self.dt * ratio))
 
     @cached_property
     def d5_95(self) -> float:
@@ -192,7 +212,35 @@ class GroundMotion(HtmlTable, Value):
         InputError
             If the fractions are out of order or out of range.
         """
-        return _signal.significant_duration(self.acceleration, self.dt, low, high)
+        if not 0 <= real_or_nan(low) < real_or_nan(high) <= 1:
+            raise InputError(
+                f"low and high must be fractions with 0 <= low < high <= 1, but low={shown(low)} and "
+                f"high={shown(high)} were given. Significant duration D5-95 is low=0.05, high=0.95."
+            )
+        energy = _signal.cumulative_sum(self._squares)
+        if energy[-1] == 0:
+            return 0.0
+        return self._time_of_energy(high * energy[-1], energy) - self._time_of_energy(low * energy[-1], energy)
+
+    @property
+    def _squares(self) -> Array:
+        """∫a² dt over each interval, shape (n - 1,)."""
+        left, right = self.acceleration[:-1], self.acceleration[1:]
+        return self.dt / 3 * (left**2 + left * right + right**2)
+
+    def _time_of_energy(self, target: float, energy: Array) -> float:
+        """First instant at which ∫a² dt, `energy` at the samples, reaches a target."""
+        k = int(np.searchsorted(energy, target))
+        if k == 0:
+            return 0.0
+        left, right = float(self.acceleration[k - 1]), float(self.acceleration[k])
+        missing = target - float(energy[k - 1])
+        slope = (right - left) / self.dt
+        # ∫(left + slope τ)² dτ = (r³ - left³) / (3 slope) with r = a(τ).
+        # Solved for τ without dividing by the slope, which may be zero.
+        reached = math.cbrt(left**3 + 3 * slope * missing)
+        step = 3 * missing / (reached**2 + reached * left + left**2)
+        return (k - 1) * self.dt + min(step, self.dt)
 
     def spectrum(self, periods: ArrayLike, damping_ratio: float = 0.05) -> _spectra.ResponseSpectrum:
         """Elastic response spectrum; see `ResponseSpectrum`.
