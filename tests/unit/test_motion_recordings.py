@@ -6,20 +6,9 @@ from pathlib import Path
 
 import pytest
 
+import rockflex as rf
 from design_case import STRUCTURE
 from record_samples import at2
-from rockflex import (
-    GroundMotion,
-    InputError,
-    RecordInfo,
-    RecordWarning,
-    read_at2,
-    read_motion,
-    read_suite,
-    run_cloud,
-    simulate,
-    simulate_many,
-)
 from rockflex.motion import component_direction
 from rockflex.motion._recordings import file_names_text, pair_vertical_records
 from rockflex.study import overturning_scales
@@ -104,28 +93,28 @@ def test_components_that_a_header_calls_horizontal(component):
 def test_readers_tell_the_direction(tmp_path, component, direction):
     file = tmp_path / "RSN1_X_ABC.AT2"
     file.write_text(at2(component))
-    assert read_at2(file).metadata.direction == direction
-    assert read_motion(file).scaled(2.0).metadata.direction == direction
+    assert rf.read_at2(file).metadata.direction == direction
+    assert rf.read_motion(file).scaled(2.0).metadata.direction == direction
     named = tmp_path / "station-UD.csv"
     named.write_text("t,acc (g)\n0,0\n1,1\n2,0\n")
-    assert read_motion(named).metadata.direction == "vertical"
+    assert rf.read_motion(named).metadata.direction == "vertical"
 
 
 @pytest.mark.parametrize("direction", ["vertical", "down"])
 def test_nothing_is_shaken_by_a_vertical_component(direction):
-    motion = GroundMotion([0.0, 1.0, 0.0], 0.01, "M-UP", RecordInfo(direction=direction))
+    motion = rf.GroundMotion([0.0, 1.0, 0.0], 0.01, "M-UP", rf.RecordInfo(direction=direction))
     for call in (
-        lambda: simulate(STRUCTURE, motion, "2DOF-S"),
-        lambda: simulate_many(STRUCTURE, [motion], "2DOF-S"),
-        lambda: run_cloud({"a": STRUCTURE}, [motion], "2DOF-S"),
+        lambda: rf.simulate(STRUCTURE, motion, "2DOF-S"),
+        lambda: rf.simulate_many(STRUCTURE, [motion], "2DOF-S"),
+        lambda: rf.run_cloud({"a": STRUCTURE}, [motion], "2DOF-S"),
         lambda: overturning_scales(STRUCTURE, motion, [1.0, 2.0]),
     ):
-        with pytest.raises(InputError, match="'M-UP' is a vertical component"):
+        with pytest.raises(rf.InputError, match="'M-UP' is a vertical component"):
             call()
-    with pytest.raises(InputError, match="'a', 'b', 'c' and 1 more are vertical components"):
-        simulate_many(STRUCTURE, [dataclasses.replace(motion, name=name) for name in "abcd"], "2DOF-S")
-    said = dataclasses.replace(motion, metadata=RecordInfo(direction="horizontal"))
-    assert simulate(STRUCTURE, said, "2DOF-S", output="peaks").status == "no_uplift"
+    with pytest.raises(rf.InputError, match="'a', 'b', 'c' and 1 more are vertical components"):
+        rf.simulate_many(STRUCTURE, [dataclasses.replace(motion, name=name) for name in "abcd"], "2DOF-S")
+    said = dataclasses.replace(motion, metadata=rf.RecordInfo(direction="horizontal"))
+    assert rf.simulate(STRUCTURE, said, "2DOF-S", output="peaks").status == "no_uplift"
 
 
 def write(folder, name, component, peak=0.1, **changed):
@@ -133,7 +122,7 @@ def write(folder, name, component, peak=0.1, **changed):
 
 
 def motion(name, **info):
-    return GroundMotion([0.0, 1.0, 0.0], 0.1, name, RecordInfo(**info))
+    return rf.GroundMotion([0.0, 1.0, 0.0], 0.1, name, rf.RecordInfo(**info))
 
 
 def pairs_of(horizontal, vertical):
@@ -198,7 +187,7 @@ def test_of_two_none_is_chosen():
 
 
 def test_a_record_with_both_stays_as_it_is():
-    own = GroundMotion([0.0, 1.0, 0.0], 0.1, "ABC090", vertical=[0.0, 2.0, 0.0])
+    own = rf.GroundMotion([0.0, 1.0, 0.0], 0.1, "ABC090", vertical=[0.0, 2.0, 0.0])
     both, without, left = pair_vertical_records({Path("ABC090.csv"): own}, {Path("ABC-UP.csv"): motion("ABC-UP")})
     assert both[Path("ABC090.csv")] is own
     assert (without, left) == ({}, [Path("ABC-UP.csv")])
@@ -213,8 +202,8 @@ def test_folder(tmp_path):
         write(tmp_path, f"RSN1_X_ABC{component}", component.strip("-"), peak)
     write(tmp_path, "RSN2_X_DEF000", "0", 0.4)
     write(tmp_path, "RSN3_X_GHI-V", "V", 0.5)
-    with pytest.warns(RecordWarning) as caught:
-        suite = read_suite(tmp_path, vertical="pair")
+    with pytest.warns(rf.RecordWarning) as caught:
+        suite = rf.read_suite(tmp_path, vertical="pair")
     assert [each.message.args[0] for each in caught] == [
         "Without a vertical component: 1 of 3 records, RSN2_X_DEF000.AT2.",
         "Left out: 1 vertical component, RSN3_X_GHI-V.AT2.",
@@ -226,28 +215,28 @@ def test_folder(tmp_path):
     (tmp_path / "RSN3_X_GHI-V.AT2").unlink()
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert len(read_suite(tmp_path, vertical="pair")) == 2
+        assert len(rf.read_suite(tmp_path, vertical="pair")) == 2
 
 
 def test_another_step_is_a_fault(tmp_path):
     for name, component, dt in (("A000", "0", 0.1), ("A-UP", "UP", 0.1), ("B000", "0", 0.1), ("B-UP", "UP", 0.2)):
         write(tmp_path, name, component, 0.1, dt=dt)
     said = r"1 of 2 records cannot be paired with a vertical component\. B000\.AT2: B-UP\.AT2: Both components need"
-    with pytest.raises(InputError, match=said + r'.* on_error="skip" keeps them without it\.$') as error:
-        read_suite(tmp_path, vertical="pair")
+    with pytest.raises(rf.InputError, match=said + r'.* on_error="skip" keeps them without it\.$') as error:
+        rf.read_suite(tmp_path, vertical="pair")
     assert error.value.field == "vertical"
-    with pytest.warns(RecordWarning, match=said):
-        suite = read_suite(tmp_path, vertical="pair", on_error="skip")
+    with pytest.warns(rf.RecordWarning, match=said):
+        suite = rf.read_suite(tmp_path, vertical="pair", on_error="skip")
     assert [each.vertical is None for each in suite] == [False, True]
 
 
 def test_folders_without_pairs(tmp_path):
     write(tmp_path, "A000", "0", 0.1)
     write(tmp_path, "A090", "90", 0.1, event="Another")
-    with pytest.raises(InputError, match=r"No vertical component was found for any of the 2 records, such as A000"):
-        read_suite(tmp_path, vertical="pair")
+    with pytest.raises(rf.InputError, match=r"No vertical component was found for any of the 2 records, such as A000"):
+        rf.read_suite(tmp_path, vertical="pair")
     (tmp_path / "A090.AT2").unlink()
-    with pytest.raises(InputError, match=r"No vertical component was found for A000\.AT2\. It is recognised by"):
-        read_suite(tmp_path, vertical="pair")
-    with pytest.raises(InputError, match=r'vertical must be "pair" or None, but .*B\.AT2.* was given'):
-        read_suite(tmp_path, vertical="B.AT2")
+    with pytest.raises(rf.InputError, match=r"No vertical component was found for A000\.AT2\. It is recognised by"):
+        rf.read_suite(tmp_path, vertical="pair")
+    with pytest.raises(rf.InputError, match=r'vertical must be "pair" or None, but .*B\.AT2.* was given'):
+        rf.read_suite(tmp_path, vertical="B.AT2")

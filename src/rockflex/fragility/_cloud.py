@@ -14,14 +14,13 @@ from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.fragility._arguments import (
     check_same_column_length,
-    checked_confidence,
     checked_probabilities,
     log_column,
     log_measures,
     log_of_evaluation_points,
 )
-from rockflex.fragility._jackknife import RecordingGroups, jackknife_covariance, student_t_quantile
-from rockflex.fragility._regression import fit_least_squares_lines, standard_error_of_line
+from rockflex.fragility._jackknife import RecordingGroups, band_of_line, jackknife_covariance
+from rockflex.fragility._regression import fit_least_squares_lines
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -90,11 +89,9 @@ class CloudFit(HtmlTable, Value):
         recording.
         """
         x = log_of_evaluation_points(im)
-        times = student_t_quantile(checked_confidence(confidence), self.n_groups or self.n - 1)
-        half = times * standard_error_of_line(x, self.covariance)
-        centre = self.c1 + self.c2 * x
+        low, high = band_of_line((self.c1, self.c2), x, self.covariance, confidence, self.n_groups or self.n - 1)
         with np.errstate(over="ignore"):
-            return np.exp(centre - half), np.exp(centre + half)
+            return np.exp(low), np.exp(high)
 
     def exceedance(self, im: ArrayLike, limit: ArrayLike) -> Array:
         """Probability that the response exceeds `limit` at `im`; the two broadcast."""

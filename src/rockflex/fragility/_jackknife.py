@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.fragility._arguments import check_same_column_length
+from rockflex.fragility._arguments import check_same_column_length, checked_confidence
 
 N_SAMPLES = 2048  # parameters drawn; a power of two, as Sobol's sequence wants
 _MAX_WEIGHTS = 2_000_000  # weights held at once
@@ -97,6 +97,16 @@ def student_t_quantile(confidence: float, n_groups: int) -> float:
 
     p = 0.5 + 0.5 * confidence
     return float(stdtrit(n_groups - 1, p) if n_groups > 1 else ndtri(p) if n_groups == 0 else np.nan)
+
+
+def band_of_line(
+    line: tuple[float, float], x: Array, covariance: Array, confidence: float, n_groups: int
+) -> tuple[Array, Array]:
+    """Confidence limits of a + b x at x, for the covariance of (a, b)."""
+    variance = covariance[0, 0] + 2.0 * covariance[0, 1] * x + covariance[1, 1] * x**2
+    error = np.sqrt(np.maximum(variance, 0.0))  # rounding may leave a small negative variance
+    half, centre = student_t_quantile(checked_confidence(confidence), n_groups) * error, line[0] + line[1] * x
+    return centre - half, centre + half
 
 
 def sampled_fit_parameters(parameters: ArrayLike, covariance: Array, n_groups: int) -> Array:

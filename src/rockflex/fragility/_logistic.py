@@ -170,11 +170,8 @@ class LogisticFit(HtmlTable, Value):
         from scipy.special import expit
 
         x = log_of_evaluation_points(im)
-        half = _jackknife.student_t_quantile(
-            checked_confidence(confidence), self.n_groups
-        ) * _regression.standard_error_of_line(x, self.covariance)
-        centre = self.b0 + self.b1 * x
-        return expit(centre - half), expit(centre + half)
+        low, high = _jackknife.band_of_line((self.b0, self.b1), x, self.covariance, confidence, self.n_groups)
+        return expit(low), expit(high)
 
     def drawn(self, im: Array) -> Array:
         """Probabilities at `im`, shape (m,), for 2048 parameters drawn from the t distribution of the estimate."""

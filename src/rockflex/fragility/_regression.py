@@ -228,9 +228,3 @@ class StandardisedLogs:
         """Intercept, slope and covariance for the original logarithms."""
         a, b = self._back @ parameters
         return float(a), float(b), self._back @ covariance @ self._back.T
-
-
-def standard_error_of_line(x: Array, covariance: Array) -> Array:
-    """Standard error of a + b x for the covariance of (a, b)."""
-    variance = covariance[0, 0] + 2.0 * covariance[0, 1] * x + covariance[1, 1] * x**2
-    return np.sqrt(np.maximum(variance, 0.0))  # rounding may leave a small negative variance
