@@ -18,18 +18,6 @@ VALUES = np.array([0.001, -0.02, 0.3, 0.0, 0.125])
 openpyxl = pytest.importorskip("openpyxl")
 ROWS = [[0.0, 0.1], [0.01, -0.25], [0.02, 1 / 3], [0.03, 0]]
 MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
-OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
-PACKAGE = "http://schemas.openxmlformats.org/package/2006"
-KINDS = "application/vnd.openxmlformats-officedocument.spreadsheetml."
-PARTS = {
-    "[Content_Types].xml": f'<Types xmlns="{PACKAGE}/content-types">'
-    f'<Override PartName="/xl/workbook.xml" ContentType="{KINDS}sheet.main+xml"/>'
-    f'<Override PartName="/xl/worksheets/sheet1.xml" ContentType="{KINDS}worksheet+xml"/></Types>',
-    "xl/workbook.xml": f'<workbook xmlns="{MAIN}" xmlns:r="{OFFICE}">'
-    '<sheets><sheet name="S" sheetId="1" r:id="r1"/></sheets></workbook>',
-    "xl/_rels/workbook.xml.rels": f'<Relationships xmlns="{PACKAGE}/relationships">'
-    f'<Relationship Id="r1" Type="{OFFICE}/worksheet" Target="worksheets/sheet1.xml"/></Relationships>',
-}
 BOUNDED = """
 import resource, sys
 import rockflex as rf
@@ -416,16 +404,19 @@ def test_a_workbook_that_unpacks_to_more_than_it_may(tmp_path, monkeypatch):
         rf.read_motion(file)
 
 
-def crafted(file, last_row, dimension="", columns=""):
+def crafted(folder, last_row, dimension="", columns=""):
     """Write a workbook of some kilobytes: three rows of a record, and one far below them."""
     cells = [f"<c><v>{0.01 * k:.2f}</v></c><c><v>{a}</v></c>" for k, a in enumerate((0.1, -0.2, 0.3, 0.0))]
     places = [*range(1, len(cells)), last_row]
     rows = "".join(f'<row r="{place}">{each}</row>' for place, each in zip(places, cells, strict=True))
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, text in PARTS.items():
-            archive.writestr(name, text)
-        sheet = f'<worksheet xmlns="{MAIN}">{dimension}<sheetData>{rows}{columns}</sheetData></worksheet>'
-        archive.writestr("xl/worksheets/sheet1.xml", sheet)
+    sheet = f'<worksheet xmlns="{MAIN}">{dimension}<sheetData>{rows}{columns}</sheetData></worksheet>'
+    file = folder / "far.xlsx"
+    with (
+        zipfile.ZipFile(write_excel(folder, {"S": []}, "empty.xlsx")) as empty,
+        zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive,
+    ):
+        for name in empty.namelist():
+            archive.writestr(name, sheet if name.endswith("sheet1.xml") else empty.read(name))
     return file
 
 
@@ -441,7 +432,7 @@ def crafted(file, last_row, dimension="", columns=""):
     ids=["claimed size", "row far below", "columns far away", "one long row"],
 )
 def test_a_small_workbook_with_cells_far_apart_takes_little_time_and_memory(tmp_path, last_row, more, said):
-    file = crafted(tmp_path / "far.xlsx", last_row, **more)
+    file = crafted(tmp_path, last_row, **more)
     found = subprocess.run(
         [sys.executable, "-c", BOUNDED, file], capture_output=True, text=True, timeout=60.0, check=False
     )

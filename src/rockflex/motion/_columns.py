@@ -157,21 +157,11 @@ def _column_unit(
     if not written:
         found = next((each for head in table.heads if (each := STATED_UNIT.search(head[:500]))), None)
         written, where = (found[1] if found else ""), "header"
-    stated = _text.acceleration_unit_name(written)
-    if written and stated is None:
-        raise InputError(
-            f"{file}: the {where} gives the unit {shown(written)}, which is not known. "
-            "Write it as g, m/s2 or cm/s2, and convert the values if necessary."
-        )
-    if stated and units and _text.AccelerationUnit(stated) != units:
-        raise InputError(
-            f"{file}: the {where} says {stated}, but units={shown(str(units))} was given. Leave units out.",
-            field="units",
-        )
-    if stated:
-        return _text.AccelerationUnit(stated)
-    if units:
+    name = _text.agreed_unit_name(file, where, written, None if units is None else str(units), "g, m/s2 or cm/s2")
+    if units is not None:
         return units
+    if name is not None:
+        return _text.AccelerationUnit(name)
     raise InputError(
         f"{file} does not state the unit of its acceleration. Declare it: "
         'read_motion(path, units="g"), "m/s2" or "cm/s2"; or label the column "acc (g)".',

@@ -432,18 +432,9 @@ def _target_spectrum_unit(file: Path, head: str, units: str | None) -> str:
     """Return the unit in the last brackets of the header, or `units`; both must agree."""
     found = _text.BRACKET.findall(head[: _text.end_of_last_bracket(head)])
     written = found[-1] if found and found[-1].strip().lower() not in _text.SECONDS else ""  # unit of the periods
-    stated = _text.acceleration_unit_name(written)
-    if written and stated is None:
-        raise InputError(
-            f"{file}: the header gives the unit {shown(written)}, which is not known. Write it as one of "
-            f"{', '.join(_text.UNITS)}."
-        )
-    if stated and units and stated != units:
-        raise InputError(
-            f"{file}: the header says {stated}, but units={shown(units)} was given. Leave units out.", field="units"
-        )
-    if stated or units:
-        return stated or str(units)
+    name = _text.agreed_unit_name(file, "header", written, units, f"one of {', '.join(_text.UNITS)}")
+    if name is not None:
+        return name
     raise InputError(
         f'{file} does not state the unit of its acceleration. Declare it: read_target(path, units="g"), "m/s2" or '
         '"cm/s2"; or write the header "period (s), sa (g)".',

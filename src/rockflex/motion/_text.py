@@ -82,6 +82,21 @@ def declared_acceleration_unit(units: object) -> AccelerationUnit:
     )
 
 
+def agreed_unit_name(file: Path, where: str, written: str, given: str | None, units: str) -> str | None:
+    """Return the unit that a header states, or the one given; they must agree. `units` may be written."""
+    stated = acceleration_unit_name(written)
+    if written and stated is None:
+        raise InputError(
+            f"{file}: the {where} gives the unit {shown(written)}, which is not known. "
+            f"Write it as {units}, and convert the values if necessary."
+        )
+    if stated and given not in (None, stated):
+        raise InputError(
+            f"{file}: the {where} says {stated}, but units={shown(given)} was given. Leave units out.", field="units"
+        )
+    return stated or given
+
+
 def read_file_bytes(path: str | Path) -> bytes:
     """Return the bytes of a file, or raise an error that explains why it cannot be read."""
     file = Path(path)
