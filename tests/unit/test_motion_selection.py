@@ -67,10 +67,6 @@ def test_every_motion_of_a_suite():
         ({"target": TARGET, "periods": RANGE, "sa": 1.0}, BOTH),
         ({"target": TARGET, "periods": RANGE, "damping_ratio": 0.05}, BOTH),
         ({"target": TARGET, "sa": 1.0, "period": 1.0}, BOTH),
-        ({"sa": 0.0, "period": 1.0}, "sa must be a positive, finite number in m/s²"),
-        ({"sa": 1.0, "period": -1.0}, "period must be a zero or positive, finite number in s"),
-        ({"sa": 1.0, "period": 1.0, "damping_ratio": 5}, r"damping_ratio must lie in \[0, 1\)"),
-        ({"target": 3.0, "periods": RANGE}, "target must be of type TargetSpectrum, but float was given"),
         ({"target": TARGET, "periods": (2.0, 0.2)}, r"periods must be a range such as \(0.2, 2.0\), but \(2, 0.2\)"),
         ({"target": TARGET, "periods": [0.0, 1.0]}, r"but \(0, 1\) was given. Two periods are the ends of a range"),
         ({"target": TARGET, "periods": []}, r"periods must be the two ends of a range, or increasing .* but \[\] was"),
@@ -238,18 +234,12 @@ def test_tables():
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
-        ({"target": 3}, "target must be of type TargetSpectrum, but int was given"),
-        ({"n": 0}, "n must be a whole number of at least 1, but 0 was given"),
         ({"n": 45}, "n must be at most 44, the number of records, but 45 was given"),
         ({"n": 23, "measure": "rotd50"}, "n must be at most 22, the number of pairs, but 23 was given"),
         ({"measure": "srss"}, "measure must be one of 'component', 'geometric mean', 'rotd50', 'rotd100', but 'srss'"),
         ({"scale_limits": (2.0, 1.0)}, "scale_limits must be the smallest and the largest factor, both positive"),
         ({"scale_limits": (0.0, 1.0)}, "scale_limits must be the smallest and the largest factor"),
-        ({"scale_limits": 2.0}, "scale_limits must be one-dimensional"),
-        ({"per_event": 0}, "per_event must be a whole number of at least 1, but 0 was given"),
-        ({"per_station": 1.5}, "per_station must be a whole number of at least 1, but 1.5 was given"),
         ({"record_weight": 1.1}, r"record_weight must lie in \[0, 1\]"),
-        ({"least_ratio": 0.0}, "least_ratio must be a positive"),
     ],
 )
 def test_select_refuses(arguments, text):

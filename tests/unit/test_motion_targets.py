@@ -66,7 +66,6 @@ def test_scaled():
         (([-0.1, 0.1], [1.0, 1.0]), r"but -0\.1 s was given at index 0"),
         (([0.1, 0.2], [1.0, 0.0]), r"sa must be positive, but sa\[1\] = 0 m/s² was given"),
         (([0.1, 0.2], [1.0, 1.0], 5), r"damping_ratio must lie in \[0, 1\), but 5 was given. It is a fraction"),
-        (([0.1, 0.2], [1.0, 1.0], 0.05, 3), "name must be of type str, but int was given"),
     ],
 )
 def test_refuses_tables(arguments, text):
@@ -99,11 +98,8 @@ def test_ec8_damping():
 @pytest.mark.parametrize(
     ("arguments", "options", "text"),
     [
-        ((0.0, "A"), {}, "ag must be a positive, finite number in m/s²"),
         ((1.0, "F"), {}, "ground must be one of A, B, C, D, E, the ground type of EN 1998-1, but 'F' was given. Gro"),
         ((1.0, "A", 3), {}, "kind must be 1 or 2, the type of the spectrum, but 3 was given"),
-        ((1.0, "A"), {"importance": -1.0}, "importance must be a positive"),
-        ((1.0, "A"), {"damping_ratio": 5}, r"damping_ratio must lie in \[0, 1\)"),
     ],
 )
 def test_ec8_refuses(arguments, options, text):
@@ -159,15 +155,12 @@ def test_asce7_site_coefficients(ss, s1, site, fa, fv):
 @pytest.mark.parametrize(
     ("call", "text"),
     [
-        (lambda: rf.asce7_spectrum(-1.0, 1.0, 8.0), "sds must be a positive"),
-        (lambda: rf.asce7_spectrum(1.0, 0.0, 8.0), "sd1 must be a positive"),
         (lambda: rf.asce7_spectrum(1.0, 0.6, 0.5), r"between sd1/sds = 0\.6 s and 100 s, but 0\.5 was given"),
         (lambda: rf.asce7_spectrum(1.0, 0.6, 200.0), "but 200.0 was given"),
         (lambda: rf.asce7_spectrum(1.0, 0.6, 8.0, mce=1.5), "mce must be True or False, but 1.5 was given"),
         (lambda: rf.asce7_site_spectrum(G, G, "F", 8.0), 'one of A, B, C, D, E or "default".*Class F needs'),
         (lambda: rf.asce7_site_spectrum(1.0 * G, 0.1 * G, "E", 8.0), "site E with S_S = 1 g and S_1 = 0.1 g needs an"),
         (lambda: rf.asce7_site_spectrum(0.5 * G, 0.2 * G, "E", 8.0), "site E with S_S = 0.5 g and S_1 = 0.2 g needs"),
-        (lambda: rf.asce7_site_spectrum(0.0, 0.2 * G, "C", 8.0), "ss must be a positive"),
     ],
 )
 def test_asce7_refuses(call, text):

@@ -17,13 +17,11 @@ BOTH = GroundMotion(ALONG, 0.1, "both", RecordInfo(year=1999), UPWARDS)
 LONG = GroundMotion(np.sin(np.arange(400.0)), 0.01, "long", vertical=np.cos(0.7 * np.arange(400.0)))
 
 
-def test_holds_a_read_only_copy_of_both():
+def test_holds_a_copy_of_both():
     samples = UPWARDS.copy()
     motion = GroundMotion(ALONG, 0.1, vertical=samples)
     samples[1] = 9.0
     assert motion.vertical.tolist() == UPWARDS.tolist()
-    with pytest.raises(ValueError, match="read-only"):
-        motion.vertical[0] = 1.0
     assert GroundMotion(ALONG, 0.1).vertical is None
 
 
@@ -38,8 +36,6 @@ def test_pickles_of_before_have_none():
     [
         (UPWARDS[:4], r"vertical must have as many samples as acceleration, 5, but 4 were given\. Append zeros"),
         ([0, 1, np.nan, 0, 0], r"vertical must be finite, but 1 of 5 values are not, the first \(nan\) at index 2"),
-        ([[0, 1, 0, 0, 0]], "vertical must be one-dimensional"),
-        ("up", "vertical must be a sequence of numbers in m/s²"),
     ],
 )
 def test_refuses(vertical, text):
