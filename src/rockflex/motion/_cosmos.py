@@ -14,7 +14,7 @@ from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex.motion import _text
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import Direction, RecordInfo, component_azimuth, unique_record_names
+from rockflex.motion._record_info import Direction, RecordInfo, component_azimuth, component_record_names
 
 # Table 2 of the format: the units of accelerations.
 UNIT_CODES = {
@@ -197,16 +197,15 @@ def parse_cosmos(file: Path, lines: list[str]) -> list[GroundMotion]:
             f"{file} is a COSMOS file without a series of acceleration. Give the file of the acceleration."
         )
     infos = [channel_record_info(file, each) for each in channels]
-    names = unique_record_names([info.component or "channel" for info in infos])
+    names = component_record_names(file.stem, [info.component or "channel" for info in infos])
     motions: list[GroundMotion] = []
     for channel, info, name in zip(channels, infos, names, strict=True):
         values = np.zeros(0) if channel.values is None else channel.values
         if info.processing is not None and values.size:
             values = values - values.mean()
         unit, step = channel_unit(file, channel), channel_time_step(file, channel, values.size)
-        whole = file.stem if len(channels) == 1 else f"{file.stem}-{name}"
         remedy = "Check the units in the integer header."
-        motions.append(_text.motion_from_samples(file, values, unit, step, info, remedy, whole))
+        motions.append(_text.motion_from_samples(file, values, unit, step, info, remedy, name))
     return motions
 
 

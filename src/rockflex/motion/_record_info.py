@@ -189,3 +189,8 @@ def is_horizontal_component_name(component: str) -> bool:
 def unique_record_names(names: list[str]) -> list[str]:
     """Return the names, with a number added to those that occur more than once."""
     return [name if names.count(name) == 1 else f"{name}-{names[: i + 1].count(name)}" for i, name in enumerate(names)]
+
+
+def component_record_names(stem: str, components: list[str]) -> list[str]:
+    """Return the names of the motions in a file: its stem, with the component where it holds several."""
+    return [stem] if len(components) == 1 else [f"{stem}-{name}" for name in unique_record_names(components)]
