@@ -235,6 +235,16 @@ Period (sec),Target pSa (g),Arithmetic Mean pSa (g),RSN-9001 SRSS pSa (g)
 """
 
 
-def at2(component: str, peak: float = 0.1, station: str = "Some Station") -> str:
-    """An AT2 file of three samples."""
-    return f"Some Event, 1/1/2001, {station}, {component}\nACCELERATION IN UNITS OF G\nNPTS= 3, DT= .1\n0 {peak} 0\n"
+def at2(
+    component: str,
+    peak: float = 0.1,
+    station: str = "Some Station",
+    *,
+    samples: Sequence[float] | None = None,
+    event: str = "Some Event",
+    dt: float = 0.1,
+) -> str:
+    """An AT2 file, of three samples with a peak if no others are given."""
+    values = [0.0, peak, 0.0] if samples is None else samples
+    head = f"{event}, 1/1/2001, {station}, {component}\nACCELERATION IN UNITS OF G\nNPTS= {len(values)}, DT= {dt:g}\n"
+    return head + "".join(f"{value: .7E}\n" for value in values)

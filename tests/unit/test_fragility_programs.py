@@ -40,15 +40,7 @@ def rows(path):
 
 @pytest.mark.parametrize(
     ("measure", "unit"),
-    [
-        ("PGA", 1 / 9.81),
-        ("SA(0.75)", 1 / 9.81),
-        ("AvgSA", 1 / 9.81),
-        ("PGV", 100),
-        ("PGD", 100),
-        ("IA", 1),
-        ("RSD", 1),
-    ],
+    [("PGA", 1 / 9.81), ("SA(0.75)", 1 / 9.81), ("AvgSA", 1 / 9.81), ("PGV", 100), ("PGD", 100), ("IA", 1), ("RSD", 1)],
 )
 def test_lognormal_curves_are_continuous_functions_of_the_capacity(tmp_path, measure, unit):
     path = rf.write_nrml(tmp_path / "new" / "model.xml", {"pier": LOGNORMAL}, measure, LEVELS[[0, -1]])

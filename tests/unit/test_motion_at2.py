@@ -110,10 +110,7 @@ def case(header="NPTS= 6, DT= .005 SEC", body=BODY, form=NGA):
     ("text", "message"),
     [
         (case("NPTS= 7, DT= .005 SEC"), "is truncated: its header says NPTS = 7, but 6 values follow"),
-        (
-            case("NPTS= 5, DT= .005 SEC"),
-            "contains too many values: its header says NPTS = 5, but 6 values",
-        ),
+        (case("NPTS= 5, DT= .005 SEC"), "contains too many values: its header says NPTS = 5, but 6 values"),
         (case("NPTS= 0, DT= .005 SEC", ""), "acceleration must have at least 3 samples, but 0"),
         (case("NPTS= 2, DT= .005 SEC", "0.1 0.2"), "acceleration must have at least 3 samples, but 2"),
         (case("DT= .005 SEC"), "no header line with NPTS and DT among the first 12 lines"),
@@ -122,22 +119,13 @@ def case(header="NPTS= 6, DT= .005 SEC", body=BODY, form=NGA):
         (case(body=BODY.replace(".0000000E+00", "NaN")), "line 6: expected a finite number, but found 'NaN'"),
         (case(body=BODY.replace(".0000000E+00", "*******")), r"line 6: expected .* found '\*\*\*\*\*\*\*'"),
         (case(body=BODY.replace(".0000000E+00", "1_0")), "line 6: expected .* found '1_0'"),
-        (
-            case(body=BODY.replace(".0000000E+00", "1e999")),
-            "line 6: expected a finite number, but found '1e999'",
-        ),
+        (case(body=BODY.replace(".0000000E+00", "1e999")), "line 6: expected a finite number, but found '1e999'"),
         (case(body=BODY + "0.1E-020.2E-02"), "line 7: expected .* found '0.1E-020.2E-02'"),
         (case(body=BODY + "0.1.2"), "line 7: expected .* found '0.1.2'"),
         (case("NPTS= 6, DT= 0.0 SEC"), "line 4: DT must be positive, but it is 0.0"),
         (case("NPTS= 6, DT= -.005 SEC"), "line 4: DT must be positive, but it is -.005"),
-        (
-            case(form=NGA.replace("ACCELERATION", "VELOCITY").replace("OF G", "OF CM/S")),
-            "states units of CM/S",
-        ),
-        (
-            case(body=BODY.replace("E+00", "E+02")),
-            r"peak acceleration is 30 g, above 5 g.*looks like m/s² or cm/s²",
-        ),
+        (case(form=NGA.replace("ACCELERATION", "VELOCITY").replace("OF G", "OF CM/S")), "states units of CM/S"),
+        (case(body=BODY.replace("E+00", "E+02")), r"peak acceleration is 30 g, above 5 g.*looks like m/s² or cm/s²"),
         (case(body=BODY.replace("E+00", "E+02")), r'read_motion\(path, units="m/s2", dt=0.005\)'),
         ("", "is empty"),
         (" \n\n", "is empty"),

@@ -18,18 +18,6 @@ VALUES = np.array([0.001, -0.02, 0.3, 0.0, 0.125])
 openpyxl = pytest.importorskip("openpyxl")
 ROWS = [[0.0, 0.1], [0.01, -0.25], [0.02, 1 / 3], [0.03, 0]]
 MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
-OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
-PACKAGE = "http://schemas.openxmlformats.org/package/2006"
-KINDS = "application/vnd.openxmlformats-officedocument.spreadsheetml."
-PARTS = {
-    "[Content_Types].xml": f'<Types xmlns="{PACKAGE}/content-types">'
-    f'<Override PartName="/xl/workbook.xml" ContentType="{KINDS}sheet.main+xml"/>'
-    f'<Override PartName="/xl/worksheets/sheet1.xml" ContentType="{KINDS}worksheet+xml"/></Types>',
-    "xl/workbook.xml": f'<workbook xmlns="{MAIN}" xmlns:r="{OFFICE}">'
-    '<sheets><sheet name="S" sheetId="1" r:id="r1"/></sheets></workbook>',
-    "xl/_rels/workbook.xml.rels": f'<Relationships xmlns="{PACKAGE}/relationships">'
-    f'<Relationship Id="r1" Type="{OFFICE}/worksheet" Target="worksheets/sheet1.xml"/></Relationships>',
-}
 BOUNDED = """
 import resource, sys
 import rockflex as rf
@@ -77,16 +65,14 @@ def test_two_columns(tmp_path, separator):
         ("# time (s), acc (g)\n", GRAVITY),
         ("# a record of 1940, in short\n\n# time,acc (g)\n", GRAVITY),
         ("Northridge; station 24\ntime,acc (g)\n", GRAVITY),
+        ("time (s)  acc (g)\n", GRAVITY),
+        ("% t [s]\ta [g]\n", GRAVITY),
+        ("# time acc(g)\n", GRAVITY),
     ],
 )
 def test_units_from_the_header(tmp_path, head, factor):
-    motion = read_motion(write(tmp_path, table(",", head), "r.csv"))
+    motion = read_motion(write(tmp_path, table("," if "," in head.splitlines()[-1] else "\t", head), "r.csv"))
     assert motion.acceleration == pytest.approx(VALUES * factor, rel=1e-15)
-
-
-@pytest.mark.parametrize("head", ["time (s)  acc (g)\n", "% t [s]\ta [g]\n", "# time acc(g)\n"])
-def test_units_from_the_header_of_blank_separated_columns(tmp_path, head):
-    assert read_motion(write(tmp_path, table("\t", head))).acceleration == pytest.approx(VALUES * GRAVITY)
 
 
 def test_comments_blank_lines_and_trailing_separators(tmp_path):
@@ -110,6 +96,8 @@ def test_one_column(tmp_path):
     assert read_motion(path, dt=0.02).pga == 3 * GRAVITY
     with pytest.raises(InputError, match="has one column and no times: give the sampling step"):
         read_motion(path)
+    with pytest.raises(InputError, match="dt must be a positive"):
+        read_motion(path, dt=-0.01)
 
 
 def test_comment_with_npts_is_no_at2_header(tmp_path):
@@ -151,10 +139,7 @@ def rows(*lines):
         (rows("0 0.1", "0,1 0.2", "0.2 1"), "line 1: '0.1' has a decimal point, but other numbers have decimal commas"),
         (rows("0.O 1", "0.1 2", "0.2 3", "0.3 4"), "line 1: expected a finite number, but found '0.O'"),
         (rows("1x", "2", "3", "4"), "line 1: expected a finite number, but found '1x'"),
-        (
-            rows("0 1", "0.1 2", "0.3 3"),
-            r"line 3: the time step is 0.2 s, but 0.1 s before.*resample the record",
-        ),
+        (rows("0 1", "0.1 2", "0.3 3"), r"line 3: the time step is 0.2 s, but 0.1 s before.*resample the record"),
         (rows("0 1", "0.1 2", "0.1 3"), "line 3: time must increase, but it goes from 0.1 s to 0.1 s"),
         (rows("0 1", "0.1 2", "0.05 3"), "line 3: time must increase"),
         (rows("0 1", "0.1 2"), "has 2 samples, but a record needs at least 3"),
@@ -164,6 +149,9 @@ def rows(*lines):
         (rows("t,vel", "0,1", "1,1", "2,2"), "an acceleration is expected, but the column is labelled 'vel'"),
         (rows("t (ms),acc", "0,1", "1,1", "2,2"), "times are in 'ms', but seconds are expected"),
         (rows("no", "numbers"), "holds no numbers"),
+        (rows("0,00;0.001", "0,01;-0,02", "0,02;0,3"), r"line 1: '0\.001' has a decimal point, but other numbers"),
+        (rows("0,00;1.000,5", "0,01;-0,02", "0,02;0,3"), r"line 1: .* but found '1\.000,5'"),
+        (rows("0,00;1,0,5", "0,01;-0,02", "0,02;0,3"), "line 1: .* but found '1,0,5'"),
     ],
 )
 def test_refuses(tmp_path, text, message):
@@ -185,33 +173,16 @@ def test_the_unit_is_never_guessed(tmp_path):
         read_motion(write(tmp_path, table()), units="ft/s2")
 
 
-@pytest.mark.parametrize("dt", [0, -0.01, float("nan")])
-def test_dt_must_be_positive(tmp_path, dt):
-    with pytest.raises(InputError, match="dt must be a positive"):
-        read_motion(write(tmp_path, "1\n2\n3\n"), units="g", dt=dt)
-
-
 @pytest.mark.parametrize(
-    ("units", "value", "smaller"),
-    [("g", 9.7, "m/s² or cm/s²"), ("m/s2", 300.0, "cm/s²"), ("cm/s2", 9e4, "a smaller")],
+    ("units", "value", "smaller"), [("g", 9.7, "m/s² or cm/s²"), ("m/s2", 300.0, "cm/s²"), ("cm/s2", 9e4, "a smaller")]
 )
 def test_amplitudes_that_only_a_wrong_unit_explains(tmp_path, units, value, smaller):
     path = write(tmp_path, f"0 0\n0.1 {value}\n0.2 0\n")
     with pytest.raises(InputError) as caught:
         read_motion(path, units=units)
-    text = str(caught.value)
-    assert f"the peak acceleration is {value:g} {units}, above 5 g" in text
-    assert f"It looks like {smaller}" in text
-    assert f"although {units} was declared" in text
-    assert 'units="m/s2"' in text
-    assert "motions can be scaled without limit" in text
-
-
-def test_binary_file(tmp_path):
-    path = tmp_path / "a.csv"
-    path.write_bytes(bytes(range(256)))
-    with pytest.raises(InputError, match="is a binary file; a record is expected as text"):
-        read_motion(path)
+    assert f"the peak acceleration is {value:g} {units}, above 5 g. It looks like {smaller}" in str(caught.value)
+    assert 'units="m/s2"' in str(caught.value)
+    assert caught.value.field == "units"
 
 
 @pytest.mark.parametrize(
@@ -222,7 +193,6 @@ def test_binary_file(tmp_path):
         "0,00\t0,001\n0,01\t-0,02\n0,02\t0,3\n0,03\t0\n0,04\t0,125\n",
         "0,00 0,001\n0,01 -0,02\n0,02 0,3\n0,03 0\n0,04 0,125\n",
         "0 0,001\n0,01 -0,02\n0,02 0,3\n0,03 0\n0,04 0,125\n",
-        "0 0\n0,01 -0,02\n0,02 0,3\n0,03 0\n0,04 0,125\n".replace("0 0\n", "0 0,001\n"),
     ],
 )
 def test_decimal_commas(tmp_path, text):
@@ -240,19 +210,6 @@ def test_a_single_column_with_decimal_commas(tmp_path, text):
 def test_whole_times_that_increase_are_a_column_of_their_own(tmp_path):
     motion = read_motion(write(tmp_path, "0,12\n1,25\n2,9\n3,0\n"), units="m/s2")
     assert (motion.dt, motion.acceleration.tolist()) == (1.0, [12.0, 25.0, 9.0, 0.0])
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("0,00;0.001\n0,01;-0,02\n0,02;0,3\n", r"line 1: '0\.001' has a decimal point, but other numbers have decimal"),
-        ("0,00;1.000,5\n0,01;-0,02\n0,02;0,3\n", r"line 1: expected a finite number, but found '1\.000,5'"),
-        ("0,00;1,0,5\n0,01;-0,02\n0,02;0,3\n", r"line 1: expected a finite number, but found '1,0,5'"),
-    ],
-)
-def test_decimal_marks_are_not_mixed(tmp_path, text, message):
-    with pytest.raises(InputError, match=message):
-        read_motion(write(tmp_path, text), units="m/s2")
 
 
 def test_labels_between_tabs_may_hold_blanks(tmp_path):
@@ -420,24 +377,24 @@ def test_components_in_columns_and_in_sheets(tmp_path):
 
 
 def test_refuses_excel(tmp_path):
-    with pytest.raises(rf.InputError, match="holds no numbers: a sheet is expected with columns of time and accel"):
-        rf.read_motion(write_excel(tmp_path, {"S": [["a", "b"]]}))
-    with pytest.raises(rf.InputError, match="line 3: expected a finite number, but found 'x'"):
-        rf.read_motion(write_excel(tmp_path, {"S": [["t", "acc (g)"], [0, 1], [1, "x"], [2, 3]]}))
     (tmp_path / "a.xls").write_bytes(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + b"0" * 100)
-    with pytest.raises(rf.InputError, match=r"a\.xls is a workbook of the old format\. Save it as \.xlsx or CSV"):
-        rf.read_motion(tmp_path / "a.xls")
     (tmp_path / "b.xlsx").write_bytes(b"PK\x03\x04" + b"0" * 100)
-    with pytest.raises(rf.InputError, match=r"b\.xlsx is a damaged archive or workbook\. Download it again"):
-        rf.read_motion(tmp_path / "b.xlsx")
-    with zipfile.ZipFile(tmp_path / "c.zip", "w") as archive:
-        archive.writestr("a.txt", "0 1")
-    with pytest.raises(rf.InputError, match=r"c\.zip is an archive, but no workbook\. Unpack it"):
-        rf.read_motion(tmp_path / "c.zip")
-    with zipfile.ZipFile(tmp_path / "d.xlsx", "w") as archive:
-        archive.writestr("xl/workbook.xml", "<broken")
-    with pytest.raises(rf.InputError, match=r"d\.xlsx cannot be read as an Excel workbook"):
-        rf.read_motion(tmp_path / "d.xlsx")
+    for name, part, text in (("c.zip", "a.txt", "0 1"), ("d.xlsx", "xl/workbook.xml", "<broken")):
+        with zipfile.ZipFile(tmp_path / name, "w") as archive:
+            archive.writestr(part, text)
+    write_excel(tmp_path, {"S": [["a", "b"]]}, "empty.xlsx")
+    write_excel(tmp_path, {"S": [["t", "acc (g)"], [0, 1], [1, "x"], [2, 3]]}, "x.xlsx")
+    for name, message in (
+        ("a.xls", "a workbook of the old format. Save it as .xlsx or CSV"),
+        ("b.xlsx", "a damaged archive or workbook. Download it again"),
+        ("c.zip", "an archive, but no workbook. Unpack it"),
+        ("d.xlsx", "cannot be read as an Excel workbook"),
+        ("empty.xlsx", "holds no numbers: a sheet is expected"),
+        ("x.xlsx", "line 3: expected a finite number, but found 'x'"),
+    ):
+        with pytest.raises(rf.InputError, match=re.escape(message)) as caught:
+            rf.read_motion(tmp_path / name)
+        assert name in str(caught.value)
 
 
 def test_a_workbook_that_unpacks_to_more_than_it_may(tmp_path, monkeypatch):
@@ -447,16 +404,19 @@ def test_a_workbook_that_unpacks_to_more_than_it_may(tmp_path, monkeypatch):
         rf.read_motion(file)
 
 
-def crafted(file, last_row, dimension="", columns=""):
+def crafted(folder, last_row, dimension="", columns=""):
     """Write a workbook of some kilobytes: three rows of a record, and one far below them."""
     cells = [f"<c><v>{0.01 * k:.2f}</v></c><c><v>{a}</v></c>" for k, a in enumerate((0.1, -0.2, 0.3, 0.0))]
     places = [*range(1, len(cells)), last_row]
     rows = "".join(f'<row r="{place}">{each}</row>' for place, each in zip(places, cells, strict=True))
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, text in PARTS.items():
-            archive.writestr(name, text)
-        sheet = f'<worksheet xmlns="{MAIN}">{dimension}<sheetData>{rows}{columns}</sheetData></worksheet>'
-        archive.writestr("xl/worksheets/sheet1.xml", sheet)
+    sheet = f'<worksheet xmlns="{MAIN}">{dimension}<sheetData>{rows}{columns}</sheetData></worksheet>'
+    file = folder / "far.xlsx"
+    with (
+        zipfile.ZipFile(write_excel(folder, {"S": []}, "empty.xlsx")) as empty,
+        zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive,
+    ):
+        for name in empty.namelist():
+            archive.writestr(name, sheet if name.endswith("sheet1.xml") else empty.read(name))
     return file
 
 
@@ -472,7 +432,7 @@ def crafted(file, last_row, dimension="", columns=""):
     ids=["claimed size", "row far below", "columns far away", "one long row"],
 )
 def test_a_small_workbook_with_cells_far_apart_takes_little_time_and_memory(tmp_path, last_row, more, said):
-    file = crafted(tmp_path / "far.xlsx", last_row, **more)
+    file = crafted(tmp_path, last_row, **more)
     found = subprocess.run(
         [sys.executable, "-c", BOUNDED, file], capture_output=True, text=True, timeout=60.0, check=False
     )

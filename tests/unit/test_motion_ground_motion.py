@@ -1,61 +1,30 @@
 """Ground motions: construction, integrals, finer sampling, correction and filtering."""
 
-import copy
-import pickle
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from scipy.signal import butter, sosfreqz
 
-import rockflex.motion as motion_layer
 from rockflex._errors import InputError
 from rockflex.motion import GroundMotion, RecordInfo
 
 MOTION = GroundMotion(np.random.default_rng(5).normal(size=400), 0.01, "noise")
 
 
-def test_holds_a_read_only_copy():
+def test_holds_a_copy():
     samples = np.array([0.0, 1.0, -2.0])
     motion = GroundMotion(samples, 0.5, name="a")
     samples[1] = 9.0
     assert motion.acceleration.tolist() == [0.0, 1.0, -2.0]
-    assert motion.acceleration.dtype == np.float64
-    with pytest.raises(ValueError, match="read-only"):
-        motion.acceleration[0] = 1.0
-    with pytest.raises(AttributeError):
-        motion.dt = 0.1
     assert motion.time.tolist() == [0.0, 0.5, 1.0]
     assert motion.duration == 1.0
     assert motion.pga == 2.0
 
 
-def test_copies_through_pickle_stay_read_only():
-    motion = GroundMotion([0, 1, 2], 0.5, "a", RecordInfo(year=1940))
-    for twin in (pickle.loads(pickle.dumps(motion)), copy.deepcopy(motion)):
-        assert not twin.acceleration.flags.writeable
-        assert (twin.dt, twin.name, twin.metadata) == (motion.dt, motion.name, motion.metadata)
-        assert np.array_equal(twin.acceleration, motion.acceleration)
-
-
-def test_repr_says_what_it_is():
-    text = repr(GroundMotion([0, 1, -3], 0.02, "quake"))
-    assert text == "GroundMotion('quake', 3 samples, dt=0.02 s, duration=0.04 s, pga=3 m/s²)"
-
-
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
-        (([], 0.1), "at least 3 samples, but 0 were given"),
         (([1, 2], 0.1), "at least 3 samples, but 2 were given"),
         (([1, 2, np.nan], 0.1), r"must be finite, but 1 of 3 values are not, the first \(nan\) at index 2"),
-        (([1, 2, np.inf], 0.1), "must be finite"),
-        (([[1, 2, 3]], 0.1), "must be one-dimensional"),
-        (("abc", 0.1), "must be a sequence of numbers in m/s²"),
-        (([1, 2, 3], 0.0), "dt must be a positive, finite number in s, but 0.0"),
-        (([1, 2, 3], -0.1), "dt must be a positive"),
-        (([1, 2, 3], np.nan), "dt must be a positive"),
         (([1, 2, 3], 0.1, 7), "name must be a string, but 7"),
         (([1, 2, 3], 0.1, "x", {"year": 1940}), "metadata must be a RecordInfo or None, but dict"),
     ],
@@ -75,29 +44,9 @@ def test_scaling_keeps_name_and_metadata_and_tells_the_whole_factor():
     assert GroundMotion([0, 1, -2], 0.5).scaled(3.0).metadata == RecordInfo(scale=3.0)
 
 
-@pytest.mark.parametrize(
-    ("factor", "text"),
-    [
-        (np.inf, "factor must be a finite number, but inf was given"),
-        (np.nan, "factor must be a finite number"),
-        ("a", "factor must be a finite number, but 'a' was given"),
-        (1e308, "acceleration must be finite"),
-    ],
-)
-def test_scaling_stays_finite(factor, text):
-    with pytest.raises(InputError, match=text):
-        GroundMotion([0, 1, -2], 0.5).scaled(factor)
-
-
-def test_importing_the_layer_loads_no_heavy_package():
-    code = "import sys, rockflex.motion; print(sorted({'scipy', 'numba', 'pandas', 'h5py'} & set(sys.modules)))"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
-
-
-def test_exports_are_what_is_listed():
-    assert all(hasattr(motion_layer, name) for name in motion_layer.__all__)
-    assert sorted(motion_layer.__all__) == sorted(set(motion_layer.__all__))
+def test_scaling_stays_finite():
+    with pytest.raises(InputError, match="acceleration must be finite"):
+        GroundMotion([0, 1, -2], 0.5).scaled(1e308)
 
 
 def test_refining_splits_every_interval():
@@ -109,12 +58,6 @@ def test_refining_splits_every_interval():
     assert np.array_equal(MOTION.refined(1).acceleration, MOTION.acceleration)
 
 
-@pytest.mark.parametrize("k", [0, -1, 1.5, "2", None])
-def test_refining_refuses(k):
-    with pytest.raises(InputError, match="k must be a whole number from 1 to 10000"):
-        MOTION.refined(k)
-
-
 def test_resampling_is_refining():
     fine = MOTION.resampled(0.0025)
     assert fine.dt == 0.0025
@@ -123,17 +66,11 @@ def test_resampling_is_refining():
 
 
 @pytest.mark.parametrize(
-    ("dt", "steps"),
-    [(0.004, "0.005 s or 0.00333333333333 s"), (0.02, "0.01 s"), (0.0099, "0.01 s or 0.005 s")],
+    ("dt", "steps"), [(0.004, "0.005 s or 0.00333333333333 s"), (0.02, "0.01 s"), (0.0099, "0.01 s or 0.005 s")]
 )
 def test_resampling_names_the_steps_that_can_be_had(dt, steps):
     with pytest.raises(InputError, match=f"cannot be resampled exactly to dt = {dt} s.*Use {steps}\\."):
         MOTION.resampled(dt)
-
-
-def test_resampling_refuses_no_step():
-    with pytest.raises(InputError, match="dt must be a positive"):
-        MOTION.resampled(0)
 
 
 @pytest.mark.parametrize("degree", [0, 1, 3])
@@ -153,8 +90,7 @@ def test_baseline_removes_the_polynomial_and_nothing_else(degree):
 
 
 @pytest.mark.parametrize(
-    ("degree", "text"),
-    [(-1, "at least 0, but -1"), (1.5, "at least 0, but 1.5"), (399, "at most 398 for 400 samples")],
+    ("degree", "text"), [(-1, "at least 0, but -1"), (1.5, "at least 0, but 1.5"), (399, "at most 398 for 400 samples")]
 )
 def test_baseline_refuses(degree, text):
     with pytest.raises(InputError, match=text):
@@ -178,8 +114,6 @@ def test_band_pass_checks_the_corners(low, high):
         MOTION.band_passed(low, high)
 
 
-def test_band_pass_checks_order_and_length():
-    with pytest.raises(InputError, match="order must be a whole number from 1 to 100, but 0"):
-        MOTION.band_passed(1, 10, order=0)
+def test_band_pass_checks_the_length():
     with pytest.raises(InputError, match="order 4 needs more than 27 samples, but the record has 20"):
         GroundMotion(np.ones(20), 0.01).band_passed(1, 10)

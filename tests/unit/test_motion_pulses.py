@@ -108,20 +108,9 @@ def test_names_tell_pulses_apart():
 @pytest.mark.parametrize(
     ("call", "text"),
     [
-        (
-            lambda: rm.ricker_pulse(1, 0.5, kind="odd"),
-            'kind must be "antisymmetric" or "symmetric", but \'odd\'',
-        ),
-        (lambda: rm.ricker_pulse(1, 0), "period must be a positive, finite number in s"),
-        (lambda: rm.ricker_pulse(1, 0.5, dt=0), "dt must be a positive"),
-        (lambda: rm.ricker_pulse(math.nan, 0.5), "amplitude must be a finite number in m/s², but nan"),
-        (lambda: rm.one_sine_pulse(math.inf, 0.5), "amplitude must be a finite number"),
-        (lambda: rm.half_sine_pulse(1, -1), "duration must be a positive"),
-        (lambda: rm.rectangular_pulse(1, math.inf), "duration must be a positive, finite"),
-        (lambda: rm.quiet_motion(0), "duration must be a positive"),
+        (lambda: rm.ricker_pulse(1, 0.5, kind="odd"), 'kind must be "antisymmetric" or "symmetric", but \'odd\''),
         (lambda: rm.quiet_motion(1e9, dt=1e-9), "requires 1e\\+18 samples; use a larger dt"),
         (lambda: rm.mavroeidis_papageorgiou_pulse(1, 1, 1, 0), "gamma must be finite and above 1, but 1 was"),
-        (lambda: rm.mavroeidis_papageorgiou_pulse(1, 1, 2, math.nan), "nu must be a finite number in rad"),
         (
             lambda: rm.mavroeidis_papageorgiou_pulse(math.nan, 1, 2, 0),
             "amplitude must be a finite number in m/s, but nan",

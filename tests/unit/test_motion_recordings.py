@@ -6,34 +6,19 @@ from pathlib import Path
 
 import pytest
 
+import rockflex as rf
 from design_case import STRUCTURE
-from rockflex import (
-    GroundMotion,
-    InputError,
-    RecordInfo,
-    RecordWarning,
-    read_at2,
-    read_motion,
-    read_suite,
-    run_cloud,
-    simulate,
-    simulate_many,
-)
+from record_samples import at2
 from rockflex.motion import component_direction
 from rockflex.motion._recordings import file_names_text, pair_vertical_records
 from rockflex.study import overturning_scales
 
 VERTICAL = (
     "RSN9_BORREGO_B-ELC-UP.AT2",
-    "RSN127_FRIULI_BUI-UP.AT2",
-    "RSN148_COYOTELK_G03-UP.AT2",
-    "RSN172_IMPVALL.H_H-E01-UP.AT2",
     "RSN1158_KOCAELI_DZC-UP.AT2",
     "RSN1294_CHICHI_HWA048-V.AT2",
-    "RSN1485_CHICHI_TCU045-V.AT2",
     "RSN2734_CHICHI.04_CHY074V.AT2",
     "RSN1_HELENA.A_A-HMCDWN.AT2",
-    "RSN100_NCALIF.AG_D-CPMDWN.AT2",
     "SED-V1.AT2",
     "RSN11341_10275733_N5471HNZ.AT2",
     "RSN5618_IWATE_IWT010UD.AT2",
@@ -47,48 +32,33 @@ VERTICAL = (
     "Kobe UP.csv",
     "RSN953_NORTHR_MUL-UP (1).AT2",
     "RSN9_BORREGO_B-ELC-DWN - Copy (2).AT2",
-    "DZC_UP - Copy.csv",
 )
 UNKNOWN = (
     "RSN1059_NORTHR_PTH090.AT2",
-    "RSN107_OROVILLE_B-OAP180.AT2",
     "RSN1180_CHICHI_CHY002-N.AT2",
-    "RSN1180_CHICHI_CHY002-W.AT2",
     "RSN140_TABAS_FER-L1.AT2",
-    "RSN140_TABAS_FER-T1.AT2",
     "RSN160_IMPVALL.H_059V2090.AT2",
     "RSN161_IMPVALL.H_LF1360.AT2",
     "RSN182_IMPVALL.H_H-VC6000.AT2",
     "RSN187_X_UPL090.AT2",
-    "RSN188_X_UPS000.AT2",
     "RSN189_X_CUP000.AT2",
     "RSN190_X_UP1-E.AT2",
     "RSN212_LIVERMOR_A-DVD156.AT2",
     "RSN3512_CHICHI.06_TCU141E.AT2",
-    "RSN3300_CHICHI.06_CHY074N.AT2",
     "RSN4886_CHUETSU_65058NS.AT2",
-    "RSN4200_NIIGATA_NIG013EW.AT2",
     "RSN6894_DARFIELD_DFHSS17E.AT2",
-    "RSN879_LANDERS_LCN345.AT2",
     "RSN4800_CHUETSU_ANLCEAS.AT2",
     "RSN11341_10275733_N5471HNE.AT2",
-    "RSN11341_10275733_N5471HNN.AT2",
-    "RSN126_GAZLI_GAZ000.AT2",
-    "RSN15_KERN_TAF021.AT2",
     "FAIGO-90.AT2",
     "elcentro.csv",
     "mine v.csv",
     "setup.csv",
-    "cup.txt",
     "rev.txt",
     "motion_v1.csv",
-    "group.dat",
     "ELCENTRO-NS.AT2",
     "uplift-1.csv",
     "ELC-NS (1).csv",
 )
-HEADER = "PEER NGA STRONG MOTION DATABASE RECORD\nSome Event, 1/1/2001, Some Station, {}\nACCELERATION IN UNITS OF G\n"
-AT2 = "{}, 1/1/2001, {}, {}\nACCELERATION IN UNITS OF G\nNPTS= 3, DT= {}\n0 {} 0\n"
 
 
 @pytest.mark.parametrize("name", VERTICAL)
@@ -122,40 +92,37 @@ def test_components_that_a_header_calls_horizontal(component):
 @pytest.mark.parametrize(("component", "direction"), [("UP", "vertical"), ("360", "horizontal"), ("Upland", None)])
 def test_readers_tell_the_direction(tmp_path, component, direction):
     file = tmp_path / "RSN1_X_ABC.AT2"
-    file.write_text(HEADER.format(component) + "NPTS= 3, DT= .1\n0 .2 0\n")
-    assert read_at2(file).metadata.direction == direction
-    assert read_motion(file).scaled(2.0).metadata.direction == direction
+    file.write_text(at2(component))
+    assert rf.read_at2(file).metadata.direction == direction
+    assert rf.read_motion(file).scaled(2.0).metadata.direction == direction
     named = tmp_path / "station-UD.csv"
     named.write_text("t,acc (g)\n0,0\n1,1\n2,0\n")
-    assert read_motion(named).metadata.direction == "vertical"
+    assert rf.read_motion(named).metadata.direction == "vertical"
 
 
 @pytest.mark.parametrize("direction", ["vertical", "down"])
 def test_nothing_is_shaken_by_a_vertical_component(direction):
-    motion = GroundMotion([0.0, 1.0, 0.0], 0.01, "M-UP", RecordInfo(direction=direction))
+    motion = rf.GroundMotion([0.0, 1.0, 0.0], 0.01, "M-UP", rf.RecordInfo(direction=direction))
     for call in (
-        lambda: simulate(STRUCTURE, motion, "2DOF-S"),
-        lambda: simulate_many(STRUCTURE, [motion], "2DOF-S"),
-        lambda: run_cloud({"a": STRUCTURE}, [motion], "2DOF-S"),
+        lambda: rf.simulate(STRUCTURE, motion, "2DOF-S"),
+        lambda: rf.simulate_many(STRUCTURE, [motion], "2DOF-S"),
+        lambda: rf.run_cloud({"a": STRUCTURE}, [motion], "2DOF-S"),
         lambda: overturning_scales(STRUCTURE, motion, [1.0, 2.0]),
     ):
-        with pytest.raises(
-            InputError,
-            match=r"A horizontal ground motion is expected, but 'M-UP' is a vertical component.*RecordInfo\(",
-        ):
+        with pytest.raises(rf.InputError, match="'M-UP' is a vertical component"):
             call()
-    with pytest.raises(InputError, match="'a', 'b', 'c' and 1 more are vertical components"):
-        simulate_many(STRUCTURE, [dataclasses.replace(motion, name=name) for name in "abcd"], "2DOF-S")
-    said = dataclasses.replace(motion, metadata=RecordInfo(direction="horizontal"))
-    assert simulate(STRUCTURE, said, "2DOF-S", output="peaks").status == "no_uplift"
+    with pytest.raises(rf.InputError, match="'a', 'b', 'c' and 1 more are vertical components"):
+        rf.simulate_many(STRUCTURE, [dataclasses.replace(motion, name=name) for name in "abcd"], "2DOF-S")
+    said = dataclasses.replace(motion, metadata=rf.RecordInfo(direction="horizontal"))
+    assert rf.simulate(STRUCTURE, said, "2DOF-S", output="peaks").status == "no_uplift"
 
 
-def write(folder, name, component, peak, *, event="Some Event", station="Some Station", dt=0.1):
-    (folder / f"{name}.AT2").write_text(AT2.format(event, station, component, dt, peak))
+def write(folder, name, component, peak=0.1, **changed):
+    (folder / f"{name}.AT2").write_text(at2(component, peak, **changed))
 
 
 def motion(name, **info):
-    return GroundMotion([0.0, 1.0, 0.0], 0.1, name, RecordInfo(**info))
+    return rf.GroundMotion([0.0, 1.0, 0.0], 0.1, name, rf.RecordInfo(**info))
 
 
 def pairs_of(horizontal, vertical):
@@ -220,7 +187,7 @@ def test_of_two_none_is_chosen():
 
 
 def test_a_record_with_both_stays_as_it_is():
-    own = GroundMotion([0.0, 1.0, 0.0], 0.1, "ABC090", vertical=[0.0, 2.0, 0.0])
+    own = rf.GroundMotion([0.0, 1.0, 0.0], 0.1, "ABC090", vertical=[0.0, 2.0, 0.0])
     both, without, left = pair_vertical_records({Path("ABC090.csv"): own}, {Path("ABC-UP.csv"): motion("ABC-UP")})
     assert both[Path("ABC090.csv")] is own
     assert (without, left) == ({}, [Path("ABC-UP.csv")])
@@ -235,8 +202,8 @@ def test_folder(tmp_path):
         write(tmp_path, f"RSN1_X_ABC{component}", component.strip("-"), peak)
     write(tmp_path, "RSN2_X_DEF000", "0", 0.4)
     write(tmp_path, "RSN3_X_GHI-V", "V", 0.5)
-    with pytest.warns(RecordWarning) as caught:
-        suite = read_suite(tmp_path, vertical="pair")
+    with pytest.warns(rf.RecordWarning) as caught:
+        suite = rf.read_suite(tmp_path, vertical="pair")
     assert [each.message.args[0] for each in caught] == [
         "Without a vertical component: 1 of 3 records, RSN2_X_DEF000.AT2.",
         "Left out: 1 vertical component, RSN3_X_GHI-V.AT2.",
@@ -248,32 +215,28 @@ def test_folder(tmp_path):
     (tmp_path / "RSN3_X_GHI-V.AT2").unlink()
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert len(read_suite(tmp_path, vertical="pair")) == 2
+        assert len(rf.read_suite(tmp_path, vertical="pair")) == 2
 
 
 def test_another_step_is_a_fault(tmp_path):
     for name, component, dt in (("A000", "0", 0.1), ("A-UP", "UP", 0.1), ("B000", "0", 0.1), ("B-UP", "UP", 0.2)):
         write(tmp_path, name, component, 0.1, dt=dt)
     said = r"1 of 2 records cannot be paired with a vertical component\. B000\.AT2: B-UP\.AT2: Both components need"
-    with pytest.raises(InputError, match=said + r'.* on_error="skip" keeps them without it\.$') as error:
-        read_suite(tmp_path, vertical="pair")
+    with pytest.raises(rf.InputError, match=said + r'.* on_error="skip" keeps them without it\.$') as error:
+        rf.read_suite(tmp_path, vertical="pair")
     assert error.value.field == "vertical"
-    with pytest.warns(RecordWarning, match=said):
-        suite = read_suite(tmp_path, vertical="pair", on_error="skip")
+    with pytest.warns(rf.RecordWarning, match=said):
+        suite = rf.read_suite(tmp_path, vertical="pair", on_error="skip")
     assert [each.vertical is None for each in suite] == [False, True]
 
 
 def test_folders_without_pairs(tmp_path):
     write(tmp_path, "A000", "0", 0.1)
     write(tmp_path, "A090", "90", 0.1, event="Another")
-    with pytest.raises(
-        InputError, match=r"No vertical component was found for any of the 2 records, such as A000\.AT2"
-    ):
-        read_suite(tmp_path, vertical="pair")
+    with pytest.raises(rf.InputError, match=r"No vertical component was found for any of the 2 records, such as A000"):
+        rf.read_suite(tmp_path, vertical="pair")
     (tmp_path / "A090.AT2").unlink()
-    with pytest.raises(InputError, match=r"No vertical component was found for A000\.AT2\. It is recognised by"):
-        read_suite(tmp_path, vertical="pair")
-    with pytest.raises(
-        InputError, match=r'vertical must be "pair" or None, but .*B\.AT2.* was given\. A file of its own'
-    ):
-        read_suite(tmp_path, vertical="B.AT2")
+    with pytest.raises(rf.InputError, match=r"No vertical component was found for A000\.AT2\. It is recognised by"):
+        rf.read_suite(tmp_path, vertical="pair")
+    with pytest.raises(rf.InputError, match=r'vertical must be "pair" or None, but .*B\.AT2.* was given'):
+        rf.read_suite(tmp_path, vertical="B.AT2")

@@ -67,10 +67,6 @@ def test_every_motion_of_a_suite():
         ({"target": TARGET, "periods": RANGE, "sa": 1.0}, BOTH),
         ({"target": TARGET, "periods": RANGE, "damping_ratio": 0.05}, BOTH),
         ({"target": TARGET, "sa": 1.0, "period": 1.0}, BOTH),
-        ({"sa": 0.0, "period": 1.0}, "sa must be a positive, finite number in m/s²"),
-        ({"sa": 1.0, "period": -1.0}, "period must be a zero or positive, finite number in s"),
-        ({"sa": 1.0, "period": 1.0, "damping_ratio": 5}, r"damping_ratio must lie in \[0, 1\)"),
-        ({"target": 3.0, "periods": RANGE}, "target must be of type TargetSpectrum, but float was given"),
         ({"target": TARGET, "periods": (2.0, 0.2)}, r"periods must be a range such as \(0.2, 2.0\), but \(2, 0.2\)"),
         ({"target": TARGET, "periods": [0.0, 1.0]}, r"but \(0, 1\) was given. Two periods are the ends of a range"),
         ({"target": TARGET, "periods": []}, r"periods must be the two ends of a range, or increasing .* but \[\] was"),
@@ -85,12 +81,9 @@ def test_scaling_refuses(arguments, text):
 
 def test_a_quiet_motion_cannot_be_scaled():
     quiet = rf.GroundMotion(np.zeros(50), 0.01, "still")
-    with pytest.raises(
-        rf.InputError, match="The motion 'still' cannot be scaled to a spectrum: its own is 0 m/s² at a"
-    ):
-        quiet.scaled_to(sa=1.0, period=1.0)
-    with pytest.raises(rf.InputError, match="The motion 'still' cannot be scaled to a spectrum: its own is 0 m/s²"):
-        rf.Suite([quiet, SUITE[0]]).select(TARGET, 1, RANGE)
+    for call in (lambda: quiet.scaled_to(sa=1.0, period=1.0), lambda: rf.Suite([quiet]).select(TARGET, 1, RANGE)):
+        with pytest.raises(rf.InputError, match="The motion 'still' cannot be scaled to a spectrum: its own is 0 m/s²"):
+            call()
 
 
 def test_selection_is_what_it_says():
@@ -114,9 +107,6 @@ def test_selection_is_what_it_says():
     ground = np.mean([motion.pga for motion in chosen.suite]) / TARGET.at([0.0])[0]
     assert chosen.zero_period_ratio == pytest.approx(ground, rel=1e-12)
     np.testing.assert_allclose(chosen.at(PERIODS), rows, rtol=1e-10)
-    assert repr(chosen) == f"Selection(5 records, misfit of the mean {chosen.misfit:.2g}, least mean/target " + (
-        f"{chosen.least_ratio:.2g})"
-    )
 
 
 def test_selection_against_every_set():
@@ -161,10 +151,7 @@ def test_one_record_of_an_earthquake_or_a_station():
     with pytest.raises(rf.InputError) as caught:
         SUITE.select(TARGET, 30, RANGE, per_event=1, per_station=1)
     n_events = len({(motion.metadata.event, motion.metadata.year) for motion in SUITE})
-    assert str(caught.value) == (
-        f"n = 30 records were asked for, but with per_event=1 and per_station=1 only {n_events} of 44 can be chosen. "
-        "Choose fewer, or raise the limit."
-    )
+    assert f"with per_event=1 and per_station=1 only {n_events} of 44 can be chosen" in str(caught.value)
 
 
 def test_the_mean_reaches_the_target():
@@ -173,9 +160,7 @@ def test_the_mean_reaches_the_target():
     assert raised.least_ratio == pytest.approx(1.1, rel=1e-12)
     np.testing.assert_allclose(raised.factors / plain.factors, 1.1 / plain.least_ratio, rtol=1e-12)
     assert SUITE.select(TARGET, 7, RANGE, least_ratio=0.1) == plain
-    with pytest.raises(
-        rf.InputError, match=r"a mean of at least 9 of the target, factors up to .* scale_limits end at 4"
-    ):
+    with pytest.raises(rf.InputError, match=r"at least 9 of the target, factors up to .* scale_limits end at 4"):
         SUITE.select(TARGET, 7, RANGE, least_ratio=9.0)
 
 
@@ -221,10 +206,8 @@ def test_what_is_a_pair():
     with pytest.warns(rf.RecordWarning) as caught:
         chosen = rf.Suite([*motions, *odd]).select(TARGET, 4, [0.5], measure="rotd50")
     assert chosen.names == (("x", "z"), ("y", "w"), ("ABC-NS", "abc-EW"), ("G1230", "G1320"))
-    assert str(caught[0].message) == (
-        "Left out: 6 motions that are not one of two components with the same time step, alone, D-N, D-E, T1, T2 and 1 "
-        "more."
-    )
+    assert "6 motions that are not one of two components" in str(caught[0].message)
+    assert "alone, D-N, D-E, T1, T2 and 1 more" in str(caught[0].message)
 
 
 def test_tables():
@@ -251,18 +234,12 @@ def test_tables():
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
-        ({"target": 3}, "target must be of type TargetSpectrum, but int was given"),
-        ({"n": 0}, "n must be a whole number of at least 1, but 0 was given"),
         ({"n": 45}, "n must be at most 44, the number of records, but 45 was given"),
         ({"n": 23, "measure": "rotd50"}, "n must be at most 22, the number of pairs, but 23 was given"),
         ({"measure": "srss"}, "measure must be one of 'component', 'geometric mean', 'rotd50', 'rotd100', but 'srss'"),
         ({"scale_limits": (2.0, 1.0)}, "scale_limits must be the smallest and the largest factor, both positive"),
         ({"scale_limits": (0.0, 1.0)}, "scale_limits must be the smallest and the largest factor"),
-        ({"scale_limits": 2.0}, "scale_limits must be one-dimensional"),
-        ({"per_event": 0}, "per_event must be a whole number of at least 1, but 0 was given"),
-        ({"per_station": 1.5}, "per_station must be a whole number of at least 1, but 1.5 was given"),
         ({"record_weight": 1.1}, r"record_weight must lie in \[0, 1\]"),
-        ({"least_ratio": 0.0}, "least_ratio must be a positive"),
     ],
 )
 def test_select_refuses(arguments, text):
@@ -271,9 +248,7 @@ def test_select_refuses(arguments, text):
 
 
 def test_select_refuses_suites_without_pairs_and_vertical_motions():
-    with pytest.raises(
-        rf.InputError, match='measure="rotd50" needs the two horizontal components of a recording, but no'
-    ):
+    with pytest.raises(rf.InputError, match='measure="rotd50" needs the two horizontal components'):
         rf.load_suite("el-centro-1940").select(TARGET, 1, RANGE, measure="rotd50")
     upright = dataclasses.replace(SUITE[0], metadata=rf.RecordInfo(direction="vertical"))
     with pytest.raises(rf.InputError, match="A horizontal ground motion is expected"):

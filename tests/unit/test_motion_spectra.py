@@ -128,11 +128,7 @@ def test_results_are_read_only_and_in_order():
     [
         ([-1.0], 0.05, "periods must be zero or at least 1e-6 s, but -1 was given at index 0"),
         ([1.0, 1e-7], 0.05, "but 1e-07 was given at index 1"),
-        ([np.nan], 0.05, "periods must be finite"),
         ([1.0], 1.0, r"damping_ratio must lie in \[0, 1\), but 1.0 was given. It is a fraction: 5 % is 0.05"),
-        ([1.0], 5, "damping_ratio must lie in"),
-        ([1.0], -0.01, "damping_ratio must lie in"),
-        (1.0, 0.05, "periods must be one-dimensional"),
     ],
 )
 def test_refuses(periods, zeta, text):
@@ -224,18 +220,9 @@ def test_a_spectrum_does_not_depend_on_what_else_is_asked_rotation():
     np.testing.assert_array_equal(rf.rotated_spectrum(*mirrored, PERIODS).sa, spectrum.sa)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "text"),
-    [
-        ((FIRST, SECOND.refined(2), [1.0]), r"first and second need the same time step, but 0\.01 s and 0\.005 s"),
-        ((FIRST, 3, [1.0]), "second must be of type GroundMotion, but int was given"),
-        ((FIRST, SECOND, [-1.0]), "periods must be zero or at least 1e-6 s"),
-        ((FIRST, SECOND, [1.0], 5), r"damping_ratio must lie in \[0, 1\), but 5 was given"),
-    ],
-)
-def test_refuses_rotation(arguments, text):
-    with pytest.raises(rf.InputError, match=text):
-        rf.rotated_spectrum(*arguments)
+def test_refuses_components_of_different_steps():
+    with pytest.raises(rf.InputError, match=r"need the same time step, but 0\.01 s and 0\.005 s"):
+        rf.rotated_spectrum(FIRST, SECOND.refined(2), [1.0])
 
 
 @pytest.mark.parametrize("percentile", [-1, 100.1, math.nan, "50"])

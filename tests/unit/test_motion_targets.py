@@ -39,7 +39,6 @@ EC8 = [
     ("E", 2, 1.0, 1.6 * 2.5 * 0.25),
 ]
 G = 9.81
-EC8_SECOND_G = 9.81
 
 
 def test_between_the_rows_of_a_table():
@@ -67,7 +66,6 @@ def test_scaled():
         (([-0.1, 0.1], [1.0, 1.0]), r"but -0\.1 s was given at index 0"),
         (([0.1, 0.2], [1.0, 0.0]), r"sa must be positive, but sa\[1\] = 0 m/s² was given"),
         (([0.1, 0.2], [1.0, 1.0], 5), r"damping_ratio must lie in \[0, 1\), but 5 was given. It is a fraction"),
-        (([0.1, 0.2], [1.0, 1.0], 0.05, 3), "name must be of type str, but int was given"),
     ],
 )
 def test_refuses_tables(arguments, text):
@@ -76,11 +74,8 @@ def test_refuses_tables(arguments, text):
 
 
 def test_outside_the_table_it_is_unknown():
-    with pytest.raises(rf.InputError) as caught:
+    with pytest.raises(rf.InputError, match=r"'site' is known from 0 to 2 s, but not at 2\.5 s"):
         TABLE.at([1.0, 2.5])
-    assert str(caught.value) == (
-        "The target 'site' is known from 0 to 2 s, but not at 2.5 s. Choose periods within it, or extend the table."
-    )
 
 
 @pytest.mark.parametrize(("ground", "kind", "period", "over_ag"), EC8)
@@ -103,11 +98,8 @@ def test_ec8_damping():
 @pytest.mark.parametrize(
     ("arguments", "options", "text"),
     [
-        ((0.0, "A"), {}, "ag must be a positive, finite number in m/s²"),
         ((1.0, "F"), {}, "ground must be one of A, B, C, D, E, the ground type of EN 1998-1, but 'F' was given. Gro"),
         ((1.0, "A", 3), {}, "kind must be 1 or 2, the type of the spectrum, but 3 was given"),
-        ((1.0, "A"), {"importance": -1.0}, "importance must be a positive"),
-        ((1.0, "A"), {"damping_ratio": 5}, r"damping_ratio must lie in \[0, 1\)"),
     ],
 )
 def test_ec8_refuses(arguments, options, text):
@@ -163,21 +155,12 @@ def test_asce7_site_coefficients(ss, s1, site, fa, fv):
 @pytest.mark.parametrize(
     ("call", "text"),
     [
-        (lambda: rf.asce7_spectrum(-1.0, 1.0, 8.0), "sds must be a positive"),
-        (lambda: rf.asce7_spectrum(1.0, 0.0, 8.0), "sd1 must be a positive"),
-        (
-            lambda: rf.asce7_spectrum(1.0, 0.6, 0.5),
-            r"tl must lie between sd1/sds = 0\.6 s and 100 s, but 0\.5 was given",
-        ),
+        (lambda: rf.asce7_spectrum(1.0, 0.6, 0.5), r"between sd1/sds = 0\.6 s and 100 s, but 0\.5 was given"),
         (lambda: rf.asce7_spectrum(1.0, 0.6, 200.0), "but 200.0 was given"),
         (lambda: rf.asce7_spectrum(1.0, 0.6, 8.0, mce=1.5), "mce must be True or False, but 1.5 was given"),
-        (
-            lambda: rf.asce7_site_spectrum(G, G, "F", 8.0),
-            'site must be one of A, B, C, D, E or "default".*Class F needs',
-        ),
+        (lambda: rf.asce7_site_spectrum(G, G, "F", 8.0), 'one of A, B, C, D, E or "default".*Class F needs'),
         (lambda: rf.asce7_site_spectrum(1.0 * G, 0.1 * G, "E", 8.0), "site E with S_S = 1 g and S_1 = 0.1 g needs an"),
         (lambda: rf.asce7_site_spectrum(0.5 * G, 0.2 * G, "E", 8.0), "site E with S_S = 0.5 g and S_1 = 0.2 g needs"),
-        (lambda: rf.asce7_site_spectrum(0.0, 0.2 * G, "C", 8.0), "ss must be a positive"),
     ],
 )
 def test_asce7_refuses(call, text):
@@ -219,11 +202,7 @@ def test_decimal_commas(tmp_path):
 @pytest.mark.parametrize(
     ("text", "options", "message"),
     [
-        (
-            "0.1 1\n2.0 1\n",
-            {},
-            r'does not state the unit.*read_target\(path, units="g"\).*header "period \(s\), sa \(g\)"',
-        ),
+        ("0.1 1\n2.0 1\n", {}, r'does not state the unit.*read_target\(path, units="g"\).*header "period'),
         ("period (s), sa (g)\n0.1, 1\n2, 1\n", {"units": "m/s2"}, "the header says g, but units='m/s2' was given"),
         ("period (s), sa (furlong)\n0.1, 1\n", {}, "the header gives the unit 'furlong', which is not known. Write it"),
         ("T (s), sa\n0.1, 1\n2, 1\n", {}, "does not state the unit of its acceleration"),
@@ -273,10 +252,9 @@ def test_formulas_for_given_factors(s_alpha, share, zeta, period):
     [("A", 1.0, 1.0), ("B", 1.3 * 0.96, 1.6 * 0.98), ("C", 1.6 * 0.92, 2.3 * 0.97), ("D", 1.8 * 0.88, 3.2 * 0.9)],
 )
 def test_default_factors(site, of_alpha, of_beta):
-    target = rf.ec8_second_spectrum(0.4 * EC8_SECOND_G, 0.1 * EC8_SECOND_G, site, topography=1.2)
-    assert target.at([0.0, 0.15, 1.0]) == pytest.approx(
-        1.2 * EC8_SECOND_G * np.array([0.4 * of_alpha / 2.5, 0.4 * of_alpha, 0.1 * of_beta])
-    )
+    target = rf.ec8_second_spectrum(0.4 * G, 0.1 * G, site, topography=1.2)
+    expected = 1.2 * G * np.array([0.4 * of_alpha / 2.5, 0.4 * of_alpha, 0.1 * of_beta])
+    assert target.at([0.0, 0.15, 1.0]) == pytest.approx(expected)
     assert f"site {site}, S_α 0.4 g, S_β 0.1 g" in target.name
 
 
@@ -292,16 +270,8 @@ def test_default_factors(site, of_alpha, of_beta):
         ((5.0, 1.0, "C"), {"amplification": (1.2, 1.5)}, "site='C' and amplification were both given. Give one"),
         ((5.0, 1.0), {"topography": 0.0}, "topography must be a positive, finite number, but 0.0 was"),
         ((5.0, 1.0), {"damping_ratio": 2.0}, "damping_ratio must lie in"),
-        (
-            (5.0, 0.1),
-            {},
-            r"T_B = 0\.05 s, T_C = 0\.02 s and T_D = 2 s, which must increase and stay below 10 s\. Check",
-        ),
-        (
-            (5.0, 8.0, "D"),
-            {},
-            r"F_α = 1\.52 and F_β = 0\.59, below 1\. .*amplification=\(F_α, F_β",
-        ),
+        ((5.0, 0.1), {}, r"T_B = 0\.05 s, T_C = 0\.02 s and T_D = 2 s, which must increase"),
+        ((5.0, 8.0, "D"), {}, r"F_α = 1\.52 and F_β = 0\.59, below 1\. .*amplification=\(F_α, F_β"),
     ],
 )
 def test_refuses(arguments, options, text):

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 import rockflex
 from page import Page, check_page
+from rockflex import report
 from rockflex.papers import silva_stojadinovic_2024 as paper
 from rockflex.papers.silva_stojadinovic_2024 import RemarkKind, Verdict
 from rockflex.papers.silva_stojadinovic_2024._comparison import (
@@ -21,15 +22,6 @@ from rockflex.papers.silva_stojadinovic_2024._comparison import (
     compared_statement,
     compared_statistic,
     construction_check,
-)
-from rockflex.report import (
-    PublicationReport,
-    Remark,
-    ReproducedResult,
-    report_numbers_to_csv,
-    report_to_html,
-    report_to_markdown,
-    write_publication_report,
 )
 from rockflex.report._publication_files import inline_svg
 
@@ -53,7 +45,9 @@ ROOT = Path(rockflex.__file__).parent
 
 def remark():
     computed.append(1)
-    return Remark(RemarkKind.AFTERWARDS, "Slices <b>", "20 of 20 & more.", ("h*_2 | m", "met"), [("51.33", "yes")])
+    return report.Remark(
+        RemarkKind.AFTERWARDS, "Slices <b>", "20 of 20 & more.", ("h*_2 | m", "met"), [("51.33", "yes")]
+    )
 
 
 def drawing():
@@ -67,25 +61,25 @@ def drawing():
 @pytest.fixture(scope="module")
 def document():
     sections = [
-        ReproducedResult(
+        report.ReproducedResult(
             "figure-3",
             "First & <only>",
             NUMBERS,
             {"figure-3": drawing, "figure-3-spread": drawing},
             "A note_1.",
             CHECKS,
-            (remark, lambda: Remark(RemarkKind.BESIDE, "Short", "No table.")),
+            (remark, lambda: report.Remark(RemarkKind.BESIDE, "Short", "No table.")),
         ),
-        ReproducedResult("table-1", "Second"),
+        report.ReproducedResult("table-1", "Second"),
     ]
-    return PublicationReport("A title", "A source", "72 records", {"rockflex": "1.2"}, MEANINGS, KINDS, sections)
+    return report.PublicationReport("A title", "A source", "72 records", {"rockflex": "1.2"}, MEANINGS, KINDS, sections)
 
 
 @pytest.fixture(scope="module")
 def folder(document, tmp_path_factory):
     out = tmp_path_factory.mktemp("report")
     drawn = []
-    files = write_publication_report(document, out, drawn.append)
+    files = report.write_publication_report(document, out, drawn.append)
     assert drawn == ["figure-3", "figure-3-spread"]
     assert [file.name for file in files] == [
         "figure-3.svg", "figure-3-spread.svg", "report.html", "report.md", "numbers.csv",
@@ -136,15 +130,15 @@ def test_checks_and_remarks_are_shown_and_not_counted(folder, document):
 
 def test_remarks_are_computed_once_and_when_they_are_asked_for(document):
     assert computed == [1]  # for the page and the Markdown together
-    before = ReproducedResult("figure-3", "First", remarking=(remark,))
+    before = report.ReproducedResult("figure-3", "First", remarking=(remark,))
     assert computed == [1]
     assert before.remarks is before.remarks
     assert computed == [1, 1]
 
 
 def test_a_page_without_failures_has_no_list_of_them(document):
-    fine = replace(document, sections=[ReproducedResult("table-1", "Second", NUMBERS[:1])])
-    text = report_to_html(fine, {})
+    fine = replace(document, sections=[report.ReproducedResult("table-1", "Second", NUMBERS[:1])])
+    text = report.report_to_html(fine, {})
     check_page(text, 0)
     assert 'id="failing"' not in text
     assert "Checks of ourselves, not counted" not in text
@@ -152,7 +146,7 @@ def test_a_page_without_failures_has_no_list_of_them(document):
 
 def test_markdown_holds_the_same(folder, document):
     text = (folder / "report.md").read_text("utf-8")
-    assert text == report_to_markdown(document)
+    assert text == report.report_to_markdown(document)
     rows = [line for line in text.splitlines() if line.startswith("|")]
     assert len({len(re.findall(r"(?<!\\)\|", row)) for row in rows}) == 4  # of the four kinds of table
     assert r"a\|b & c\_\*" in text
@@ -163,7 +157,7 @@ def test_markdown_holds_the_same(folder, document):
 
 def test_the_table_has_all_digits(folder, document):
     text = (folder / "numbers.csv").read_text("utf-8")
-    assert text == report_numbers_to_csv(document)
+    assert text == report.report_numbers_to_csv(document)
     rows = list(csv.DictReader(io.StringIO(text)))
     assert [row["verdict"] for row in rows] == [str(line.verdict) for line in NUMBERS]
     assert [float(row["rockflex"]) for row in rows] == [line.ours for line in NUMBERS]

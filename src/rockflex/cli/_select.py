@@ -325,7 +325,7 @@ def _check_selected_records_folder(folder: Path, out: Path | None, *, force: boo
         raise InputError(str(error).replace("--out", "--records")) from error
 
 
-def _selected_record_rows(chosen: "Selection[Any]") -> list[dict[str, Any]]:
+def _selected_record_rows(chosen: "Selection") -> list[dict[str, Any]]:
     """One row for each record, as in the table, with None for what is not known."""
     table = chosen.table().astype(object)
     return [
@@ -333,7 +333,7 @@ def _selected_record_rows(chosen: "Selection[Any]") -> list[dict[str, Any]]:
     ]
 
 
-def _print_selection(chosen: "Selection[Any]") -> None:
+def _print_selection(chosen: "Selection") -> None:
 
     console = stdout_console()
     rows = [
@@ -365,7 +365,7 @@ def _print_selection(chosen: "Selection[Any]") -> None:
     console.print("\n".join(lines), markup=False, soft_wrap=True)
 
 
-def _write_selection(folder: Path, document: dict[str, Any], chosen: "Selection[Any]", *, force: bool) -> None:
+def _write_selection(folder: Path, document: dict[str, Any], chosen: "Selection", *, force: bool) -> None:
     from rockflex.plot import plot_selection, save_figure
 
     with staged_output_folder(folder, document, force=force) as stage:
@@ -375,7 +375,7 @@ def _write_selection(folder: Path, document: dict[str, Any], chosen: "Selection[
     print_remark(f"Written to {folder}")
 
 
-def _write_selected_records(folder: Path, document: dict[str, Any], chosen: "Selection[Any]", *, force: bool) -> None:
+def _write_selected_records(folder: Path, document: dict[str, Any], chosen: "Selection", *, force: bool) -> None:
     from rockflex.motion import record_csv
 
     with staged_output_folder(folder, document, force=force) as stage:

@@ -68,10 +68,10 @@ def log_of_evaluation_points(im: ArrayLike, name: str = "im") -> Array:
     array = float_array(im)
     if array is None:
         raise InputError(f"{name} must be a number or an array of numbers, but {type(im).__name__} was given.")
-    if not (np.isfinite(array) & (array > 0.0)).all():
+    bad = array[~(np.isfinite(array) & (array > 0.0))]
+    if bad.size:
         raise InputError(
-            f"{name} must be positive and finite, but {array[~(np.isfinite(array) & (array > 0.0))].flat[0]:g} is "
-            "among the values. Start a grid above zero."
+            f"{name} must be positive and finite, but {bad[0]:g} is among the values. Start a grid above zero."
         )
     return np.log(array)
 
@@ -100,13 +100,7 @@ class FragilityCurve(Protocol):
 
 
 def checked_fragility_curve(fragility: FragilityCurve | Curve, name: str = "fragility") -> Curve:
-    """Return the probability as a function of an array of measures; `name` is for messages.
-
-    Raises
-    ------
-    InputError
-        If it is neither a fit nor a function. The function raises one if a probability is not a number from 0 to 1.
-    """
+    """Return the probability as a function of an array of measures, which checks it; `name` is for messages."""
     function: Any = getattr(fragility, "probability", fragility)
     if not callable(function):
         raise InputError(
@@ -119,10 +113,11 @@ def checked_fragility_curve(fragility: FragilityCurve | Curve, name: str = "frag
         p = float_array(given)
         if p is None:
             raise InputError(f"{name} must give an array of probabilities, but it gave something else.")
-        if not ((p >= 0.0) & (p <= 1.0)).all():
+        bad = p[~((p >= 0.0) & (p <= 1.0))]
+        if bad.size:
             raise InputError(
-                f"{name} must give probabilities from 0 to 1, but gave {p[~((p >= 0.0) & (p <= 1.0))].flat[0]:g}. "
-                "A part that could not be fitted gives NaN."
+                f"{name} must give probabilities from 0 to 1, but gave {bad[0]:g}. A part that could not be fitted "
+                "gives NaN."
             )
         return p
 

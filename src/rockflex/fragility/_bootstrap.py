@@ -12,22 +12,17 @@ from rockflex._checks import checked_finite_vector, checked_whole_number, float_
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import shown
 from rockflex._values import Value
+from rockflex.fragility import _regression
 from rockflex.fragility._arguments import check_same_column_length, checked_confidence
 from rockflex.fragility._jackknife import RecordingGroups
 from rockflex.fragility._limit_states import OVERTURNED, ROCKED
 from rockflex.fragility._outcomes import total_exceedance_probability
-from rockflex.fragility._regression import (
-    FirthScoringOptions,
-    StandardisedLogs,
-    fit_least_squares_lines,
-    fit_logistic_curves,
-)
 
 MAX_RESAMPLES = 1_000_000  # resamples
 MIN_RESAMPLES = 20  # fewest fitted resamples for meaningful quantiles
 MIN_GROUPS = 40  # blocks from which on percentiles are taken as they are
 Integers = NDArray[np.int64]
-RESAMPLE_SCORING = FirthScoringOptions(1e-8)
+RESAMPLE_SCORING = _regression.FirthScoringOptions(1e-8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -225,22 +220,7 @@ def draw_recording_groups(n_groups: int, n: int, seed: int) -> Iterator[Integers
 def bootstrap_weights(groups: Integers, n: int, seed: int) -> Array:
     """How often each run occurs in each resample of its groups, shape (n, n_runs), drawn as in `bootstrap_band`.
 
-    Parameters
-    ----------
-    groups : ndarray, shape (n_runs,)
-        Number of the group of every run, from 0 in the order in which the groups first appear.
-    n, seed
-        As in `bootstrap_band`.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from rockflex.fragility import bootstrap_weights
-    >>> weights = bootstrap_weights(np.array([0, 0, 1]), n=20, seed=0)
-    >>> weights.shape
-    (20, 3)
-    >>> bool((weights[:, 0] + weights[:, 2] == 2.0).all())
-    True
+    `groups` numbers the group of every run, from 0 in the order in which the groups first appear.
     """
     count = int(groups.max()) + 1
     return np.array(
@@ -256,18 +236,8 @@ def resampled_exceedance(
 
     The same as `fit_outcomes` of each resample and its `exceedance`; P(OV) where the limit is π/2. NaN where a factor
     that matters cannot be fitted.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from rockflex.fragility import fit_outcomes, resampled_exceedance
-    >>> im, overturned = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]), np.array([False] * 6 + [True])
-    >>> rotation = np.array([0.0, 0.0, 0.01, 0.0, 0.02, 0.05, 1.6])
-    >>> found = resampled_exceedance(im, rotation, overturned, np.ones((1, 7)), np.array([0.5]), 0.02)
-    >>> print(f"{found[0, 0]:.3g}, {fit_outcomes(im, rotation, overturned).exceedance(0.5, 0.02):.3g}")
-    0.759, 0.759
     """
-    scaled = StandardisedLogs(np.log(im))
+    scaled = _regression.StandardisedLogs(np.log(im))
     nodes, moves = scaled.of(np.log(at)), rotation > threshold
     falls = _resampled_outcome_curves(scaled.x, overturned, weights, nodes)
     if limit >= OVERTURNED:
@@ -291,7 +261,7 @@ def _resampled_outcome_curves(x: Array, outcome: Bools, weights: Array, nodes: A
     found[~yes & no], found[yes & ~no] = 0.0, 1.0
     mixed = np.flatnonzero(yes & no & varied)
     if mixed.size:
-        b = fit_logistic_curves(x, outcome, weights[mixed], RESAMPLE_SCORING).parameters
+        b = _regression.fit_logistic_curves(x, outcome, weights[mixed], RESAMPLE_SCORING).parameters
         found[mixed] = expit(b[:, :1] + b[:, 1:] * nodes)
     return found
 
@@ -300,7 +270,7 @@ def _resampled_limit_curves(x: Array, y: Array, weights: Array, at: Array, log_l
     """P(θ_max > limit | rocking) of each row at `at`; NaN for fewer than three runs or two x or y."""
     from scipy.special import ndtr
 
-    lines = fit_least_squares_lines(x, y, weights)
+    lines = _regression.fit_least_squares_lines(x, y, weights)
     with np.errstate(all="ignore"):
         above = lines.intercept[:, None] + lines.slope[:, None] * at - log_limit
         found = ndtr(above / lines.dispersion[:, None])

@@ -14,14 +14,13 @@ from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.fragility._arguments import (
     check_same_column_length,
-    checked_confidence,
     checked_probabilities,
     log_column,
     log_measures,
     log_of_evaluation_points,
 )
-from rockflex.fragility._jackknife import RecordingGroups, jackknife_covariance, student_t_quantile
-from rockflex.fragility._regression import fit_least_squares_lines, standard_error_of_line
+from rockflex.fragility._jackknife import RecordingGroups, band_of_line, jackknife_covariance
+from rockflex.fragility._regression import fit_least_squares_lines
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -90,11 +89,9 @@ class CloudFit(HtmlTable, Value):
         recording.
         """
         x = log_of_evaluation_points(im)
-        times = student_t_quantile(checked_confidence(confidence), self.n_groups or self.n - 1)
-        half = times * standard_error_of_line(x, self.covariance)
-        centre = self.c1 + self.c2 * x
+        low, high = band_of_line((self.c1, self.c2), x, self.covariance, confidence, self.n_groups or self.n - 1)
         with np.errstate(over="ignore"):
-            return np.exp(centre - half), np.exp(centre + half)
+            return np.exp(low), np.exp(high)
 
     def exceedance(self, im: ArrayLike, limit: ArrayLike) -> Array:
         """Probability that the response exceeds `limit` at `im`; the two broadcast."""
@@ -146,18 +143,15 @@ def fit_cloud_line(x: Array, y: Array, recordings: RecordingGroups | None = None
             f"A cloud needs at least 3 runs with different responses, but {x.size} runs with {np.unique(y).size} "
             "different responses were given."
         )
-    c1, c2, mean, n, sxx, syy, residual = (
-        float(value[0]) for value in fit_least_squares_lines(x, y, np.ones((1, x.size)))
-    )
+    line = fit_least_squares_lines(x, y, np.ones((1, x.size)))
+    c1, c2, mean, n, sxx, syy, residual = (float(value[0]) for value in line)
     variance = residual / (n - 2.0)
     count, replicates = 0, None
     if recordings is None:
         covariance = variance * np.array([[1.0 / n + mean**2 / sxx, -mean / sxx], [-mean / sxx, 1.0 / sxx]])
     else:
-        count, replicates = (
-            int(recordings.held.sum()),
-            recordings.without_each(lambda some: _cloud_parameters(x, y, some)),
-        )
+        count = int(recordings.held.sum())
+        replicates = recordings.without_each(lambda some: _cloud_parameters(x, y, some))
         covariance = jackknife_covariance(replicates[recordings.held])[:2, :2]
     fit = CloudFit(c1, c2, math.sqrt(variance), 1.0 - residual / syy, x.size, covariance, count)
     return fit, replicates

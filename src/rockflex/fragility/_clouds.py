@@ -119,31 +119,7 @@ def fit_clouds(
 def fit_each_cloud(
     runs: "pd.DataFrame", measure: str = "pgv", *, threshold: float = ROCKED, nominal: bool = False
 ) -> tuple[list[CloudFits], dict[tuple[str, str], str]]:
-    """Fit the clouds of a study as `fit_clouds` does, and report why others cannot be fitted.
-
-    Returns
-    -------
-    fits : list of CloudFits
-        One for each structure and model that can be fitted.
-    reasons : dict
-        Why there is no fit, by structure and model.
-
-    Raises
-    ------
-    InputError
-        If `runs` lacks a column.
-
-    Examples
-    --------
-    >>> import rockflex as rf
-    >>> from rockflex.fragility import fit_each_cloud
-    >>> structure = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
-    >>> motions = [rf.ricker_pulse(2.5, period) for period in (0.5, 0.7, 1.0)]
-    >>> runs = rf.run_cloud(structure, dict(zip("abc", motions)), "rigid", scales=[0.5, 1.0, 1.5, 2.0])
-    >>> fits, reasons = fit_each_cloud(runs, "pga")
-    >>> len(fits), reasons
-    (1, {})
-    """
+    """Fit the clouds of a study as `fit_clouds` does, and say why others, by structure and model, cannot be fitted."""
     fits: list[CloudFits] = []
     reasons: dict[tuple[str, str], str] = {}
     for structure, model, group in _cases_of_cloud(runs, measure):

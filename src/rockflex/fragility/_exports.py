@@ -20,15 +20,14 @@ from rockflex._errors import InputError
 from rockflex._files import checked_file_path, write_file_atomically
 from rockflex._shown import shown
 from rockflex.fragility._arguments import Curve, FragilityCurve, checked_fragility_curve
-from rockflex.fragility._hazard import HAZARD_DAMPING, damping_text, openquake_kind_and_period, openquake_measure_unit
+from rockflex.fragility._hazard import HAZARD_DAMPING, damping_text, openquake_kind_and_period, openquake_unit_in_si
 from rockflex.fragility._lognormal import LognormalFragility
 from rockflex.fragility._outcomes import OutcomeFragility
 
 States: TypeAlias = OutcomeFragility | Mapping[str, FragilityCurve | Curve]
 """Fits of the three outcomes, or a curve for each limit state by its name, from the mildest to the most severe."""
 
-_NAME = re.compile(r"[A-Za-z0-9_-]+")
-_IDENTIFIER = re.compile(r"[A-Za-z0-9_.:+-]+")
+_LIMIT_STATE, _STRUCTURE = re.compile(r"[A-Za-z0-9_-]+"), re.compile(r"[A-Za-z0-9_.:+-]+")  # names
 _N_CHECKED, _CROSSING_TOLERANCE = 200, 1e-9
 _NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
 _PELICUN_DEMANDS = {
@@ -43,35 +42,17 @@ _CLOSING_FACTOR = 1e6  # times the last level: where a curve that does not reach
 
 @dataclass(frozen=True)
 class FragilityFunction:
-    """The limit states of one structure.
-
-    Attributes
-    ----------
-    name : str
-        Name of the structure.
-    curves : dict
-        The probability of exceeding each limit state, from the mildest to the most severe.
-    lognormal : dict or None
-        The same as lognormal curves; None unless all of them are.
-    """
+    """The probability of exceeding each limit state of one structure, from the mildest to the most severe."""
 
     name: str
     curves: Mapping[str, Curve]
-    lognormal: Mapping[str, LognormalFragility] | None
+    lognormal: Mapping[str, LognormalFragility] | None  # the same curves; None unless all are lognormal
 
 
 def fragility_functions(
     curves: Mapping[str, States], levels: ArrayLike, rotations: Mapping[str, float] | None, measure: str
 ) -> tuple[list[FragilityFunction], Array]:
-    """Return the limit states of each structure, and the levels of the measure, both checked.
-
-    Raises
-    ------
-    InputError
-        If a name cannot be written, a spectral measure is not at 5 % damping, the levels do not rise, structures have
-        different limit states, a probability is not one, or a more severe limit state is more probable than a milder
-        one.
-    """
+    """Return the limit states of each structure, and the levels of the measure, both checked."""
     im = checked_finite_vector("levels", levels, "the SI unit of the measure")
     check_all_positive("levels", im, "in SI units")
     if im.size < 2 or (np.diff(im) <= 0.0).any():
@@ -99,22 +80,32 @@ def fragility_functions(
     found = [_structure_fragility_function(name, states, limits) for name, states in curves.items()]
     for name, states in curves.items():
         _check_exported_damping(name, states, measure)
-    _check_same_limit_states(found)
+    for each in found:
+        if list(each.curves) != list(found[0].curves):
+            raise InputError(
+                f"All structures must have the same limit states in the same order, but {found[0].name} has "
+                f"{', '.join(found[0].curves)} and {each.name} has {', '.join(each.curves)}. Write several files.",
+                field="curves",
+            )
     for each in found:
         _check_limit_state_order(each, im)
     return found, im
 
 
 def _structure_fragility_function(name: Any, states: Any, rotations: Mapping[str, float]) -> FragilityFunction:
-    if not isinstance(name, str) or not _IDENTIFIER.fullmatch(name):
+    if not isinstance(name, str) or not _STRUCTURE.fullmatch(name):
         raise InputError(
             f"The name of a structure may contain letters of the English alphabet, digits and _ . : + -, but "
             f"{shown(name)} was given.",
             field="curves",
         )
     if isinstance(states, OutcomeFragility):
+
+        def rocks(im: Array) -> Array:  # or overturns
+            return 1.0 - states.probabilities(im).no_rocking
+
         given: Mapping[Any, Any] = {
-            "rocking": partial(_rocking_probability, states),
+            "rocking": rocks,
             **{limit: partial(states.exceedance, limit=rotation) for limit, rotation in rotations.items()},
             "overturning": states.overturning,
         }
@@ -127,7 +118,7 @@ def _structure_fragility_function(name: Any, states: Any, rotations: Mapping[str
             field="curves",
         )
     for limit in given:
-        if not isinstance(limit, str) or not _NAME.fullmatch(limit):
+        if not isinstance(limit, str) or not _LIMIT_STATE.fullmatch(limit):
             raise InputError(
                 f"The name of a limit state may contain letters of the English alphabet, digits, _ and -, but "
                 f"{shown(limit)} was given.",
@@ -147,22 +138,6 @@ def _check_exported_damping(name: str, states: States, measure: str) -> None:
                 f"measure: {measure} of risk programs is at {damping_text(HAZARD_DAMPING)}, but the curves of {name} "
                 f"are in a spectral measure at {damping_text(damping)}. Fit the runs to sa_t1_5, Sa(T₁) at 5 %.",
                 field="measure",
-            )
-
-
-def _rocking_probability(outcomes: OutcomeFragility, im: Array) -> Array:
-    """Probability of rocking or overturning."""
-    return 1.0 - outcomes.probabilities(im).no_rocking
-
-
-def _check_same_limit_states(found: list[FragilityFunction]) -> None:
-    first = found[0]
-    for other in found[1:]:
-        if list(other.curves) != list(first.curves):
-            raise InputError(
-                f"All structures must have the same limit states in the same order, but {first.name} has "
-                f"{', '.join(first.curves)} and {other.name} has {', '.join(other.curves)}. Write several files.",
-                field="curves",
             )
 
 
@@ -226,11 +201,6 @@ def write_nrml(
     description, asset_category, loss_category
         Texts about the model in the file.
 
-    Returns
-    -------
-    Path
-        The file written.
-
     Raises
     ------
     InputError
@@ -250,7 +220,7 @@ def write_nrml(
     <imls imt="PGV" minIML="5.0" maxIML="200.0" />
     """
     target = checked_file_path("path", path)
-    _, unit = openquake_measure_unit(measure)
+    unit = openquake_unit_in_si(measure)
     functions, im = fragility_functions(curves, levels, rotations, measure)
     texts = {"description": description, "asset_category": asset_category, "loss_category": loss_category}
     for name, text in texts.items():
@@ -275,7 +245,7 @@ def write_nrml(
         if function.lognormal is None:
             _add_discrete_nrml_function(model, function, shared, im, unit)
         else:
-            _add_continuous_nrml_function(model, function.name, function.lognormal, shared, (im / unit)[[0, -1]], unit)
+            _add_continuous_nrml_function(model, function.name, function.lognormal, shared, im, unit)
     ET.indent(root)
     return write_file_atomically(target, ET.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n")
 
@@ -284,10 +254,9 @@ def _add_discrete_nrml_function(
     model: ET.Element, function: FragilityFunction, shared: dict[str, str], im: Array, unit: float
 ) -> None:
     element = ET.SubElement(model, "fragilityFunction", {"id": function.name, "format": "discrete"})
-    ET.SubElement(element, "imls", shared).text = " ".join(_nrml_number_text(value) for value in im / unit)
+    ET.SubElement(element, "imls", shared).text = " ".join(map(_nrml_number_text, im / unit))
     for limit, curve in function.curves.items():
-        values = " ".join(_nrml_number_text(value) for value in curve(im))
-        ET.SubElement(element, "poes", {"ls": limit}).text = values
+        ET.SubElement(element, "poes", {"ls": limit}).text = " ".join(map(_nrml_number_text, curve(im)))
 
 
 def _add_continuous_nrml_function(
@@ -295,15 +264,13 @@ def _add_continuous_nrml_function(
     name: str,
     curves: Mapping[str, LognormalFragility],
     shared: dict[str, str],
-    ends: Array,
+    im: Array,
     unit: float,
 ) -> None:
     """OpenQuake takes the mean and the standard deviation of the capacity itself, not of its logarithm."""
-    kind = {"id": name, "format": "continuous", "shape": "logncdf"}
-    element = ET.SubElement(model, "fragilityFunction", kind)
-    ET.SubElement(
-        element, "imls", {**shared, "minIML": _nrml_number_text(ends[0]), "maxIML": _nrml_number_text(ends[1])}
-    )
+    element = ET.SubElement(model, "fragilityFunction", {"id": name, "format": "continuous", "shape": "logncdf"})
+    least, most = map(_nrml_number_text, (im / unit)[[0, -1]])
+    ET.SubElement(element, "imls", {**shared, "minIML": least, "maxIML": most})
     for limit, curve in curves.items():
         try:
             mean = curve.median / unit * math.exp(0.5 * curve.beta**2)
@@ -316,9 +283,8 @@ def _add_continuous_nrml_function(
                 "and standard deviation in double precision.",
                 field="curves",
             )
-        ET.SubElement(
-            element, "params", {"ls": limit, "mean": _nrml_number_text(mean), "stddev": _nrml_number_text(spread)}
-        )
+        numbers = {"mean": _nrml_number_text(mean), "stddev": _nrml_number_text(spread)}
+        ET.SubElement(element, "params", {"ls": limit, **numbers})
 
 
 def _nrml_number_text(value: float) -> str:
@@ -355,11 +321,6 @@ def write_pelicun(
         distributions.
     rotations : dict, optional
         Limit states of each `OutcomeFragility` between "rocking" and "overturning": names, and rotations in rad.
-
-    Returns
-    -------
-    Path
-        The file written.
 
     Raises
     ------

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,16 +23,16 @@ from rockflex.fragility._arguments import log_of_evaluation_points
 if TYPE_CHECKING:
     import pandas as pd
 
-# Names and units of OpenQuake's intensity measure types, and one of them in SI units.
+# OpenQuake's units of its intensity measure types, in SI units: g, cm/s, cm, m/s, g s, s.
 _OPENQUAKE_UNITS = {
-    "PGA": ("g", GRAVITY),
-    "PGV": ("cm/s", 0.01),
-    "PGD": ("cm", 0.01),
-    "SA": ("g", GRAVITY),
-    "AvgSA": ("g", GRAVITY),
-    "IA": ("m/s", 1.0),
-    "CAV": ("g s", GRAVITY),
-    "RSD": ("s", 1.0),
+    "PGA": GRAVITY,
+    "PGV": 0.01,
+    "PGD": 0.01,
+    "SA": GRAVITY,
+    "AvgSA": GRAVITY,
+    "IA": 1.0,
+    "CAV": GRAVITY,
+    "RSD": 1.0,
 }
 _SPECTRAL_MEASURE = re.compile(r"(?P<kind>SA|AvgSA)\((?P<period>\d+\.?\d*)\)")
 Site = tuple[float, float] | str
@@ -41,29 +41,11 @@ _LEVEL_PREFIX = "poe-"
 HAZARD_DAMPING = 0.05  # of the spectra of hazard analyses, and of OpenQuake's and Pelicun's SA
 
 
-def openquake_measure_unit(measure: str) -> tuple[str, float]:
-    """Return OpenQuake's unit of a measure such as "PGV" or "SA(1.0)", and this unit in SI units.
-
-    Raises
-    ------
-    InputError
-        If there is no such measure.
-    """
-    kind, _ = openquake_kind_and_period(measure)
-    return _OPENQUAKE_UNITS[kind]
-
-
 def openquake_kind_and_period(measure: str) -> tuple[str, str]:
-    """Return the kind of a measure and its period as it is written, which is empty where there is none.
-
-    Raises
-    ------
-    InputError
-        If there is no such measure.
-    """
+    """Return the kind of a measure, such as "PGV" or "SA(1.0)", and its period as written; empty if there is none."""
     if isinstance(measure, str):  # pyright: ignore[reportUnnecessaryIsInstance]
         found = _SPECTRAL_MEASURE.fullmatch(measure)
-        if found and math.isfinite(float(found["period"])) and float(found["period"]) > 0.0:
+        if found and 0.0 < float(found["period"]) < math.inf:
             return found["kind"], found["period"]
         if measure in _OPENQUAKE_UNITS and measure != "SA":
             return measure, ""
@@ -75,32 +57,20 @@ def openquake_kind_and_period(measure: str) -> tuple[str, str]:
     )
 
 
-class OpenQuakeHazardCurve(NamedTuple):
-    """Levels in SI units, the probabilities of exceeding them, and the years that these refer to."""
-
-    im: list[float]
-    poe: list[float]
-    years: float
+def openquake_unit_in_si(measure: str) -> float:
+    """Return OpenQuake's unit of a measure in SI units."""
+    return _OPENQUAKE_UNITS[openquake_kind_and_period(measure)[0]]
 
 
-def read_openquake_hazard_curve(path: str | Path, site: Site | None) -> OpenQuakeHazardCurve:
-    """Read the curve of one site.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, is not such an export, or has no or more than one such site.
-    """
-    file = checked_file_path("path", path)
+def read_openquake_hazard_curve(file: Path, site: Site | None) -> tuple[Array, Array, float]:
+    """Read the curve of one site: levels in SI units, the probabilities of exceeding them, and their years."""
     check_regular_file(file, "path")
     try:
         lines = file.read_text("utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{file} cannot be read: {error}.", field="path") from error
-    comments = [line for line in lines if line.startswith("#")]
-    years, measure = _hazard_years_and_measure(file, " ".join(comments))
-    rows = list(csv.reader(line for line in lines if line.strip() and not line.startswith("#")))
-    names = rows[0] if rows else []
+    years, measure = _hazard_years_and_measure(file, " ".join(line for line in lines if line.startswith("#")))
+    names, *rows = list(csv.reader(line for line in lines if line.strip() and not line.startswith("#"))) or [[]]
     columns = [place for place, name in enumerate(names) if name.startswith(_LEVEL_PREFIX)]
     if not columns or "lon" not in names or "lat" not in names:
         raise InputError(
@@ -108,10 +78,10 @@ def read_openquake_hazard_curve(path: str | Path, site: Site | None) -> OpenQuak
             f"columns are {shown(', '.join(names))}.",
             field="path",
         )
-    row = _hazard_row_of_site(file, names, rows[1:], site)
-    _, unit = openquake_measure_unit(measure)
+    row = _hazard_row_of_site(file, names, rows, site)
+    unit = openquake_unit_in_si(measure)
     levels = [_hazard_number(file, names[place].removeprefix(_LEVEL_PREFIX)) * unit for place in columns]
-    return OpenQuakeHazardCurve(levels, [_hazard_number(file, row[place]) for place in columns], years)
+    return np.array(levels), np.array([_hazard_number(file, row[place]) for place in columns]), years
 
 
 def _hazard_years_and_measure(file: Path, comment: str) -> tuple[float, str]:
@@ -326,8 +296,7 @@ class HazardCurve(Value):
         >>> hazard.im, hazard.rate.round(5)
         (array([0.1, 0.2]), array([0.01022, 0.00211]))
         """
-        found = read_openquake_hazard_curve(path, site)
-        im, poe = np.array(found.im), np.array(found.poe)
+        im, poe, years = read_openquake_hazard_curve(checked_file_path("path", path), site)
         if (poe < 0.0).any() or (poe > 1.0).any():
             raise InputError(f"{path} holds probabilities below 0 or above 1.", field="path")
         last = np.append(poe[1:] != poe[:-1], True)
@@ -337,7 +306,7 @@ class HazardCurve(Value):
                 f"{path} must have two different probabilities between 0 and 1 at this site, but it has {kept.sum()}.",
                 field="path",
             )
-        return cls.from_poe(im[kept], poe[kept], found.years)
+        return cls.from_poe(im[kept], poe[kept], years)
 
     @property
     def slopes(self) -> Array:
@@ -350,11 +319,8 @@ class HazardCurve(Value):
 
     def im_at(self, rate: ArrayLike) -> Array:
         """Measure that is exceeded at an annual `rate`: the uniform-hazard value (2 % in 50 years is 1/2475)."""
-        return np.exp(
-            _interpolated_hazard(
-                "rate", log_of_evaluation_points(rate, "rate"), np.log(self.rate[::-1]), np.log(self.im[::-1])
-            )
-        )
+        x = log_of_evaluation_points(rate, "rate")
+        return np.exp(_interpolated_hazard("rate", x, np.log(self.rate[::-1]), np.log(self.im[::-1])))
 
 
 def damping_text(damping: float) -> str:
@@ -366,14 +332,6 @@ def measure_damping_of_runs(runs: "pd.DataFrame", measure: str) -> float | None:
     """Return the damping ratio of an intensity measure of a study's runs; None of one that has none.
 
     NaN if the runs do not state it, or it differs between their structures.
-
-    Examples
-    --------
-    >>> import pandas as pd
-    >>> from rockflex.fragility import measure_damping_of_runs
-    >>> runs = pd.DataFrame({"zeta_1": [0.02, 0.02]})
-    >>> [measure_damping_of_runs(runs, measure) for measure in ("pgv", "sa_t1", "sa_t1_5")]
-    [None, 0.02, 0.05]
     """
     if measure == "sa_t1_5":
         return HAZARD_DAMPING

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.fragility._arguments import check_same_column_length
+from rockflex.fragility._arguments import check_same_column_length, checked_confidence
 
 N_SAMPLES = 2048  # parameters drawn; a power of two, as Sobol's sequence wants
 _MAX_WEIGHTS = 2_000_000  # weights held at once
@@ -34,13 +34,7 @@ class RecordingGroups(NamedTuple):
 
     @classmethod
     def of(cls, groups: ArrayLike) -> Self:
-        """Number a column of names or numbers.
-
-        Raises
-        ------
-        InputError
-            If it is no such column, or a name is missing.
-        """
+        """Number a column of names or numbers."""
         import pandas as pd
 
         try:
@@ -62,13 +56,7 @@ class RecordingGroups(NamedTuple):
 
     @classmethod
     def beside(cls, groups: ArrayLike | None, **columns: NDArray[np.generic]) -> Self | None:
-        """Number the recordings of runs with these columns; None without `groups`.
-
-        Raises
-        ------
-        InputError
-            If it is no column of names or numbers, or not all columns have the same number of rows.
-        """
+        """Number the recordings of runs with these columns, all of one length; None without `groups`."""
         found = None if groups is None else cls.of(groups)
         check_same_column_length(**columns, **({} if found is None else {"groups": found.codes}))
         return found
@@ -109,6 +97,16 @@ def student_t_quantile(confidence: float, n_groups: int) -> float:
 
     p = 0.5 + 0.5 * confidence
     return float(stdtrit(n_groups - 1, p) if n_groups > 1 else ndtri(p) if n_groups == 0 else np.nan)
+
+
+def band_of_line(
+    line: tuple[float, float], x: Array, covariance: Array, confidence: float, n_groups: int
+) -> tuple[Array, Array]:
+    """Confidence limits of a + b x at x, for the covariance of (a, b)."""
+    variance = covariance[0, 0] + 2.0 * covariance[0, 1] * x + covariance[1, 1] * x**2
+    error = np.sqrt(np.maximum(variance, 0.0))  # rounding may leave a small negative variance
+    half, centre = student_t_quantile(checked_confidence(confidence), n_groups) * error, line[0] + line[1] * x
+    return centre - half, centre + half
 
 
 def sampled_fit_parameters(parameters: ArrayLike, covariance: Array, n_groups: int) -> Array:

@@ -70,16 +70,7 @@ def _overturned_runs(runs: Any) -> Any:
 
 
 def rotation_limit_state(rotation: float, name: str = "rotation", label: str = "") -> LimitState:
-    """Return the limit state of a rotation in rad; an overturned run exceeds every rotation below π/2.
-
-    Examples
-    --------
-    >>> from rockflex.fragility import rotation_limit_state
-    >>> rotation_limit_state(0.02).label
-    '0.02 rad'
-    >>> bool(rotation_limit_state(0.02).exceeded({"max_rotation": 0.03, "status": "rocking"}))
-    True
-    """
+    """Return the limit state of a rotation in rad; an overturned run exceeds every rotation below π/2."""
 
     def exceeded(runs: Any) -> Any:
         return (runs["max_rotation"] > rotation) | (_overturned_runs(runs) & (rotation < OVERTURNED))
@@ -124,12 +115,6 @@ def rocked_runs(runs: Any, threshold: float = ROCKED) -> Any:
 
     A base on springs also turns without uplift, which is no rocking. The threshold follows Silva & Stojadinović
     2024, Section 3.2, for rotations that matter.
-
-    Examples
-    --------
-    >>> from rockflex.fragility import rocked_runs
-    >>> [bool(rocked_runs({"max_rotation": 0.003, "status": status})) for status in ("no_uplift", "rocking")]
-    [False, True]
     """
     return UPLIFT.exceeded(runs) & (runs["max_rotation"] > threshold)
 
@@ -159,36 +144,14 @@ LIMIT_STATES = Catalogue[LimitState]((UPLIFT, ROCKING, NOMINAL, TENDON_YIELD, OV
 
 
 def limit_state_label(limit: float | str) -> str:
-    """Return the name in text of a limit from a file: a word unchanged, or a rotation in rad.
-
-    Examples
-    --------
-    >>> from rockflex.fragility import limit_state_label
-    >>> limit_state_label(0.02), limit_state_label("overturning")
-    ('0.02 rad', 'overturning')
-    """
+    """Return the name in text of a limit from a file: a word unchanged, or a rotation in rad."""
     return limit if isinstance(limit, str) else rotation_limit_state(limit).label
 
 
 def observed_exceedance_fractions(im: Array, exceeded: Bools, groups: int) -> list[tuple[float, float]]:
     """Return the geometric mean of the measures and the fraction of runs beyond a limit, in groups of neighbours.
 
-    Parameters
-    ----------
-    im : ndarray, shape (n,)
-        Intensity measure of every run, positive.
-    exceeded : ndarray, shape (n,)
-        Whether each run exceeds the limit.
-    groups
-        Number of groups, of equal size as far as possible; groups without a run are left out.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from rockflex.fragility import observed_exceedance_fractions
-    >>> found = observed_exceedance_fractions(np.array([0.4, 0.1, 0.1, 0.4]), np.array([True, False, False, False]), 2)
-    >>> [(round(at, 3), share) for at, share in found]
-    [(0.1, 0.0), (0.4, 0.5)]
+    The groups are of equal size as far as possible; those without a run are left out.
     """
     parts: list[NDArray[np.intp]] = np.array_split(np.argsort(im, kind="stable"), groups)
     return [(float(np.exp(np.log(im[part]).mean())), float(exceeded[part].mean())) for part in parts if part.size]

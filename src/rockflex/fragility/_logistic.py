@@ -12,22 +12,9 @@ from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
 from rockflex._values import Value
+from rockflex.fragility import _jackknife, _regression
 from rockflex.fragility._arguments import boolean_column, checked_confidence, log_measures, log_of_evaluation_points
 from rockflex.fragility._hazard import measure_damping_of_column
-from rockflex.fragility._jackknife import (
-    ONE_RECORDING,
-    RecordingGroups,
-    jackknife_covariance,
-    sampled_fit_parameters,
-    student_t_quantile,
-)
-from rockflex.fragility._regression import (
-    FirthScoringOptions,
-    StandardisedLogs,
-    fisher_information,
-    fit_logistic_curves,
-    standard_error_of_line,
-)
 
 Method = Literal["maximum likelihood", "Firth"]
 FIRTH_TOLERANCE = 1e-4  # score and step of the penalised fit: the defaults of the package firthmodels
@@ -183,17 +170,14 @@ class LogisticFit(HtmlTable, Value):
         from scipy.special import expit
 
         x = log_of_evaluation_points(im)
-        half = student_t_quantile(checked_confidence(confidence), self.n_groups) * standard_error_of_line(
-            x, self.covariance
-        )
-        centre = self.b0 + self.b1 * x
-        return expit(centre - half), expit(centre + half)
+        low, high = _jackknife.band_of_line((self.b0, self.b1), x, self.covariance, confidence, self.n_groups)
+        return expit(low), expit(high)
 
     def drawn(self, im: Array) -> Array:
         """Probabilities at `im`, shape (m,), for 2048 parameters drawn from the t distribution of the estimate."""
         from scipy.special import expit
 
-        b = sampled_fit_parameters((self.b0, self.b1), self.covariance, self.n_groups)
+        b = _jackknife.sampled_fit_parameters((self.b0, self.b1), self.covariance, self.n_groups)
         return expit(b[:, :1] + b[:, 1:] * np.log(im))
 
 
@@ -239,12 +223,12 @@ def fit_logistic(
     x = log_measures(im)
     y = boolean_column("outcome", outcome)
     return fit_logistic_curve(
-        x, y, RecordingGroups.beside(groups, im=x, outcome=y), measure_damping_of_column(im, damping)
+        x, y, _jackknife.RecordingGroups.beside(groups, im=x, outcome=y), measure_damping_of_column(im, damping)
     )[0]
 
 
 def fit_logistic_curve(
-    x: Array, y: Bools, recordings: RecordingGroups | None, damping: float | None
+    x: Array, y: Bools, recordings: _jackknife.RecordingGroups | None, damping: float | None
 ) -> tuple[LogisticFit, Array | None]:
     """Fit a curve through logarithms of equal length; the fit, and its parameters without each recording."""
     if y.all() or not y.any():
@@ -253,10 +237,10 @@ def fit_logistic_curve(
             f"outcome is {alike.outcome} in all {alike.n} runs, so there is no curve to fit. {alike.note} "
             "Add runs at other measures, or use fit_outcomes, which accepts such a group."
         )
-    scaled = StandardisedLogs(x)
+    scaled = _regression.StandardisedLogs(x)
     unit = np.ones((1, x.size))
-    scoring = FirthScoringOptions(FIRTH_TOLERANCE / y.size, FIRTH_TOLERANCE, augmented=True)
-    curve = fit_logistic_curves(scaled.x, y, unit, scoring)
+    scoring = _regression.FirthScoringOptions(FIRTH_TOLERANCE / y.size, FIRTH_TOLERANCE, augmented=True)
+    curve = _regression.fit_logistic_curves(scaled.x, y, unit, scoring)
     if not np.isfinite(curve.parameters).all():
         raise SolverError(
             f"Firth's penalised likelihood did not converge for {y.size} runs with {int(y.sum())} events. "
@@ -264,11 +248,13 @@ def fit_logistic_curve(
         )
     count, replicates = 0, None
     if recordings is None:
-        covariance = np.linalg.inv(fisher_information(scaled.x, unit, curve.parameters)[0])
+        covariance = np.linalg.inv(_regression.fisher_information(scaled.x, unit, curve.parameters)[0])
     else:
         count = int(recordings.held.sum())
-        replicates = recordings.without_each(lambda some: fit_logistic_curves(scaled.x, y, some, scoring).parameters)
-        covariance = jackknife_covariance(replicates[recordings.held])
+        replicates = recordings.without_each(
+            lambda some: _regression.fit_logistic_curves(scaled.x, y, some, scoring).parameters
+        )
+        covariance = _jackknife.jackknife_covariance(replicates[recordings.held])
         replicates = scaled.back(replicates)
     b0, b1, covariance = scaled.unscaled(curve.parameters[0], covariance)
     separated = bool(curve.separated[0])
@@ -285,7 +271,7 @@ def fit_logistic_curve(
     if b1 <= 0.0:
         notes.append(f"The probability does not rise with im (b1 = {b1:.3g}), so there is no median or dispersion.")
     if count == 1:
-        notes.append(ONE_RECORDING)
+        notes.append(_jackknife.ONE_RECORDING)
     events = int(y.sum())
     ends, note = (math.exp(x.min()), math.exp(x.max())), " ".join(notes)
     fit = LogisticFit(b0, b1, covariance, y.size, events, method, separated, note, count, damping, ends)

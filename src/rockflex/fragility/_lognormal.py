@@ -13,21 +13,7 @@ from rockflex._checks import checked_finite_matrix, checked_finite_vector, check
 from rockflex._errors import InputError, SolverError
 from rockflex._html import HtmlTable
 from rockflex._values import Value
-from rockflex.fragility._arguments import (
-    boolean_column,
-    checked_confidence,
-    checked_probabilities,
-    log_column,
-    log_measures,
-    log_of_evaluation_points,
-)
-from rockflex.fragility._jackknife import (
-    ONE_RECORDING,
-    RecordingGroups,
-    jackknife_covariance,
-    sampled_fit_parameters,
-    student_t_quantile,
-)
+from rockflex.fragility import _arguments, _jackknife
 from rockflex.fragility._regression import StandardisedLogs, fit_capacity_lines
 
 
@@ -92,7 +78,7 @@ class LognormalFragility(HtmlTable, Value):
         """Capacity that a fraction `p` stay below, of the shape of `p`."""
         from scipy.special import ndtri
 
-        return self.median * np.exp(self.beta * ndtri(checked_probabilities("p", p)))
+        return self.median * np.exp(self.beta * ndtri(_arguments.checked_probabilities("p", p)))
 
     def band(self, im: ArrayLike, confidence: float = 0.9) -> tuple[Array, Array]:
         """Lower and upper confidence limits of the probability: delta method on ln(IM/median)/beta, then Φ.
@@ -109,13 +95,13 @@ class LognormalFragility(HtmlTable, Value):
         z = self._score(im)
         gradient = np.stack((np.full_like(z, -1.0), -z)) / self.beta
         error = np.sqrt(np.einsum("i...,ij,j...->...", gradient, self._known_covariance, gradient))
-        half = student_t_quantile(checked_confidence(confidence), self.n_groups) * error
+        half = _jackknife.student_t_quantile(_arguments.checked_confidence(confidence), self.n_groups) * error
         return ndtr(z - half), ndtr(z + half)
 
     @property
     def _known_covariance(self) -> Array:
         if self.covariance is None:
-            why = "which this curve was given without" if self.n_groups != 1 else f"but: {ONE_RECORDING}"
+            why = "which this curve was given without" if self.n_groups != 1 else f"but: {_jackknife.ONE_RECORDING}"
             raise InputError(f"A band needs the covariance of (ln median, beta), {why}.".replace("..", "."))
         return self.covariance
 
@@ -125,12 +111,12 @@ class LognormalFragility(HtmlTable, Value):
 
         away = normal_score_derivatives(self.median, self.beta)
         score = -math.log(self.median) / self.beta, 1.0 / self.beta
-        b = sampled_fit_parameters(score, away @ self._known_covariance @ away.T, self.n_groups)
+        b = _jackknife.sampled_fit_parameters(score, away @ self._known_covariance @ away.T, self.n_groups)
         return ndtr(b[:, :1] + b[:, 1:] * np.log(im))
 
     def _score(self, im: ArrayLike) -> Array:
         with np.errstate(over="ignore"):  # a nearly zero dispersion makes a step
-            return (log_of_evaluation_points(im) - math.log(self.median)) / self.beta
+            return (_arguments.log_of_evaluation_points(im) - math.log(self.median)) / self.beta
 
 
 def normal_score_derivatives(median: float, beta: float) -> Array:
@@ -140,7 +126,7 @@ def normal_score_derivatives(median: float, beta: float) -> Array:
 
 def lognormal_fit_covariance(replicates: Array, median: float, beta: float) -> Array | None:
     """Covariance of (ln median, beta) from intercepts and slopes without each recording; None if it is not known."""
-    covariance = jackknife_covariance(replicates)
+    covariance = _jackknife.jackknife_covariance(replicates)
     if not np.isfinite(covariance).all():
         return None
     back = np.linalg.inv(normal_score_derivatives(median, beta))
@@ -148,11 +134,7 @@ def lognormal_fit_covariance(replicates: Array, median: float, beta: float) -> A
 
 
 def fit_capacities(
-    im: ArrayLike,
-    censored: ArrayLike | None = None,
-    groups: ArrayLike | None = None,
-    *,
-    damping: float | None = None,
+    im: ArrayLike, censored: ArrayLike | None = None, groups: ArrayLike | None = None, *, damping: float | None = None
 ) -> LognormalFragility:
     """Fit a lognormal fragility to the capacities of records.
 
@@ -186,9 +168,9 @@ def fit_capacities(
     >>> print(f"{fit.median:.3g}, {fit.beta:.3g}")
     0.73, 0.458
     """
-    x = log_column("im", im, "Leave those records out.")
-    above = np.zeros(x.size, dtype=np.bool_) if censored is None else boolean_column("censored", censored)
-    recordings = RecordingGroups.beside(groups, im=x, censored=above)
+    x = _arguments.log_column("im", im, "Leave those records out.")
+    above = np.zeros(x.size, dtype=np.bool_) if censored is None else _arguments.boolean_column("censored", censored)
+    recordings = _jackknife.RecordingGroups.beside(groups, im=x, censored=above)
     known = x[~above]
     if known.size < 2 or np.ptp(known) == 0.0:
         raise InputError(
@@ -197,21 +179,16 @@ def fit_capacities(
         )
     if above.any():
         mean, beta = _censored_lognormal_fit(known, x[above])
-        method, covariance = (
-            "censored capacities, maximum likelihood",
-            _censored_lognormal_covariance(known, x[above], mean, beta),
-        )
+        method = "censored capacities, maximum likelihood"
+        covariance = _censored_lognormal_covariance(known, x[above], mean, beta)
     else:
         mean, beta, n = float(known.mean()), float(known.std(ddof=1)), known.size
         method, covariance = "capacities, moments", np.diag([beta**2 / n, beta**2 / (2.0 * (n - 1))])
-    if recordings is None:
-        return LognormalFragility(math.exp(mean), beta, covariance, x.size, method, damping=damping)
-    median, replicates = (
-        math.exp(mean),
-        recordings.without_each(lambda some: _normal_score_lines(x, above, some, mean, beta)),
-    )
-    covariance = lognormal_fit_covariance(replicates, median, beta)
-    return LognormalFragility(median, beta, covariance, x.size, method, recordings.n, damping)
+    median, count = math.exp(mean), 0
+    if recordings is not None:
+        replicates = recordings.without_each(lambda some: _normal_score_lines(x, above, some, mean, beta))
+        covariance, count = lognormal_fit_covariance(replicates, median, beta), recordings.n
+    return LognormalFragility(median, beta, covariance, x.size, method, count, damping)
 
 
 def _normal_score_lines(x: Array, above: Bools, weights: Array, mean: float, beta: float) -> Array:
@@ -297,9 +274,9 @@ def fit_stripes(
     >>> print(f"{fit.median:.3g}, {fit.beta:.3g}")
     0.427, 0.539
     """
-    x = log_measures(im_levels, "im_levels")
+    x = _arguments.log_measures(im_levels, "im_levels")
     total, events = _checked_stripe_counts("n_total", n_total, 1), _checked_stripe_counts("n_exceeding", n_exceeding, 0)
-    recordings = RecordingGroups.beside(groups, im_levels=x, n_exceeding=events, n_total=total)
+    recordings = _jackknife.RecordingGroups.beside(groups, im_levels=x, n_exceeding=events, n_total=total)
     if (events > total).any():
         row = int(np.flatnonzero(events > total)[0])
         raise InputError(
@@ -333,7 +310,7 @@ def fit_stripes(
     else:
         kind, both = np.repeat((1.0, -1.0), x.size), np.tile(scaled.x, 2)
         runs = np.concatenate((events, total - events))
-        twice, at = RecordingGroups(np.tile(recordings.codes, 2), recordings.n), np.asarray(result.params)
+        twice, at = _jackknife.RecordingGroups(np.tile(recordings.codes, 2), recordings.n), np.asarray(result.params)
         replicates = twice.without_each(lambda some: fit_capacity_lines(both, kind, some * runs, at))
         found, count = lognormal_fit_covariance(scaled.back(replicates), median, beta), recordings.n
     method = "binomial counts, maximum likelihood"

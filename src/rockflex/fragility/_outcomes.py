@@ -163,12 +163,13 @@ class OutcomeFragility(HtmlTable, Value):
 
     def probabilities(self, im: ArrayLike) -> OutcomeProbabilities:
         """Probabilities of no rocking, rocking, and overturning, each of the shape of `im`."""
+        falls, rocks = self._curves_at(im)
+        still, moves = (_weighted_probability(1.0 - falls, each) for each in (1.0 - rocks, rocks))
+        return OutcomeProbabilities(still, moves, falls)
+
+    def _curves_at(self, im: ArrayLike) -> tuple[Array, Array]:
         falls = self.overturning.probability(im)
-        rocks = np.full_like(falls, np.nan) if self.rocking is None else self.rocking.probability(im)
-        stands = 1.0 - falls
-        return OutcomeProbabilities(
-            _weighted_probability(stands, 1.0 - rocks), _weighted_probability(stands, rocks), falls
-        )
+        return falls, np.full_like(falls, np.nan) if self.rocking is None else self.rocking.probability(im)
 
     def exceedance(self, im: ArrayLike, limit: ArrayLike) -> Array:
         """Probability that the rotation exceeds `limit` (rad) at `im`; the two broadcast.
@@ -182,8 +183,7 @@ class OutcomeFragility(HtmlTable, Value):
             If a measure is not positive, or a limit is below `lowest_limit` or not below `highest_limit`.
         """
         sample_limits = self._checked(limit)
-        falls = self.overturning.probability(im)
-        rocks = np.full_like(falls, np.nan) if self.rocking is None else self.rocking.probability(im)
+        falls, rocks = self._curves_at(im)
         beyond = np.full_like(sample_limits, np.nan) if self.rotation is None else self.rotation.exceedance(im, limit)
         return total_exceedance_probability(falls, rocks, beyond)
 

@@ -17,58 +17,29 @@ MAX_SCORING_STEP = 5.0  # step of Fisher scoring
 
 
 class LogisticCurves(NamedTuple):
-    """Logistic curves through standardised x.
+    """Logistic curves through standardised x."""
 
-    Attributes
-    ----------
-    parameters : ndarray, shape (m, 2)
-        Intercept and slope; NaN where no fit converged.
-    separated : ndarray, shape (m,)
-        Whether one value of x separates the outcomes, so that maximum likelihood has no finite slope.
-    penalised : ndarray, shape (m,)
-        Whether Firth's penalty was used: the outcomes are separated, or Newton's method did not converge.
-    """
-
-    parameters: Array
-    separated: Bools
-    penalised: Bools
+    parameters: Array  # (m, 2): intercept and slope; NaN where no fit converged
+    separated: Bools  # (m,): whether one x separates the outcomes, so that maximum likelihood has no finite slope
+    penalised: Bools  # (m,): whether Firth's penalty was used: separated, or Newton's method did not converge
 
 
 class FirthScoringOptions(NamedTuple):
     """Steps of the penalised fit, and when it has converged.
 
     Every choice leads to the same maximum. Each caller has its own, so that the digits of its results stay the same.
-
-    Attributes
-    ----------
-    score : float
-        Largest component of the penalised score, over the number of runs.
-    step : float
-        Largest component of the next step.
-    augmented : bool
-        Whether a run with the leverage h counts 1 + h times in the information that sets the step.
     """
 
-    score: float
-    step: float = np.inf
-    augmented: bool = False
+    score: float  # largest component of the penalised score, over the number of runs
+    step: float = np.inf  # largest component of the next step
+    augmented: bool = False  # whether a run with leverage h counts 1 + h times in the information that sets the step
 
 
 def fit_logistic_curves(x: Array, outcome: Bools, weights: Array, scoring: FirthScoringOptions) -> LogisticCurves:
     """Fit logistic curves by maximum likelihood, or with Firth's penalty where that has no finite slope.
 
-    Firth 1993, Biometrika 80(1), 27-38; Heinze & Schemper 2002, Stat. Med. 21(16), 2409-2419.
-
-    Parameters
-    ----------
-    x : ndarray, shape (n,)
-        Logarithms of the intensity measure, with mean 0 and standard deviation 1.
-    outcome : ndarray, shape (n,)
-        Whether it happened.
-    weights : ndarray, shape (m, n)
-        How often each run counts in each fit; both outcomes must occur.
-    scoring
-        Of the penalised fits.
+    x, shape (n,), has mean 0 and standard deviation 1; both outcomes must occur in each fit. Firth 1993, Biometrika
+    80(1), 27-38; Heinze & Schemper 2002, Stat. Med. 21(16), 2409-2419.
     """
     separated = are_outcomes_separated(x, outcome, weights)
     parameters = np.full((weights.shape[0], 2), np.nan)
@@ -80,8 +51,10 @@ def fit_logistic_curves(x: Array, outcome: Bools, weights: Array, scoring: Firth
 
 def are_outcomes_separated(x: Array, outcome: Bools, weights: Array) -> Bools:
     """Whether some value of x separates the outcomes of each row; runs at that value may have either."""
-    low_no, high_no = _measure_range_of_rows(x, (weights > 0.0) & ~outcome)
-    low_yes, high_yes = _measure_range_of_rows(x, (weights > 0.0) & outcome)
+    (low_no, high_no), (low_yes, high_yes) = (
+        (np.where(held, x, np.inf).min(axis=1), np.where(held, x, -np.inf).max(axis=1))
+        for held in ((weights > 0.0) & ~outcome, (weights > 0.0) & outcome)
+    )
     return (high_no <= low_yes) | (high_yes <= low_no)
 
 
@@ -94,21 +67,9 @@ def fisher_information(x: Array, weights: Array, parameters: Array) -> Array:
 def fit_capacity_lines(x: Array, kind: Array, weights: Array, start: Array) -> Array:
     """Fit a + b x, the normal score of log(IM)/capacity, to capacities of which some are bounds, by maximum likelihood.
 
-    Parameters
-    ----------
-    x : ndarray, shape (n,)
-        Logarithms of the intensity measure.
-    kind : ndarray, shape (n,)
-        0 where the capacity is x, 1 where it is smaller (the run exceeds the limit), -1 where it is larger.
-    weights : ndarray, shape (m, n)
-        How often each run counts in each fit.
-    start : ndarray, shape (2,)
-        a and b near all solutions, such as the fit of all runs.
-
-    Returns
-    -------
-    ndarray, shape (m, 2)
-        a and b; where the likelihood has no maximum nearby, one step of Newton's method from `start`.
+    `kind`, shape (n,), is 0 where the capacity is x, 1 where it is smaller (the run exceeds the limit), -1 where it is
+    larger; `start` has a and b near all solutions, such as the fit of all runs. Returns a and b, shape (m, 2); where
+    the likelihood has no maximum nearby, one step of Newton's method from `start`.
     """
     from scipy.special import log_ndtr
 
@@ -181,8 +142,7 @@ def _weighted_moments(x: Array, each: Array) -> tuple[Array, Array, Array]:
     return each.sum(axis=1), each @ x, each @ x**2
 
 
-def _moment_determinant(moments: tuple[Array, Array, Array]) -> Array:
-    one, first, second = moments
+def _moment_determinant(one: Array, first: Array, second: Array) -> Array:
     return one * second - first**2
 
 
@@ -193,7 +153,7 @@ def _newton_step(
     one, first, second = moments
     a, b = residual.sum(axis=1), residual @ x + more
     step = np.column_stack((second * a - first * b, one * b - first * a))
-    return np.column_stack((a, b)), step / _moment_determinant(moments)[:, None]
+    return np.column_stack((a, b)), step / _moment_determinant(*moments)[:, None]
 
 
 def _newton_logistic_fit(x: Array, outcome: Bools, weights: Array) -> Array:
@@ -220,7 +180,7 @@ def _firth_logistic_fit(x: Array, outcome: Bools, weights: Array, scoring: Firth
         for _ in range(MAX_SCORING_STEPS):
             at = _LogisticPoint(x, weights, b)
             one, first, second = (moment[:, None] for moment in at.moments)
-            leverage = at.each * (second - 2.0 * first * x + one * x**2) / _moment_determinant(at.moments)[:, None]
+            leverage = at.each * (second - 2.0 * first * x + one * x**2) / _moment_determinant(*at.moments)[:, None]
             residual = weights * (outcome - at.p) + leverage * (0.5 - at.p)
             moments = (
                 _weighted_moments(x, at.each + leverage * at.p * (1.0 - at.p)) if scoring.augmented else at.moments
@@ -244,20 +204,14 @@ def _firth_logistic_fit(x: Array, outcome: Bools, weights: Array, scoring: Firth
 
 def _firth_penalised_likelihood(outcome: Bools, weights: Array, at: _LogisticPoint) -> Array:
     likely = np.where(outcome, -np.logaddexp(0.0, -at.eta), -np.logaddexp(0.0, at.eta))
-    return (weights * likely).sum(axis=1) + 0.5 * np.log(_moment_determinant(at.moments))
-
-
-def _measure_range_of_rows(x: Array, held: Bools) -> tuple[Array, Array]:
-    """Smallest and largest x of the runs in each row; infinite where there is none."""
-    return np.where(held, x, np.inf).min(axis=1), np.where(held, x, -np.inf).max(axis=1)
+    return (weights * likely).sum(axis=1) + 0.5 * np.log(_moment_determinant(*at.moments))
 
 
 class StandardisedLogs:
     """Logarithms scaled to mean 0 and standard deviation 1, and back."""
 
     def __init__(self, x: Array) -> None:
-        mean, spread = float(x.mean()), float(x.std())
-        self._mean, self._spread = mean, spread
+        self._mean, self._spread = mean, spread = float(x.mean()), float(x.std())
         self.x = self.of(x)
         self.design = np.column_stack((np.ones(x.size), self.x))
         self._back = np.array([[1.0, -mean / spread], [0.0, 1.0 / spread]])
@@ -274,9 +228,3 @@ class StandardisedLogs:
         """Intercept, slope and covariance for the original logarithms."""
         a, b = self._back @ parameters
         return float(a), float(b), self._back @ covariance @ self._back.T
-
-
-def standard_error_of_line(x: Array, covariance: Array) -> Array:
-    """Standard error of a + b x for the covariance of (a, b)."""
-    variance = covariance[0, 0] + 2.0 * covariance[0, 1] * x + covariance[1, 1] * x**2
-    return np.sqrt(np.maximum(variance, 0.0))  # rounding may leave a small negative variance

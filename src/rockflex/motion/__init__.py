@@ -32,9 +32,8 @@ from rockflex.motion._recordings import (
     recording_names,
     rotated_spectrum,
 )
-from rockflex.motion._selection import Selection
 from rockflex.motion._spectra import ResponseSpectrum, TargetSpectrum
-from rockflex.motion._suite import Suite, load_suite, suite_names
+from rockflex.motion._suite import Selection, Suite, load_suite, suite_names
 from rockflex.motion._survey import RecordSurvey, SurveyEntry, survey_records, survey_without_obspy
 from rockflex.motion._targets import asce7_site_spectrum, asce7_spectrum, ec8_second_spectrum, ec8_spectrum, read_target
 from rockflex.motion._text import UNITS, acceleration_in_text

@@ -7,20 +7,13 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex._files import checked_file_path
+from rockflex.motion import _text
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction
-from rockflex.motion._text import (
-    DECIMAL,
-    AccelerationUnit,
-    motion_from_samples,
-    parse_decimal,
-    read_text_lines,
-    wrong_sample_count_error,
-)
 
 HEADER_LINES = 12
 _MAX_NPTS_DIGITS = 18  # of NPTS that are read; no file has more samples
-_COUNT, _NUMBER, _APART = r"(\d++)", rf"({DECIMAL.pattern})", r"(?:\s*+,\s++|\s++)"
+_COUNT, _NUMBER, _APART = r"(\d++)", rf"({_text.DECIMAL.pattern})", r"(?:\s*+,\s++|\s++)"
 NPTS = re.compile(rf"\bNPTS\s*+[=:]\s*+{_COUNT}", re.IGNORECASE)
 DT = re.compile(rf"\bDT\s*+[=:]\s*+{_NUMBER}", re.IGNORECASE)
 NUMBERS_FIRST = re.compile(rf"\s*+{_COUNT}{_APART}{_NUMBER}{_APART}NPTS\s*+,?+\s*+DT\b", re.IGNORECASE)
@@ -66,7 +59,7 @@ def read_at2(path: str | Path, vertical: str | Path | None = None) -> GroundMoti
     GroundMotion('DEMO', 4 samples, dt=0.01 s, duration=0.03 s, pga=1.962 m/s²)
     """
     file = checked_file_path("path", path)
-    motion = parse_at2(file, read_text_lines(file))
+    motion = parse_at2(file, _text.read_text_lines(file))
     return motion if vertical is None else motion.with_vertical(read_at2(checked_file_path("vertical", vertical)))
 
 
@@ -100,18 +93,18 @@ def parse_at2(file: Path, lines: list[str]) -> GroundMotion:
             f"{file}: the header states units of {unit[1]}, but an AT2 file contains an acceleration in g. "
             "Use the AT2 file of the record, not VT2 or DT2; save values in m/s² in a plain text file."
         )
-    dt = parse_decimal(step, file, start)
+    dt = _text.parse_decimal(step, file, start)
     if dt <= 0:
         raise InputError(f"{file}, line {start}: DT must be positive, but it is {step}.")
     values = _at2_samples(file, lines, start)
     if values.size != npts:
-        raise wrong_sample_count_error(file, values.size, npts, f"NPTS = {npts}")
+        raise _text.wrong_sample_count_error(file, values.size, npts, f"NPTS = {npts}")
     remedy = (
         "AT2 files are in g by definition: save only the values as a text file and declare their unit, "
         f'read_motion(path, units="m/s2", dt={dt:g}).'
     )
-    return motion_from_samples(
-        file, values, AccelerationUnit("g"), dt, _at2_record_info(file, lines[: start - 1]), remedy
+    return _text.motion_from_samples(
+        file, values, _text.AccelerationUnit("g"), dt, _at2_record_info(file, lines[: start - 1]), remedy
     )
 
 
@@ -131,9 +124,9 @@ def _at2_samples(file: Path, lines: list[str], start: int) -> np.ndarray[tuple[i
             while position < word.end():
                 token = TOKEN.match(line, position)
                 if token is None:
-                    found.append(parse_decimal(line[position : word.end()], file, i))
+                    found.append(_text.parse_decimal(line[position : word.end()], file, i))
                     break
-                found.append(parse_decimal(token[0], file, i))
+                found.append(_text.parse_decimal(token[0], file, i))
                 position = token.end()
     return np.array(found)
 

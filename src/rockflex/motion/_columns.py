@@ -4,7 +4,7 @@ import io
 import re
 import warnings
 import zipfile
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from itertools import chain, pairwise
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._shown import number_with_noun, shown
+from rockflex.motion import _text
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import (
     HORIZONTAL_NAME,
@@ -23,21 +24,6 @@ from rockflex.motion._record_info import (
     component_direction,
     is_horizontal_component_name,
     unique_record_names,
-)
-from rockflex.motion._text import (
-    BRACKET,
-    DECIMAL,
-    SECONDS,
-    TIME_LABEL,
-    AccelerationUnit,
-    NumericTable,
-    acceleration_unit_name,
-    checked_acceleration_in_si,
-    end_of_last_bracket,
-    is_number_cell,
-    motion_from_samples,
-    parse_decimal,
-    parse_optional_decimal,
 )
 
 PREFIX = r"(?:acc[a-z]*+|a)[\s_.-]++"
@@ -51,7 +37,7 @@ ACCELERATION_LABEL = re.compile(
     re.IGNORECASE,
 )
 STATED_UNIT = re.compile(r"\bunits?\s*+[:=]\s*+\(?([^\s,;()]++)", re.IGNORECASE)
-STATED_STEP = re.compile(rf"\bdt\s*+[:=]\s*+({DECIMAL.pattern})\s*+(?:s|sec|seconds)?+\s*+$", re.IGNORECASE)
+STATED_STEP = re.compile(rf"\bdt\s*+[:=]\s*+({_text.DECIMAL.pattern})\s*+(?:s|sec|seconds)?+\s*+$", re.IGNORECASE)
 REMEDY = 'Declare the unit of the file: units="m/s2" or units="cm/s2".'
 ZIP_MAGIC, OLD_EXCEL_MAGIC = b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 MAX_UNPACKED_BYTES = 100_000_000  # bytes of a workbook when unpacked
@@ -77,7 +63,7 @@ class ColumnRoles:
 
 
 def parse_columns(
-    file: Path, table: NumericTable, units: AccelerationUnit | None, dt: float | None, name: str
+    file: Path, table: _text.NumericTable, units: _text.AccelerationUnit | None, dt: float | None, name: str
 ) -> list[GroundMotion]:
     """Build the motions from rows of numbers; of several accelerations, each is a motion, the vertical one too."""
     roles = _column_roles(file, table.labels, len(table.rows[0][1]))
@@ -86,7 +72,16 @@ def parse_columns(
     values = {k: _column_samples(file, table, k) for k in places}
     step = _column_time_step(file, table, roles.time, dt)
     if len(roles.horizontal) == 1:
-        return [_motion_from_columns(file, table, roles, stated, values, step, name)]
+        (column,), vertical = roles.horizontal, roles.vertical
+        alone = bool(table.labels) and VERTICAL_LABEL.match(table.labels[column])
+        direction = "vertical" if alone else component_direction(file)
+        info = RecordInfo(source=file.name, direction=direction, source_format="columns")
+        info = record_info_in_csv(file, table.heads).completed(info)
+        motion = _text.motion_from_samples(file, values[column], stated[column], step, info, REMEDY, name)
+        if vertical is None:
+            return [motion]
+        upwards = _text.checked_acceleration_in_si(file, values[vertical], stated[vertical], REMEDY, info.scale)
+        return [motion.with_vertical(upwards)]
     names = [_component_in_label(table.labels[k]) or str(k + 1) for k in places]
     motions: list[GroundMotion] = []
     for k, component, apart in zip(places, names, unique_record_names(names), strict=True):
@@ -97,57 +92,28 @@ def parse_columns(
             azimuth=None if k == roles.vertical else component_azimuth(component),
             source_format="columns",
         )
-        motions.append(motion_from_samples(file, values[k], stated[k], step, info, REMEDY, f"{name}-{apart}"))
+        motions.append(_text.motion_from_samples(file, values[k], stated[k], step, info, REMEDY, f"{name}-{apart}"))
     return motions
 
 
-def _motion_from_columns(
-    file: Path,
-    table: NumericTable,
-    roles: ColumnRoles,
-    stated: dict[int, AccelerationUnit],
-    values: dict[int, Array],
-    step: float,
-    name: str,
-) -> GroundMotion:
-    """Build the motion from the only horizontal column, with the vertical one."""
-    column, vertical = roles.horizontal[0], roles.vertical
-    alone = bool(table.labels) and VERTICAL_LABEL.match(table.labels[column])
-    info = RecordInfo(
-        source=file.name, direction="vertical" if alone else component_direction(file), source_format="columns"
-    )
-    info = record_info_in_csv(file, table.heads).completed(info)
-    motion = motion_from_samples(file, values[column], stated[column], step, info, REMEDY, name)
-    if vertical is None:
-        return motion
-    return motion.with_vertical(
-        checked_acceleration_in_si(file, values[vertical], stated[vertical], REMEDY, info.scale)
-    )
-
-
-def _column_samples(file: Path, table: NumericTable, k: int) -> Array:
-    return np.array([parse_decimal(cells[k], file, line) for line, cells in table.rows])
+def _column_samples(file: Path, table: _text.NumericTable, k: int) -> Array:
+    return np.array([_text.parse_decimal(cells[k], file, line) for line, cells in table.rows])
 
 
 def _component_in_label(label: str) -> str:
     """Return the label without the words for acceleration and the unit: the name of the component."""
-    return ACCELERATION_LABEL.sub(
-        "", BRACKET.sub("", label[: end_of_last_bracket(label)]) + label[end_of_last_bracket(label) :], 1
-    ).strip(" _-.")
+    end = _text.end_of_last_bracket(label)
+    return ACCELERATION_LABEL.sub("", _text.BRACKET.sub("", label[:end]) + label[end:], 1).strip(" _-.")
 
 
 def _column_roles(file: Path, labels: list[str], n_columns: int) -> ColumnRoles:
     """Return which columns are which."""
-    times = [i for i, label in enumerate(labels) if TIME_LABEL.match(label)]
-    # Of two columns one is the time, unless the labels name two components.
-    beside = len(labels) > 2 or (len(labels) == 2 and not times)
-    upwards = [i for i, label in enumerate(labels) if VERTICAL_LABEL.match(label)] if beside else []
-    others = [i for i in range(len(labels)) if i not in (*times, *upwards)]
-    along = [i for i in others if ACCELERATION_LABEL.match(labels[i])]
-    if not along and beside and (len(labels) > 2 or not {"X", "Y"}.intersection(labels)):  # X and Y may be a curve
-        along, alone = _columns_by_component_name(labels, others)
-        upwards = [*upwards, *alone]
-    vertical = _vertical_column(file, labels, upwards)
+    times = [i for i, label in enumerate(labels) if _text.TIME_LABEL.match(label)]
+    along, upwards = _component_columns(labels, times)
+    if len(upwards) > 1:
+        given = ", ".join(shown(labels[i]) for i in upwards)
+        raise InputError(f"{file}: the header names {len(upwards)} columns as vertical, {given}. Keep one of them.")
+    vertical = upwards[0] if upwards else None
     if len(along) == 1 and (len(times) == 1 or (n_columns == 2 and vertical is not None)):
         return ColumnRoles(times[0] if times else None, (along[0],), vertical)
     names = {_component_in_label(labels[i]) for i in along} - {""}
@@ -168,48 +134,34 @@ def _column_roles(file: Path, labels: list[str], n_columns: int) -> ColumnRoles:
     )
 
 
-def _columns_by_component_name(labels: list[str], others: list[int]) -> tuple[list[int], list[int]]:
-    """Return the horizontal and the vertical columns if the labels only name components: NS (gal), Z (gal)."""
-    upwards = [i for i in others if _component_in_label(labels[i]).upper() in ("Z", "V")]
-    along = [i for i in others if i not in upwards]
-    return (
-        (along, upwards)
-        if all(is_horizontal_component_name(_component_in_label(labels[i])) for i in along)
-        else ([], [])
-    )
+def _component_columns(labels: list[str], times: list[int]) -> tuple[list[int], list[int]]:
+    """Return the columns of horizontal and of vertical accelerations, as far as labels tell."""
+    # Of two columns one is the time, unless the labels name two components.
+    beside = len(labels) > 2 or (len(labels) == 2 and not times)
+    upwards = [i for i, label in enumerate(labels) if VERTICAL_LABEL.match(label)] if beside else []
+    others = [i for i in range(len(labels)) if i not in (*times, *upwards)]
+    along = [i for i in others if ACCELERATION_LABEL.match(labels[i])]
+    if along or not beside or (len(labels) == 2 and {"X", "Y"}.intersection(labels)):  # X and Y may be a curve
+        return along, upwards
+    names = {i: _component_in_label(labels[i]) for i in others}  # NS (gal), Z (gal)
+    alone = [i for i, name in names.items() if name.upper() in ("Z", "V")]
+    rest = [i for i in others if i not in alone]
+    return (rest, [*upwards, *alone]) if all(is_horizontal_component_name(names[i]) for i in rest) else ([], upwards)
 
 
-def _vertical_column(file: Path, labels: list[str], found: list[int]) -> int | None:
-    if len(found) > 1:
-        names = ", ".join(shown(labels[i]) for i in found)
-        raise InputError(f"{file}: the header names {len(found)} columns as vertical, {names}. Keep one of them.")
-    return found[0] if found else None
-
-
-def _column_unit(file: Path, table: NumericTable, k: int, units: AccelerationUnit | None) -> AccelerationUnit:
+def _column_unit(
+    file: Path, table: _text.NumericTable, k: int, units: _text.AccelerationUnit | None
+) -> _text.AccelerationUnit:
     """Return the unit stated by the label, a line above it, or the caller; they must agree."""
-    label = table.labels[k] if table.labels else ""
-    bracket = BRACKET.search(label, 0, end_of_last_bracket(label))
-    written = bracket[1] if bracket else ""
-    where = "column header"
+    written, where = _bracket_in_label(table.labels[k]) if table.labels else "", "column header"
     if not written:
         found = next((each for head in table.heads if (each := STATED_UNIT.search(head[:500]))), None)
         written, where = (found[1] if found else ""), "header"
-    stated = acceleration_unit_name(written)
-    if written and stated is None:
-        raise InputError(
-            f"{file}: the {where} gives the unit {shown(written)}, which is not known. "
-            "Write it as g, m/s2 or cm/s2, and convert the values if necessary."
-        )
-    if stated and units and AccelerationUnit(stated) != units:
-        raise InputError(
-            f"{file}: the {where} says {stated}, but units={shown(str(units))} was given. Leave units out.",
-            field="units",
-        )
-    if stated:
-        return AccelerationUnit(stated)
-    if units:
+    name = _text.agreed_unit_name(file, where, written, None if units is None else str(units), "g, m/s2 or cm/s2")
+    if units is not None:
         return units
+    if name is not None:
+        return _text.AccelerationUnit(name)
     raise InputError(
         f"{file} does not state the unit of its acceleration. Declare it: "
         'read_motion(path, units="g"), "m/s2" or "cm/s2"; or label the column "acc (g)".',
@@ -217,34 +169,27 @@ def _column_unit(file: Path, table: NumericTable, k: int, units: AccelerationUni
     )
 
 
-def _column_time_step(file: Path, table: NumericTable, column: int | None, dt: float | None) -> float:
+def _column_time_step(file: Path, table: _text.NumericTable, column: int | None, dt: float | None) -> float:
     """Return the time step in s, from the column of times, the caller or the header."""
     if column is None:
         found = next((each for head in table.heads if (each := STATED_STEP.search(head[:500]))), None)
-        stated = None if found is None else parse_decimal(found[1], file, 1)
-        if stated and stated > 0.0 and dt in (None, stated):
-            return stated
-        if stated and stated > 0.0:
+        stated = 0.0 if found is None else _text.parse_decimal(found[1], file, 1)
+        if stated > 0.0 and dt not in (None, stated):
             raise InputError(
                 f"{file} states DT = {stated:g} s, but dt={shown(dt)} was given. Leave dt out.", field="dt"
             )
+        if stated > 0.0:
+            return stated
         if dt is None:
             columns = "one column" if len(table.rows[0][1]) == 1 else f"{len(table.rows[0][1])} columns"
             raise InputError(
                 f"{file} has {columns} and no times: give the sampling step, read_motion(path, dt=0.01).", field="dt"
             )
         return dt
-    if table.labels:
-        _check_times_in_seconds(file, table.labels[column])
+    unit = _bracket_in_label(table.labels[column]) if table.labels else None
+    if unit is not None and unit.strip().lower() not in _text.SECONDS:
+        raise InputError(f"{file}: the times are in {shown(unit)}, but seconds are expected. Convert the column to s.")
     return _common_time_step(file, _column_samples(file, table, column), [line for line, _ in table.rows], dt)
-
-
-def _check_times_in_seconds(file: Path, label: str) -> None:
-    bracket = BRACKET.search(label, 0, end_of_last_bracket(label))
-    if bracket and bracket[1].strip().lower() not in SECONDS:
-        raise InputError(
-            f"{file}: the times are in {shown(bracket[1])}, but seconds are expected. Convert the column to s."
-        )
 
 
 def _common_time_step(file: Path, times: Array, lines: list[int], dt: float | None) -> float:
@@ -281,12 +226,19 @@ def _common_time_step(file: Path, times: Array, lines: list[int], dt: float | No
     return float(f"{(times[-1] - times[0]) / (times.size - 1):.12g}")
 
 
+def _bracket_in_label(label: str) -> str | None:
+    bracket = _text.BRACKET.search(label, 0, _text.end_of_last_bracket(label))
+    return bracket[1] if bracket else None
+
+
 def is_excel_workbook(content: bytes) -> bool:
     """Return whether the bytes begin as an Excel workbook, or as another file in the same container (ZIP, OLE)."""
     return content.startswith((ZIP_MAGIC, OLD_EXCEL_MAGIC))
 
 
-def parse_excel(file: Path, content: bytes, units: AccelerationUnit | None, dt: float | None) -> list[GroundMotion]:
+def parse_excel(
+    file: Path, content: bytes, units: _text.AccelerationUnit | None, dt: float | None
+) -> list[GroundMotion]:
     """Build the motions from all sheets of a workbook that hold rows of numbers, read as columns of text are."""
     tables = {
         name: table
@@ -306,20 +258,11 @@ def parse_excel(file: Path, content: bytes, units: AccelerationUnit | None, dt: 
             text = f"Sheet {sheet[:40]!r}: {error}"
             raise InputError(text, field=error.field) from error
     names = unique_record_names([motion.name for motion in motions])
-    return [
-        GroundMotion(each.acceleration, each.dt, name, each.metadata, each.vertical)
-        for each, name in zip(motions, names, strict=True)
-    ]
+    return [replace(motion, name=name) for motion, name in zip(motions, names, strict=True)]
 
 
 def excel_sheet_cells(file: Path, content: bytes) -> dict[str, list[list[str]]]:
-    """Return the cells of every sheet of a workbook as text, by its name.
-
-    Raises
-    ------
-    InputError
-        If it is none, or one of the old format, it is too large or cannot be read, or openpyxl is not installed.
-    """
+    """Return the cells of every sheet of a workbook as text, by its name."""
     if content.startswith(OLD_EXCEL_MAGIC):
         raise InputError(f"{file} is a workbook of the old format. Save it as .xlsx or CSV.")
     try:
@@ -390,7 +333,7 @@ def _excel_cell_text(cell: object) -> str:
     return "" if cell is None else str(cell).strip()
 
 
-def _table_in_excel_sheet(cells: list[list[str]]) -> NumericTable | None:
+def _table_in_excel_sheet(cells: list[list[str]]) -> _text.NumericTable | None:
     """Return the rows of numbers in a sheet, without columns that are empty; None if there are none."""
     numbered = [(i, row) for i, row in enumerate(cells, 1)]
     begin = next((k for k, (_, row) in enumerate(numbered) if _is_numeric_row(row)), None)
@@ -404,14 +347,16 @@ def _table_in_excel_sheet(cells: list[list[str]]) -> NumericTable | None:
         return [row[k] if k < len(row) else "" for k in used]
 
     found = next((kept(row) for row in reversed(heads) if all(kept(row))), [])
-    labels = found if any(not DECIMAL.fullmatch(label) for label in found) else []
-    return NumericTable(labels, [(i, kept(row)) for i, row in rows], [" ".join(filter(None, row)) for row in heads])
+    labels = found if any(not _text.DECIMAL.fullmatch(label) for label in found) else []
+    return _text.NumericTable(
+        labels, [(i, kept(row)) for i, row in rows], [" ".join(filter(None, row)) for row in heads]
+    )
 
 
 def _is_numeric_row(row: list[str]) -> bool:
     """Return whether a row begins the numbers: its filled cells are all numbers."""
     filled = [cell for cell in row if cell]
-    return bool(filled) and all(map(is_number_cell, filled))
+    return bool(filled) and all(map(_text.is_number_cell, filled))
 
 
 def record_csv(motion: GroundMotion) -> str:
@@ -427,13 +372,7 @@ def record_csv(motion: GroundMotion) -> str:
 
 
 def record_info_in_csv(file: Path, heads: list[str]) -> RecordInfo:
-    """Return the metadata in the first lines of a file that `record_csv` wrote; empty for other files.
-
-    Raises
-    ------
-    InputError
-        If a number in them is none.
-    """
+    """Return the metadata in the first lines of a file that `record_csv` wrote; empty for other files."""
     found: dict[str, str | int | float] = {}
     lines = [head.strip("# ,;\t") for head in heads]  # as spreadsheets leave them
     for line, head in enumerate(lines if lines[:1] == [RECORD_MARK] else [], 1):
@@ -441,7 +380,7 @@ def record_info_in_csv(file: Path, heads: list[str]) -> RecordInfo:
         if name not in RECORD_FIELDS or not text:
             continue
         kind = RECORD_FIELDS[name]
-        value = text if kind is str else parse_optional_decimal(text)
+        value = text if kind is str else _text.parse_optional_decimal(text)
         if value is None or value != kind(value):
             raise InputError(f"{file}, line {line}: {name} must be a number, but {shown(text)} was given.")
         found[name] = kind(value)

@@ -12,24 +12,18 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._errors import InputError
+from rockflex.motion import _text
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import Direction, RecordInfo, component_azimuth, unique_record_names
-from rockflex.motion._text import (
-    AccelerationUnit,
-    acceleration_unit_name,
-    motion_from_samples,
-    non_negative_or_none,
-    parse_decimal,
-)
+from rockflex.motion._record_info import Direction, RecordInfo, component_azimuth, component_record_names
 
 # Table 2 of the format: the units of accelerations.
 UNIT_CODES = {
-    2: AccelerationUnit("g"),
-    4: AccelerationUnit("cm/s2"),
-    7: AccelerationUnit("in/s2"),
-    10: AccelerationUnit("cm/s2"),
-    11: AccelerationUnit("mg"),
-    12: AccelerationUnit("mg", 1e-3),
+    2: _text.AccelerationUnit("g"),
+    4: _text.AccelerationUnit("cm/s2"),
+    7: _text.AccelerationUnit("in/s2"),
+    10: _text.AccelerationUnit("cm/s2"),
+    11: _text.AccelerationUnit("mg"),
+    12: _text.AccelerationUnit("mg", 1e-3),
 }
 COUNTS_CODE = 50
 # Table 9: directions of a sensor that are no azimuth.
@@ -61,15 +55,15 @@ class CosmosChannel:
     values: Array | None = None
     announced: str = ""
 
+    def real(self, place: int, header: Array | None = None) -> float | None:
+        """Return a value of the real header, or of another one; None if it is unknown."""
+        values = self.reals if header is None else header
+        return float(values[place - 1]) if place <= values.size and values[place - 1] != -999.0 else None
+
     def integer(self, place: int) -> int | None:
         """Return a value of the integer header; None if it is unknown."""
-        value = self.integers[place - 1] if place <= self.integers.size else -999.0
-        return None if value == -999.0 else int(value)
-
-    def real(self, place: int) -> float | None:
-        """Return a value of the real header; None if it is unknown."""
-        value = self.reals[place - 1] if place <= self.reals.size else -999.0
-        return None if value == -999.0 else float(value)
+        value = self.real(place, self.integers)
+        return None if value is None else int(value)
 
     @property
     def counts(self) -> bool:
@@ -77,7 +71,7 @@ class CosmosChannel:
         return self.integer(3) == COUNTS_CODE
 
 
-def channel_unit(file: Path, channel: CosmosChannel) -> AccelerationUnit:
+def channel_unit(file: Path, channel: CosmosChannel) -> _text.AccelerationUnit:
     """Return the unit of the samples; a count is converted with the constants of recorder and sensor."""
     code = channel.integer(3)
     if code == COUNTS_CODE:
@@ -87,19 +81,18 @@ def channel_unit(file: Path, channel: CosmosChannel) -> AccelerationUnit:
                 f"{file} holds raw counts, and its real header does not state the value of one count (places 22 "
                 "and 42). Download the corrected record (V2)."
             )
-        return AccelerationUnit(
-            "g", step * MICROVOLT / abs(sensitivity) / (non_negative_or_none(channel.real(47)) or 1.0)
-        )
+        gain = _text.non_negative_or_none(channel.real(47)) or 1.0
+        return _text.AccelerationUnit("g", step * MICROVOLT / abs(sensitivity) / gain)
     if code in UNIT_CODES:
         return UNIT_CODES[code]
     written = re.search(r"units\s*+=\s*+([^(,]++)", channel.announced)
-    unit = acceleration_unit_name(written[1]) if written and code is None else None
+    unit = _text.acceleration_unit_name(written[1]) if written and code is None else None
     if unit is None:
         raise InputError(
             f"{file}: the unit of the acceleration is not known: code {code} in place 3 of the integer header, "
             f"{channel.announced.strip()[:80]!r}. Download the corrected record (V2)."
         )
-    return AccelerationUnit(unit)
+    return _text.AccelerationUnit(unit)
 
 
 def channel_time_step(file: Path, channel: CosmosChannel, n_samples: int) -> float:
@@ -110,7 +103,7 @@ def channel_time_step(file: Path, channel: CosmosChannel, n_samples: int) -> flo
         raise InputError(
             f"{file}: no positive time step is stated in place 62 of the real header. Download the record again."
         )
-    length = non_negative_or_none(channel.real(63))
+    length = _text.non_negative_or_none(channel.real(63))
     if length and abs(length - n_samples * dt) > max(2.0 * dt, 0.01 * length):
         raise InputError(
             f"{file}: the header states a length of {length:g} s, but {n_samples} samples at steps of {dt:g} s last "
@@ -127,13 +120,13 @@ def channel_record_info(file: Path, channel: CosmosChannel) -> RecordInfo:
     event, year = _event_in_cosmos_header(lines[1])
     magnitude, scale = _channel_magnitude(channel)
     peak = channel.real(64)
-    vs30 = non_negative_or_none(channel.real(4))
+    vs30 = _text.non_negative_or_none(channel.real(4))
     return RecordInfo(
         event=event,
         year=year,
         magnitude=magnitude,
         magnitude_type=scale,
-        epicentral_km=non_negative_or_none(channel.real(17)),
+        epicentral_km=_text.non_negative_or_none(channel.real(17)),
         vs30=None if not vs30 else 1e3 * vs30 if vs30 < MAX_VS30_KM_S else vs30,
         component=component,
         direction=direction,
@@ -175,7 +168,7 @@ def _event_in_cosmos_header(line: str) -> tuple[str | None, int | None]:
 
 def _channel_magnitude(channel: CosmosChannel) -> tuple[float | None, str | None]:
     for place, scale in ((13, "Mw"), (15, "ML"), (14, "Ms"), (16, None)):
-        value = non_negative_or_none(channel.real(place))
+        value = _text.non_negative_or_none(channel.real(place))
         if value:
             return value, scale
     return None, None
@@ -197,26 +190,22 @@ def is_cosmos(lines: list[str]) -> bool:
 
 
 def parse_cosmos(file: Path, lines: list[str]) -> list[GroundMotion]:
-    """Build the motions of all channels of acceleration in a COSMOS file; other series are passed over.
-
-    From raw counts the mean is subtracted.
-    """
+    """Build the motions of all channels of acceleration; from raw counts the mean is subtracted."""
     channels = [each for each in _read_cosmos_channels(file, lines) if each.values is not None]
     if not channels:
         raise InputError(
             f"{file} is a COSMOS file without a series of acceleration. Give the file of the acceleration."
         )
     infos = [channel_record_info(file, each) for each in channels]
-    names = unique_record_names([info.component or "channel" for info in infos])
+    names = component_record_names(file.stem, [info.component or "channel" for info in infos])
     motions: list[GroundMotion] = []
     for channel, info, name in zip(channels, infos, names, strict=True):
         values = np.zeros(0) if channel.values is None else channel.values
         if info.processing is not None and values.size:
             values = values - values.mean()
         unit, step = channel_unit(file, channel), channel_time_step(file, channel, values.size)
-        whole = file.stem if len(channels) == 1 else f"{file.stem}-{name}"
         remedy = "Check the units in the integer header."
-        motions.append(motion_from_samples(file, values, unit, step, info, remedy, whole))
+        motions.append(_text.motion_from_samples(file, values, unit, step, info, remedy, name))
     return motions
 
 
@@ -248,16 +237,11 @@ def _read_cosmos_block(file: Path, lines: list[str], i: int, block: re.Match[str
         )
     count, columns = int(block[1]), int(form[1] or 1)
     end = i + 1 + -(-count // max(columns, 1))
-    match block[2].lower():
-        case "integer-header":
-            channel.integers = _fixed_width_numbers(file, lines, i + 1, end, count, int(form[2]))
-        case "real-header":
-            channel.reals = _fixed_width_numbers(file, lines, i + 1, end, count, int(form[2]))
-        case "acceleration":
-            channel.values = _fixed_width_numbers(file, lines, i + 1, end, count, int(form[2]))
-            channel.announced = lines[i]
-        case _:
-            pass  # velocity, displacement
+    name = {"integer-header": "integers", "real-header": "reals", "acceleration": "values"}.get(block[2].lower())
+    if name is not None:  # velocities and displacements are passed over
+        setattr(channel, name, _fixed_width_numbers(file, lines, i + 1, end, count, int(form[2])))
+    if name == "values":
+        channel.announced = lines[i]
     return end
 
 
@@ -268,7 +252,7 @@ def _fixed_width_numbers(file: Path, lines: list[str], begin: int, end: int, cou
         line = lines[i].rstrip()
         if line.startswith("End-of-data"):
             break
-        found += [parse_decimal(line[k : k + width].strip(), file, i + 1) for k in range(0, len(line), width)]
+        found += [_text.parse_decimal(line[k : k + width].strip(), file, i + 1) for k in range(0, len(line), width)]
     if len(found) != count:
         raise InputError(
             f"{file}, line {begin}: {count} numbers are announced, but {len(found)} follow. The file is truncated or "

@@ -11,17 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from rockflex._errors import InputError
+from rockflex.motion import _text
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction
-from rockflex.motion._text import (
-    AccelerationUnit,
-    acceleration_unit_name,
-    motion_from_samples,
-    non_negative_or_none,
-    parse_decimal,
-    parse_optional_decimal,
-    wrong_sample_count_error,
-)
 
 ENTRY = re.compile(r"([A-Z][A-Z0-9_/^ -]*+):(.*)")
 FIRST_KEYS = ("EVENT_NAME:", "EVENT_ID:")
@@ -39,8 +31,8 @@ def parse_esm(file: Path, lines: list[str]) -> list[GroundMotion]:
     entries = [ENTRY.fullmatch(line.strip()) for line in lines]
     start = next((i for i, entry in enumerate(entries) if entry is None and lines[i].strip()), len(lines))
     header = {entry[1].strip(): entry[2].strip() for entry in entries[:start] if entry}
-    dt = parse_optional_decimal(header.get("SAMPLING_INTERVAL_S", ""))
-    n_samples = parse_optional_decimal(header.get("NDATA", ""))
+    dt = _text.parse_optional_decimal(header.get("SAMPLING_INTERVAL_S", ""))
+    n_samples = _text.parse_optional_decimal(header.get("NDATA", ""))
     if not dt or dt <= 0.0 or n_samples is None:
         raise InputError(
             f"{file}: a positive SAMPLING_INTERVAL_S and NDATA are expected in the header of an ESM file, but they are "
@@ -53,32 +45,31 @@ def parse_esm(file: Path, lines: list[str]) -> list[GroundMotion]:
             f"{file}: an acceleration is expected, but DATA_TYPE is {kind[:40]!r}. Use the file of the acceleration, "
             "whose name contains ACC."
         )
-    unit = acceleration_unit_name(header.get("UNITS", ""))
+    unit = _text.acceleration_unit_name(header.get("UNITS", ""))
     if unit is None:
         raise InputError(
             f"{file}: UNITS is {header.get('UNITS', '')[:40]!r}, but an acceleration is expected, such as cm/s^2. "
             "Download the processed record."
         )
     values = np.array(
-        [parse_decimal(line.strip(), file, i) for i, line in enumerate(lines[start:], start + 1) if line.strip()]
+        [_text.parse_decimal(line.strip(), file, i) for i, line in enumerate(lines[start:], start + 1) if line.strip()]
     )
     if values.size != n_samples:
-        raise wrong_sample_count_error(file, values.size, n_samples, f"NDATA = {n_samples:g}")
+        raise _text.wrong_sample_count_error(file, values.size, n_samples, f"NDATA = {n_samples:g}")
+    info = _esm_record_info(file, header)
     return [
-        motion_from_samples(
-            file, values, AccelerationUnit(unit), dt, _esm_record_info(file, header), "Check UNITS in the header."
-        )
+        _text.motion_from_samples(file, values, _text.AccelerationUnit(unit), dt, info, "Check UNITS in the header.")
     ]
 
 
 def _esm_record_info(file: Path, header: dict[str, str]) -> RecordInfo:
     component = header.get("STREAM") or None
     moment, local = (
-        non_negative_or_none(parse_optional_decimal(header.get(f"MAGNITUDE_{scale}", ""))) for scale in "WL"
+        _text.non_negative_or_none(_text.parse_optional_decimal(header.get(f"MAGNITUDE_{scale}", ""))) for scale in "WL"
     )
     year = header.get("EVENT_DATE_YYYYMMDD", "")[:4]
     stamp = START_TIME.match(header.get("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS", ""))
-    peak = parse_optional_decimal(header.get("PGA_CM/S^2", ""))
+    peak = _text.parse_optional_decimal(header.get("PGA_CM/S^2", ""))
     event = [header.get("EVENT_NAME", ""), header.get("EVENT_ID", "")]
     name = next((each for each in event if each not in ("", "None")), None)
     when = EVENT_TIME.fullmatch(header.get("EVENT_DATE_YYYYMMDD", "") + header.get("EVENT_TIME_HHMMSS", ""))
@@ -88,8 +79,10 @@ def _esm_record_info(file: Path, header: dict[str, str]) -> RecordInfo:
         year=int(year) if year.isdecimal() and year.isascii() else None,
         magnitude=local if moment is None else moment,
         magnitude_type=None if moment is None and local is None else "ML" if moment is None else "Mw",
-        epicentral_km=non_negative_or_none(parse_optional_decimal(header.get("EPICENTRAL_DISTANCE_KM", ""))),
-        vs30=non_negative_or_none(parse_optional_decimal(header.get("VS30_M/S", ""))) or None,
+        epicentral_km=_text.non_negative_or_none(
+            _text.parse_optional_decimal(header.get("EPICENTRAL_DISTANCE_KM", ""))
+        ),
+        vs30=_text.non_negative_or_none(_text.parse_optional_decimal(header.get("VS30_M/S", ""))) or None,
         component=component,
         direction=component_direction(file, component),
         azimuth=component_azimuth(component),

@@ -15,7 +15,7 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction, unique_record_names
+from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction, component_record_names
 from rockflex.motion._text import AccelerationUnit, motion_from_samples, non_negative_or_none, parse_decimal
 
 TEXT_LINES, N_INTEGERS, N_REALS = 16, 40, 60
@@ -66,17 +66,10 @@ def parse_geonet(file: Path, lines: list[str]) -> list[GroundMotion]:
             found.append(component)
         else:
             i += 1
-    names = unique_record_names([each.name for each in found])
+    names = component_record_names(file.stem, [each.name for each in found])
+    remedy = "The format states mm/s²: download the record again."
     return [
-        motion_from_samples(
-            file,
-            np.array(each.values),
-            UNIT,
-            each.dt,
-            _info(file, each),
-            "The format states mm/s²: download the record again.",
-            file.stem if len(found) == 1 else f"{file.stem}-{name}",
-        )
+        motion_from_samples(file, np.array(each.values), UNIT, each.dt, _info(file, each), remedy, name)
         for each, name in zip(found, names, strict=True)
     ]
 

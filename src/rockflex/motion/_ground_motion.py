@@ -11,22 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rockflex._arrays import Array
-from rockflex._checks import checked_finite, checked_finite_vector, checked_instance, checked_positive
+from rockflex._checks import checked_finite, checked_finite_vector, checked_instance, checked_positive, real_or_nan
+from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, RecordWarning
 from rockflex._html import HtmlTable
 from rockflex._shown import first_texts_shown, shown
 from rockflex._values import Value
-from rockflex.motion import _signal
+from rockflex.motion import _signal, _spectra
 from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._spectra import (
-    ResponseSpectrum,
-    TargetSpectrum,
-    comparison_periods,
-    response_spectrum,
-    scalable_spectral_ordinate,
-    spectral_displacement,
-    spectrum_fitting_factor,
-)
 
 SHOWN_METADATA = ("event", "year", "magnitude", "distance_km", "vs30", "station", "component", "source", "scale")
 MAX_LENGTH_DIFFERENCE = 1.0  # s by which the lengths of two components may differ without a warning
@@ -146,7 +138,8 @@ class GroundMotion(HtmlTable, Value):
     @property
     def displacement(self) -> Array:
         """Ground displacement at the samples in m, shape (n,): the exact second integral, starting from rest."""
-        return _signal.displacement_from_acceleration(self.acceleration, self.dt)
+        a, v, dt = self.acceleration, self.velocity, self.dt
+        return _signal.cumulative_sum(dt * v[:-1] + dt**2 / 6 * (2 * a[:-1] + a[1:]))
 
     @cached_property
     def pga(self) -> float:
@@ -156,12 +149,25 @@ class GroundMotion(HtmlTable, Value):
     @cached_property
     def pgv(self) -> float:
         """Peak ground velocity in m/s, including peaks between samples."""
-        return _signal.peak_velocity(self.acceleration, self.dt)
+        # Between samples v has an extreme where a crosses zero.
+        a, v = self.acceleration, self.velocity
+        k = np.flatnonzero(np.sign(a[:-1]) * np.sign(a[1:]) < 0)
+        inside = v[k] + 0.5 * self.dt * a[k] * (a[k] / (a[k] - a[k + 1]))
+        return float(np.max(np.abs(np.concatenate((v, inside)))))
 
     @cached_property
     def pgd(self) -> float:
         """Peak ground displacement in m up to the last sample, including peaks between samples."""
-        return _signal.peak_displacement(self.acceleration, self.dt)
+        # Between samples d has an extreme at the zeros of the quadratic v = c + b x + q x², with x = t/dt in [0, 1].
+        a, v, d, dt = self.acceleration, self.velocity, self.displacement, self.dt
+        c, b, q = v[:-1], dt * a[:-1], 0.5 * dt * np.diff(a)
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            w = -0.5 * (b + np.copysign(np.sqrt(b**2 - 4 * q * c), b))
+            roots = np.stack((w / q, c / w))
+            inside = (roots > 0) & (roots < 1)
+        x = np.where(inside, roots, 0.0)
+        extremes = d[:-1] + dt * x * (c + x * (b / 2 + x * q / 3))
+        return float(max(np.max(np.abs(d)), np.max(np.abs(extremes))))
 
     @cached_property
     def arias(self) -> float:
@@ -170,12 +176,17 @@ class GroundMotion(HtmlTable, Value):
         The integral is exact. Databases often sum a² dt over the samples instead, which gives a larger value,
         especially if the frequency content of the record is close to its Nyquist frequency.
         """
-        return _signal.arias_intensity(self.acceleration, self.dt)
+        return math.pi / (2 * GRAVITY) * float(np.sum(self._squares))
 
     @cached_property
     def cav(self) -> float:
         """Cumulative absolute velocity ∫|a| dt in m/s (EPRI 1988, without a threshold)."""
-        return _signal.cumulative_absolute_velocity(self.acceleration, self.dt)
+        left, right = self.acceleration[:-1], self.acceleration[1:]
+        total = np.abs(left) + np.abs(right)
+        # Where a changes sign, two triangles of heights |left| and |right| divide the interval in proportion to these.
+        crossing = np.sign(left) * np.sign(right) < 0
+        ratio = np.divide(left**2 + right**2, total, out=total.copy(), where=crossing)
+        return float(np.sum(0.5 * self.dt * ratio))
 
     @cached_property
     def d5_95(self) -> float:
@@ -201,9 +212,37 @@ class GroundMotion(HtmlTable, Value):
         InputError
             If the fractions are out of order or out of range.
         """
-        return _signal.significant_duration(self.acceleration, self.dt, low, high)
+        if not 0 <= real_or_nan(low) < real_or_nan(high) <= 1:
+            raise InputError(
+                f"low and high must be fractions with 0 <= low < high <= 1, but low={shown(low)} and "
+                f"high={shown(high)} were given. Significant duration D5-95 is low=0.05, high=0.95."
+            )
+        energy = _signal.cumulative_sum(self._squares)
+        if energy[-1] == 0:
+            return 0.0
+        return self._time_of_energy(high * energy[-1], energy) - self._time_of_energy(low * energy[-1], energy)
 
-    def spectrum(self, periods: ArrayLike, damping_ratio: float = 0.05) -> ResponseSpectrum:
+    @property
+    def _squares(self) -> Array:
+        """∫a² dt over each interval, shape (n - 1,)."""
+        left, right = self.acceleration[:-1], self.acceleration[1:]
+        return self.dt / 3 * (left**2 + left * right + right**2)
+
+    def _time_of_energy(self, target: float, energy: Array) -> float:
+        """First instant at which ∫a² dt, `energy` at the samples, reaches a target."""
+        k = int(np.searchsorted(energy, target))
+        if k == 0:
+            return 0.0
+        left, right = float(self.acceleration[k - 1]), float(self.acceleration[k])
+        missing = target - float(energy[k - 1])
+        slope = (right - left) / self.dt
+        # ∫(left + slope τ)² dτ = (r³ - left³) / (3 slope) with r = a(τ).
+        # Solved for τ without dividing by the slope, which may be zero.
+        reached = math.cbrt(left**3 + 3 * slope * missing)
+        step = 3 * missing / (reached**2 + reached * left + left**2)
+        return (k - 1) * self.dt + min(step, self.dt)
+
+    def spectrum(self, periods: ArrayLike, damping_ratio: float = 0.05) -> _spectra.ResponseSpectrum:
         """Elastic response spectrum; see `ResponseSpectrum`.
 
         Parameters
@@ -213,21 +252,16 @@ class GroundMotion(HtmlTable, Value):
         damping_ratio : float
             Fraction of critical damping, 0 <= ζ < 1.
 
-        Returns
-        -------
-        ResponseSpectrum
-            Peaks of relative displacement and velocity, and the pseudo-acceleration.
-
         Raises
         ------
         InputError
             If a period is negative or not finite, or the damping ratio is out of range.
         """
-        return response_spectrum(self.acceleration, self.dt, periods, damping_ratio)
+        return _spectra.response_spectrum(self.acceleration, self.dt, periods, damping_ratio)
 
     def sd(self, period: float, damping_ratio: float = 0.05) -> float:
         """Spectral displacement in m at one period (s); see `spectrum`."""
-        return spectral_displacement(self.acceleration, self.dt, period, damping_ratio)
+        return _spectra.spectral_displacement(self.acceleration, self.dt, period, damping_ratio)
 
     def sa(self, period: float, damping_ratio: float = 0.05) -> float:
         """Spectral pseudo-acceleration in m/s² at one period (s); see `spectrum`."""
@@ -249,7 +283,14 @@ class GroundMotion(HtmlTable, Value):
         InputError
             If there is no vertical component.
         """
-        return GroundMotion(_vertical_samples(self), self.dt, self.name, _vertical_record_info(self.metadata))
+        if self.vertical is None:
+            raise InputError(
+                f"The motion {shown(self.name)} has no vertical component. Give one: "
+                "read_motion(path, vertical=...), or motion.with_vertical(...)."
+            )
+        known = info_of(self)
+        info = replace(known, component=None, direction="vertical", source=known.vertical_source, vertical_source=None)
+        return GroundMotion(self.vertical, self.dt, self.name, info)
 
     def vertical_ratio(self, periods: ArrayLike, damping_ratio: float = 0.05) -> Array:
         """Vertical over horizontal pseudo-acceleration, V/H, at periods (s) as in `spectrum`.
@@ -299,7 +340,7 @@ class GroundMotion(HtmlTable, Value):
         >>> along.with_vertical(upwards).vertical.tolist()
         [0.0, 0.5, 0.0, 0.0]
         """
-        if self.metadata is not None and self.metadata.is_vertical:
+        if is_vertical_component(self):
             raise InputError(
                 f"{shown(self.name)} is itself a vertical component according to the header or name of the file. Give "
                 "the horizontal one first: horizontal.with_vertical(vertical)."
@@ -336,7 +377,7 @@ class GroundMotion(HtmlTable, Value):
 
     def scaled_to(
         self,
-        target: TargetSpectrum | None = None,
+        target: _spectra.TargetSpectrum | None = None,
         periods: ArrayLike | None = None,
         *,
         sa: float | None = None,
@@ -349,10 +390,10 @@ class GroundMotion(HtmlTable, Value):
         `periods`, as in `Suite.select`. `InputError` where neither, or both, are given, or the motion does not move.
         """
         if target is not None and periods is not None and sa is None and period is None and damping_ratio is None:
-            fitted = checked_instance("target", target, TargetSpectrum)
-            compared = comparison_periods(periods)
+            fitted = checked_instance("target", target, _spectra.TargetSpectrum)
+            compared = _spectra.comparison_periods(periods)
             spectrum = self.spectrum(compared, fitted.damping_ratio).sa
-            return self.scaled(spectrum_fitting_factor(spectrum, fitted.at(compared), self.name))
+            return self.scaled(_spectra.spectrum_fitting_factor(spectrum, fitted.at(compared), self.name))
         if sa is None or period is None or target is not None or periods is not None:
             raise InputError(
                 "scaled_to needs either a target and periods, or sa and period, with damping_ratio if it is not 0.05: "
@@ -361,7 +402,7 @@ class GroundMotion(HtmlTable, Value):
             )
         ordinate, at = checked_positive("sa", sa, "m/s²"), checked_positive("period", period, "s", zero=True)
         own = self.sa(at, 0.05 if damping_ratio is None else damping_ratio)
-        return self.scaled(ordinate / scalable_spectral_ordinate(own, self.name, at))
+        return self.scaled(ordinate / _spectra.scalable_spectral_ordinate(own, self.name, at))
 
     def refined(self, k: int) -> "GroundMotion":
         """Return the same piecewise linear function with every interval split into `k` equal ones.
@@ -399,11 +440,6 @@ class GroundMotion(HtmlTable, Value):
         degree : int
             Degree of the polynomial removed from the acceleration.
 
-        Returns
-        -------
-        GroundMotion
-            The corrected motion.
-
         Raises
         ------
         InputError
@@ -422,11 +458,6 @@ class GroundMotion(HtmlTable, Value):
             Corner frequencies in Hz, 0 < low < high < 1/(2 dt).
         order : int
             Order of the filter of one pass.
-
-        Returns
-        -------
-        GroundMotion
-            The filtered motion, of the same length.
 
         Raises
         ------
@@ -465,31 +496,9 @@ def _checked_vertical_samples(vertical: ArrayLike, n_samples: int) -> Array:
     return samples
 
 
-def _vertical_samples(motion: GroundMotion) -> Array:
-    """Return the vertical samples, or raise an InputError if there are none."""
-    if motion.vertical is None:
-        raise InputError(
-            f"The motion {shown(motion.name)} has no vertical component. Give one: read_motion(path, vertical=...), or "
-            "motion.with_vertical(...)."
-        )
-    return motion.vertical
-
-
-def _vertical_record_info(info: RecordInfo | None) -> RecordInfo:
-    """Return the metadata of the vertical component as a motion of its own."""
-    info = info or RecordInfo()
-    return replace(info, component=None, direction="vertical", source=info.vertical_source, vertical_source=None)
-
-
 def _vertical_sign_and_info(vertical: GroundMotion, info: RecordInfo | None) -> tuple[int, RecordInfo | None]:
-    """Return the sign that makes a vertical record positive upwards, and the metadata with its source.
-
-    Raises
-    ------
-    InputError
-        If the record is known to be horizontal.
-    """
-    given = vertical.metadata or RecordInfo()
+    """Return the sign that makes a vertical record positive upwards, and the metadata with its source."""
+    given = info_of(vertical)
     if given.direction == "horizontal":
         raise InputError(
             f"A vertical ground motion is expected, but {shown(vertical.name)} is a horizontal component according to "
@@ -497,22 +506,13 @@ def _vertical_sign_and_info(vertical: GroundMotion, info: RecordInfo | None) -> 
             'dataclasses.replace(motion, metadata=RecordInfo(direction="vertical")).',
             field="vertical",
         )
-    down = given.direction == "down"
+    sign, note = (-1, " (reversed: it is positive downwards)") if given.direction == "down" else (1, "")
     source = vertical.name or given.source
-    if source is None:
-        return -1 if down else 1, info
-    note = " (reversed: it is positive downwards)" if down else ""
-    return -1 if down else 1, replace(info or RecordInfo(), vertical_source=f"{source}{note}")
+    return sign, info if source is None else replace(info or RecordInfo(), vertical_source=f"{source}{note}")
 
 
 def _aligned_components(along: GroundMotion, upwards: GroundMotion) -> tuple[Array, Array]:
-    """Return the samples of both components of a motion, with zeros after the end of the shorter one.
-
-    Raises
-    ------
-    InputError
-        If the steps differ.
-    """
+    """Return the samples of both components of a motion, with zeros after the end of the shorter one."""
     if abs(along.dt - upwards.dt) > 1e-9 * along.dt:
         finer = min(along.dt, upwards.dt)
         raise InputError(
@@ -534,9 +534,14 @@ def _aligned_components(along: GroundMotion, upwards: GroundMotion) -> tuple[Arr
     return first, second
 
 
+def info_of(motion: GroundMotion) -> RecordInfo:
+    """Return what is known about a motion."""
+    return motion.metadata or RecordInfo()
+
+
 def is_vertical_component(motion: GroundMotion) -> bool:
     """Return whether a motion is known to be a vertical component."""
-    return motion.metadata is not None and motion.metadata.is_vertical
+    return info_of(motion).is_vertical
 
 
 def check_horizontal_component(*motions: GroundMotion) -> None:

@@ -11,16 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from rockflex._errors import InputError
+from rockflex.motion import _text
 from rockflex.motion._ground_motion import GroundMotion
 from rockflex.motion._record_info import AZIMUTHS, Direction, RecordInfo
-from rockflex.motion._text import (
-    AccelerationUnit,
-    motion_from_samples,
-    non_negative_or_none,
-    parse_decimal,
-    parse_optional_decimal,
-    wrong_sample_count_error,
-)
 
 HEADER_LINES = 17  # the last one is "Memo."
 TRIGGER_DELAY = timedelta(seconds=15)  # of the trigger, in the recording time of the header
@@ -44,33 +37,28 @@ def parse_knet(file: Path, lines: list[str]) -> list[GroundMotion]:
     """
     header = _knet_header(file, lines)
     scale = SCALE_FACTOR.search(header["Scale Factor"])
-    if scale is None or not all(parse_optional_decimal(part) for part in scale.groups()):
+    if scale is None or not all(_text.parse_optional_decimal(part) for part in scale.groups()):
         raise InputError(
             f'{file}: the scale factor is expected as "3920(gal)/6182761", but it is '
             f"{header['Scale Factor'][:40]!r}. Download the record again."
         )
     frequency = re.match(r"[\d.]+", header["Sampling Freq(Hz)"])
-    rate = parse_optional_decimal(frequency[0]) if frequency else None
-    duration = parse_optional_decimal(header["Duration Time(s)"])
+    rate = _text.parse_optional_decimal(frequency[0]) if frequency else None
+    duration = _text.parse_optional_decimal(header["Duration Time(s)"])
     if not rate or not duration:
         raise InputError(
             f"{file}: a sampling frequency and a duration are expected in lines 11 and 12, but they are "
             f"{header['Sampling Freq(Hz)'][:40]!r} and {header['Duration Time(s)'][:40]!r}. Download the record again."
         )
-    counts = np.array(
-        [parse_decimal(word, file, i) for i, line in enumerate(lines[HEADER_LINES:], 18) for word in line.split()]
-    )
+    places = enumerate(lines[HEADER_LINES:], HEADER_LINES + 1)
+    counts = np.array([_text.parse_decimal(word, file, i) for i, line in places for word in line.split()])
     if not counts.size or abs(counts.size - duration * rate) > rate:
-        raise wrong_sample_count_error(file, counts.size, duration * rate, f"{duration:g} s at {rate:g} Hz")
-    gal = float(scale[1]) / float(scale[2])
+        raise _text.wrong_sample_count_error(file, counts.size, duration * rate, f"{duration:g} s at {rate:g} Hz")
+    unit = _text.AccelerationUnit("cm/s2", float(scale[1]) / float(scale[2]))
     info = _knet_record_info(file, header)
     remedy = "Check the scale factor in line 14."
     name = file.stem + file.suffix.replace(".", "-") if COMPONENT_SUFFIX.fullmatch(file.suffix) else file.stem
-    return [
-        motion_from_samples(
-            file, counts - counts.mean(), AccelerationUnit("cm/s2", gal), 1.0 / rate, info, remedy, name
-        )
-    ]
+    return [_text.motion_from_samples(file, counts - counts.mean(), unit, 1.0 / rate, info, remedy, name)]
 
 
 def _knet_header(file: Path, lines: list[str]) -> dict[str, str]:
@@ -98,11 +86,11 @@ def _knet_record_info(file: Path, header: dict[str, str]) -> RecordInfo:
         location = "borehole" if direction in "123" else "surface"
     origin = _knet_start_time(header.get("Origin Time", ""))
     started = _knet_start_time(header["Record Time"])
-    peak = parse_optional_decimal(header.get("Max Acc. (gal)", ""))
+    peak = _text.parse_optional_decimal(header.get("Max Acc. (gal)", ""))
     return RecordInfo(
         event=None if origin is None else f"{origin:%Y-%m-%d %H:%M}",
         year=None if origin is None else origin.year,
-        magnitude=non_negative_or_none(parse_optional_decimal(header.get("Mag.", ""))),
+        magnitude=_text.non_negative_or_none(_text.parse_optional_decimal(header.get("Mag.", ""))),
         magnitude_type="MJMA",
         epicentral_km=_epicentral_distance(header),
         component=component,
@@ -128,11 +116,8 @@ def _knet_start_time(text: str) -> datetime | None:
 
 def _epicentral_distance(header: dict[str, str]) -> float | None:
     """Return the distance along the surface of a sphere, in km, to a metre."""
-    degrees = [
-        parse_optional_decimal(header.get(name, "")) for name in ("Lat.", "Lon.", "Station Lat.", "Station Long.")
-    ]
-    if None in degrees:
-        degrees[3] = degrees[3] if degrees[3] is not None else parse_optional_decimal(header.get("Station Lon.", ""))
+    names = ("Lat.", "Lon.", "Station Lat.", "Station Lon.")
+    degrees = [_text.parse_optional_decimal(header.get(name, "")) for name in names]
     places = [math.radians(each) for each in degrees if each is not None]
     if len(places) < 4:
         return None

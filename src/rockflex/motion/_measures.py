@@ -232,13 +232,7 @@ def vertical_measures() -> list[IntensityMeasure]:
 
 
 def scalable_measure(name: str) -> IntensityMeasure:
-    """Return the measure of this name that a motion can be scaled to.
-
-    Raises
-    ------
-    InputError
-        If there is no such measure.
-    """
+    """Return the measure of this name that a motion can be scaled to."""
     names = [each.name for each in scalable_measures()]
     if not is_one_of(name, names):
         raise InputError(f"measure must be one of {', '.join(names)}, but {shown(name)} was given.")

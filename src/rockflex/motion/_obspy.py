@@ -10,7 +10,7 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction, unique_record_names
+from rockflex.motion._record_info import RecordInfo, component_azimuth, component_direction, component_record_names
 from rockflex.motion._text import AccelerationUnit, motion_from_samples
 
 INSTALL = "For MiniSEED, SAC, GSE2 and other formats of seismology, install ObsPy: pip install 'rockflex[obspy]'."
@@ -63,15 +63,11 @@ def parse_obspy(file: Path, content: bytes, form: str, units: AccelerationUnit |
     except Exception as error:  # damaged files raise many kinds of errors
         raise ObsPyError(f"{file} cannot be read by ObsPy as {form}: {str(error)[:200]}.") from error
     traces = list(stream)
-    names = unique_record_names([str(trace.stats.channel).strip() or "channel" for trace in traces])
-    motions: list[GroundMotion] = []
-    for trace, name in zip(traces, names, strict=True):
-        motions.append(
-            _motion_of_trace(file, trace, form, units, file.stem if len(traces) == 1 else f"{file.stem}-{name}")
-        )
-    if not motions:
+    if not traces:
         raise InputError(f"{file} holds no samples, according to ObsPy ({form}). Download the record again.")
-    return motions
+    channels = [str(trace.stats.channel).strip() or "channel" for trace in traces]
+    names = component_record_names(file.stem, channels)
+    return [_motion_of_trace(file, trace, form, units, name) for trace, name in zip(traces, names, strict=True)]
 
 
 def _motion_of_trace(file: Path, trace: Any, form: str, units: AccelerationUnit | None, name: str) -> GroundMotion:

@@ -25,10 +25,7 @@ MAX_SAMPLES = 100_000_000  # samples
 
 
 def ricker_pulse(
-    amplitude: float,
-    period: float,
-    dt: float = 0.005,
-    kind: Literal["antisymmetric", "symmetric"] = "antisymmetric",
+    amplitude: float, period: float, dt: float = 0.005, kind: Literal["antisymmetric", "symmetric"] = "antisymmetric"
 ) -> GroundMotion:
     """Ricker wavelet: the second (symmetric) or third (antisymmetric) derivative of a Gaussian.
 
@@ -51,11 +48,6 @@ def ricker_pulse(
         Largest allowed sampling step in s.
     kind : {"antisymmetric", "symmetric"}
         Form of the wavelet.
-
-    Returns
-    -------
-    GroundMotion
-        The sampled pulse.
 
     Raises
     ------
@@ -97,12 +89,7 @@ def one_sine_pulse(amplitude: float, period: float, dt: float = 0.005) -> Ground
     period : float
         Period T_p in s, the length of the pulse.
     dt : float
-        Largest allowed sampling step in s.
-
-    Returns
-    -------
-    GroundMotion
-        The sampled pulse; its peaks coincide with samples if the step divides T_p/4.
+        Largest allowed sampling step in s; peaks coincide with samples if the step divides T_p/4.
 
     Raises
     ------
@@ -134,11 +121,6 @@ def one_cosine_pulse(amplitude: float, period: float, dt: float = 0.005) -> Grou
     dt : float
         Largest allowed sampling step in s.
 
-    Returns
-    -------
-    GroundMotion
-        The sampled pulse.
-
     Raises
     ------
     InputError
@@ -165,11 +147,6 @@ def half_sine_pulse(amplitude: float, duration: float, dt: float = 0.005) -> Gro
         Length t_p of the pulse in s: half of the sine's period.
     dt : float
         Largest allowed sampling step in s.
-
-    Returns
-    -------
-    GroundMotion
-        The sampled pulse.
 
     Raises
     ------
@@ -201,11 +178,6 @@ def rectangular_pulse(amplitude: float, duration: float, dt: float = 0.005) -> G
     dt : float
         Largest allowed sampling step in s.
 
-    Returns
-    -------
-    GroundMotion
-        The sampled pulse.
-
     Raises
     ------
     InputError
@@ -231,11 +203,6 @@ def quiet_motion(duration: float, dt: float = 0.005) -> GroundMotion:
         Length in s.
     dt : float
         Largest allowed sampling step in s.
-
-    Returns
-    -------
-    GroundMotion
-        A motion of zero acceleration.
 
     Raises
     ------
@@ -299,11 +266,6 @@ def mavroeidis_papageorgiou_pulse(
         Phase ν in rad: 0 for a velocity symmetric about the centre, ±π/2 for an antisymmetric one.
     dt : float
         Largest allowed sampling step in s.
-
-    Returns
-    -------
-    GroundMotion
-        The sampled acceleration, γ T_p long.
 
     Raises
     ------

@@ -1,8 +1,9 @@
 """Reading many record files into a suite: which files are records, and which components are taken."""
 
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import chain
 from pathlib import Path
 from typing import Literal, get_args
 
@@ -13,10 +14,9 @@ from rockflex._checks import checked_positive
 from rockflex._errors import InputError, RecordWarning
 from rockflex._files import checked_file_path
 from rockflex._shown import first_texts_shown, number_with_noun, shown
-from rockflex.motion._ground_motion import GroundMotion, is_vertical_component
+from rockflex.motion._ground_motion import GroundMotion, info_of, is_vertical_component
 from rockflex.motion._readers import FORMATS, components_in_file, is_of_a_network, stated_peak_mismatch
-from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._record_table import RecordTable, read_record_table, record_table_in_content
+from rockflex.motion._record_table import RecordTable, entry_for_file, read_record_table, record_table_in_content
 from rockflex.motion._recordings import are_different_components, file_names_text, pair_vertical_records
 from rockflex.motion._suite import Suite
 from rockflex.motion._text import AccelerationUnit, declared_acceleration_unit, decoded_text, read_file_bytes
@@ -29,7 +29,6 @@ RECORD_SUFFIXES = (
 HEAD_BYTES = 4096  # bytes of a file that tell its format
 UnitsArgument = str | Mapping[str, str]
 TABLE_SUFFIXES = (".csv", ".txt", ".tsv", ".xlsx", ".xlsm")
-BOREHOLE = "borehole"
 MIN_COPY_SAMPLES = 50  # samples; fewer may be the same by chance
 COPY_TOLERANCE = 1e-3  # of the peak: two formats of one record round, or take another value of g
 OnError = Literal["raise", "skip"]
@@ -39,13 +38,7 @@ MAX_MESSAGE_LENGTH = 50_000  # most characters of a message that lists every fil
 
 
 def record_files(paths: str | Path | Iterable[str | Path]) -> tuple[str, list[Path]]:
-    """Return the name of a directory and its record files, or no name and the files given; sorted by name.
-
-    Raises
-    ------
-    InputError
-        If there is no such directory, it holds no record, or something else is given.
-    """
+    """Return the name of a directory and its record files, or no name and the files given; sorted by name."""
     if isinstance(paths, str | Path):
         folder = checked_file_path("paths", paths)
         if not folder.is_dir():
@@ -61,13 +54,7 @@ def record_files(paths: str | Path | Iterable[str | Path]) -> tuple[str, list[Pa
 
 
 def record_files_in_folder(folder: Path) -> list[Path]:
-    """Return the record files of a directory, by suffix or by their first lines, sorted by name.
-
-    Raises
-    ------
-    InputError
-        If there are none.
-    """
+    """Return the record files of a directory, by suffix or by their first lines, sorted by name."""
     files = [file for file in folder.iterdir() if file.is_file() and is_record_file(file)]
     if not files:
         raise InputError(
@@ -100,7 +87,6 @@ class RecordFileContent:
     motions: Mapping[Path, GroundMotion] = field(default_factory=dict[Path, GroundMotion])
     fault: InputError | None = None
     table: RecordTable | None = None
-    notes: Mapping[Path, str] = field(default_factory=dict[Path, str])
 
 
 def read_record_files(
@@ -111,29 +97,21 @@ def read_record_files(
     *,
     use_obspy: bool = True,
 ) -> list[RecordFileContent]:
-    """Read files, in their order; files that cannot be read have a fault. `use_obspy` as in `components_in_file`.
-
-    Raises
-    ------
-    InputError
-        If units or dt are not valid, or `table` is no table about records.
-    """
+    """Read files, in their order; files that cannot be read have a fault. `use_obspy` as in `components_in_file`."""
     given = _units_by_file_name(units)
     step = None if dt is None else checked_positive("dt", dt, "s")
     if table is not None:
         given = given.joined(read_record_table(checked_file_path("table", table)))
     found: list[RecordFileContent] = []
     for file in files:
+        own = None
         try:
-            own = (
-                record_table_in_content(file, read_file_bytes(file)) if file.suffix.lower() in TABLE_SUFFIXES else None
-            )
+            if file.suffix.lower() in TABLE_SUFFIXES:
+                own = record_table_in_content(file, read_file_bytes(file))
             found.append(RecordFileContent(file, table=own))
         except InputError as error:
             found.append(RecordFileContent(file, fault=error))
-    for each in found:
-        if each.table is not None:
-            given = given.joined(each.table)
+        given = given if own is None else given.joined(own)
     common = declared_acceleration_unit(units) if isinstance(units, str) else None
     return [
         each if each.table or each.fault else _read_record_file(each.file, given, common, step, use_obspy=use_obspy)
@@ -157,51 +135,31 @@ def _units_by_file_name(units: UnitsArgument | None) -> RecordTable:
 def _read_record_file(
     file: Path, given: RecordTable, common: AccelerationUnit | None, dt: float | None, *, use_obspy: bool
 ) -> RecordFileContent:
-    own = given.unit_of(file)
-    step = given.step_of(file)
+    own, step = entry_for_file(given.units, file), entry_for_file(given.steps, file)
+    for_many = own is None and step is None
     try:
         found = components_in_file(
-            file, own or common, dt if step is None else step, use_obspy=use_obspy, common=own is None and step is None
+            file, own or common, dt if step is None else step, use_obspy=use_obspy, common=for_many
         )
     except InputError as error:
         return RecordFileContent(file, fault=error)
     motions: dict[Path, GroundMotion] = {}
-    notes: dict[Path, str] = {}
     for motion in found:
-        info = given.completed(file, motion.metadata or RecordInfo())
-        whole = GroundMotion(motion.acceleration, motion.dt, motion.name, info, motion.vertical)
         key = file if motion.name == file.stem else file.parent / (motion.name.replace("/", "_") + file.suffix)
-        motions[key] = whole
-        notes[key] = stated_peak_mismatch(whole)[1]
-    return RecordFileContent(file, motions, notes=notes)
+        motions[key] = replace(motion, metadata=given.completed(file, info_of(motion)))
+    return RecordFileContent(file, motions)
 
 
 @dataclass(frozen=True)
 class ChosenComponents:
-    """Components by their paths: the horizontal ones that are taken, and the ones left out.
-
-    Attributes
-    ----------
-    taken
-        Horizontal components.
-    vertical
-        Vertical components that belong to no horizontal one.
-    boreholes
-        Components in boreholes beneath a station at the surface.
-    unpaired
-        Why a record that is to be paired has no vertical component; empty if none was found.
-    paired
-        Vertical components that were paired.
-    copies
-        The component that each copy repeats.
-    """
+    """Components by their paths: the horizontal ones that are taken, and the ones left out."""
 
     taken: Mapping[Path, GroundMotion]
-    vertical: Sequence[Path]
-    boreholes: Sequence[Path]
-    unpaired: Mapping[Path, str]
-    paired: Sequence[Path]
-    copies: Mapping[Path, Path]
+    vertical: Sequence[Path]  # that belong to no horizontal component
+    boreholes: Sequence[Path]  # beneath a station at the surface
+    unpaired: Mapping[Path, str]  # why a record that is to be paired has no vertical component; empty if none was found
+    paired: Sequence[Path]  # vertical components of horizontal ones
+    copies: Mapping[Path, Path]  # the component that each one repeats
 
 
 def choose_components(found: Sequence[RecordFileContent], *, pair: bool) -> ChosenComponents:
@@ -212,11 +170,12 @@ def choose_components(found: Sequence[RecordFileContent], *, pair: bool) -> Chos
     motions = {path: motion for each in found for path, motion in each.motions.items()}
     copies = _duplicate_components(motions, {path: each.file for each in found for path in each.motions})
     motions = {path: motion for path, motion in motions.items() if path not in copies}
-    surface = {_site_key(motion) for motion in motions.values() if _location_code(motion) == "surface"}
+    surface = {_site_key(motion) for motion in motions.values() if info_of(motion).location == "surface"}
     boreholes = [
-        path for path, each in motions.items() if _location_code(each) == BOREHOLE and _site_key(each) in surface
+        path for path, each in motions.items() if info_of(each).location == "borehole" and _site_key(each) in surface
     ]
-    motions = {path: motion for path, motion in motions.items() if path not in set(boreholes)}
+    beneath = set(boreholes)
+    motions = {path: motion for path, motion in motions.items() if path not in beneath}
     vertical = {path: motion for path, motion in motions.items() if is_vertical_component(motion)}
     taken = {path: motion for path, motion in motions.items() if path not in vertical}
     if not pair or not taken:
@@ -252,18 +211,17 @@ def _duplicate_components(motions: Mapping[Path, GroundMotion], files: Mapping[P
 
 def _duplicate_rank(path: Path, motion: GroundMotion) -> tuple[object, ...]:
     """Return a key by which the first of some copies is the one to keep."""
-    known = sum(value is not None for value in vars(motion.metadata or RecordInfo()).values())
+    known = sum(value is not None for value in vars(info_of(motion)).values())
     return motion.vertical is None, -known, len(path.name), path.name, str(path)
 
 
 def _are_duplicate_components(path: Path, motion: GroundMotion, other: Path, kept: GroundMotion) -> bool:
-    if abs(motion.dt - kept.dt) > COPY_TOLERANCE * kept.dt or is_vertical_component(motion) != is_vertical_component(
-        kept
+    if (
+        abs(motion.dt - kept.dt) > COPY_TOLERANCE * kept.dt
+        or is_vertical_component(motion) != is_vertical_component(kept)
+        or are_different_components(path, motion.metadata, other, kept.metadata)
+        or not _equal_samples(motion.acceleration, kept.acceleration)
     ):
-        return False
-    if are_different_components(path, motion.metadata, other, kept.metadata):
-        return False
-    if not _equal_samples(motion.acceleration, kept.acceleration):
         return False
     return motion.vertical is None or kept.vertical is None or _equal_samples(motion.vertical, kept.vertical)
 
@@ -274,13 +232,9 @@ def _equal_samples(one: Array, other: Array) -> bool:
     return peak > 0.0 and bool(np.max(np.abs(one - other)) <= COPY_TOLERANCE * peak)
 
 
-def _location_code(motion: GroundMotion) -> str | None:
-    return None if motion.metadata is None else motion.metadata.location
-
-
 def _site_key(motion: GroundMotion) -> tuple[object, ...]:
-    info = motion.metadata
-    return () if info is None else (info.event, info.network, info.station)
+    info = info_of(motion)
+    return info.event, info.network, info.station
 
 
 def read_suite(
@@ -394,17 +348,14 @@ def read_components_by_file(
             field = next((name for name in fields[:MAX_REPORTED] if name in ("units", "dt")), None)
             raise InputError(message, longest=MAX_MESSAGE_LENGTH, field=field)
         warnings.warn(f"Left out: {message}", RecordWarning, stacklevel=3)
-    for note in (f"{path}: {note}." for each in records for path, note in each.notes.items() if note):
-        warnings.warn(note, RecordWarning, stacklevel=3)
+    for path, motion in (item for each in records for item in each.motions.items()):
+        if note := stated_peak_mismatch(motion)[1]:
+            warnings.warn(f"{path}: {note}.", RecordWarning, stacklevel=3)
     result = choose_components(records, pair=vertical is not None)
-    _warn_of_unpaired_records(result, on_error, skip)
-    _warn_of_left_out_components(result)
-    taken: dict[Path, list[GroundMotion]] = {}
-    for each in records:
-        chosen = [result.taken[path] for path in each.motions if path in result.taken]
-        if chosen:
-            taken[each.file] = chosen
-    return taken
+    for text in chain(_unpaired_records(result, on_error, skip), _left_out_components(result)):
+        warnings.warn(text, RecordWarning, stacklevel=3)
+    taken = {each.file: [result.taken[path] for path in each.motions if path in result.taken] for each in records}
+    return {file: motions for file, motions in taken.items() if motions}
 
 
 def check_vertical_option(vertical: object) -> None:
@@ -417,45 +368,27 @@ def check_vertical_option(vertical: object) -> None:
         )
 
 
-def _warn_of_left_out_components(result: ChosenComponents) -> None:
-    """Warn of components that are left out.
-
-    Raises
-    ------
-    InputError
-        If none is left.
-    """
+def _left_out_components(result: ChosenComponents) -> Iterator[str]:
+    """Yield which components are left out, or raise an error if none is left."""
     if result.boreholes:
         count = number_with_noun(len(result.boreholes), "borehole component")
-        warnings.warn(
-            f"Left out: {count} beneath records at the surface, {file_names_text(result.boreholes)}.",
-            RecordWarning,
-            stacklevel=4,
-        )
+        yield f"Left out: {count} beneath records at the surface, {file_names_text(result.boreholes)}."
     if result.copies:
         names = first_texts_shown([f"{path.name} (of {kept.name})" for path, kept in result.copies.items()])
-        count = number_with_noun(len(result.copies), "copy", "copies")
-        warnings.warn(f"Left out: {count} of records in other files, {names}.", RecordWarning, stacklevel=4)
-    if not result.vertical:
-        return
+        yield f"Left out: {number_with_noun(len(result.copies), 'copy', 'copies')} of records in other files, {names}."
     names = ", ".join(path.name for path in result.vertical)
     components = number_with_noun(len(result.vertical), "vertical component")
-    if not result.taken:
+    if result.vertical and not result.taken:
         raise InputError(
             f"No horizontal component was given, only {components}: {names}. Give horizontal ones; if a "
             "header or file name is wrong, correct it."
         )
-    warnings.warn(f"Left out: {components}, {names}.", RecordWarning, stacklevel=4)
+    if result.vertical:
+        yield f"Left out: {components}, {names}."
 
 
-def _warn_of_unpaired_records(result: ChosenComponents, on_error: OnError, skip: str) -> None:
-    """Warn of records without a vertical component.
-
-    Raises
-    ------
-    InputError
-        If a vertical component does not fit and `on_error` is "raise", or there is none for any record.
-    """
+def _unpaired_records(result: ChosenComponents, on_error: OnError, skip: str) -> Iterator[str]:
+    """Yield which records have no vertical component, or raise an error if there is none, or one does not fit."""
     both, without = result.taken, result.unpaired
     faults = {file: reason for file, reason in without.items() if reason}
     if faults:
@@ -463,7 +396,7 @@ def _warn_of_unpaired_records(result: ChosenComponents, on_error: OnError, skip:
         message = f"{len(faults)} of {len(both)} records cannot be paired with a vertical component. {reasons}"
         if on_error == "raise":
             raise InputError(f"{message} {skip} keeps them without it.", longest=MAX_MESSAGE_LENGTH, field="vertical")
-        warnings.warn(message, RecordWarning, stacklevel=4)
+        yield message
     if without and len(without) == len(both) and not faults:
         first = next(iter(both)).name
         which = first if len(both) == 1 else f"any of the {len(both)} records, such as {first}"
@@ -475,10 +408,7 @@ def _warn_of_unpaired_records(result: ChosenComponents, on_error: OnError, skip:
         )
     missing = [file for file, reason in without.items() if not reason]
     if missing:
-        count = f"{len(missing)} of {len(both)} records"
-        warnings.warn(
-            f"Without a vertical component: {count}, {file_names_text(missing)}.", RecordWarning, stacklevel=4
-        )
+        yield f"Without a vertical component: {len(missing)} of {len(both)} records, {file_names_text(missing)}."
 
 
 def _unreadable_files_message(faults: dict[Path, str], n_files: int) -> str:

@@ -9,22 +9,14 @@ from rockflex._checks import checked_instance, checked_positive
 from rockflex._errors import InputError, RecordWarning
 from rockflex._files import checked_file_path
 from rockflex._shown import shown
-from rockflex.motion import _obspy
+from rockflex.motion import _obspy, _text
 from rockflex.motion._at2 import find_at2_header, parse_at2
 from rockflex.motion._columns import is_excel_workbook, parse_columns, parse_excel
 from rockflex.motion._cosmos import is_cosmos, parse_cosmos
 from rockflex.motion._esm import is_esm, parse_esm
 from rockflex.motion._geonet import is_geonet, parse_geonet
-from rockflex.motion._ground_motion import GroundMotion, is_vertical_component
+from rockflex.motion._ground_motion import GroundMotion, info_of, is_vertical_component
 from rockflex.motion._knet import is_knet, parse_knet
-from rockflex.motion._text import (
-    AccelerationUnit,
-    declared_acceleration_unit,
-    decoded_text,
-    parse_numeric_table,
-    read_file_bytes,
-    text_lines,
-)
 
 # Formats that state unit and step, each known by its first lines, whatever the suffix of the file.
 FORMATS = (
@@ -171,37 +163,19 @@ def read_components(path: str | Path, units: str | None = None, dt: float | None
 
 
 def read_motion_without_obspy(path: str | Path, units: str | None = None, dt: float | None = None) -> GroundMotion:
-    """Read a record as `read_motion` does, but without ObsPy, whose readers are not made for files of strangers.
-
-    Raises
-    ------
-    InputError
-        As for `read_motion`.
-    """
+    """Read a record as `read_motion` does, but without ObsPy, whose readers are not made for files of strangers."""
     file = checked_file_path("path", path)
-    return select_component(
-        file, components_in_file(file, *_checked_unit_and_step(units, dt), use_obspy=False), None, vertical=False
-    )
+    found = components_in_file(file, *_checked_unit_and_step(units, dt), use_obspy=False)
+    return select_component(file, found, None, vertical=False)
 
 
 def components_in_file(
-    file: Path, units: AccelerationUnit | None, dt: float | None, *, use_obspy: bool = True, common: bool = False
+    file: Path, units: _text.AccelerationUnit | None, dt: float | None, *, use_obspy: bool = True, common: bool = False
 ) -> list[GroundMotion]:
-    """Return all components in a file.
+    """Return all components in a file, as `read_components` does.
 
-    Parameters
-    ----------
-    file, units, dt
-        As in `read_components`.
-    use_obspy
-        Whether the readers of ObsPy may be used.
-    common
-        Whether `units` and `dt` are for many files, so that a format that states its own need not agree.
-
-    Raises
-    ------
-    InputError
-        As for `read_components`.
+    `use_obspy` tells whether the readers of ObsPy may be used, and `common` whether `units` and `dt` are for many
+    files, so that a format that states its own need not agree.
     """
     found = _read_components(file, units, dt, use_obspy=use_obspy, common=common)
     for motion in found:
@@ -220,73 +194,70 @@ def is_of_a_network(lines: list[str]) -> bool:
 
 
 def _read_components(
-    file: Path, units: AccelerationUnit | None, dt: float | None, *, use_obspy: bool, common: bool
+    file: Path, units: _text.AccelerationUnit | None, dt: float | None, *, use_obspy: bool, common: bool
 ) -> list[GroundMotion]:
-    content = read_file_bytes(file)
+    content = _text.read_file_bytes(file)
     if is_excel_workbook(content):
         return parse_excel(file, content, units, dt)
-    text = decoded_text(content)
-    if text is None and use_obspy:
+    if use_obspy and _text.decoded_text(content) is None:
         form = _obspy.obspy_format(content)
         if form is not None:
-            return _read_with_obspy(file, content, form, units, dt)
+            return _with_stated_step(file, _obspy.parse_obspy(file, content, form, units), dt)
         if not _obspy.is_obspy_installed():
             raise InputError(f"{file} is a binary file, but a record is expected as text or .xlsx. {_obspy.INSTALL}")
-    lines = text_lines(file, content)
+    lines = _text.text_lines(file, content)
     for form, known, parse in FORMATS:
         if known(lines):
             found = parse(file, lines)
-            if not common:
-                _check_no_units_given(file, form, units)
-                _check_stated_time_step(file, found[0], dt)
-            return found
-    if find_at2_header(lines) is None and file.suffix.lower() != ".at2":
+            if units is not None and not common:
+                raise InputError(
+                    f"{file} is a file in the {form} format, which states its unit, but units={shown(str(units))} was "
+                    "given. Leave units out.",
+                    field="units",
+                )
+            return found if common else _with_stated_step(file, found, dt)
+    if find_at2_header(lines) is not None or file.suffix.lower() == ".at2":
+        return _with_stated_step(file, [_read_at2_in_g(file, lines, units)], dt)
+    return _read_columns(file, content if use_obspy else b"", lines, units, dt)
+
+
+def _read_columns(
+    file: Path, content: bytes, lines: list[str], units: _text.AccelerationUnit | None, dt: float | None
+) -> list[GroundMotion]:
+    """Return the columns of a text; without any, what ObsPy finds in the content."""
+    try:
+        return parse_columns(file, _text.parse_numeric_table(file, lines), units, dt, file.stem)
+    except InputError as error:
+        form = _obspy.obspy_format(content) if content and error.field is None else None
+        if form is None:
+            raise
         try:
-            return parse_columns(file, parse_numeric_table(file, lines), units, dt, file.stem)
-        except InputError as error:
-            form = _obspy.obspy_format(content) if use_obspy and error.field is None else None
-            if form is None:
-                raise
-            try:
-                return _read_with_obspy(file, content, form, units, dt)
-            except _obspy.ObsPyError:
-                raise error from None
+            return _with_stated_step(file, _obspy.parse_obspy(file, content, form, units), dt)
+        except _obspy.ObsPyError:
+            raise error from None
+
+
+def _read_at2_in_g(file: Path, lines: list[str], units: _text.AccelerationUnit | None) -> GroundMotion:
     motion = parse_at2(file, lines)
-    if units not in (None, AccelerationUnit("g")):
+    if units not in (None, _text.AccelerationUnit("g")):
         raise InputError(
             f"{file} is an AT2 file, in g by definition, but units={shown(str(units))} was given. Leave units out.",
             field="units",
         )
-    _check_stated_time_step(file, motion, dt)
-    return [motion]
+    return motion
 
 
-def _read_with_obspy(
-    file: Path, content: bytes, form: str, units: AccelerationUnit | None, dt: float | None
-) -> list[GroundMotion]:
-    found = _obspy.parse_obspy(file, content, form, units)
-    _check_stated_time_step(file, found[0], dt)
+def _with_stated_step(file: Path, found: list[GroundMotion], dt: float | None) -> list[GroundMotion]:
+    """Return the components of a file that states its step, if `dt` does not contradict it."""
+    stated = found[0].dt
+    if dt is not None and abs(dt - stated) > 1e-9 * dt:
+        raise InputError(f"{file} states DT = {stated:g} s, but dt={shown(dt)} was given. Leave dt out.", field="dt")
     return found
 
 
-def _check_no_units_given(file: Path, form: str, units: AccelerationUnit | None) -> None:
-    if units is not None:
-        raise InputError(
-            f"{file} is a file in the {form} format, which states its unit, but units={shown(str(units))} was given. "
-            "Leave units out.",
-            field="units",
-        )
-
-
-def _check_stated_time_step(file: Path, motion: GroundMotion, dt: float | None) -> None:
-    if dt is not None and abs(dt - motion.dt) > 1e-9 * dt:
-        raise InputError(f"{file} states DT = {motion.dt:g} s, but dt={shown(dt)} was given. Leave dt out.", field="dt")
-
-
-def _checked_unit_and_step(units: str | None, dt: float | None) -> tuple[AccelerationUnit | None, float | None]:
-    return None if units is None else declared_acceleration_unit(units), None if dt is None else checked_positive(
-        "dt", dt, "s"
-    )
+def _checked_unit_and_step(units: str | None, dt: float | None) -> tuple[_text.AccelerationUnit | None, float | None]:
+    step = None if dt is None else checked_positive("dt", dt, "s")
+    return None if units is None else _text.declared_acceleration_unit(units), step
 
 
 def _warn_of_stated_peak(file: Path, motion: GroundMotion) -> None:
@@ -301,14 +272,13 @@ def stated_peak_mismatch(motion: GroundMotion) -> tuple[float, str]:
     The text says both peaks, and whether they agree when the mean is subtracted; it is empty if they agree, or none is
     stated. For a mean that explains the difference, the first value is at most `MAX_PEAK_MISMATCH`.
     """
-    stated = None if motion.metadata is None else motion.metadata.stated_pga
+    stated, done = info_of(motion).stated_pga, info_of(motion).processing
     if not stated:
         return 0.0, ""
     difference = _relative_difference(motion.pga, stated)
     if difference <= PEAK_TOLERANCE:
         return difference, ""
     without = float(np.max(np.abs(motion.acceleration - motion.acceleration.mean())))
-    done = motion.metadata is not None and motion.metadata.processing
     text = f"the header states a PGA of {stated:.6g} m/s², but the samples reach {motion.pga:.6g} m/s²"
     if done:
         return difference, f"{text} ({done})"
@@ -325,13 +295,7 @@ def _relative_difference(one: float, other: float) -> float:
 
 
 def select_component(file: Path, found: list[GroundMotion], component: str | None, *, vertical: bool) -> GroundMotion:
-    """Return the component with a name; without one, the only horizontal or, if `vertical`, the only vertical one.
-
-    Raises
-    ------
-    InputError
-        If there is no such component, or more than one.
-    """
+    """Return the component with a name; without one, the only horizontal or, if `vertical`, the only vertical one."""
     if component is not None:
         named = [motion for motion in found if _is_component_named(motion, component)]
         if len(named) == 1:
@@ -352,7 +316,7 @@ def select_component(file: Path, found: list[GroundMotion], component: str | Non
 
 
 def _is_component_named(motion: GroundMotion, component: str) -> bool:
-    azimuth = None if motion.metadata is None else motion.metadata.azimuth
+    azimuth = info_of(motion).azimuth
     wanted = component.strip().casefold()
     if azimuth is not None and wanted.isdecimal() and wanted.isascii() and len(wanted) <= 3:
         return float(wanted) % 360.0 == azimuth % 360.0
@@ -360,11 +324,8 @@ def _is_component_named(motion: GroundMotion, component: str) -> bool:
 
 
 def _component_name(motion: GroundMotion) -> str:
-    stated = None if motion.metadata is None else motion.metadata.component
-    return stated or motion.name
+    return info_of(motion).component or motion.name
 
 
 def _component_names(found: list[GroundMotion]) -> str:
-    return ", ".join(
-        f"{shown(_component_name(motion))}{' (vertical)' * is_vertical_component(motion)}" for motion in found
-    )
+    return ", ".join(shown(_component_name(each)) + " (vertical)" * is_vertical_component(each) for each in found)

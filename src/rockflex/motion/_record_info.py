@@ -141,14 +141,7 @@ def component_direction(file: Path, component: str | None = None) -> Direction |
 
     A component is vertical if the header calls it UP, DWN, V, UD and the like, or if the file name ends in such a word
     after a hyphen or an underscore. PEER files may also join station and component, as in TCU078V.AT2; this is accepted
-    unless the header names a horizontal component, for example an azimuth.
-
-    Parameters
-    ----------
-    file
-        The file; only its name is used.
-    component
-        Name of the component in the header.
+    unless the header (`component`) names a horizontal component, for example an azimuth.
     """
     stated = (component or "").strip()
     if VERTICAL_NAME.fullmatch(stated):
@@ -196,3 +189,8 @@ def is_horizontal_component_name(component: str) -> bool:
 def unique_record_names(names: list[str]) -> list[str]:
     """Return the names, with a number added to those that occur more than once."""
     return [name if names.count(name) == 1 else f"{name}-{names[: i + 1].count(name)}" for i, name in enumerate(names)]
+
+
+def component_record_names(stem: str, components: list[str]) -> list[str]:
+    """Return the names of the motions in a file: its stem, with the component where it holds several."""
+    return [stem] if len(components) == 1 else [f"{stem}-{name}" for name in unique_record_names(components)]

@@ -7,24 +7,16 @@ criteria and data statistics. *Bull Earthq Eng* 2019;17(2):561–582.
 import csv
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
-from types import MappingProxyType
 from typing import TypeAlias, TypeVar
 
 from rockflex._checks import checked_positive
 from rockflex._errors import InputError
+from rockflex.motion import _text
 from rockflex.motion._columns import excel_sheet_cells, is_excel_workbook
 from rockflex.motion._record_info import RecordInfo
-from rockflex.motion._text import (
-    AccelerationUnit,
-    declared_acceleration_unit,
-    decoded_text,
-    non_negative_or_none,
-    parse_optional_decimal,
-    read_file_bytes,
-)
 
 V = TypeVar("V")
 Recording: TypeAlias = tuple[str, str | None, str]  # event, network and station
@@ -66,21 +58,15 @@ TEXT_FIELDS = ("event", "station", "network", "event_id")
 class RecordTable:
     """Information about records from tables: by record sequence number, by file, and by event, network and station."""
 
-    by_number: Mapping[int, RecordInfo] = field(default_factory=lambda: MappingProxyType({}))
-    by_file: Mapping[str, RecordInfo] = field(default_factory=lambda: MappingProxyType({}))
-    units: Mapping[str, AccelerationUnit] = field(default_factory=lambda: MappingProxyType({}))
-    steps: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
-    by_recording: Mapping[Recording, RecordInfo] = field(default_factory=lambda: MappingProxyType({}))
+    by_number: dict[int, RecordInfo] = field(default_factory=dict[int, RecordInfo])
+    by_file: dict[str, RecordInfo] = field(default_factory=dict[str, RecordInfo])
+    by_recording: dict[Recording, RecordInfo] = field(default_factory=dict[Recording, RecordInfo])
+    units: dict[str, _text.AccelerationUnit] = field(default_factory=dict[str, _text.AccelerationUnit])
+    steps: dict[str, float] = field(default_factory=dict[str, float])
 
     def joined(self, other: "RecordTable") -> "RecordTable":
         """Return both tables; this one prevails."""
-        return RecordTable(
-            {**other.by_number, **self.by_number},
-            {**other.by_file, **self.by_file},
-            {**other.units, **self.units},
-            {**other.steps, **self.steps},
-            {**other.by_recording, **self.by_recording},
-        )
+        return RecordTable(*(getattr(other, each.name) | getattr(self, each.name) for each in fields(self)))
 
     def completed(self, file: Path, info: RecordInfo) -> RecordInfo:
         """Return the metadata of a record, with unknown fields taken from the tables."""
@@ -104,16 +90,9 @@ class RecordTable:
             if key not in present and not any(mark in key for mark in "*?[")
         ]
 
-    def unit_of(self, file: Path) -> AccelerationUnit | None:
-        """Return the unit that the tables state for a file."""
-        return _entry_for_file(self.units, file)
 
-    def step_of(self, file: Path) -> float | None:
-        """Return the time step that the tables state for a file, in s."""
-        return _entry_for_file(self.steps, file)
-
-
-def _entry_for_file(by_name: Mapping[str, V], file: Path) -> V | None:
+def entry_for_file(by_name: Mapping[str, V], file: Path) -> V | None:
+    """Return what a table states for a file, by its name or by a pattern."""
     name = file.name.casefold()
     if name in by_name:
         return by_name[name]
@@ -121,15 +100,8 @@ def _entry_for_file(by_name: Mapping[str, V], file: Path) -> V | None:
 
 
 def read_record_table(file: Path) -> RecordTable:
-    """Read a table about records from a CSV file or a workbook.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or is no such table.
-    """
-    content = read_file_bytes(file)
-    found = record_table_in_content(file, content)
+    """Read a table about records from a CSV file or a workbook."""
+    found = record_table_in_content(file, _text.read_file_bytes(file))
     if found is None:
         raise InputError(
             f"{file} is no table about records: a header line is expected with a column of files or record sequence "
@@ -142,31 +114,14 @@ def read_record_table(file: Path) -> RecordTable:
 def record_table_in_content(file: Path, content: bytes) -> RecordTable | None:
     """Return the table about records in the bytes of a file, or None if there is none."""
     if is_excel_workbook(content):
-        for rows in excel_sheet_cells(file, content).values():
-            found = _record_table_from_rows(file, rows)
-            if found is not None:
-                return found
-        return None
-    text = decoded_text(content)
-    if text is None:
-        return None
-    lines = text.splitlines()
-    head = next(
-        (
-            line
-            for line in lines[:MAX_HEADER_LINE]
-            if _record_table_columns(_record_table_cells(line, _record_table_separator(line))) is not None
-        ),
-        None,
-    )
-    if head is None:
-        return None
-    separator = _record_table_separator(head)
-    return _record_table_from_rows(file, (_record_table_cells(line, separator) for line in lines))
-
-
-def _record_table_separator(line: str) -> str:
-    return max(";,\t", key=line.count)
+        sheets = (_record_table_from_rows(file, rows) for rows in excel_sheet_cells(file, content).values())
+        return next((found for found in sheets if found is not None), None)
+    lines = (_text.decoded_text(content) or "").splitlines()
+    for head in lines[:MAX_HEADER_LINE]:
+        separator = max(";,\t", key=head.count)
+        if _record_table_columns(_record_table_cells(head, separator)) is not None:
+            return _record_table_from_rows(file, (_record_table_cells(line, separator) for line in lines))
+    return None
 
 
 def _record_table_cells(line: str, separator: str) -> list[str]:
@@ -191,17 +146,15 @@ def _record_table_columns(cells: list[str]) -> dict[int, str] | None:
     keyed = bool(files) or "rsn" in names or {"event_id", "station"} <= names
     if not keyed or not names - {"rsn", "event", "event_id", "network", "station", "year"}:
         return None
+    if "units" not in names:  # steps are given beside units only
+        found = {k: name for k, name in found.items() if name != "dt"}
     return found | files | {plain.index(label): label for label in FALLBACK_LABELS.values() if label in plain}
 
 
 def _record_table_from_rows(file: Path, rows: Iterable[list[str]]) -> RecordTable | None:
     """Return the table under the first header, down to the first row that is empty."""
     columns: dict[int, str] | None = None
-    by_number: dict[int, RecordInfo] = {}
-    by_file: dict[str, RecordInfo] = {}
-    units: dict[str, AccelerationUnit] = {}
-    steps: dict[str, float] = {}
-    by_recording: dict[Recording, RecordInfo] = {}
+    table = RecordTable()
     for line, cells in enumerate(rows, 1):
         if columns is None:
             columns = _record_table_columns(cells) if line <= MAX_HEADER_LINE else None
@@ -211,24 +164,29 @@ def _record_table_from_rows(file: Path, rows: Iterable[list[str]]) -> RecordTabl
         stated = {name: cells[k] for k, name in columns.items() if k < len(cells) and cells[k]}
         info = _record_info_of_row(stated)
         if info.rsn is not None:
-            by_number.setdefault(info.rsn, info)
+            table.by_number.setdefault(info.rsn, info)
         if recording := _recording_key(info):
-            by_recording.setdefault(recording, info)
-        for label, direction in FILE_LABELS.items():
-            # Flatfiles give folders too, with either slash; search results write ----- for no file.
-            whole = re.split(r"[\\/]", stated.get(label, ""))[-1]
-            name = whole.casefold()
-            if not name.strip("- "):
-                continue
-            by_file.setdefault(name, replace(info, direction=direction, source=whole))  # pyright: ignore[reportArgumentType]
-            try:
-                if "units" in stated:
-                    units.setdefault(name, declared_acceleration_unit(stated["units"]))
-                if "dt" in stated and "units" in columns.values():
-                    steps.setdefault(name, checked_positive("dt", _record_table_number(stated["dt"]) or 0.0, "s"))
-            except InputError as error:
-                raise InputError(f"{file}, line {line}: {error}", field=error.field) from error
-    return None if columns is None else RecordTable(by_number, by_file, units, steps, by_recording)
+            table.by_recording.setdefault(recording, info)
+        try:
+            _add_files_of_row(table, stated, info)
+        except InputError as error:
+            raise InputError(f"{file}, line {line}: {error}", field=error.field) from error
+    return None if columns is None else table
+
+
+def _add_files_of_row(table: RecordTable, stated: Mapping[str, str], info: RecordInfo) -> None:
+    for label, direction in FILE_LABELS.items():
+        # Flatfiles give folders too, with either slash; search results write ----- for no file.
+        whole = re.split(r"[\\/]", stated.get(label, ""))[-1]
+        name = whole.casefold()
+        if not name.strip("- "):
+            continue
+        table.by_file.setdefault(name, replace(info, direction=direction, source=whole))  # pyright: ignore[reportArgumentType]
+        if "units" in stated:
+            table.units.setdefault(name, _text.declared_acceleration_unit(stated["units"]))
+        if "dt" in stated:
+            step = _record_table_number(stated["dt"]) or 0.0
+            table.steps.setdefault(name, checked_positive("dt", step, "s"))
 
 
 def _recording_key(info: RecordInfo) -> Recording | None:
@@ -236,17 +194,13 @@ def _recording_key(info: RecordInfo) -> Recording | None:
 
 
 def _record_table_number(text: str) -> float | None:
-    return parse_optional_decimal(text.replace(",", "."))
+    return _text.parse_optional_decimal(text.replace(",", "."))
 
 
 def _record_info_of_row(stated: Mapping[str, str]) -> RecordInfo:
-    numbers = {
-        name: non_negative_or_none(
-            _record_table_number(stated.get(name) or stated.get(FALLBACK_LABELS.get(name, ""), ""))
-        )
-        for name in NUMBER_FIELDS
-    }
-    whole = {name: non_negative_or_none(_record_table_number(stated.get(name, ""))) for name in ("rsn", "year")}
+    texts = {name: stated.get(name) or stated.get(FALLBACK_LABELS.get(name, ""), "") for name in NUMBER_FIELDS}
+    numbers = {name: _text.non_negative_or_none(_record_table_number(text)) for name, text in texts.items()}
+    whole = {name: _text.non_negative_or_none(_record_table_number(stated.get(name, ""))) for name in ("rsn", "year")}
     # PEER writes underscores for commas.
     words = {
         name: stated[name].replace("_ ", ", ") for name in TEXT_FIELDS if stated.get(name, "-") not in ("-", "-999")

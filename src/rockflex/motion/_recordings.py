@@ -17,7 +17,7 @@ from rockflex._errors import InputError
 from rockflex._shown import first_texts_shown, shown
 from rockflex._values import Value
 from rockflex.engine.oscillator import rotated_peaks
-from rockflex.motion._ground_motion import GroundMotion, is_vertical_component
+from rockflex.motion._ground_motion import GroundMotion, info_of, is_vertical_component
 from rockflex.motion._record_info import (
     SEPARATORS,
     RecordInfo,
@@ -38,15 +38,10 @@ GroupKey: TypeAlias = tuple[Hashable, ...] | None
 def pair_vertical_records(
     horizontal: Mapping[Path, GroundMotion], vertical: Mapping[Path, GroundMotion]
 ) -> tuple[dict[Path, GroundMotion], dict[Path, str], list[Path]]:
-    """Give each horizontal record the vertical one of its station.
+    """Give each horizontal record without a vertical component the vertical one of its station.
 
-    Records that have a vertical component already keep it.
-
-    Returns
-    -------
-    tuple
-        All horizontal records; the reasons why some remain without a vertical component, empty where there is no
-        vertical record of the station; the vertical records that were not used.
+    Returns all horizontal records; the reasons why some remain without one, empty where there is no vertical record of
+    the station; and the vertical records that were not used.
     """
     both: dict[Path, GroundMotion] = {}
     without: dict[Path, str] = {}
@@ -68,19 +63,16 @@ def pair_vertical_records(
     return both, without, [file for file in vertical if file not in used]
 
 
-def station_names(motions: Sequence[tuple[Path, GroundMotion]]) -> list[str]:
-    """Return the name of the recording of each component, the same for all components of a recording.
-
-    `motions` are the components with paths whose stems are their names; see `group_stations`.
-    """
-    known = [_recording_name_in_header(motion.metadata) for _, motion in motions]
-    stems = [_possible_station_names(Path(f"{file}.x"), motion) for file, motion in motions]
+def station_names(motions: Sequence[GroundMotion]) -> list[str]:
+    """Return the name of the recording of each component, the same for all components of a recording."""
+    stems = [_possible_station_names(motion) for motion in motions]
     counts = Counter(stem.casefold() for options in stems for stem in options)
     first: dict[str, str] = {}
     found: list[str] = []
-    for name, options, (file, _) in zip(known, stems, motions, strict=True):
+    for motion, options in zip(motions, stems, strict=True):
         shared = next((stem for stem in options if counts[stem.casefold()] > 1), None)
-        found.append(name or (first.setdefault(shared.casefold(), shared) if shared else file.name))
+        in_names = first.setdefault(shared.casefold(), shared) if shared else Path(motion.name).name
+        found.append(_recording_name_in_header(motion.metadata) or in_names)
     return found
 
 
@@ -125,20 +117,19 @@ def _recording_name_in_header(info: RecordInfo | None) -> str | None:
     return None
 
 
-def _possible_station_names(file: Path, motion: GroundMotion) -> list[str]:
-    """Return the names of the station that a name may contain, the most likely first."""
+def _possible_station_names(motion: GroundMotion) -> list[str]:
+    """Return the names of the station that the name of a motion may contain, the most likely first."""
+    file = Path(f"{Path(motion.name)}.x")
     upright = station_of_vertical_file(file)
-    if motion.metadata is not None and motion.metadata.is_vertical:
+    if is_vertical_component(motion):
         return [] if upright is None else [upright]
     return [file.stem[: len(str(key[1]))] for key in _vertical_record_keys(file, None) if key[1]]
 
 
 def are_different_components(file: Path, info: RecordInfo | None, other: Path, known: RecordInfo | None) -> bool:
     """Return whether two files are of different recordings by their numbers, or of different components."""
-    one, two = info or RecordInfo(), known or RecordInfo()
     for fact in ("rsn", "azimuth"):
-        values = {getattr(one, fact), getattr(two, fact)} - {None}
-        if len(values) > 1:
+        if len({getattr(info, fact, None), getattr(known, fact, None)} - {None}) > 1:
             return True
     first, second = _component_names_in_file_name(file), _component_names_in_file_name(other)
     return any(first[station] != second[station] for station in first.keys() & second.keys())
@@ -192,12 +183,10 @@ def _station_name_key(file: Path, station: str) -> Key:
 
 def _station_header_keys(info: RecordInfo | None) -> list[Key]:
     """Return the record sequence number, else event, year and station, if they are known."""
-    if info is None:
+    if info is None or (info.rsn is None and None in (info.event, info.year, info.station)):
         return []
     if info.rsn is not None:
         return [(info.rsn,)]
-    if None in (info.event, info.year, info.station):
-        return []
     return [(info.event, info.year, info.station, info.network, info.location)]
 
 
@@ -281,17 +270,16 @@ def group_stations(motions: Iterable[GroundMotion]) -> tuple[StationRecord, ...]
     for each in members:
         if not isinstance(each, GroundMotion):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise InputError(f"motions must hold GroundMotion objects, but {type(each).__name__} was given.")
-    groups: dict[str, list[GroundMotion]] = {}
-    for name, each in zip(station_names([(Path(each.name), each) for each in members]), members, strict=True):
-        groups.setdefault(name, []).append(each)
-    return tuple(_station_record(name, group) for name, group in groups.items())
-
-
-def _station_record(name: str, group: list[GroundMotion]) -> StationRecord:
-    upright = [each for each in group if is_vertical_component(each)]
-    upright += [each.vertical_motion for each in group if each.vertical is not None]
-    along = tuple(each for each in group if not is_vertical_component(each))
-    return StationRecord(name, along, upright[0] if upright else None)
+    groups: dict[str, list[GroundMotion]] = defaultdict(list)
+    for name, each in zip(station_names(members), members, strict=True):
+        groups[name].append(each)
+    stations: list[StationRecord] = []
+    for name, group in groups.items():
+        upright = [each for each in group if is_vertical_component(each)]
+        upright += [each.vertical_motion for each in group if each.vertical is not None]
+        along = tuple(each for each in group if not is_vertical_component(each))
+        stations.append(StationRecord(name, along, upright[0] if upright else None))
+    return tuple(stations)
 
 
 @dataclass(frozen=True, eq=False)
@@ -383,11 +371,6 @@ def rotated_spectrum(
     damping_ratio : float
         Fraction of critical damping, 0 <= ζ < 1.
 
-    Returns
-    -------
-    RotatedSpectrum
-        The ordinates of pseudo-acceleration by period and direction.
-
     Raises
     ------
     InputError
@@ -436,14 +419,14 @@ class Recording:
     @property
     def event(self) -> GroupKey:
         """Key of the earthquake; None if it is not known."""
-        info = self.motions[0].metadata
-        return None if info is None or info.event is None else (info.event.casefold(), info.year)
+        info = info_of(self.motions[0])
+        return None if info.event is None else (info.event.casefold(), info.year)
 
     @property
     def station(self) -> GroupKey:
         """Key of the station; None if it is not known."""
-        info = self.motions[0].metadata
-        return None if info is None or info.station is None else (info.station.casefold(),)
+        station = info_of(self.motions[0]).station
+        return None if station is None else (station.casefold(),)
 
     def sa(self, periods: ArrayLike, measure: Combination, damping_ratio: float) -> Array:
         """Pseudo-acceleration in m/s², shape (m,), of the only component, or of two combined."""
@@ -458,15 +441,13 @@ class Recording:
 def horizontal_pairs(motions: Iterable[GroundMotion]) -> tuple[list[Recording], list[str]]:
     """Join motions that are the two horizontal components of a recording, as `group_stations` finds them.
 
-    Returns
-    -------
-    tuple
-        The pairs, and the names of the motions that are not one of exactly two with the same time step.
+    Also returns the names of the motions that are not one of exactly two with the same time step.
     """
-    groups = [station.horizontal for station in group_stations(motions)]
-    pairs = [Recording(group) for group in groups if _is_horizontal_pair(group)]
-    return pairs, [motion.name for group in groups if not _is_horizontal_pair(group) for motion in group]
-
-
-def _is_horizontal_pair(group: Sequence[GroundMotion]) -> bool:
-    return len(group) == 2 and abs(group[0].dt - group[1].dt) <= 1e-9 * group[0].dt
+    pairs: list[Recording] = []
+    single: list[str] = []
+    for group in (station.horizontal for station in group_stations(motions)):
+        if len(group) == 2 and abs(group[0].dt - group[1].dt) <= 1e-9 * group[0].dt:
+            pairs.append(Recording(group))
+        else:
+            single += [motion.name for motion in group]
+    return pairs, single

@@ -1,11 +1,10 @@
 """Records chosen and scaled for a target spectrum."""
 
-import math
 import warnings
 from collections import Counter
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic, TypeVar, get_args
+from typing import get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,40 +19,27 @@ from rockflex._checks import (
     real_or_nan,
 )
 from rockflex._errors import InputError, RecordWarning
-from rockflex._html import HtmlTable, value_range_text
-from rockflex._shown import few_texts_shown, first_texts_shown, number_with_noun, shown
-from rockflex._values import Value
+from rockflex._shown import first_texts_shown, number_with_noun, shown
 from rockflex.motion._ground_motion import GroundMotion, check_horizontal_component
 from rockflex.motion._recordings import Combination, Recording, horizontal_pairs
 from rockflex.motion._spectra import TargetSpectrum, comparison_periods, spectrum_fitting_factor
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 GroupLimits = tuple[tuple[Sequence[Hashable | None], int], ...]
 """For each limit the group of every record, None for a group of its own, and the most of one group."""
 
 N_STARTS = 20  # sets that grow from one record each
 MIN_GAIN = 1e-12  # relative improvement below which an exchange is left alone
-S = TypeVar("S", bound=Sequence[GroundMotion])
 
 
 @dataclass(frozen=True, eq=False)
 class SelectionProblem:
     """The spectra to choose from, and the objective by which sets are compared.
 
-    Parameters
-    ----------
-    spectra
-        Scaled spectra, divided by the target, shape (n_records, m).
-    record_weight
-        Weight w of the mean of the squared misfits of the records; 1 - w weighs the squared misfit of their mean.
-    group_limits
-        Limits of records of one group.
+    It is w times the mean of the squared misfits of the records, and 1 - w times the squared misfit of their mean.
     """
 
-    spectra: Array
-    record_weight: float
+    spectra: Array  # (n_records, m): scaled, over the target
+    record_weight: float  # w
     group_limits: GroupLimits
 
     @property
@@ -63,9 +49,8 @@ class SelectionProblem:
 
     def objective(self, total: Array, squares: Array, count: int) -> Array:
         """Return the objective of sets of `count` spectra with the given sums, along the first axis."""
-        return (1.0 - self.record_weight) * log_spectrum_misfit(
-            total / count
-        ) ** 2 + self.record_weight * squares / count
+        of_mean = log_spectrum_misfit(total / count) ** 2
+        return (1.0 - self.record_weight) * of_mean + self.record_weight * squares / count
 
     def objective_of(self, chosen: Sequence[int]) -> float:
         """Return the objective of one set."""
@@ -139,199 +124,45 @@ def _record_set_after_exchanges(choice: SelectionProblem, chosen: list[int]) -> 
         present = best
 
 
-@dataclass(frozen=True, eq=False)
-class Selection(HtmlTable, Value, Generic[S]):
-    """Records chosen for a target spectrum, each scaled by one factor; see `Suite.select`.
-
-    Parameters
-    ----------
-    target : TargetSpectrum
-        The target.
-    periods : ndarray, shape (m,)
-        Periods in s at which spectra were compared.
-    measure : {"component", "geometric mean", "rotd50", "rotd100"}
-        Ordinate of a record: of one component, or of the two of a pair.
-    suite : Suite
-        The chosen motions, scaled; the two components of a pair follow each other.
-    names : tuple of tuple of str
-        Names of the one or two motions of each of the n records.
-    factors : ndarray, shape (n,)
-        Factor by which each record was scaled.
-    sa : ndarray, shape (n, m)
-        Pseudo-acceleration of the scaled records in m/s².
-
-    Examples
-    --------
-    >>> import rockflex as rf
-    >>> suite = rf.load_suite("fema-p695-far-field")
-    >>> chosen = suite.select(rf.ec8_spectrum(2.5, "C"), 7, (0.2, 2.0))
-    >>> chosen
-    Selection(7 records, misfit of the mean 0.043, least mean/target 0.92)
-    >>> len(chosen.suite), chosen.factors.size, chosen.mean.shape
-    (7, 7, (50,))
-    """
-
-    target: TargetSpectrum
-    periods: Array
-    measure: Combination
-    suite: S
-    names: tuple[tuple[str, ...], ...]
-    factors: Array
-    sa: Array
-
-    def __repr__(self) -> str:
-        return (
-            f"Selection({number_with_noun(len(self.names), 'record')}, misfit of the mean {self.misfit:.2g}, "
-            f"least mean/target {self.least_ratio:.2g})"
-        )
-
-    def _shown_as(self) -> Mapping[str, Any]:
-        return {
-            "records": f"{len(self.names)}: {few_texts_shown([' + '.join(names) for names in self.names])}",
-            "measure": self.measure,
-            "periods": f"{value_range_text(self.periods)} s",
-            "factors": value_range_text(self.factors),
-            "misfit of the mean": self.misfit,
-            "least mean/target": self.least_ratio,
-            "mean/target at a period of zero": None if math.isnan(self.zero_period_ratio) else self.zero_period_ratio,
-        }
-
-    @property
-    def mean(self) -> Array:
-        """Arithmetic mean of the spectra in m/s², shape (m,), which codes compare with the target."""
-        return self.sa.mean(axis=0)
-
-    @property
-    def median(self) -> Array:
-        """Geometric mean of the spectra in m/s², shape (m,): the median of a lognormal distribution."""
-        return np.exp(np.log(self.sa).mean(axis=0))
-
-    @property
-    def dispersion(self) -> Array:
-        """Standard deviation of ln S_a, shape (m,); NaN for a single record."""
-        if len(self.sa) < 2:
-            return np.full(self.periods.size, math.nan)
-        return np.log(self.sa).std(axis=0, ddof=1)
-
-    @property
-    def misfits(self) -> Array:
-        """Root mean square over the periods of ln(S_a/target) of each record, shape (n,)."""
-        return log_spectrum_misfit(self.sa / self.target.at(self.periods))
-
-    @property
-    def misfit(self) -> float:
-        """Root mean square over the periods of ln(mean/target)."""
-        return float(log_spectrum_misfit(self.mean / self.target.at(self.periods)))
-
-    @property
-    def least_ratio(self) -> float:
-        """Smallest ratio of the mean to the target; EN 1998-1:2004, 3.2.3.1.2, and ASCE 7-16, 16.2.3.2, ask for 0.9."""
-        return float(np.min(self.mean / self.target.at(self.periods)))
-
-    @property
-    def zero_period_ratio(self) -> float:
-        """Ratio of the mean to the target at a period of zero, for which EN 1998-1:2004 asks for 1.
-
-        It is NaN where the target does not include a period of zero.
-        """
-        if self.target.periods[0] > 0.0:
-            return math.nan
-        return float(self.at([0.0]).mean() / self.target.at([0.0])[0])
-
-    def at(self, periods: ArrayLike) -> Array:
-        """Return the pseudo-acceleration of the scaled records in m/s² at other periods in s, shape (n, k).
-
-        Raises
-        ------
-        InputError
-            As for `GroundMotion.spectrum`.
-        """
-        motions = iter(self.suite)
-        records = [Recording(tuple(next(motions) for _ in names)) for names in self.names]
-        return np.stack([record.sa(periods, self.measure, self.target.damping_ratio) for record in records])
-
-    def table(self) -> "pd.DataFrame":
-        """Return a pandas table with one row for each record.
-
-        Its columns are the record, its metadata (event, year, magnitude, distance_km, vs30, station), its factor
-        and misfit, and the smallest and largest ratio of its spectrum to the target.
-        """
-        import pandas as pd
-
-        motions = {motion.name: motion for motion in self.suite}
-        ratios = self.sa / self.target.at(self.periods)
-        facts = ("event", "year", "magnitude", "distance_km", "vs30", "station")
-        rows = [
-            {
-                "record": " + ".join(names),
-                **{fact: getattr(motions[names[0]].metadata, fact, None) for fact in facts},
-                "factor": factor,
-                "misfit": each,
-                "least_ratio": ratio.min(),
-                "largest_ratio": ratio.max(),
-            }
-            for names, factor, each, ratio in zip(self.names, self.factors, self.misfits, ratios, strict=True)
-        ]
-        return pd.DataFrame(rows)
-
-    def spectra(self) -> "pd.DataFrame":
-        """Return a pandas table with one row for each period: target, statistics, and S_a of each record in m/s².
-
-        The column of a record has its name, with "record " before it where that is the name of another column.
-        """
-        import pandas as pd
-
-        columns = {
-            "period": self.periods,
-            "target": self.target.at(self.periods),
-            "mean": self.mean,
-            "median": self.median,
-            "dispersion": self.dispersion,
-        }
-        for names, row in zip(self.names, self.sa, strict=True):
-            name = " + ".join(names)
-            columns[f"record {name}" if name in columns else name] = row
-        return pd.DataFrame(columns)
-
-
-@dataclass(frozen=True, kw_only=True)
-class SelectionOptions:
-    """The options of `Suite.select`, as given."""
-
-    measure: Combination
-    scale_limits: tuple[float, float]
-    per_event: int | None
-    per_station: int | None
-    record_weight: float
-    least_ratio: float | None
-
-
 def select_records(
-    motions: Sequence[GroundMotion], target: TargetSpectrum, n: int, periods: ArrayLike, options: SelectionOptions
+    motions: Sequence[GroundMotion],
+    target: TargetSpectrum,
+    n: int,
+    periods: ArrayLike,
+    *,
+    measure: Combination,
+    scale_limits: tuple[float, float],
+    per_event: int | None,
+    per_station: int | None,
+    record_weight: float,
+    least_ratio: float | None,
 ) -> tuple[Array, list[Recording], Array, Array]:
     """Return the periods, the chosen records, unscaled, their factors and their scaled spectra; see `Suite.select`."""
     fitted = checked_instance("target", target, TargetSpectrum)
     examined = comparison_periods(periods)
     aim = fitted.at(examined)
-    if not is_one_of(options.measure, get_args(Combination)):
+    if not is_one_of(measure, get_args(Combination)):
         words = ", ".join(map(repr, get_args(Combination)))
-        raise InputError(f"measure must be one of {words}, but {shown(options.measure)} was given.", field="measure")
-    low, high = _checked_scale_limits(options.scale_limits)
-    weight = _checked_selection_weight("record_weight", options.record_weight)
+        raise InputError(f"measure must be one of {words}, but {shown(measure)} was given.", field="measure")
+    low, high = _checked_scale_limits(scale_limits)
+    weight = real_or_nan(record_weight)
+    if not 0.0 <= weight <= 1.0:
+        raise InputError(
+            f"record_weight must lie in [0, 1], but {shown(record_weight)} was given.", field="record_weight"
+        )
     caps = [
         (name, None if most is None else checked_whole_number(name, most, 1))
-        for name, most in (("per_event", options.per_event), ("per_station", options.per_station))
+        for name, most in (("per_event", per_event), ("per_station", per_station))
     ]
     check_horizontal_component(*motions)
-    records = _candidate_recordings(motions, options.measure)
+    records = _candidate_recordings(motions, measure)
     count = checked_whole_number("n", n, 1)
     if count > len(records):
-        kind = "records" if options.measure == "component" else "pairs"
+        kind = "records" if measure == "component" else "pairs"
         raise InputError(f"n must be at most {len(records)}, the number of {kind}, but {count} was given.", field="n")
-    unscaled = np.stack([record.sa(examined, options.measure, fitted.damping_ratio) for record in records])
-    fitting = [
-        spectrum_fitting_factor(row, aim, record.names[0]) for row, record in zip(unscaled, records, strict=True)
-    ]
+    unscaled = np.stack([record.sa(examined, measure, fitted.damping_ratio) for record in records])
+    names = [record.names[0] for record in records]
+    fitting = [spectrum_fitting_factor(row, aim, name) for row, name in zip(unscaled, names, strict=True)]
     factors = np.clip(fitting, low, high)
     groups = {"per_event": [each.event for each in records], "per_station": [each.station for each in records]}
     limits = tuple((groups[name], most) for name, most in caps if most is not None)
@@ -344,18 +175,9 @@ def select_records(
             field="n",
         )
     factors, unscaled = factors[found], unscaled[found]
-    if options.least_ratio is not None:
-        factors = _raised_scale_factors(
-            factors, unscaled / aim, checked_positive("least_ratio", options.least_ratio, ""), high
-        )
+    if least_ratio is not None:
+        factors = _raised_scale_factors(factors, unscaled / aim, checked_positive("least_ratio", least_ratio, ""), high)
     return examined, [records[i] for i in found], factors, factors[:, None] * unscaled
-
-
-def _checked_selection_weight(name: str, given: float) -> float:
-    share = real_or_nan(given)
-    if not 0.0 <= share <= 1.0:
-        raise InputError(f"{name} must lie in [0, 1], but {shown(given)} was given.", field=name)
-    return share
 
 
 def _checked_scale_limits(given: tuple[float, float]) -> tuple[float, float]:

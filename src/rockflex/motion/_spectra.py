@@ -24,13 +24,7 @@ N_COMPARED = 50  # periods at which a range is examined
 
 
 def checked_spectrum_periods(periods: ArrayLike) -> Array:
-    """Return periods in s, each zero or at least 1e-6 s.
-
-    Raises
-    ------
-    InputError
-        If one is negative, too short or not finite.
-    """
+    """Return periods in s, each zero or at least 1e-6 s."""
     period = checked_finite_vector("periods", periods, "s")
     bad = np.flatnonzero((period < 0) | ((period > 0) & (period < MIN_PERIOD)))
     if bad.size:
@@ -47,13 +41,7 @@ def checked_spectrum_damping(damping_ratio: float) -> float:
 
 
 def comparison_periods(periods: ArrayLike) -> Array:
-    """Return the periods at which spectra are compared: between two ends evenly in ln T, or as given.
-
-    Raises
-    ------
-    InputError
-        If there is none, the ends are not in order, or one is negative or not finite.
-    """
+    """Return the periods at which spectra are compared: between two ends evenly in ln T, or as given."""
     given = checked_finite_vector("periods", periods, "s")
     if given.size == 2:
         if not 0.0 < given[0] < given[1]:

@@ -7,23 +7,16 @@ from typing import TYPE_CHECKING
 
 from rockflex._shown import number_with_noun
 from rockflex._values import Value
-from rockflex.motion._ground_motion import GroundMotion
-from rockflex.motion._read_suite import (
-    ChosenComponents,
-    RecordFileContent,
-    Vertical,
-    check_vertical_option,
-    choose_components,
-    is_record_file,
-    read_record_files,
-    record_files,
-)
-from rockflex.motion._record_info import RecordInfo
+from rockflex.motion import _read_suite
+from rockflex.motion._ground_motion import GroundMotion, info_of
+from rockflex.motion._readers import stated_peak_mismatch
 from rockflex.motion._recordings import StationRecord, file_names_text, group_stations
 from rockflex.motion._suite import Suite
 
 if TYPE_CHECKING:
     import pandas as pd
+
+COPIED_FACTS = ("station", "component", "direction", "stated_pga", "magnitude", "distance_km", "vs30")  # of RecordInfo
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -146,7 +139,7 @@ def survey_records(
     paths: str | Path | Iterable[str | Path],
     units: str | Mapping[str, str] | None = None,
     dt: float | None = None,
-    vertical: Vertical | None = None,
+    vertical: _read_suite.Vertical | None = None,
     table: str | Path | None = None,
 ) -> RecordSurvey:
     r"""Report the content of each file in a folder, whether `read_suite` takes it, and why not.
@@ -158,11 +151,6 @@ def survey_records(
     ----------
     paths, units, dt, vertical, table
         As in `read_suite`.
-
-    Returns
-    -------
-    RecordSurvey
-        The entries, the motions that are taken, and the components by station.
 
     Raises
     ------
@@ -184,9 +172,11 @@ def survey_records(
     >>> [(entry.file, entry.reason[:21]) for entry in survey.left_out]
     [('ABC-UP.AT2', 'vertical component'), ('notes.txt', 'notes.txt holds no nu')]
     """
-    check_vertical_option(vertical)
-    name, files = record_files(paths)
-    return _survey_of_components(paths, name, read_record_files(files, units, dt, table), pair=vertical is not None)
+    _read_suite.check_vertical_option(vertical)
+    name, files = _read_suite.record_files(paths)
+    return _survey_of_components(
+        paths, name, _read_suite.read_record_files(files, units, dt, table), pair=vertical is not None
+    )
 
 
 def survey_without_obspy(
@@ -194,29 +184,21 @@ def survey_without_obspy(
 ) -> tuple[RecordSurvey, RecordSurvey]:
     """Survey a folder as `survey_records` does, but without ObsPy, whose readers are not made for files of strangers.
 
-    Returns
-    -------
-    tuple of RecordSurvey
-        With the horizontal components alone, and with the vertical ones of their stations.
-
-    Raises
-    ------
-    InputError
-        As for `survey_records`.
+    The first survey has the horizontal components alone, the second the vertical ones of their stations, too.
     """
-    name, files = record_files(folder)
-    found = read_record_files(files, units, dt, use_obspy=False)
+    name, files = _read_suite.record_files(folder)
+    found = _read_suite.read_record_files(files, units, dt, use_obspy=False)
     return _survey_of_components(folder, name, found, pair=False), _survey_of_components(folder, name, found, pair=True)
 
 
 def _survey_of_components(
-    paths: str | Path | Iterable[str | Path], name: str, found: Sequence[RecordFileContent], *, pair: bool
+    paths: str | Path | Iterable[str | Path], name: str, found: Sequence[_read_suite.RecordFileContent], *, pair: bool
 ) -> RecordSurvey:
-    result = choose_components(found, pair=pair)
+    result = _read_suite.choose_components(found, pair=pair)
     names = [each.file.name for each in found]
     entries = [entry for each in found for entry in _survey_entries(each, result, names)]
     if isinstance(paths, str | Path):
-        others = (file for file in Path(paths).iterdir() if file.is_file() and not is_record_file(file))
+        others = (file for file in Path(paths).iterdir() if file.is_file() and not _read_suite.is_record_file(file))
         entries += [
             SurveyEntry(file=file.name, taken=False, reason="no record, by suffix and beginning") for file in others
         ]
@@ -229,7 +211,9 @@ def _survey_of_components(
     )
 
 
-def _survey_entries(each: RecordFileContent, result: ChosenComponents, names: list[str]) -> list[SurveyEntry]:
+def _survey_entries(
+    each: _read_suite.RecordFileContent, result: _read_suite.ChosenComponents, names: list[str]
+) -> list[SurveyEntry]:
     if each.table is not None:
         missing = [Path(name) for name in each.table.missing(names)]
         count = number_with_noun(len(missing), "file that is", "files that are")
@@ -239,40 +223,28 @@ def _survey_entries(each: RecordFileContent, result: ChosenComponents, names: li
     if each.fault is not None:
         reason = str(each.fault).replace(str(each.file), each.file.name)
         return [SurveyEntry(file=each.file.name, taken=False, reason=reason)]
-    return [_survey_entry(each, path, motion, result) for path, motion in each.motions.items()]
+    return [
+        SurveyEntry(
+            file=each.file.name,
+            taken=path in result.taken or path in result.paired,
+            reason="; ".join(filter(None, (_survey_reason(path, result), stated_peak_mismatch(motion)[1]))),
+            name=motion.name,
+            format=info_of(motion).source_format,
+            dt=motion.dt,
+            n_samples=motion.acceleration.size,
+            pga=motion.pga,
+            **{name: getattr(info_of(motion), name) for name in COPIED_FACTS},
+        )
+        for path, motion in each.motions.items()
+    ]
 
 
-def _survey_entry(each: RecordFileContent, path: Path, motion: GroundMotion, result: ChosenComponents) -> SurveyEntry:
-    info = motion.metadata or RecordInfo()
-    return SurveyEntry(
-        file=each.file.name,
-        taken=path in result.taken or path in result.paired,
-        reason=_survey_reason(each, path, result),
-        name=motion.name,
-        format=info.source_format,
-        station=info.station,
-        component=info.component,
-        direction=info.direction,
-        dt=motion.dt,
-        n_samples=motion.acceleration.size,
-        pga=motion.pga,
-        stated_pga=info.stated_pga,
-        magnitude=info.magnitude,
-        distance_km=info.distance_km,
-        vs30=info.vs30,
-    )
-
-
-def _survey_reason(each: RecordFileContent, path: Path, result: ChosenComponents) -> str:
-    parts: list[str] = []
+def _survey_reason(path: Path, result: _read_suite.ChosenComponents) -> str:
+    """Return why a component is not taken, or has no vertical one."""
     if path in result.copies:
-        parts.append(f"a copy of {result.copies[path].name}")
-    elif path in result.boreholes:
-        parts.append("borehole component beneath a record at the surface")
-    elif path in result.vertical:
-        parts.append("vertical component")
-    elif path in result.unpaired:
-        parts.append(result.unpaired[path] or "without a vertical component")
-    if each.notes.get(path):
-        parts.append(each.notes[path])
-    return "; ".join(parts)
+        return f"a copy of {result.copies[path].name}"
+    if path in result.boreholes:
+        return "borehole component beneath a record at the surface"
+    if path in result.vertical:
+        return "vertical component"
+    return (result.unpaired[path] or "without a vertical component") if path in result.unpaired else ""

@@ -10,17 +10,8 @@ from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._files import checked_file_path
 from rockflex._shown import shown
+from rockflex.motion import _text
 from rockflex.motion._spectra import TargetSpectrum, checked_spectrum_damping
-from rockflex.motion._text import (
-    BRACKET,
-    SECONDS,
-    UNITS,
-    acceleration_unit_name,
-    end_of_last_bracket,
-    parse_decimal,
-    parse_numeric_table,
-    read_text_lines,
-)
 
 # EN 1998-1:2004, Tables 3.2 and 3.3 (recommended values): S, T_B, T_C, T_D by type and ground type.
 _EC8 = {
@@ -76,12 +67,7 @@ _EC8_2024_END = 10.0  # s, where the table ends
 
 
 def ec8_spectrum(
-    ag: float,
-    ground: str = "A",
-    kind: int = 1,
-    *,
-    importance: float = 1.0,
-    damping_ratio: float = 0.05,
+    ag: float, ground: str = "A", kind: int = 1, *, importance: float = 1.0, damping_ratio: float = 0.05
 ) -> TargetSpectrum:
     """Horizontal elastic spectrum of EN 1998-1:2004, 3.2.2.2, with the recommended parameters.
 
@@ -108,11 +94,6 @@ def ec8_spectrum(
         Importance factor γ_I.
     damping_ratio : float
         Fraction of critical damping, 0 <= ζ < 1.
-
-    Returns
-    -------
-    TargetSpectrum
-        The spectrum from 0 to 4 s.
 
     Raises
     ------
@@ -156,14 +137,14 @@ def _damping_correction(damping_ratio: float) -> float:
 
 
 def asce7_spectrum(sds: float, sd1: float, tl: float, *, mce: bool = False) -> TargetSpectrum:
-    """Design spectrum of ASCE 7-16, 11.4.6, or the risk-targeted maximum considered one (11.4.7).
+    """Design spectrum of ASCE 7-16, 11.4.6, or the risk-targeted maximum considered one (11.4.7), for 5 % damping.
 
     With T_0 = 0.2 S_D1/S_DS and T_S = S_D1/S_DS:
 
     - 0 <= T <= T_0: S_a = S_DS (0.4 + 0.6 T/T_0)
     - T_0 <= T <= T_S: S_a = S_DS
     - T_S <= T <= T_L: S_a = S_D1/T
-    - T_L <= T: S_a = S_D1 T_L/T²
+    - T_L <= T <= 100 s: S_a = S_D1 T_L/T²
 
     Parameters
     ----------
@@ -173,11 +154,6 @@ def asce7_spectrum(sds: float, sd1: float, tl: float, *, mce: bool = False) -> T
         Long-period transition T_L of the maps, in s.
     mce : bool
         Multiply by 1.5, which gives the spectrum of the risk-targeted maximum considered earthquake, MCE_R.
-
-    Returns
-    -------
-    TargetSpectrum
-        The spectrum from 0 to 100 s, for 5 % damping.
 
     Raises
     ------
@@ -234,11 +210,6 @@ def asce7_site_spectrum(ss: float, s1: float, site: str, tl: float, *, mce: bool
         Long-period transition T_L of the maps, in s.
     mce : bool
         As in `asce7_spectrum`.
-
-    Returns
-    -------
-    TargetSpectrum
-        The spectrum of `asce7_spectrum`.
 
     Raises
     ------
@@ -433,13 +404,13 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
     >>> rf.read_target("site.csv")
     TargetSpectrum('site', 0 to 2 s, up to 7.357 m/s², ζ = 0.05)
     """
-    if units is not None and not is_one_of(units, UNITS):
+    if units is not None and not is_one_of(units, _text.UNITS):
         raise InputError(
-            f"units must be one of {', '.join(map(repr, UNITS))}, but {shown(units)} was given.", field="units"
+            f"units must be one of {', '.join(map(repr, _text.UNITS))}, but {shown(units)} was given.", field="units"
         )
     file = checked_file_path("path", path)
-    table = parse_numeric_table(
-        file, read_text_lines(file), "a target spectrum is expected as two columns, period and S_a"
+    table = _text.parse_numeric_table(
+        file, _text.read_text_lines(file), "a target spectrum is expected as two columns, period and S_a"
     )
     line, cells = table.rows[0]
     if len(cells) != 2:
@@ -447,8 +418,8 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
             f"{file}, line {line}: a target spectrum has two columns, the period in s and the pseudo-acceleration, "
             f"but {len(cells)} were found. Keep these."
         )
-    values = np.array([[parse_decimal(cell, file, line) for cell in cells] for line, cells in table.rows])
-    unit = UNITS[_target_spectrum_unit(file, next((head for head in reversed(table.heads) if head), ""), units)]
+    values = np.array([[_text.parse_decimal(cell, file, line) for cell in cells] for line, cells in table.rows])
+    unit = _text.UNITS[_target_spectrum_unit(file, next((head for head in reversed(table.heads) if head), ""), units)]
     try:
         return TargetSpectrum(values[:, 0], values[:, 1] * unit, damping_ratio, file.stem)
     except InputError as error:
@@ -459,20 +430,11 @@ def read_target(path: str | Path, units: str | None = None, damping_ratio: float
 
 def _target_spectrum_unit(file: Path, head: str, units: str | None) -> str:
     """Return the unit in the last brackets of the header, or `units`; both must agree."""
-    found = BRACKET.findall(head[: end_of_last_bracket(head)])
-    written = found[-1] if found and found[-1].strip().lower() not in SECONDS else ""  # unit of the periods
-    stated = acceleration_unit_name(written)
-    if written and stated is None:
-        raise InputError(
-            f"{file}: the header gives the unit {shown(written)}, which is not known. Write it as one of "
-            f"{', '.join(UNITS)}."
-        )
-    if stated and units and stated != units:
-        raise InputError(
-            f"{file}: the header says {stated}, but units={shown(units)} was given. Leave units out.", field="units"
-        )
-    if stated or units:
-        return stated or str(units)
+    found = _text.BRACKET.findall(head[: _text.end_of_last_bracket(head)])
+    written = found[-1] if found and found[-1].strip().lower() not in _text.SECONDS else ""  # unit of the periods
+    name = _text.agreed_unit_name(file, "header", written, units, f"one of {', '.join(_text.UNITS)}")
+    if name is not None:
+        return name
     raise InputError(
         f'{file} does not state the unit of its acceleration. Declare it: read_target(path, units="g"), "m/s2" or '
         '"cm/s2"; or write the header "period (s), sa (g)".',

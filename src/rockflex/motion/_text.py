@@ -33,18 +33,10 @@ EXPECTED_RECORD = "a record is expected as AT2, CSV or columns of text"
 
 @dataclass(frozen=True)
 class AccelerationUnit:
-    """A unit of acceleration, or a multiple of one, such as one count of a recorder.
-
-    Parameters
-    ----------
-    name
-        A key of `UNITS`.
-    factor
-        How many of it the number 1 in the file means.
-    """
+    """A unit of acceleration, a key of `UNITS`, or a multiple of one, such as one count of a recorder."""
 
     name: str
-    factor: float = 1.0
+    factor: float = 1.0  # how many of it the number 1 in the file means
 
     def __str__(self) -> str:
         return self.name if self.factor == 1.0 else f"{self.factor:.12g} {self.name}"
@@ -76,13 +68,7 @@ def acceleration_in_text(text: str) -> float | None:
 
 
 def declared_acceleration_unit(units: object) -> AccelerationUnit:
-    """Return the unit that a caller names, with a number before it for a multiple, such as "2.4e-4 cm/s2".
-
-    Raises
-    ------
-    InputError
-        If it is not such a text, or the number is not positive and finite.
-    """
+    """Return the unit that a caller names, with a number before it for a multiple, such as "2.4e-4 cm/s2"."""
     if isinstance(units, str) and len(units) < MAX_UNIT_LENGTH:
         found = FACTOR.fullmatch(units)
         name = acceleration_unit_name(found[2] if found else units)
@@ -94,6 +80,21 @@ def declared_acceleration_unit(units: object) -> AccelerationUnit:
         'write the value of one count: units="2.4e-4 cm/s2".',
         field="units",
     )
+
+
+def agreed_unit_name(file: Path, where: str, written: str, given: str | None, units: str) -> str | None:
+    """Return the unit that a header states, or the one given; they must agree. `units` may be written."""
+    stated = acceleration_unit_name(written)
+    if written and stated is None:
+        raise InputError(
+            f"{file}: the {where} gives the unit {shown(written)}, which is not known. "
+            f"Write it as {units}, and convert the values if necessary."
+        )
+    if stated and given not in (None, stated):
+        raise InputError(
+            f"{file}: the {where} says {stated}, but units={shown(given)} was given. Leave units out.", field="units"
+        )
+    return stated or given
 
 
 def read_file_bytes(path: str | Path) -> bytes:
@@ -116,13 +117,7 @@ def read_text_lines(path: str | Path) -> list[str]:
 
 
 def text_lines(file: Path, content: bytes) -> list[str]:
-    """Return the lines in the bytes of a text file.
-
-    Raises
-    ------
-    InputError
-        If it is binary or empty.
-    """
+    """Return the lines in the bytes of a text file, or raise an error if it is binary or empty."""
     text = decoded_text(content)
     if text is None:
         raise InputError(f"{file} is a binary file; a record is expected as text (AT2, CSV or columns).")

@@ -145,7 +145,7 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
     return figure
 
 
-def plot_selection(selection: Selection[Any], *, size: Size | None = None) -> Figure:
+def plot_selection(selection: Selection, *, size: Size | None = None) -> Figure:
     """Plot the spectra of chosen records with their target, mean and spread, and the ratio of the mean to the target.
 
     The mean is the arithmetic one, which codes compare with the target. The band reaches from the 16th to the 84th
@@ -215,7 +215,7 @@ def plot_selection(selection: Selection[Any], *, size: Size | None = None) -> Fi
     return figure
 
 
-def _draw_selected_spectra(axes: Axes, selection: Selection[Any], periods: Array, rows: Array) -> None:
+def _draw_selected_spectra(axes: Axes, selection: Selection, periods: Array, rows: Array) -> None:
     count = len(rows)
     if count > 1:
         for k, row in enumerate(rows):

@@ -10,34 +10,16 @@ from typing import Any
 
 @dataclass(frozen=True)
 class PublishedLine:
-    """A value or a statement of a publication, and our value; texts are plain.
-
-    Attributes
-    ----------
-    name, place : str
-        Name of the value, and its place in the publication.
-    printed : str
-        As printed, or the statement in words.
-    ours : float
-        In `unit`; not finite where a quantity has no bound.
-    unit : str
-        Of both values; empty for a ratio.
-    criterion : str
-        The criterion for `ours`.
-    digits : int
-        Decimals with which `ours` is shown.
-    note : str
-        A note for the reader, such as why a check must hold.
-    """
+    """A value or a statement of a publication, and our value; texts are plain."""
 
     name: str
-    place: str
-    printed: str
-    ours: float
-    unit: str
-    criterion: str
-    digits: int
-    note: str
+    place: str  # in the publication
+    printed: str  # as printed, or the statement in words
+    ours: float  # in `unit`; not finite where a quantity has no bound
+    unit: str  # of both values; empty for a ratio
+    criterion: str  # for `ours`
+    digits: int  # decimals with which `ours` is shown
+    note: str  # for the reader, such as why a check must hold
 
     @property
     def ours_as_text(self) -> str:
@@ -52,21 +34,11 @@ class PublishedLine:
 
 @dataclass(frozen=True)
 class PublishedNumber(PublishedLine):
-    """A number of a publication and ours.
+    """A number of a publication and ours."""
 
-    Attributes
-    ----------
-    verdict : str
-        One of the document's verdicts.
-    difference : float or None
-        Ours minus the printed value in `unit`; None for a statement, and for a bound that holds.
-    relative : float or None
-        The difference over the printed value.
-    """
-
-    verdict: str
-    difference: float | None
-    relative: float | None
+    verdict: str  # one of the document's verdicts
+    difference: float | None  # ours minus the printed value; None for a statement, and for a bound that holds
+    relative: float | None  # the difference over the printed value
 
     @property
     def difference_as_text(self) -> str:
@@ -103,56 +75,27 @@ def _percent_text(relative: float) -> str:
 
 @dataclass(frozen=True)
 class Remark:
-    """A computation in addition to the printed numbers.
+    """A computation in addition to the printed numbers."""
 
-    Attributes
-    ----------
-    kind : str
-        One of the document's kinds of remarks.
-    title : str
-        Heading.
-    text : str
-        What was computed, and what follows from it.
-    head : sequence of str
-        Columns of its table; empty without a table.
-    rows : sequence of sequences of str
-        The table's cells.
-    """
-
-    kind: str
+    kind: str  # one of the document's kinds of remarks
     title: str
-    text: str
-    head: Sequence[str] = ()
+    text: str  # what was computed, and what follows from it
+    head: Sequence[str] = ()  # columns of its table; empty without a table
     rows: Sequence[Sequence[str]] = ()
 
 
 @dataclass(frozen=True, eq=False)
 class ReproducedResult:
-    """A reproduced table or figure.
+    """A reproduced table or figure."""
 
-    Attributes
-    ----------
-    name, title : str
-        Name, which is also its anchor in the page, and heading.
-    numbers : tuple of Number
-        Every printed number that belongs to it.
-    figures : mapping of str to callable
-        Functions that draw the figures, by the stem of the file; nothing is drawn before they are called.
-    note : str
-        Assumptions that the publication leaves open, which the reader must know before the figures.
-    checks : tuple of Check
-        Checks that hold by construction and are not counted.
-    remarking : tuple of callable
-        Functions without arguments that compute the remarks.
-    """
-
-    name: str
+    name: str  # also its anchor in the page
     title: str
-    numbers: Sequence[PublishedNumber] = ()
+    numbers: Sequence[PublishedNumber] = ()  # every printed number that belongs to it
+    # Functions that draw the figures, by the stem of the file; nothing is drawn before they are called.
     figures: Mapping[str, Callable[[], Any]] = field(default_factory=dict[str, Callable[[], Any]])
-    note: str = ""
-    checks: Sequence[ConstructionCheck] = ()
-    remarking: Sequence[Callable[[], Remark]] = ()
+    note: str = ""  # assumptions that the publication leaves open, which the reader must know before the figures
+    checks: Sequence[ConstructionCheck] = ()  # that hold by construction and are not counted
+    remarking: Sequence[Callable[[], Remark]] = ()  # functions that compute the remarks
 
     def __post_init__(self) -> None:
         for name in ("numbers", "checks", "remarking"):
@@ -171,38 +114,15 @@ class ReproducedResult:
 
 @dataclass(frozen=True, eq=False)
 class PublicationReport:
-    """A report on a publication.
-
-    Attributes
-    ----------
-    title, source : str
-        Heading, and the publication in one line.
-    records : str
-        Which records were used.
-    versions : mapping of str to str
-        Versions of everything that the numbers depend on.
-    verdicts : mapping of str to str
-        Meaning of every verdict, best first.
-    remarks : mapping of str to str
-        Meaning of every kind of remark.
-    sections : sequence of Result
-        In the publication's order.
-
-    Examples
-    --------
-    >>> from rockflex.report import PublicationReport
-    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> document.counts
-    {'met': 0}
-    """
+    """A report on a publication."""
 
     title: str
-    source: str
-    records: str
-    versions: Mapping[str, str]
-    verdicts: Mapping[str, str]
-    remarks: Mapping[str, str]
-    sections: Sequence[ReproducedResult]
+    source: str  # the publication in one line
+    records: str  # which were used
+    versions: Mapping[str, str]  # of everything that the numbers depend on
+    verdicts: Mapping[str, str]  # meaning of every verdict, best first
+    remarks: Mapping[str, str]  # meaning of every kind of remark
+    sections: Sequence[ReproducedResult]  # in the publication's order
 
     @property
     def counts(self) -> dict[str, int]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rockflex._files import write_file_atomically
-from rockflex.report._document import ConstructionCheck, PublicationReport, ReproducedResult
+from rockflex.report._document import PublicationReport, PublishedLine, ReproducedResult
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -23,19 +23,10 @@ COLUMNS = ("target", "place", "name", "printed", "rockflex", "unit", "difference
 
 
 def inline_svg(drawing: str, stem: str, label: str) -> str:
-    """Turn an SVG file into an element of a page.
+    """Turn the text of an SVG file into an element of a page, which fills the available width.
 
-    The prolog, metadata and namespaces of a separate file are removed. Identifiers get the stem as a prefix, because
-    other figures in the page may use the same ones. The element fills the available width.
-
-    Parameters
-    ----------
-    drawing
-        The file's text.
-    stem
-        A name that no other figure in the page has.
-    label
-        Alternative text for readers who cannot see the figure, without quotes or markup.
+    The prolog, metadata and namespaces of a separate file are removed. Identifiers get the stem, which no other figure
+    in the page has, as a prefix. `label` is the text for readers who cannot see the figure, without quotes or markup.
     """
     body = drawing[drawing.index("<svg") :]
     body = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", body, flags=re.DOTALL)
@@ -49,36 +40,17 @@ def inline_svg(drawing: str, stem: str, label: str) -> str:
 
 
 def report_to_html(document: PublicationReport, drawings: Mapping[str, str]) -> str:
-    """Write the document as a page.
-
-    Parameters
-    ----------
-    document
-        The report.
-    drawings
-        Text of the SVG file of each figure, by its stem.
-
-    Examples
-    --------
-    >>> from rockflex.report import PublicationReport, report_to_html
-    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> "<h1>A title</h1>" in report_to_html(document, drawings={})
-    True
-    """
+    """Write the document as a page; `drawings` has the text of the SVG file of each figure, by its stem."""
     from markupsafe import Markup, escape
 
     labels = {stem: str(escape(s.title)) for s in document.sections for stem in s.figures}
     figures = {stem: Markup(inline_svg(drawings[stem], stem, label)) for stem, label in labels.items()}
-    verdicts = list(document.verdicts)
-    last = len(verdicts) - 1
-    looks = {name: CLASSES[-1 if place == last else min(place, 3)] for place, name in enumerate(verdicts)}
-    failing = [line for s in document.sections for line in s.numbers if line.verdict == verdicts[-1]]
-    return (
-        jinja_templates_in(TEMPLATES)
-        .get_template("report.html.jinja")
-        .render(
-            document=document, figures=figures, looks=looks, counts=document.counts, failing=failing, worst=verdicts[-1]
-        )
+    *better, worst = document.verdicts
+    looks = {name: CLASSES[min(place, 3)] for place, name in enumerate(better)} | {worst: CLASSES[-1]}
+    failing = [line for s in document.sections for line in s.numbers if line.verdict == worst]
+    template = jinja_templates_in(TEMPLATES).get_template("report.html.jinja")
+    return template.render(
+        document=document, figures=figures, looks=looks, counts=document.counts, failing=failing, worst=worst
     )
 
 
@@ -94,32 +66,18 @@ def jinja_templates_in(folder: Path) -> "Environment":
 
 
 def report_to_markdown(document: PublicationReport) -> str:
-    """Write the document as GitHub-flavoured Markdown; figures are links to ``<stem>.svg``.
-
-    Examples
-    --------
-    >>> from rockflex.report import PublicationReport, report_to_markdown
-    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> report_to_markdown(document).splitlines()[0]
-    '# A title'
-    """
-    counts = document.counts
+    """Write the document as GitHub-flavoured Markdown; figures are links to ``<stem>.svg``."""
+    counts, plain = document.counts, _escaped_markdown
+    versions = ", ".join(f"{name} {plain(version)}" for name, version in document.versions.items())
+    verdicts = [(name, str(counts[name]), meaning) for name, meaning in document.verdicts.items()]
     parts = [
-        f"# {_escaped_markdown(document.title)}",
-        _escaped_markdown(document.source),
-        f"Records. {_escaped_markdown(document.records)}",
-        "Versions. "
-        + ", ".join(f"{name} {_escaped_markdown(version)}" for name, version in document.versions.items())
-        + ".",
-        _table_in_markdown(
-            ("verdict", "numbers", "meaning"),
-            [(name, str(counts[name]), meaning) for name, meaning in document.verdicts.items()],
-        ),
-        _escaped_markdown(document.checks),
-        "\n".join(
-            f"- *Remark, {_escaped_markdown(kind)}.* {_escaped_markdown(meaning)}"
-            for kind, meaning in document.remarks.items()
-        ),
+        f"# {plain(document.title)}",
+        plain(document.source),
+        f"Records. {plain(document.records)}",
+        f"Versions. {versions}.",
+        _table_in_markdown(("verdict", "numbers", "meaning"), verdicts),
+        plain(document.checks),
+        "\n".join(f"- *Remark, {plain(kind)}.* {plain(meaning)}" for kind, meaning in document.remarks.items()),
         *(part for section in document.sections for part in _section_in_markdown(section)),
     ]
     return "\n\n".join(parts) + "\n"
@@ -131,18 +89,13 @@ def _section_in_markdown(section: ReproducedResult) -> Iterable[str]:
         yield _escaped_markdown(section.note)
     for stem in section.figures:
         yield f"![{_escaped_markdown(section.title)}]({stem}.svg)"
-    rows = [
-        (
-            line.place, line.name, line.printed, line.ours_as_text, line.unit, line.difference_as_text,
-            f"**{line.verdict}**", line.remarks,
-        )
-        for line in section.numbers
-    ]  # fmt: skip
-    if rows:
-        yield _table_in_markdown(HEAD, rows)
-    if section.checks:
+    numbers = [(line, (line.difference_as_text, f"**{line.verdict}**")) for line in section.numbers]
+    checks = [(check, ("yes" if check.holds else "**no**",)) for check in section.checks]
+    if numbers:
+        yield _table_in_markdown(HEAD, [_row_of_line(*each) for each in numbers])
+    if checks:
         yield "Checks of ourselves, not counted:"
-        yield _table_in_markdown(CHECKS, [_check_row_in_markdown(check) for check in section.checks])
+        yield _table_in_markdown(CHECKS, [_row_of_line(*each) for each in checks])
     for remark in section.remarks:
         kind, title, text = map(_escaped_markdown, (remark.kind, remark.title, remark.text))
         yield f"**Remark, {kind}: {title}.** {text}"
@@ -150,9 +103,8 @@ def _section_in_markdown(section: ReproducedResult) -> Iterable[str]:
             yield _table_in_markdown(remark.head, remark.rows)
 
 
-def _check_row_in_markdown(check: ConstructionCheck) -> tuple[str, ...]:
-    holds = "yes" if check.holds else "**no**"
-    return check.place, check.name, check.printed, check.ours_as_text, check.unit, holds, check.remarks
+def _row_of_line(line: PublishedLine, found: Iterable[str]) -> tuple[str, ...]:
+    return line.place, line.name, line.printed, line.ours_as_text, line.unit, *found, line.remarks
 
 
 def _table_in_markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -167,15 +119,7 @@ def _escaped_markdown(text: str) -> str:
 
 
 def report_numbers_to_csv(document: PublicationReport) -> str:
-    """Write one row per number, with a header, in UTF-8; `rockflex` has all digits, or "inf" or "nan".
-
-    Examples
-    --------
-    >>> from rockflex.report import PublicationReport, report_numbers_to_csv
-    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> report_numbers_to_csv(document).split(",")[:3]
-    ['target', 'place', 'name']
-    """
+    """Write one row per number, with a header, in UTF-8; `rockflex` has all digits, or "inf" or "nan"."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(COLUMNS)
@@ -196,28 +140,7 @@ def write_publication_report(
 ) -> list[Path]:
     """Draw every figure, and write ``report.html``, ``report.md``, ``numbers.csv`` and the figures as SVG.
 
-    Parameters
-    ----------
-    document
-        The report.
-    folder
-        The folder; it is created if needed.
-    progress
-        Called with the stem of every figure that is drawn.
-
-    Returns
-    -------
-    list of Path
-        The files, figures first.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> from rockflex.report import PublicationReport, write_publication_report
-    >>> document = PublicationReport("A title", "A paper", "none", {"rockflex": "1"}, {"met": "within 1 %"}, {}, [])
-    >>> [path.name for path in write_publication_report(document, Path(tempfile.mkdtemp()))]
-    ['report.html', 'report.md', 'numbers.csv']
+    `progress` is called with the stem of every figure that is drawn. Returns the files, figures first.
     """
     from rockflex.plot import save_figure
 

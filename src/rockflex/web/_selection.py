@@ -102,7 +102,7 @@ FIELDS = {
     "scale_limits": "largest",
     "sa": "table",
 }
-Selected = tuple[Selection[Suite], list[str]]
+Selected = tuple[Selection, list[str]]
 
 
 @contextmanager

@@ -18,29 +18,11 @@ from rockflex._shown import number_with_noun, shortened, shown
 from rockflex._versions import package_versions
 from rockflex.motion import GroundMotion
 from rockflex.report._publication_files import inline_svg, jinja_templates_in
-from rockflex.report.run._report_tables import (
-    DAGGER,
-    ReportedRecord,
-    ReportFact,
-    ReportTable,
-    assumption_lines,
-    element_table,
-    follows_impact_law,
-    mode_table,
-    peak_table,
-    reported_record,
-    structure_facts,
-    structure_kind_text,
-)
+from rockflex.report.run import _report_tables
 from rockflex.report.run._reported_runs import ReportedRuns, checked_reported_runs
-from rockflex.report.run._run_checks import (
-    ground_friction_range,
-    has_bearing_area,
-    labels_of_long_runs,
-    run_check_legend,
-    run_check_table,
-)
+from rockflex.report.run._run_checks import labels_of_long_runs, run_check_legend, run_check_table
 from rockflex.response import Response, friction_coefficient, warnings_of
+from rockflex.structure import structure_warnings
 
 WIDTH, HEIGHT = 186.0, 272.0  # of a sheet of A4 within its margins, in mm
 FIGURE_HEIGHTS = (58.0, 160.0)  # least and largest height of the figure in mm
@@ -62,7 +44,7 @@ def line_count_of_text(text: str) -> int:
     return math.ceil(len(text) / ROW_LETTERS)
 
 
-def line_count_of_table(table: ReportTable | None) -> int:
+def line_count_of_table(table: _report_tables.ReportTable | None) -> int:
     """Return about how many lines a table takes with its heading."""
     if table is None:
         return 0
@@ -78,13 +60,13 @@ class RunReportPage:
     title: str
     date: str
     kind: str
-    facts: Sequence[ReportFact]
-    modes: ReportTable | None
-    record: ReportedRecord
+    facts: Sequence[_report_tables.ReportFact]
+    modes: _report_tables.ReportTable | None
+    record: _report_tables.ReportedRecord
     lines: Sequence[tuple[str, str]]
-    elements: ReportTable | None
-    peaks: ReportTable
-    checks: ReportTable
+    elements: _report_tables.ReportTable | None
+    peaks: _report_tables.ReportTable
+    checks: _report_tables.ReportTable
     legend: Sequence[str]
     warnings: Sequence[str]
     notes: Sequence[str]
@@ -113,52 +95,7 @@ class RunReportPage:
         return min(max(HEIGHT / self.scale - self.height, low), high)
 
 
-def run_report_page(
-    report: ReportedRuns,
-    *,
-    title: str | None,
-    date: str,
-    friction: float | None,
-    warnings: Sequence[str],
-    notes: Sequence[str],
-    omitted: Collection[str] = (),
-) -> RunReportPage:
-    """Collect the contents of a page, without energies and friction of the labels in `omitted`."""
-    left_out = labels_of_long_runs(report).union(omitted)
-    known = report.properties if report.structure is None else report.structure
-    record, kind = reported_record(report), structure_kind_text(known)
-    if not title:
-        title = f"{kind} under {record.name or 'a ground motion'}"
-    fell = any(run.status == "overturned" for run in report.responses)
-    own = [f"{DAGGER} The values of a run that overturned include its fall."] * fell
-    sliding = [ground_friction_range(each.model) is not None for each in report.histories]
-    texts = run_check_legend(
-        friction, sided=report.properties.eccentricity != 0.0, slides=any(sliding), stays=not all(sliding),
-        omitted=bool(left_out), held=bool(report.properties.elements),
-        bedded=any(map(has_bearing_area, report.histories)),
-        impacts=any(follows_impact_law(each.model) for each in report.histories),
-    )  # fmt: skip
-    return RunReportPage(
-        title=shortened(title, MAX_LETTERS["title"]),
-        date=date,
-        kind=kind,
-        facts=structure_facts(report.properties),
-        modes=mode_table(report.properties),
-        record=record,
-        lines=assumption_lines(report),
-        elements=element_table(report),
-        peaks=peak_table(report),
-        checks=run_check_table(report, friction, left_out),
-        legend=[*own, *texts],
-        warnings=_first_warnings_of_report([*warnings, *_warnings_of_runs(report, left_out)]),
-        notes=_joined_notes(notes),
-        versions=", ".join(f"{name} {version}" for name, version in _report_versions().items()),
-        inputs=report_fingerprint(report, record),
-    )
-
-
-def run_report_page_as_html(page: RunReportPage, report: ReportedRuns) -> str:
-    """Return a page as HTML with its figures."""
+def _run_report_page_as_html(page: RunReportPage, report: ReportedRuns) -> str:
     from markupsafe import Markup
 
     from rockflex.plot import draw_record_strip, draw_run_sheet, figure_as_svg
@@ -198,10 +135,10 @@ def _first_warnings_of_report(texts: Sequence[str]) -> list[str]:
     ]
 
 
-def _report_versions() -> dict[str, str]:
+def _report_versions() -> str:
     found = package_versions(("rockflex", "numpy"))
-    python = found.pop("python")
-    return found | {"Python": python}
+    found["Python"] = found.pop("python")
+    return ", ".join(f"{name} {version}" for name, version in found.items())
 
 
 def _symbols_as_html(text: str) -> str:
@@ -304,30 +241,41 @@ def run_report_as_html(
     omitted: Collection[str] = (),
 ) -> str:
     """Return the page of `write_report` as text; no energies and no friction of the models in `omitted`."""
-    heading, day = _checked_report_title(title), _checked_report_date(date)
+    if not isinstance(title, str | None):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise InputError(f"title must be a text, but {shown(title)} was given.", field="title")
+    day = _checked_report_date(date)
     coefficient = None if friction is None else _checked_friction_coefficient(friction)
     texts = _checked_report_notes(notes)
     report = checked_reported_runs(responses, structure, motion)
-    page = run_report_page(
-        report,
-        title=heading,
+    known = report.properties if structure is None else structure
+    record, kind = _report_tables.reported_record(report), _report_tables.structure_kind_text(known)
+    left_out = labels_of_long_runs(report).union(omitted)
+    fell = any(run.status == "overturned" for run in report.responses)
+    page = RunReportPage(
+        title=shortened(title or f"{kind} under {record.name or 'a ground motion'}", MAX_LETTERS["title"]),
         date=day,
-        friction=coefficient,
-        warnings=_structure_warnings(report.properties if structure is None else structure),
-        notes=texts,
-        omitted=omitted,
+        kind=kind,
+        facts=_report_tables.structure_facts(report.properties),
+        modes=_report_tables.mode_table(report.properties),
+        record=record,
+        lines=_report_tables.assumption_lines(report),
+        elements=_report_tables.element_table(report),
+        peaks=_report_tables.peak_table(report),
+        checks=run_check_table(report, coefficient, left_out),
+        legend=[
+            *[f"{_report_tables.DAGGER} The values of a run that overturned include its fall."] * fell,
+            *run_check_legend(report, coefficient, omitted=bool(left_out)),
+        ],
+        warnings=_first_warnings_of_report([*structure_warnings(known), *_warnings_of_runs(report, left_out)]),
+        notes=_joined_notes(texts),
+        versions=_report_versions(),
+        inputs=report_fingerprint(report, record),
     )
-    return run_report_page_as_html(page, report)
+    return _run_report_page_as_html(page, report)
 
 
 def checked_report_path(name: str, path: str | Path) -> Path:
-    """Return the path of a report.
-
-    Raises
-    ------
-    InputError
-        If it is a folder, or has another suffix than .html.
-    """
+    """Return the path of a report."""
     target = checked_file_path(name, path)
     if target.is_dir():
         raise InputError(
@@ -340,12 +288,6 @@ def checked_report_path(name: str, path: str | Path) -> Path:
             field="path",
         )
     return target
-
-
-def _checked_report_title(title: Any) -> str | None:
-    if title is None or isinstance(title, str):
-        return title
-    raise InputError(f"title must be a text, but {shown(title)} was given.", field="title")
 
 
 def _checked_report_date(date: Any) -> str:
@@ -376,13 +318,7 @@ def _checked_report_notes(notes: Any) -> list[str]:
     return texts
 
 
-def _structure_warnings(structure: Any) -> tuple[str, ...]:
-    from rockflex.structure import structure_warnings
-
-    return structure_warnings(structure)
-
-
-def report_fingerprint(report: ReportedRuns, record: ReportedRecord) -> str:
+def report_fingerprint(report: ReportedRuns, record: _report_tables.ReportedRecord) -> str:
     """Return a hash of structure, ground and record, and of the assumptions and the initial state of each run."""
     p = report.properties
     numbers: list[Any] = [record.time, record.acceleration, record.vertical]

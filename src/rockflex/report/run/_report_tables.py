@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,7 +25,7 @@ from rockflex.modal import (
     element_parameters,
     uplifted_modes,
 )
-from rockflex.models import Restitution, RockingModel, SidedRestitution
+from rockflex.models import Restitution, SidedRestitution
 from rockflex.motion import GroundMotion
 from rockflex.report.run._reported_runs import ReportedRuns
 from rockflex.response import History, Response
@@ -41,24 +41,12 @@ DAGGER = "†"
 
 @dataclass(frozen=True)
 class ReportCell:
-    """A text of the page, and the value that it shows, if it shows one.
-
-    Attributes
-    ----------
-    text : str
-        As printed.
-    value : float or None
-        In SI units, with all digits.
-    of : str
-        Name of the value, as in `Response` or `RockingProperties`.
-    wrong : bool
-        Whether it is to be noticed.
-    """
+    """A text of the page, and the value that it shows, if it shows one."""
 
     text: str
-    value: float | None = None
-    of: str = ""
-    wrong: bool = False
+    value: float | None = None  # in SI units, with all digits
+    of: str = ""  # name of the value, as in `Response` or `RockingProperties`
+    wrong: bool = False  # whether it is to be noticed
 
 
 @dataclass(frozen=True)
@@ -90,24 +78,14 @@ def value_fact(name: str, value: float, unit: str, of: str, size: float = 1.0, d
 
 @dataclass(frozen=True, eq=False)
 class ReportedRecord:
-    """The ground acceleration of the runs.
-
-    Attributes
-    ----------
-    name, source : str
-        Name of the record, and what is known of its origin, in a line; empty if nothing is.
-    time, acceleration, vertical : ndarray, shape (n,)
-        In s and m/s², scaled; the vertical acceleration is zero if there is none.
-    facts : list of Fact
-        Its measures.
-    """
+    """The ground acceleration of the runs, in m/s², scaled, at times in s; each array has the shape (n,)."""
 
     name: str
-    source: str
+    source: str  # what is known of its origin, in a line; empty if nothing is
     time: Array
     acceleration: Array
-    vertical: Array
-    facts: list[ReportFact]
+    vertical: Array  # zero if there is none
+    facts: list[ReportFact]  # its measures
 
 
 def reported_record(report: ReportedRuns) -> ReportedRecord:
@@ -177,20 +155,16 @@ def structure_facts(p: RockingProperties) -> list[ReportFact]:
     slope = "h*_1/B" if p.n_modes else "h/B"
     base = [] if p.base_mass is None else [value_fact("Mass of the base m_0", p.base_mass, "t", "base_mass", 1e3)]
     top = [] if p.top_height is None else [value_fact("Height of the top", p.top_height, "m", "top_height")]
-    leaning = (
-        []
-        if not p.leaning_mass
-        else [
-            value_fact("Leaning mass", p.leaning_mass, "t", "leaning_mass", 1e3, 4),
-            value_fact("Share of the weight on the base", 100.0 * p.weight_share, "%", "weight_share"),
-        ]
-    )
+    leaning = [
+        value_fact("Leaning mass", p.leaning_mass, "t", "leaning_mass", 1e3, 4),
+        value_fact("Share of the weight on the base", 100.0 * p.weight_share, "%", "weight_share"),
+    ]
     shift = [value_fact("Eccentricity e", p.eccentricity, "m", "eccentricity")] if p.eccentricity else []
     held = [value_fact("Prestress of the tendons", p.prestress, "kN", "prestress", 1e3)] if p.tendons else []
     return [
         ReportFact("Modes", ReportCell(str(p.n_modes) if p.n_modes else "none (rigid)", p.n_modes, "n_modes")),
         value_fact("Total mass m_tot", p.m_tot, "t", "m_tot", 1e3, 4),
-        *leaning,
+        *(leaning if p.leaning_mass else []),
         *base,
         *top,
         value_fact("Half width of the base B", p.half_width, "m", "half_width"),
@@ -228,26 +202,21 @@ def mode_table(p: RockingProperties) -> ReportTable | None:
     if not p.n_modes:
         return None
     uplifted = _uplifted_modes_of_structure(p)
-    above = p.horizontal_mass - (p.base_mass or 0.0)
-    shares = p.effective_mass / above
-    rows: list[list[ReportCell]] = []
-    for n in range(min(p.n_modes, MAX_MODES)):
-        beyond = None if uplifted is None else 2.0 * math.pi / float(uplifted.omega[n])
-        damped = None if uplifted is None else float(uplifted.damping_ratio[n])
-        rows.append(
-            [
-                ReportCell(str(n + 1)),
-                value_cell(2.0 * math.pi / float(p.omega[n]), "period"),
-                value_cell(beyond, "uplifted_period"),
-                value_cell(float(shares[n]), "mass_share", 0.01),
-                value_cell(float(p.effective_height[n]), "effective_height"),
-                value_cell(float(p.zeta[n]), "zeta", 0.01),
-                value_cell(damped, "uplifted_damping_ratio", 0.01),
-            ]
-        )
-    total = ReportCell(f"1–{p.n_modes}" if p.n_modes > MAX_MODES else "Σ")
+    shares = p.effective_mass / (p.horizontal_mass - (p.base_mass or 0.0))
+    rows = [
+        [
+            ReportCell(str(n + 1)),
+            value_cell(2.0 * math.pi / float(p.omega[n]), "period"),
+            value_cell(None if uplifted is None else 2.0 * math.pi / float(uplifted.omega[n]), "uplifted_period"),
+            value_cell(float(shares[n]), "mass_share", 0.01),
+            value_cell(float(p.effective_height[n]), "effective_height"),
+            value_cell(float(p.zeta[n]), "zeta", 0.01),
+            value_cell(None if uplifted is None else float(uplifted.damping_ratio[n]), "uplifted_damping_ratio", 0.01),
+        ]
+        for n in range(min(p.n_modes, MAX_MODES))
+    ]
     if p.n_modes > 1:
-        empty = ReportCell("")
+        total, empty = ReportCell(f"1–{p.n_modes}" if p.n_modes > MAX_MODES else "Σ"), ReportCell("")
         rows.append([total, empty, empty, value_cell(float(np.sum(shares)), "mass_share", 0.01), empty, empty, empty])
     share = "m*_n/m_tot" if p.base_mass is None else "m*_n/Σm"
     heads = [("mode", ""), ("T_n", "s"), ("T*_n", "s"), (share, "%"), ("h*_n", "m"), ("ζ_n", "%"), ("ζ*_n", "%")]
@@ -280,11 +249,6 @@ def initial_state_text(history: History) -> str:
     ]
     shown = [f"{name} = {rounded_number(float(value))} {unit}" for name, value, unit in values if np.abs(value) > 1e-12]
     return ", ".join([*shown[: 2 + MAX_COORDINATES], *(["…"] if len(shown) > 2 + MAX_COORDINATES else [])])
-
-
-def starts_uplifted(history: History) -> bool:
-    """Return whether the base is off the ground at the start; on springs, whether an edge is."""
-    return bool(history.uplifted[0])
 
 
 def assumption_lines(report: ReportedRuns) -> list[tuple[str, str]]:
@@ -343,19 +307,17 @@ def _ground_lines(model: Any) -> list[tuple[str, str]]:
     if springs is not None:
         ratio = 0.5 * springs.total_damping / math.sqrt(springs.total_stiffness * mass)
         inertia = model.inertia - model.properties.translational_inertia
-        turns = f", I_b = {rounded_number(inertia / 1e3)} t m²" if inertia > 1e-9 * model.inertia else ""
-        lines.append(
-            (
-                "Ground",
-                f"{springs.n} springs without tension, x = {rounded_number(float(springs.positions[0]))} to "
-                f"{rounded_number(float(springs.positions[-1]))} m, Σk = "
-                f"{rounded_number(springs.total_stiffness / 1e6)} MN/m, "
-                f"Σk x² = {rounded_number(springs.rotational_stiffness / 1e6)} MN m/rad, Σc = "
-                f"{rounded_number(springs.total_damping / 1e3)} kN s/m ({rounded_number(100.0 * ratio)} % of critical "
-                "in heave)"
-                f"{turns}",
-            )
-        )
+        parts = [
+            f"{springs.n} springs without tension",
+            f"x = {rounded_number(float(springs.positions[0]))} to {rounded_number(float(springs.positions[-1]))} m",
+            f"Σk = {rounded_number(springs.total_stiffness / 1e6)} MN/m",
+            f"Σk x² = {rounded_number(springs.rotational_stiffness / 1e6)} MN m/rad",
+            f"Σc = {rounded_number(springs.total_damping / 1e3)} kN s/m "
+            f"({rounded_number(100.0 * ratio)} % of critical in heave)",
+        ]
+        if inertia > 1e-9 * model.inertia:
+            parts.append(f"I_b = {rounded_number(inertia / 1e3)} t m²")
+        lines.append(("Ground", ", ".join(parts)))
     friction = ground_friction_range(model)
     if friction is not None:
         least, most = friction
@@ -374,10 +336,7 @@ def ground_friction_range(model: Any) -> tuple[float, float] | None:
 
 
 def element_table(report: ReportedRuns) -> ReportTable | None:
-    """Return the elements of the base with their largest forces and elongations among the runs that lift.
-
-    Returns None if there are none, or no run lifts.
-    """
+    """Return the elements with their largest forces and elongations in runs that lift; None if there are none."""
     elements = report.properties.elements
     runs = [run for run, history in zip(report.responses, report.histories, strict=True) if history.model.lifts]
     if not elements or not runs:
@@ -391,10 +350,9 @@ def element_table(report: ReportedRuns) -> ReportTable | None:
 
 
 def _element_table_row(place: int, elements: Sequence[BaseElement], runs: Sequence[Response]) -> list[ReportCell]:
-    element = elements[place]
+    element, yielded = elements[place], any(bool(run.element_yielded[place]) for run in runs)
     force = max(float(run.max_element_force[place]) for run in runs)
     elongation = max(float(run.max_element_elongation[place]) for run in runs)
-    yielded = any(bool(run.element_yielded[place]) for run in runs)
     name, properties, state = _describe_element(element)
     return [
         ReportCell(f"{place + 1} {name}"),
@@ -418,11 +376,8 @@ def _describe_element(element: BaseElement) -> tuple[str, str, tuple[str, str]]:
     stiffness = f"k = {rounded_number(element.stiffness / 1e6)} MN/m"
     limit = "" if element.yield_force is None else f", F_y = {rounded_number(element.yield_force / 1e3)} kN"
     after = "" if element.post_yield_ratio is None else f", post-yield ratio {element.post_yield_ratio:.4g}"
-    breaks = (
-        ""
-        if element.rupture_elongation is None
-        else f", breaks at {rounded_number(1e3 * element.rupture_elongation)} mm"
-    )
+    longest = element.rupture_elongation
+    breaks = "" if longest is None else f", breaks at {rounded_number(1e3 * longest)} mm"
     if isinstance(element, Tendon):
         state = ("elastic", "beyond F_y" if element.post_yield_ratio is None else "yielded")
         start = f"F_0 = {rounded_number(element.initial_force / 1e3)} kN, "
@@ -432,12 +387,9 @@ def _describe_element(element: BaseElement) -> tuple[str, str, tuple[str, str]]:
 
 
 def largest_rotations(run: Response, history: History) -> dict[int, float]:
-    """Return the largest |θ| in rad to the right (1) and to the left (-1).
-
-    The larger one is that of the response; the other is that of the stored states.
-    """
+    """Return the largest |θ| in rad to the right (1) and to the left (-1)."""
     found = {side: float(np.max(side * history.rotation, initial=0.0)) for side in (1, -1)}
-    found[max(found, key=found.__getitem__)] = run.max_rotation
+    found[max(found, key=found.__getitem__)] = run.max_rotation  # also between the stored states
     return found
 
 
@@ -453,74 +405,43 @@ def overturning_margin(p: RockingProperties, run: Response, history: History) ->
     return 1.0 / share if share else math.inf
 
 
-@dataclass(frozen=True)
-class _PeakColumn:
-    """A column of the table: its heading, its unit and the size of that, and the value of a run."""
-
-    name: str
-    unit: str
-    size: float
-    of: str
-    value: Callable[[Response], float | None]
-
-
 def peak_table(report: ReportedRuns) -> ReportTable:
     """Return the largest values of every run, with columns for the motion of its base on the ground."""
     columns = _peak_columns(report)
     rows: list[list[ReportCell]] = []
     for label, run, history in zip(report.labels, report.responses, report.histories, strict=True):
         fell = run.status == "overturned"
-        passed = run.nominal_overturning
         words = STATUS[run.status] if history.model.lifts else "fixed base"
-        status = ReportCell(f"{words} {DAGGER}" if fell else words, None, "status", passed)
-        cells = [value_cell(column.value(run), column.of, column.size) for column in columns]
+        status = ReportCell(f"{words} {DAGGER}" if fell else words, None, "status", run.nominal_overturning)
+        share = None if fell else nominal_rotation_share(report.properties, run, history)
+        shaken = None if run.floors is None else float(np.max(run.floors.floor_acceleration))
+        values = {"nominal_share": share, "floor_acceleration": shaken}
+        cells = [
+            value_cell(values[of] if of in values else float(getattr(run, of)), of, size)
+            for of, (_, _, size) in columns.items()
+        ]
         rows.append([ReportCell(label), status, *cells, ReportCell(str(run.n_uplifts), run.n_uplifts, "n_uplifts")])
-    heads = [("model", ""), ("status", ""), *((column.name, column.unit) for column in columns), ("uplifts", "")]
+    heads = [("model", ""), ("status", ""), *((name, unit) for name, unit, _ in columns.values()), ("uplifts", "")]
     return ReportTable(heads, rows)
 
 
-def _peak_columns(report: ReportedRuns) -> list[_PeakColumn]:
-    runs = report.responses
-    models: list[RockingModel] = [history.model for history in report.histories]
-    size, unit = moment_unit(max(run.max_base_moment for run in runs))
-
-    def peak(name: str) -> Callable[[Response], float]:
-        return lambda run: float(getattr(run, name))
-
-    columns = [
-        _PeakColumn("θ_max", "mrad", 1e-3, "max_rotation", peak("max_rotation")),
-        _PeakColumn(
-            "θ_max/θ_nom",
-            "%",
-            0.01,
-            "nominal_share",
-            lambda run: _nominal_share_of_run(report, run),
-        ),
-        _PeakColumn("u_top relative", "mm", 1e-3, "max_top_displacement", peak("max_top_displacement")),
-        _PeakColumn("u_top total", "mm", 1e-3, "max_total_top_displacement", peak("max_total_top_displacement")),
-        _PeakColumn("V_b", "kN", 1e3, "max_base_shear", peak("max_base_shear")),
-        _PeakColumn("M_b", unit, size, "max_base_moment", peak("max_base_moment")),
-    ]
-    if any(run.floors is not None for run in runs):
-        columns.append(_PeakColumn("a_floor", "g", GRAVITY, "floor_acceleration", _peak_floor_acceleration))
-    columns += [
-        _PeakColumn("ΣF_x", "kN", 1e3, "max_horizontal_reaction", peak("max_horizontal_reaction")),
-        _PeakColumn("N_min", "kN", 1e3, "min_vertical_reaction", peak("min_vertical_reaction")),
-    ]
-    if any(model.layout.slip >= 0 for model in models):
-        columns.append(_PeakColumn("slip", "mm", 1e-3, "max_slip", peak("max_slip")))
-        columns.append(_PeakColumn("slip left", "mm", 1e-3, "residual_slip", peak("residual_slip")))
-    if any(model.layout.heave >= 0 for model in models):
-        columns.append(_PeakColumn("edge up", "mm", 1e-3, "max_edge_uplift", peak("max_edge_uplift")))
-        columns.append(_PeakColumn("edge down", "mm", 1e-3, "max_edge_settlement", peak("max_edge_settlement")))
-    return columns
-
-
-def _nominal_share_of_run(report: ReportedRuns, run: Response) -> float | None:
-    if run.status == "overturned" or run.history is None:
-        return None
-    return nominal_rotation_share(report.properties, run, run.history)
-
-
-def _peak_floor_acceleration(run: Response) -> float | None:
-    return None if run.floors is None else float(np.max(run.floors.floor_acceleration))
+def _peak_columns(report: ReportedRuns) -> dict[str, tuple[str, str, float]]:
+    """Return the headings, units and sizes of these of the columns, by the names of their values."""
+    size, unit = moment_unit(max(run.max_base_moment for run in report.responses))
+    layouts = [history.model.layout for history in report.histories]
+    floors = {"floor_acceleration": ("a_floor", "g", GRAVITY)}
+    slip = {"max_slip": ("slip", "mm", 1e-3), "residual_slip": ("slip left", "mm", 1e-3)}
+    edges = {"max_edge_uplift": ("edge up", "mm", 1e-3), "max_edge_settlement": ("edge down", "mm", 1e-3)}
+    return {
+        "max_rotation": ("θ_max", "mrad", 1e-3),
+        "nominal_share": ("θ_max/θ_nom", "%", 0.01),
+        "max_top_displacement": ("u_top relative", "mm", 1e-3),
+        "max_total_top_displacement": ("u_top total", "mm", 1e-3),
+        "max_base_shear": ("V_b", "kN", 1e3),
+        "max_base_moment": ("M_b", unit, size),
+        **(floors if any(run.floors is not None for run in report.responses) else {}),
+        "max_horizontal_reaction": ("ΣF_x", "kN", 1e3),
+        "min_vertical_reaction": ("N_min", "kN", 1e3),
+        **(slip if any(layout.slip >= 0 for layout in layouts) else {}),
+        **(edges if any(layout.heave >= 0 for layout in layouts) else {}),
+    }

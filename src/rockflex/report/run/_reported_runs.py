@@ -13,6 +13,7 @@ from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.motion import GroundMotion
 from rockflex.response import History, Response
+from rockflex.structure import structure_warnings
 
 MAX_RUNS = 6  # runs, for which a page has room
 _HOW = 'Give what simulate(..., output="history") returned, or several of these.'
@@ -22,45 +23,19 @@ _TOLERANCE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class ReportedRuns:
-    """The checked input of a report.
-
-    Attributes
-    ----------
-    responses, histories, labels
-        Of each run; labels are the models, numbered where one occurs twice.
-    properties
-        Of the structure, with all modes that are known.
-    structure
-        The structure itself, or None.
-    motion
-        The record before scaling, or None.
-    scale
-        Factor by which it acted on the structure; 1 without a record.
-    """
+    """The checked input of a report: one value of each run, and what is known of all."""
 
     responses: tuple[Response, ...]
     histories: tuple[History, ...]
-    labels: tuple[str, ...]
-    properties: RockingProperties
-    structure: Any
-    motion: GroundMotion | None
-    scale: float
-
-    @property
-    def widest(self) -> History:
-        """The history with the most modes, of a model that lifts if there is one."""
-        return max(self.histories, key=lambda h: (h.model.lifts, h.model.properties.n_modes))
+    labels: tuple[str, ...]  # the models, numbered where one occurs twice
+    properties: RockingProperties  # with all modes that are known
+    structure: Any  # None if it is not known
+    motion: GroundMotion | None  # before scaling
+    scale: float  # by which it acted on the structure; 1 without a record
 
 
 def checked_reported_runs(responses: Response | Iterable[Response], structure: Any, motion: Any) -> ReportedRuns:
-    """Check the input of a report.
-
-    Raises
-    ------
-    InputError
-        If there are no responses or too many, one has no history, they are not of one structure and one record, or
-        `structure` or `motion` are not theirs.
-    """
+    """Check the input of a report."""
     runs = _checked_responses(responses)
     histories = tuple(_history_of_run(place, run) for place, run in enumerate(runs))
     differing = _differing_ground_motions_text([run.motion for run in runs], histories)
@@ -148,41 +123,27 @@ def _instants_without_jumps(time: Array) -> Bools:
 
 def _common_rocking_properties(structure: Any, histories: tuple[History, ...]) -> RockingProperties:
     """Return the properties of the structure, after comparing them with every run."""
-    known = max((each.model.properties for each in histories), key=lambda p: p.n_modes)
-    whole = known if structure is None else _rocking_properties_of_structure(structure)
+    if structure is None:
+        whole = max((each.model.properties for each in histories), key=lambda p: p.n_modes)
+    else:
+        structure_warnings(structure)  # raises if it is no structure
+        whole = structure if isinstance(structure, RockingProperties) else structure.rocking()
     for history in histories:
         ran = history.model.properties
-        differing = [name for name in _COMPARED if not _close_properties(getattr(ran, name), getattr(whole, name))]
         modes = min(ran.n_modes, whole.n_modes)
-        if not np.allclose(ran.omega[:modes], whole.omega[:modes], rtol=_TOLERANCE, atol=0.0):
-            differing.append("omega")
-        if differing:
-            first = differing[0]
-            values = (
-                f"{history.model.label} was run with {first} = {shown(_plain_property(getattr(ran, first)))}, not "
-                f"{shown(_plain_property(getattr(whole, first)))}"
-            )
+        values: dict[str, tuple[Any, Any]] = {name: (getattr(ran, name), getattr(whole, name)) for name in _COMPARED}
+        values["omega"] = ran.omega[:modes], whole.omega[:modes]
+        differing = (name for name, pair in values.items() if not np.allclose(*pair, rtol=_TOLERANCE, atol=0.0))
+        first = next(differing, None)
+        if first is not None:
+            one, other = (shown(np.asarray(getattr(each, first)).tolist()) for each in (ran, whole))
+            said = f"{history.model.label} was run with {first} = {one}, not {other}"
             if structure is None:
-                message = f"A report is of one structure, but {values}. Write a report of each structure."
+                message = f"A report is of one structure, but {said}. Write a report of each structure."
             else:
-                message = f"structure is not that of the responses: {values}. Give the structure that was simulated."
+                message = f"structure is not that of the responses: {said}. Give the structure that was simulated."
             raise InputError(message, field="responses" if structure is None else "structure")
     return whole
-
-
-def _rocking_properties_of_structure(structure: Any) -> RockingProperties:
-    from rockflex.structure import structure_warnings
-
-    structure_warnings(structure)  # raises if it is no structure
-    return structure if isinstance(structure, RockingProperties) else structure.rocking()
-
-
-def _plain_property(value: Any) -> Any:
-    return value.tolist() if isinstance(value, np.ndarray) else value
-
-
-def _close_properties(one: float, other: float) -> bool:
-    return bool(np.isclose(one, other, rtol=_TOLERANCE, atol=0.0))
 
 
 def _scale_of_record_in_run(motion: Any, history: History, name: str) -> float:

@@ -10,9 +10,9 @@ from rockflex._number_format import rounded_number
 from rockflex.report.run._report_tables import (
     ReportCell,
     ReportTable,
+    follows_impact_law,
     ground_friction_range,
     overturning_margin,
-    starts_uplifted,
     value_cell,
 )
 from rockflex.report.run._reported_runs import ReportedRuns
@@ -38,16 +38,12 @@ class CheckedRun:
 
 def labels_of_long_runs(report: ReportedRuns) -> set[str]:
     """Return the labels of runs whose energies and friction would take minutes: runs on many stiff springs."""
-    return {
-        label
-        for label, history in zip(report.labels, report.histories, strict=True)
-        if _work_of_run_check(history) > MAX_WORK
-    }
-
-
-def _work_of_run_check(history: History) -> int:
-    springs = history.model.springs
-    return 0 if springs is None else history.time.size * springs.n * max(history.model.properties.n_modes, 1)
+    found: set[str] = set()
+    for label, history in zip(report.labels, report.histories, strict=True):
+        springs, n_modes = history.model.springs, max(history.model.properties.n_modes, 1)
+        if springs is not None and history.time.size * springs.n * n_modes > MAX_WORK:
+            found.add(label)
+    return found
 
 
 def has_bearing_area(history: History) -> bool:
@@ -62,20 +58,20 @@ def run_check_table(report: ReportedRuns, friction: float | None, omitted: Colle
         CheckedRun(label, response, history, friction, label not in omitted)
         for label, response, history in zip(report.labels, report.responses, report.histories, strict=True)
     ]
-    columns = [
-        (("uplift", ""), _uplift_cell),
-        (("overturning", ""), partial(_overturning_cell, report)),
-        (("contact", ""), _contact_cell),
-        (("friction", ""), _friction_cell),
-    ]
+    columns = {
+        "uplift": _uplift_cell,
+        "overturning": partial(_overturning_cell, report),
+        "contact": _contact_cell,
+        "friction": _friction_cell,
+    }
     if report.properties.tendons:
-        columns.append((("tendons", ""), _tendon_cell))
+        columns["tendons"] = _tendon_cell
     if report.properties.elements:
-        columns.append((("re-centring", ""), partial(_residual_rotation_cell, report)))
-    columns.append((("energy balance", ""), _energy_balance_cell))
+        columns["re-centring"] = partial(_residual_rotation_cell, report)
+    columns["energy balance"] = _energy_balance_cell
     return ReportTable(
-        [("model", ""), *(head for head, _ in columns)],
-        [[ReportCell(run.label), *(check(run) for _, check in columns)] for run in runs],
+        [(name, "") for name in ("model", *columns)],
+        [[ReportCell(run.label), *(check(run) for check in columns.values())] for run in runs],
     )
 
 
@@ -83,7 +79,8 @@ def _uplift_cell(run: CheckedRun) -> ReportCell:
     if not run.history.model.lifts:
         return ReportCell("fixed base")
     times = run.history.uplift_times
-    start = "starts uplifted" if starts_uplifted(run.history) else ""
+    # On springs, off the ground is where an edge is.
+    start = "starts uplifted" if run.history.uplifted[0] else ""
     if run.response.n_uplifts == 0 or not times.size:
         return ReportCell(start or "none", 0.0, "n_uplifts")
     first = f"{run.response.n_uplifts}×, {'next' if start else 'first'} at {rounded_number(float(times[0]))} s"
@@ -95,16 +92,13 @@ def _overturning_cell(report: ReportedRuns, run: CheckedRun) -> ReportCell:
     if not run.history.model.lifts:
         return ReportCell("–")
     if run.response.status == "overturned":
-        return ReportCell(
-            f"overturned at {rounded_number(run.response.end_time)} s", run.response.end_time, "end_time", True
-        )
+        end = run.response.end_time
+        return ReportCell(f"overturned at {rounded_number(end)} s", end, "end_time", True)
     if run.response.max_rotation == 0.0:
         return ReportCell("no rotation", 0.0, "max_rotation")
     margin = overturning_margin(report.properties, run.response, run.history)
-    sign = "<" if run.response.nominal_overturning else "≥"
-    return ReportCell(
-        f"{rounded_number(margin)} {sign} 1", margin, "overturning_margin", run.response.nominal_overturning
-    )
+    beyond = run.response.nominal_overturning
+    return ReportCell(f"{rounded_number(margin)} {'<' if beyond else '≥'} 1", margin, "overturning_margin", beyond)
 
 
 def _contact_cell(run: CheckedRun) -> ReportCell:
@@ -136,11 +130,9 @@ def _friction_cell(run: CheckedRun) -> ReportCell:
     spikes = "" if math.isclose(whole, needed, rel_tol=5e-3) else f" ({rounded_number(whole)} with impacts)"
     if run.friction is None:
         return ReportCell(f"μ ≥ {rounded_number(needed)}{spikes}", needed, "required_friction")
-    holds = needed <= run.friction
-    sign = "≤" if holds else ">"
-    return ReportCell(
-        f"{rounded_number(needed)}{spikes} {sign} {run.friction:.4g}", needed, "required_friction", not holds
-    )
+    slips = needed > run.friction
+    words = f"{rounded_number(needed)}{spikes} {'>' if slips else '≤'} {run.friction:.4g}"
+    return ReportCell(words, needed, "required_friction", slips)
 
 
 def _tendon_cell(run: CheckedRun) -> ReportCell:
@@ -205,36 +197,25 @@ def _power_of_ten_text(value: float) -> str:
     return "0" if value == 0.0 else f"10^{math.ceil(math.log10(value))}".replace("-", "−")
 
 
-def run_check_legend(
-    friction: float | None,
-    *,
-    sided: bool,
-    slides: bool,
-    stays: bool,
-    omitted: bool,
-    held: bool,
-    bedded: bool,
-    impacts: bool,
-) -> list[str]:
-    """Return the legend of the columns; `slides` and `stays` tell whether some base can slide, or cannot.
-
-    `sided` tells whether the limit differs between the sides, `held` whether elements hold the base, and `impacts`
-    whether some run follows an impact law.
-    """
+def run_check_legend(report: ReportedRuns, friction: float | None, *, omitted: bool) -> list[str]:
+    """Return the legend of the columns."""
+    models = [history.model for history in report.histories]
+    slides = [ground_friction_range(model) is not None for model in models]
+    nearer = ", to the side that is nearer to it" if report.properties.eccentricity else ""
     limit = "" if friction is None else f", to be below the μ = {friction:.4g} given"
-    lines = [f"Overturning: nominal limit θ_nom over θ_max{', to the side that is nearer to it' if sided else ''}."]
-    if stays:
+    lines = [f"Overturning: nominal limit θ_nom over θ_max{nearer}."]
+    if not all(slides):
         lines.append(f"Friction: largest |ΣF_x|/N without the {IMPACT_WINDOW:g} s after each impact{limit}.")
-    if slides:
+    if any(slides):
         lines.append("Friction of a base that can slide: how far it does.")
-    if bedded:
+    if any(map(has_bearing_area, report.histories)):
         lines.append(
             "Contact: q, the largest static bearing pressure of the effective area, and of a spring with its dashpot."
         )
-    if held:
+    if report.properties.elements:
         lines.append("Re-centring: what remains when the base is at rest, in free vibration after the run.")
     lines.append("Energy balance: its largest error over the input energy.")
-    if impacts:
+    if any(map(follows_impact_law, models)):
         lines.append(
             "Forces with an impact law: without the impulse of impacts, and on rigid ground without rebound; on stiff "
             "ground that rebounds V_b of flexural structures may be larger."
