@@ -322,10 +322,10 @@ def estimate_time(study: "StudySpec", workers: SupportsIndex | None = None) -> f
     threads = core_count() if workers is None else checked_whole_number("workers", workers, 1)
     sample = sorted({round(place * (plan.n_ready - 1) / max(MAX_SAMPLE - 1, 1)) for place in range(MAX_SAMPLE)})
     for unit in sample[:: max(len(sample) // 6, 1)]:  # fill the caches that the study fills once
-        plan.rows([unit])
+        plan.results([unit])
     start, tried = perf_counter(), 0
     for unit in sample:
-        plan.rows([unit])
+        plan.results([unit])
         tried += 1
         if perf_counter() - start > MAX_SAMPLE_TIME:
             break

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar, SupportsIndex, TypeVar
 
 from rockflex._checks import checked_whole_number
 from rockflex.motion import Suite, check_horizontal_component
-from rockflex.study._result_tables import ArrowTable, Columns, Row, table_of_rows, tables_to_dataframe
+from rockflex.study._result_tables import ArrowTable, Columns, Table, arrow_table, tables_to_dataframe
 from rockflex.study._run_matrix import StudyMatrix, record_checksums
 from rockflex.study.parallel import map_runs
 from rockflex.study.progress import ProgressChoice, reporting_progress
@@ -48,8 +48,8 @@ class ChunkedPlan(ABC):
         """Columns of every chunk's table."""
 
     @abstractmethod
-    def rows(self, units: Sequence[int]) -> list[Row]:
-        """Compute the rows of some units, in their order."""
+    def results(self, units: Sequence[int]) -> Table:
+        """Compute some units, and return the columns of their rows, in their order."""
 
     def check_work(self) -> None:
         """Refuse a study if every run exceeds its work limit; a plan whose runs are not known in advance refuses none.
@@ -99,7 +99,7 @@ class ChunkedPlan(ABC):
             If there is no such chunk. A run that cannot be solved is a row with a message in `error`.
         """
         units = self.units_of(checked_whole_number("number", number, 0, self.n_chunks - 1))
-        return table_of_rows(self.rows(units), self.columns)
+        return arrow_table(self.results(units), self.columns)
 
 
 def run_plan(
@@ -165,9 +165,9 @@ class CrossPlan(ChunkedPlan):
         """Columns of every chunk's table."""
         return self.matrix.columns
 
-    def rows(self, units: Sequence[int]) -> list[Row]:
+    def results(self, units: Sequence[int]) -> Table:
         """Simulate one run a unit."""
-        return self.matrix.run_all([self.run_of(unit) for unit in units])
+        return self.matrix.results([self.run_of(unit) for unit in units])
 
     def check_work(self) -> None:
         """Refuse a study if every run exceeds its work limit.

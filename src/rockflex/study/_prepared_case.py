@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import accumulate
 from typing import Any, Literal, Self, cast
 
 import numpy as np
@@ -248,17 +249,39 @@ class RunPeaks:
     failures: Mapping[int, InputError | SolverError]
     responses: Mapping[int, Response]
 
-    def rows(self) -> list[dict[str, Any]]:
-        """Return the results of each run by name, or its `error`."""
-        names = tuple(self.columns)
-        values = zip(*(column.tolist() for column in self.columns.values()), strict=True)
-        rows = [dict(zip(names, row, strict=True)) for row in values] or [{} for _ in range(self.count)]
-        for place, row in enumerate(rows):
-            if place in self.failures:
-                rows[place] = {"error": str(self.failures[place])}
-            else:
-                row["status"] = STATUSES[row["status"]]
-        return rows
+    @property
+    def failed(self) -> NDArray[np.bool_]:
+        """Which runs failed, shape (count,)."""
+        return np.isin(np.arange(self.count), list(self.failures))
+
+    @property
+    def errors(self) -> list[str | None]:
+        """The message of each run that failed, None for the others."""
+        return [str(self.failures[place]) if place in self.failures else None for place in range(self.count)]
+
+    def lists(self) -> dict[str, list[Any]]:
+        """Return the results of all runs by name, None where a run failed, with the status in words and the errors."""
+        found = {name: values.tolist() for name, values in self.columns.items()}
+        found["status"] = [STATUSES[code] for code in found.get("status", ())] or [None] * self.count
+        for values in found.values():
+            for place in self.failures:
+                values[place] = None
+        return found | {"error": self.errors}
+
+    @classmethod
+    def joined(cls, parts: Iterable[Self]) -> Self:
+        """Return the results of several sets of runs, one after another."""
+        listed = list(parts)
+        starts = [0, *accumulate(part.count for part in listed)]
+        kinds = {name: values.dtype for part in listed for name, values in part.columns.items()}
+        columns = {
+            name: np.concatenate([part.columns.get(name, np.zeros(part.count, kind)) for part in listed])
+            for name, kind in kinds.items()
+        }
+        pairs = list(zip(starts, listed, strict=False))
+        failures = {start + place: error for start, part in pairs for place, error in part.failures.items()}
+        responses = {start + place: each for start, part in pairs for place, each in part.responses.items()}
+        return cls(starts[-1], columns, failures, responses)
 
 
 def solve_runs_together(runs: Sequence[PreparedRun]) -> Solutions:

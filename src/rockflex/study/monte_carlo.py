@@ -23,8 +23,8 @@ from rockflex.study._random_variables import (
     names_in_formula,
     uniform_draws,
 )
-from rockflex.study._result_tables import RESULTS, Columns, Row, columns_of_kind
-from rockflex.study._run_matrix import StudyMatrix, rows_of_matrix_runs
+from rockflex.study._result_tables import RESULTS, Columns, Row, Table, columns_of_kind, joined_tables
+from rockflex.study._run_matrix import StudyMatrix, results_of_matrix_runs
 from rockflex.study.cloud import Factors
 from rockflex.study.spec import GroundTable, RunsStudySpec
 
@@ -368,28 +368,28 @@ class MonteCarloPlan(ChunkedPlan):
         order = np.argsort(uniform_draws(self.seed, number, "", len(self.motions)), kind="stable")
         return sorted(order[: self._per_structure].tolist())
 
-    def rows(self, units: Sequence[int]) -> list[Row]:
+    def results(self, units: Sequence[int]) -> Table:
         """Draw a structure a unit, and simulate it; some at a time, which are prepared together."""
         parts = (units[first : first + STRUCTURES_PER_BATCH] for first in range(0, len(units), STRUCTURES_PER_BATCH))
-        return [row for part in parts for row in self._rows(part)]
+        return joined_tables([self._results(part) for part in parts])
 
-    def _rows(self, units: Sequence[int]) -> Iterator[Row]:
-        drawn = [(unit, *self._drawn(unit)) for unit in units]
-        runs = [(matrix, run) for unit, _, matrix in drawn if matrix is not None for run in self._runs(unit)]
-        found = iter(rows_of_matrix_runs(runs, keep=False))
-        for unit, row, matrix in drawn:
-            for run in self._runs(unit):
-                yield (self.matrix.head(*run) if matrix is None else next(found)) | row
+    def _results(self, units: Sequence[int]) -> dict[str, list[Any]]:
+        drawn = {unit: self._drawn(unit) for unit in units}
+        runs = [(unit, drawn[unit][1], run) for unit in units for run in self._runs(unit)]
+        found = results_of_matrix_runs([(matrix, run) for _, matrix, run in runs], keep=False)
+        for name in ("number", *self.population.variables.kinds, *FACTS, *OF_STRUCTURE.split()):
+            found[name] = [drawn[unit][0].get(name) for unit, *_ in runs]
+        return found
 
-    def _drawn(self, unit: int) -> tuple[Row, StudyMatrix | None]:
-        """Return what describes a structure, and the matrix for its runs, or the error and none."""
+    def _drawn(self, unit: int) -> tuple[Row, StudyMatrix]:
+        """Return what describes a structure, and the matrix for its runs, which fail if it cannot be built."""
         row: Row = {"number": unit}
         try:
             row |= self.population.variables.draw(self.seed, unit)
             properties = self.population.build(row)
             ground = self.population.ground_under(properties, row)
         except InputError as error:
-            return row | {"error": str(error)}, None
+            return row, self.matrix.without_structure(error)
         row |= random_structure_facts(properties)
         row |= {"resisting_moment": properties.resisting_moment, "recentring_ratio": properties.recentring_ratio}
         return row, self.matrix.on_ground(properties, ground)

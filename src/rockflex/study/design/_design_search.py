@@ -1,6 +1,6 @@
 """The search for the cheapest design: the values given, then a few designs for each refinement."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from copy import copy
 from itertools import accumulate, pairwise, product
 from typing import TYPE_CHECKING, Any, Literal, Self, SupportsIndex
@@ -16,8 +16,8 @@ from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Motions, RockingStructure, checked_scale_factors
 from rockflex.study._plan import ChunkedPlan, run_plan
-from rockflex.study._result_tables import Columns, Row
-from rockflex.study._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
+from rockflex.study._result_tables import Columns, Table
+from rockflex.study._run_matrix import Run, StudyMatrix, check_base_can_lift, study_matrix
 from rockflex.study.design._designs import VARIABLES, DesignSearch, Point, total_dissipator_force
 from rockflex.study.design._exceedance_fit import check_hazard_damping, design_limit_state, first_damping_column
 from rockflex.study.design._requirements import (
@@ -257,18 +257,20 @@ class DesignSearchPlan(ChunkedPlan):
         found = dict(self._empty.columns) | {"structure": names}
         return {"structure": found.pop("structure"), "round": int, **dict.fromkeys(FACTS, float), **found}
 
-    def rows(self, units: Sequence[int]) -> list[Row]:
+    def results(self, units: Sequence[int]) -> Table:
         """Simulate all runs of a design a unit; none if the round has no such design."""
-        return [row for unit in units for row in self._runs_of(unit)]
+        first = self._first_unit(self.round)
+        designs = [unit - first for unit in units if 0 <= unit - first < len(self.points)]
+        found = self._matrix.results(self._runs_of(designs))
+        facts = {place: {"structure": first + place, "round": self.round, **self._facts_of(place)} for place in designs}
+        names = ("structure", "round", *FACTS) if designs else ()
+        return {**found, **{name: [facts[each][name] for each in found["structure"]] for name in names}}
 
-    def _runs_of(self, unit: int) -> Iterator[Row]:
-        place = unit - self._first_unit(self.round)
-        if not 0 <= place < len(self.points):
-            return
-        facts = {"structure": unit, "round": self.round} | self._facts_of(place)
-        runs = [(place, record, 0, scale) for record, scale in product(range(len(self.motions)), self.scales)]
-        for row in self._matrix.run_all(runs):
-            yield row | facts
+    def _runs_of(self, designs: Iterable[int]) -> list[Run]:
+        return [
+            (place, record, 0, scale)
+            for place, record, scale in product(designs, range(len(self.motions)), self.scales)
+        ]
 
     def _facts_of(self, place: int) -> dict[str, Any]:
         p = self._matrix.structures[place]
@@ -290,8 +292,7 @@ class DesignSearchPlan(ChunkedPlan):
         InputError
             If no run is within its work limit.
         """
-        places = range(len(self.points)), range(len(self.motions)), self.scales
-        self._matrix.check_work((place, record, 0, scale) for place, record, scale in product(*places))
+        self._matrix.check_work(self._runs_of(range(len(self.points))))
 
 
 def search_design(

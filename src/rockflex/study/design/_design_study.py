@@ -16,7 +16,7 @@ from rockflex.models import BoucWen, ImpactLaw
 from rockflex.structure.file import StructureEntry, TomlTable
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, RockingStructure, type_description
 from rockflex.study._plan import run_plan
-from rockflex.study._result_tables import Columns, Row
+from rockflex.study._result_tables import Columns, Row, Table
 from rockflex.study._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
 from rockflex.study.cloud import CloudPlan, Factors
 from rockflex.study.design._design_search import DesignSearchPlan
@@ -306,9 +306,10 @@ class DesignPlan(CloudPlan):
         facts = {name: self._tendons if name == "tendon" else float for name in self._facts[0]}
         return {"structure": self.matrix.names, **facts, **self.matrix.columns}
 
-    def rows(self, units: Sequence[int]) -> list[Row]:
+    def results(self, units: Sequence[int]) -> Table:
         """Simulate one run a unit."""
-        return [row | self._facts[row["structure"]] for row in super().rows(units)]
+        found = super().results(units)
+        return {**found, **{name: [self._facts[each][name] for each in found["structure"]] for name in self._facts[0]}}
 
 
 def run_design(
