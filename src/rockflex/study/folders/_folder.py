@@ -18,7 +18,7 @@ from rockflex._errors import InputError
 from rockflex._files import checked_file_path, remove_temporary_files, write_file_atomically
 from rockflex._html import html_table
 from rockflex._shown import few_texts_shown, number_with_noun, shortened, shown
-from rockflex.study.folders._lock import LOCK, FolderLock, lock_holder
+from rockflex.study.folders._lock import LOCK, check_folder_locked, lock_holder, locked_folder
 from rockflex.study.folders._manifest import MANIFEST, SPEC, StudyManifest, listed_differences
 from rockflex.study.folders._parts import (
     PARTS,
@@ -35,6 +35,7 @@ from rockflex.study.folders._parts import (
 if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
+    from filelock import SoftFileLock
 
 
 FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
@@ -234,7 +235,7 @@ class StudyFolder:
 
     path: Path
     manifest: StudyManifest
-    lock: FolderLock | None = None
+    lock: "SoftFileLock | None" = None
     _known: "dict[int, pa.Schema]" = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __repr__(self) -> str:
@@ -286,7 +287,7 @@ class StudyFolder:
             if not (folder / MANIFEST).exists():
                 refuse_foreign_files(folder, {PARTS, LOCK, SPEC})
             (folder / PARTS).mkdir(parents=True, exist_ok=True)
-            lock = FolderLock.acquire(folder / LOCK)
+            lock = locked_folder(folder / LOCK)
             try:
                 remove_temporary_files(folder, "*.json")
                 remove_temporary_files(folder / PARTS, "part-*.parquet")
@@ -393,7 +394,7 @@ class StudyFolder:
             raise InputError(
                 f"{self.path} was opened for reading. To write, open it by StudyFolder.open with its specification."
             )
-        self.lock.check()
+        check_folder_locked(self.lock)
         try:
             schema = part_schema_of_content(part.content, self.manifest.study, place)
         except PartError as error:
