@@ -103,7 +103,7 @@ def test_an_unreadable_lock_is_given_a_moment(tmp_path: Path, content: str) -> N
 def test_an_empty_lock_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(_lock, "PATIENCE", 0.1)
     (tmp_path / "lock").touch()  # of a process that was killed before it could write
-    with pytest.raises(InputError, match="in use by a process that left no name.* delete .*lock and try again"):
+    with pytest.raises(InputError, match="in use by a process that left no name"):
         opened(str(tmp_path), PLAN)
 
 
