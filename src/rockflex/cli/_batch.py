@@ -228,11 +228,6 @@ def prepare_batch(context: typer.Context, arguments: RunArguments, *, histories:
     """Return the runs that the arguments and the generated flags of a command ask for.
 
     Histories are kept of up to `histories` motions, each scale counted.
-
-    Raises
-    ------
-    InputError
-        If an argument, a file or a record cannot be used.
     """
     file, names = split_structure_file_argument(arguments.structure, arguments.arguments)
     loaded = load_structure(file, flag_values(context, FrameFlags))

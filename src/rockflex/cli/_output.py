@@ -49,11 +49,6 @@ def staged_output_folder(folder: Path, document: dict[str, Any], *, force: bool)
     """Yield a temporary folder; at the end its files move to `folder`, with `document` as summary.json.
 
     If anything fails before the end, `folder` is unchanged. Only earlier results there are removed or replaced.
-
-    Raises
-    ------
-    InputError
-        If the folder must not, or cannot, be written to.
     """
     check_output_folder(folder, force=force)
     home = folder if folder.is_dir() else folder.absolute().parent

@@ -48,11 +48,6 @@ def make_run_ground(
     -------
     Ground or None, dict
         The ground, None if it is rigid and the base cannot slide, and its values as given.
-
-    Raises
-    ------
-    InputError
-        If the values contradict each other or one is out of range.
     """
     if not in_file and not flags:
         return None, {}
@@ -161,11 +156,6 @@ def make_run_options(
     -------
     RunOptions, dict
         The options, without free vibration; and the values of the ground as they were given, empty for none.
-
-    Raises
-    ------
-    InputError
-        If they contradict each other, or a value is out of range.
     """
     below = {} if "impact" in law else {name: in_file[name] for name in flags_of_tables(ImpactKeys) if name in in_file}
     with naming_flags_in_errors(flags_of_tables(ImpactKeys)):
@@ -183,11 +173,6 @@ def choose_run_models(
     """Return the given labels, split at commas, or the usual ones, after checking that they suit the rest.
 
     `by_flag` tells that the hysteresis was given on the command line, where a model must use it.
-
-    Raises
-    ------
-    InputError
-        If a label is unknown, needs more modes than there are, or contradicts the options.
     """
     if given is None:
         usual = USUAL if properties.n_modes else RIGID
@@ -228,13 +213,7 @@ def number_or_word(text: str) -> Any:
 
 
 def parse_work_limit(given: str | None) -> float | None:
-    """Return the limit of computing time in s, None for no limit, or the usual limit if none is given.
-
-    Raises
-    ------
-    InputError
-        If the text is neither a positive number nor "none".
-    """
+    """Return the limit of computing time in s, None for no limit, or the usual limit if none is given."""
     with naming_flags_in_errors({"work_limit": "--work-limit"}):
         return WORK_LIMIT if given is None else checked_work_limit(number_or_word(given))
 

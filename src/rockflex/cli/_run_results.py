@@ -305,13 +305,7 @@ UNITS = {
 def write_run_results(
     folder: Path, document: dict[str, Any], batch: RunBatch, runs: Sequence[BatchRun], *, figures: int, force: bool
 ) -> None:
-    """Write results.csv, summary.json and, of up to `figures` motions, one CSV file and one figure for each motion.
-
-    Raises
-    ------
-    InputError
-        If the folder cannot be written to, or is not empty and `force` is not set.
-    """
+    """Write results.csv, summary.json and, of up to `figures` motions, one CSV file and one figure for each motion."""
     import pandas as pd
 
     histories = batch.history and len(batch.motions) * len(batch.scales) <= figures
@@ -361,13 +355,7 @@ _COMMAND, _FAILURE = 400, 200  # letters
 
 
 def checked_path_of_report(path: Path, *, force: bool) -> Path:
-    """Return the path of a report, before anything is simulated.
-
-    Raises
-    ------
-    InputError
-        If it is no path of a page, or exists and `force` is not set.
-    """
+    """Return the path of a report, before anything is simulated."""
     page = checked_report_path("--report", path)
     if page.exists() and not force:
         raise InputError(f"--report {page} exists. Give another name, or --force to replace it.")
@@ -375,13 +363,7 @@ def checked_path_of_report(path: Path, *, force: bool) -> Path:
 
 
 def check_one_run_for_report(batch: RunBatch) -> None:
-    """Refuse more than one page holds, before anything is simulated.
-
-    Raises
-    ------
-    InputError
-        If there are several motions or scales, or too many models.
-    """
+    """Refuse more than one page holds, before anything is simulated."""
     motions, scales, models = len(batch.motions), len(batch.scales), len(batch.models)
     if motions * scales > 1:
         first = batch.motions[0].name

@@ -30,12 +30,6 @@ def parse_target_spectrum(text: str, damping: float | None) -> "TargetSpectrum":
     """Return the target of ``ec8:ag=0.25g,ground=C``, ``ec8-2024:...``, ``asce7:sds=1g,sd1=0.6g,tl=8`` or of a file.
 
     `damping` is the damping ratio of a target from a file; None means 5 %.
-
-    Raises
-    ------
-    InputError
-        If a code or a key is unknown, a key is missing or repeated, a value is no number or has no unit, or the file
-        cannot be read.
     """
     from rockflex.motion import (
         asce7_site_spectrum,
@@ -92,13 +86,7 @@ def _renamed_target_arguments(given: dict[str, Any]) -> dict[str, Any]:
 
 
 def parse_comma_separated_numbers(flag: str, text: str, least: int, most: int | None = None) -> list[float]:
-    """Return numbers separated by commas.
-
-    Raises
-    ------
-    InputError
-        If one is not a number, or there are too few or too many.
-    """
+    """Return numbers separated by commas."""
     values = [_target_number(flag, part.strip()) for part in text.split(",")]
     if len(values) < least or (most is not None and len(values) > most):
         count = f"{least}" if most == least else f"at least {least}"

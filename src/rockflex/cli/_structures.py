@@ -157,13 +157,7 @@ class LoadedStructure:
 
 
 def split_structure_file_argument(option: Path | None, arguments: Sequence[str]) -> tuple[Path | None, list[str]]:
-    """Return the structure file, given by --structure or as the first argument, and the remaining arguments.
-
-    Raises
-    ------
-    InputError
-        If both were given.
-    """
+    """Return the structure file, given by --structure or as the first argument, and the remaining arguments."""
     if not arguments or not arguments[0].lower().endswith(".toml"):
         return option, list(arguments)
     if option is not None:
@@ -172,14 +166,7 @@ def split_structure_file_argument(option: Path | None, arguments: Sequence[str])
 
 
 def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
-    """Build a structure from a TOML file, or from flags named as in `FrameFlags`.
-
-    Raises
-    ------
-    InputError
-        If there is no structure or more than one, the file cannot be read, or a key or value in it is wrong; the
-        message names the file and the key.
-    """
+    """Build a structure from a TOML file, or from flags named as in `FrameFlags`."""
     if file is None:
         return _frame_from_flags(flags)
     if flags:

@@ -450,13 +450,7 @@ KINDS = Catalogue[StudyKind]((CLOUD, INCREMENTAL, STRIPES, POPULATION, MONTE_CAR
 
 
 def study_kind_named(name: object) -> StudyKind:
-    """Return the kind of a name.
-
-    Raises
-    ------
-    InputError
-        If there is no such kind.
-    """
+    """Return the kind of a name."""
     found = KINDS.get(name) if isinstance(name, str) else None
     if found is None:
         known = ", ".join(f'"{each}"' for each in KINDS)

@@ -52,13 +52,7 @@ class ChunkedPlan(ABC):
         """Compute some units, and return the columns of their rows, in their order."""
 
     def check_work(self) -> None:
-        """Refuse a study if every run exceeds its work limit; a plan whose runs are not known in advance refuses none.
-
-        Raises
-        ------
-        InputError
-            If no run is within its work limit.
-        """
+        """Refuse a study if every run exceeds its work limit; a plan whose runs are not known in advance refuses none."""
         return
 
     @property
@@ -91,13 +85,7 @@ class ChunkedPlan(ABC):
         return record_checksums(self.motions)
 
     def chunk(self, number: SupportsIndex) -> ArrowTable:
-        """Compute a chunk. The table is the same to the last bit, whenever and wherever it is computed.
-
-        Raises
-        ------
-        InputError
-            If there is no such chunk. A run that cannot be solved is a row with a message in `error`.
-        """
+        """Compute a chunk. The table is the same to the last bit, whenever and wherever it is computed."""
         units = self.units_of(checked_whole_number("number", number, 0, self.n_chunks - 1))
         return arrow_table(self.results(units), self.columns)
 
@@ -170,13 +158,7 @@ class CrossPlan(ChunkedPlan):
         return self.matrix.results([self.run_of(unit) for unit in units])
 
     def check_work(self) -> None:
-        """Refuse a study if every run exceeds its work limit.
-
-        Raises
-        ------
-        InputError
-            If no run is within its work limit.
-        """
+        """Refuse a study if every run exceeds its work limit."""
         self.matrix.check_work(map(self.run_of, range(self.n_units)))
 
     def run_of(self, unit: int) -> tuple[int, int, int, float]:

@@ -59,11 +59,6 @@ class PreparedCase:
         All quantities whose peaks are tracked.
     engine
         The engine of the model, ready to run records.
-
-    Raises
-    ------
-    InputError
-        If a run with a hysteretic spring is to settle, or the numbers of the model overflow.
     """
 
     model: RockingModel
@@ -170,13 +165,7 @@ class RunOptions:
         initial: InitialState | None = None,
         work_limit: float | Literal["none"] | None = WORK_LIMIT,
     ) -> Self:
-        """Return the options that a function was called with.
-
-        Raises
-        ------
-        InputError
-            If one of them is out of range or of the wrong kind.
-        """
+        """Return the options that a function was called with."""
         if not isinstance(initial, InitialState | None):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise InputError(
                 f"initial must be an InitialState or None, but {shown(initial)} was given. "
@@ -193,26 +182,14 @@ class RunOptions:
         return replace(self, all_yield=not yielding_model_labels(models))
 
     def tied(self, model: Model, properties: RockingProperties) -> RockingModel:
-        """Return a model of a structure.
-
-        Raises
-        ------
-        InputError
-            If the structure cannot have the model, or the model these options.
-        """
+        """Return a model of a structure."""
         bouc_wen = self.bouc_wen if self.all_yield or model.yields else None
         return model.of(properties, self.impact, bouc_wen, ground_under_structure(properties, self.ground))
 
     def case(
         self, model: Model, properties: RockingProperties, *, history: bool = False, floors: bool = False
     ) -> PreparedCase:
-        """Return the runs of a model of a structure.
-
-        Raises
-        ------
-        InputError
-            As `tied`, or as `PreparedCase`.
-        """
+        """Return the runs of a model of a structure."""
         tied = self.tied(model, properties)
         return PreparedCase(tied, self.free_vibration, self.initial, self.work_limit, history=history, floors=floors)
 
@@ -289,11 +266,6 @@ def solve_runs_together(runs: Sequence[PreparedRun]) -> Solutions:
 
     The ground moves vertically in all runs, or in none. Only a single run can have a history. Runs that cannot be
     solved are among the failures.
-
-    Raises
-    ------
-    InputError
-        If the numbers of the model overflow.
     """
     case, motion, _ = runs[0]
     shaken = has_vertical_motion(motion)

@@ -37,13 +37,7 @@ Demands = Mapping[str, Callable[[Response], float]]
 
 
 def checked_demands(demands: Demands | None, taken: Collection[str]) -> Demands:
-    """Return demands whose names are free and whose values can be called.
-
-    Raises
-    ------
-    InputError
-        If they are no mapping from names to functions, or a name is that of another column.
-    """
+    """Return demands whose names are free and whose values can be called."""
     if demands is None:
         return {}
     if not isinstance(demands, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
@@ -72,11 +66,6 @@ def friction_and_demand_columns(response: Response, demands: Demands, *, frictio
     """Return the friction that a response with its history requires, if asked for, and the value of each demand.
 
     A friction that cannot be found is a message in `error`.
-
-    Raises
-    ------
-    InputError
-        If a function returns anything but a real number; NaN is one.
     """
     found: Row = {name: _demand_value(name, demand, response) for name, demand in demands.items()}
     return found | _required_friction_column(response) if friction else found
@@ -412,14 +401,7 @@ def study_matrix(
     ground: GroundChoice = None,
     demands: Demands | None = None,
 ) -> StudyMatrix:
-    """Check the arguments of a study in Python and return its matrix; structures without names are "S1", "S2", ...
-
-    Raises
-    ------
-    InputError
-        If a label is unknown, a sequence is empty or holds something else, two motions have the same name, or an
-        option is out of range.
-    """
+    """Check the arguments of a study in Python and return its matrix; structures without names are "S1", "S2", ..."""
     checked_instance("friction", friction, bool)
     chosen = tuple(checked_models(models))
     options = StudyOptions.of(free_vibration, impact=impact, bouc_wen=bouc_wen, ground=ground, work_limit=work_limit)

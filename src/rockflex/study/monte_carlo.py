@@ -61,11 +61,6 @@ class RandomPopulation:
         Where relative paths of files of numbers start.
     ground
         The ground as a file describes it, with formulas in place of some numbers; None for rigid ground.
-
-    Raises
-    ------
-    InputError
-        If a formula cannot be read, or refers to unknown names.
     """
 
     def __init__(
@@ -93,25 +88,13 @@ class RandomPopulation:
             check_formula_names_known(label, needed, variables.kinds | (FACTS if held else {}))
 
     def entry(self, values: Mapping[str, float]) -> StructureEntry:
-        """Return the structure without tendons and elements for values of the variables.
-
-        Raises
-        ------
-        InputError
-            If a formula has no value, or a key is unknown, missing, or of the wrong kind.
-        """
+        """Return the structure without tendons and elements for values of the variables."""
         return _checked_random_structure(
             {key: value for key, value in self._structure.items() if key not in ELEMENT_KEYS}, values
         )
 
     def build(self, values: Mapping[str, float]) -> RockingProperties:
-        """Return the structure for values of the variables.
-
-        Raises
-        ------
-        InputError
-            As `entry`, or if a value is out of range or values contradict each other.
-        """
+        """Return the structure for values of the variables."""
         free = rocking_properties_of(self.entry(values).build(self._folder))
         if not any(self._structure.get(key) for key in ELEMENT_KEYS):
             return free
@@ -120,13 +103,7 @@ class RandomPopulation:
         )
 
     def ground_under(self, properties: RockingProperties, values: Mapping[str, float]) -> Ground | None:
-        """Return the ground under a structure for values of the variables.
-
-        Raises
-        ------
-        InputError
-            If a formula has no value, a key is unknown, missing, or of the wrong kind, or a value is out of range.
-        """
+        """Return the ground under a structure for values of the variables."""
         if self._ground is None:
             return None
         content = _structure_entry_with_values(

@@ -152,11 +152,6 @@ def reporting_progress(progress: ProgressChoice, total: int, units: str) -> Gene
     """Tell the progress of `total` units; the yielded function takes how many more of them are done.
 
     A function is called in the thread of the caller, first with ``(0, total)``. What it raises goes through.
-
-    Raises
-    ------
-    InputError
-        If `progress` is neither None nor "bar" nor a function.
     """
     check_progress(progress, "(done, total)")
     if progress is None:
@@ -212,13 +207,7 @@ def check_part_progress(progress: PartProgress) -> None:
 
 @contextmanager
 def reporting_part_progress(progress: PartProgress) -> Generator[Callable[[Progress], object]]:
-    """Yield a function that tells the progress of a study.
-
-    Raises
-    ------
-    InputError
-        If `progress` is neither None nor "bar" nor a function.
-    """
+    """Yield a function that tells the progress of a study."""
     check_part_progress(progress)
     if progress is None:
         yield lambda _: None

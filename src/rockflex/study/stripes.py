@@ -134,13 +134,7 @@ def stripe_counts(runs: "pd.DataFrame", limit: StripeLimit = "overturning") -> "
 
 
 def stripe_limit_state(limit: StripeLimit) -> LimitState:
-    """Return the limit state that `stripe_counts` counts.
-
-    Raises
-    ------
-    InputError
-        If the limit is another word, or not positive.
-    """
+    """Return the limit state that `stripe_counts` counts."""
     if isinstance(limit, LimitState):
         return limit
     if not isinstance(limit, str):

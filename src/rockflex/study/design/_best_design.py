@@ -290,13 +290,7 @@ class InterpolatedMargins:
 
     @classmethod
     def of(cls, found: BestDesign) -> "InterpolatedMargins":
-        """Interpolate between the designs of a search.
-
-        Raises
-        ------
-        InputError
-            If too few designs have probabilities of all limits.
-        """
+        """Interpolate between the designs of a search."""
         table = found.designs
         first = table[table["round"] == 0]
         given = {name: np.unique(first[name].to_numpy(float)) for name in VARIABLES}

@@ -53,11 +53,6 @@ class MarginSurface:
         Coordinates of the designs in the variables that are varied.
     margins : ndarray, shape (n, m)
         Their margins; designs without a margin are left out.
-
-    Raises
-    ------
-    InputError
-        If too few designs have margins.
     """
 
     def __init__(self, steps: Array, margins: Array) -> None:
@@ -285,13 +280,7 @@ class DesignSearchPlan(ChunkedPlan):
         }
 
     def check_work(self) -> None:
-        """Refuse a search if every run of its first round exceeds its work limit.
-
-        Raises
-        ------
-        InputError
-            If no run is within its work limit.
-        """
+        """Refuse a search if every run of its first round exceeds its work limit."""
         self._matrix.check_work(self._runs_of(range(len(self.points))))
 
 

@@ -77,13 +77,7 @@ def stored_design_limits(
 
 
 def stored_design_search(spec: Mapping[str, Any]) -> tuple[list[Requirement], DesignCost]:
-    """Return the requirements and the unit costs of a study with a search, from its document.
-
-    Raises
-    ------
-    InputError
-        If two limits are the same at the same level.
-    """
+    """Return the requirements and the unit costs of a study with a search, from its document."""
     found = [
         Requirement(limit, target, at, hazard, spec["measure"])  # pyright: ignore[reportArgumentType]
         for limit, at, target, hazard in stored_design_limits(spec)

@@ -104,12 +104,6 @@ def designs_of_structure(
     """The structure on every base with every tendon, tendons outermost, the narrowest base first.
 
     Without levels the structure keeps its own tendons, with their forces in N and stiffnesses in N/m.
-
-    Raises
-    ------
-    InputError
-        If a half width is not positive or occurs twice, levels share a name or are added to the structure's own
-        tendons, a tendon would be outside a base, or a base would have no mass left.
     """
     widths = checked_half_widths(half_widths)
     per_width = checked_positive("base_mass_per_width", base_mass_per_width, "kg/m", zero=True)
@@ -150,13 +144,7 @@ def structure_on_base_width(properties: RockingProperties, half_width: float, pe
 
 
 def checked_half_widths(given: Any) -> list[float]:
-    """Half widths in m, rising: a sequence, or a mapping with `smallest`, `largest` and `count`, both ends included.
-
-    Raises
-    ------
-    InputError
-        If one is not positive, or occurs twice.
-    """
+    """Half widths in m, rising: a sequence, or a mapping with `smallest`, `largest` and `count`, both ends included."""
     import numpy as np
 
     if isinstance(given, dict):
@@ -377,13 +365,7 @@ def total_dissipator_force(properties: RockingProperties) -> float:
 
 
 def checked_design_factors(name: str, given: Any) -> tuple[float, ...]:
-    """Factors, rising: a sequence, or a mapping with `smallest`, `largest` and `count`, both ends included.
-
-    Raises
-    ------
-    InputError
-        If one is negative or not finite, or occurs twice.
-    """
+    """Factors, rising: a sequence, or a mapping with `smallest`, `largest` and `count`, both ends included."""
     if isinstance(given, dict):
         smallest, largest, count = (real_or_nan(given.get(key)) for key in RANGE)
         if set(given) != set(RANGE) or not (0.0 <= smallest < largest < np.inf and count in range(2, 1001)):

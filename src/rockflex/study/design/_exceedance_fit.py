@@ -57,11 +57,6 @@ def design_limit_state(limit: float | str, nominal: float) -> LimitState:
 
     A rotation in rad; a multiple of the nominal one; the name of a limit state; or a result with its bound, such as
     ``"max_base_moment > 5e6"``, which an overturned run exceeds too.
-
-    Raises
-    ------
-    InputError
-        If it is none of these, or a rotation is not from 1e-4 rad to below π/2.
     """
     words = limit.split() if isinstance(limit, str) else []
     if words == [OVERTURNING.name]:
@@ -151,13 +146,7 @@ class ShakingLevel:
 
     @classmethod
     def of(cls, at: float | None, hazard: HazardCurve | None) -> "ShakingLevel":
-        """Check the arguments, and choose the nodes.
-
-        Raises
-        ------
-        InputError
-            If both or neither were given, or the level is not positive.
-        """
+        """Check the arguments, and choose the nodes."""
         if (at is None) == (hazard is None):
             raise InputError("Give either at, a level of the measure, or hazard, a HazardCurve in it.")
         if hazard is None:

@@ -182,13 +182,7 @@ class Requirement:
 
 
 def checked_requirements(given: Sequence[Requirement]) -> list[Requirement]:
-    """Return requirements as a list.
-
-    Raises
-    ------
-    InputError
-        If there are none, something else is among them, or two are alike.
-    """
+    """Return requirements as a list."""
     listed = list(given)
     for place, each in enumerate(listed):
         if not isinstance(each, Requirement):  # pyright: ignore[reportUnnecessaryIsInstance]

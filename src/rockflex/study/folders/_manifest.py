@@ -23,11 +23,6 @@ def plain_json_value(name: str, value: object, depth: int = 0) -> Any:
     """Return `value` as dicts, lists, strings, numbers, booleans and None, as JSON would give it back.
 
     Infinities and NaN are allowed, as in Python's JSON.
-
-    Raises
-    ------
-    InputError
-        If it holds any other value, or is nested too deep; the message has the dotted path.
     """
     if depth > MAX_DEPTH:
         raise InputError(
@@ -160,13 +155,7 @@ class StudyManifest:
 
     @classmethod
     def read(cls, folder: Path) -> Self:
-        """Read what `write` wrote.
-
-        Raises
-        ------
-        InputError
-            If a file is missing, damaged, changed by hand or of another format.
-        """
+        """Read what `write` wrote."""
         path = folder / MANIFEST
         for file in (path, folder / SPEC):
             check_regular_file(file)

@@ -76,13 +76,7 @@ def encode_part(table: "pa.Table", study: str, number: int, versions: Mapping[st
 
 
 def verified_part_content(path: Path, study: str, number: int) -> bytes:
-    """Return the content of the part's file.
-
-    Raises
-    ------
-    PartError
-        If it is truncated, damaged, not a part, or a part of another study or chunk.
-    """
+    """Return the content of the part's file."""
     content = _part_content(path)
     part_schema_of_content(content, study, number)
     return content
