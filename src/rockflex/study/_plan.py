@@ -52,7 +52,7 @@ class ChunkedPlan(ABC):
         """Compute some units, and return the columns of their rows, in their order."""
 
     def check_work(self) -> None:
-        """Refuse a study if every run exceeds its work limit; a plan whose runs are not known in advance refuses none."""
+        """Refuse a study if every run exceeds its work limit; one whose runs are not known in advance, none."""
         return
 
     @property
