@@ -9,7 +9,7 @@ from typer.core import TyperGroup
 
 from rockflex import __version__
 from rockflex._errors import InputError, SolverError
-from rockflex.cli import _animate, _modes, _motion, _reproduce, _run, _select, _study, _survey
+from rockflex.cli import _animate, _modes, _motion, _reproduce, _run, _select, _study
 from rockflex.cli._console import print_error, print_remark, printing_warnings_as_remarks
 from rockflex.cli._options import FrameCommand, RunCommand
 from rockflex.kinds import KINDS
@@ -96,7 +96,7 @@ app.command("run", cls=RunCommand, epilog=_run.EPILOG, no_args_is_help=True)(_ru
 app.command("animate", cls=RunCommand, epilog=_animate.EPILOG, no_args_is_help=True)(_animate.animate)
 app.command("modes", cls=FrameCommand, epilog=_modes.EPILOG, no_args_is_help=True)(_modes.modes)
 app.command("motion", epilog=_motion.EPILOG)(_motion.motion)
-app.command("survey", epilog=_survey.EPILOG, no_args_is_help=True)(_survey.survey)
+app.command("survey", epilog=_motion.SURVEY_EPILOG, no_args_is_help=True)(_motion.survey)
 app.command("select", epilog=_select.EPILOG, no_args_is_help=True)(_select.select)
 for kind in KINDS.values():
     app.command(kind.command, epilog=_study.study_command_epilog(kind.command), no_args_is_help=True)(

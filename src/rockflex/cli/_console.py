@@ -11,7 +11,6 @@ from rockflex.study.progress import progress_bar, progress_counter
 
 if TYPE_CHECKING:
     from rich.console import Console
-    from rich.progress import Progress, TaskID
     from rich.table import Table
 
 
@@ -57,11 +56,15 @@ def printing_warnings_as_remarks() -> Generator[None]:
         yield
 
 
-def stdout_console() -> "Console":
-    """Return the console of stdout."""
+def print_line(text: str = "", style: str | None = None, *, wrap: bool = False) -> None:
+    """Print text to stdout; long lines are broken at the width of the terminal only if `wrap` is set."""
+    _stdout().print(text, style=style, markup=False, soft_wrap=not wrap)
+
+
+def _stdout(width: int | None = None) -> "Console":
     from rich.console import Console
 
-    return Console(highlight=False)
+    return Console(width=width, highlight=False)
 
 
 class StyledCell(str):
@@ -100,67 +103,25 @@ def console_progress_bar(title: str, total: int) -> Generator[Callable[[int], No
         yield progress_counter(lambda done, total: show(done, total, ""), total)
 
 
-@contextmanager
-def console_waiting(title: str) -> Generator[None]:
-    """Show on stderr that something takes time, if it is a terminal."""
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield
-        return
-    from rich.progress import Progress
-
-    with Progress(console=console, transient=True) as bar:
-        bar.add_task(title, total=None)
-        yield
-
-
-@contextmanager
-def console_steps(title: str) -> Generator[Callable[[str], None]]:
-    """Show the present step and its time on stderr, if it is a terminal; the yielded function starts a step."""
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield lambda _: None
-        return
-    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-
-    look = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
-    with Progress(*look, console=console, transient=True) as bar:
-        tasks: list[TaskID] = []
-
-        def start(name: str) -> None:
-            _end_last_step(bar, tasks)
-            tasks.append(bar.add_task(f"{title} {name}", total=1))
-
-        yield start
-        _end_last_step(bar, tasks)
-
-
-def _end_last_step(bar: "Progress", tasks: "list[TaskID]") -> None:
-    """Mark the last step as done."""
-    if tasks:
-        bar.update(tasks[-1], completed=1)
-
-
-def table_fits_console(console: "Console", table: "Table") -> bool:
+def table_fits_console(table: "Table") -> bool:
     """Tell whether a table fits the width of the terminal."""
-    return _console_table_width(console, table) <= console.width
+    console = _stdout()
+    return _table_width(console, table) <= console.width
 
 
-def print_console_table(console: "Console", table: "Table") -> None:
+def print_console_table(table: "Table") -> None:
     """Print a table in full, even where it is wider than the terminal."""
-    from rich.console import Console
-
-    width = _console_table_width(console, table)
-    if width > console.width:
-        console = Console(width=width, highlight=False)
-    console.print(table)
+    console = _stdout()
+    width = _table_width(console, table)
+    (_stdout(width) if width > console.width else console).print(table)
 
 
-def _console_table_width(console: "Console", table: "Table") -> int:
+def print_rows(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1) -> None:
+    """Print a table of rows, as `console_table` makes it."""
+    print_console_table(console_table(headings, rows, n_left))
+
+
+def _table_width(console: "Console", table: "Table") -> int:
     return console.measure(table, options=console.options.update(width=100_000)).maximum
 
 

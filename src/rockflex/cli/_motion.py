@@ -1,19 +1,22 @@
-"""``rockflex motion``: the contents and measures of records and suites."""
+"""``rockflex motion``: contents and measures of records and suites; ``rockflex survey``: the records in a folder."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rockflex._errors import InputError
 from rockflex._shown import number_with_noun
 from rockflex.cli import _options as options
 from rockflex.cli._console import (
     console_table,
     number_for_console,
     print_console_table,
+    print_line,
     print_remark,
-    stdout_console,
+    print_rows,
     table_fits_console,
 )
 from rockflex.cli._output import (
@@ -25,11 +28,8 @@ from rockflex.cli._output import (
 )
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    from rich.table import Table
-
     from rockflex.cli._find_motions import FoundMotion
+    from rockflex.motion import RecordSurvey, SurveyEntry
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -141,19 +141,16 @@ def _measures_of_motion(item: "FoundMotion", periods: Sequence[float], damping: 
 
 
 def _print_embedded_suites(suites: Sequence[dict[str, Any]]) -> None:
-
-    console = stdout_console()
     spans = [" ... ".join(dict.fromkeys((row["first"], row["last"]))) for row in suites]
     rows = [[row["suite"], span, str(row["motions"])] for row, span in zip(suites, spans, strict=True)]
-    print_console_table(console, console_table(("suite", "records", "motions"), rows, 2))
-    console.print("\nDetails: rockflex motion SUITE, or SUITE/RECORD", markup=False, soft_wrap=True)
+    print_rows(("suite", "records", "motions"), rows, 2)
+    print_line("\nDetails: rockflex motion SUITE, or SUITE/RECORD")
 
 
 def _print_motion_measures(rows: Sequence[dict[str, Any]], periods: Sequence[float], damping: float) -> None:
     from rockflex._constants import GRAVITY
     from rockflex.motion import record_measures
 
-    console = stdout_console()
     chosen = [(measure, measure.unit == "m/s²") for measure in record_measures()]
     records: list[list[str]] = []
     measures: list[list[str]] = []
@@ -168,22 +165,20 @@ def _print_motion_measures(rows: Sequence[dict[str, Any]], periods: Sequence[flo
         measures.append([row["name"], *own, *spectral])
     head = ("name", "event", "year", "M", "R [km]", "Vs30 [m/s]", "dt [s]", "npts", "length [s]")
     table = console_table(head, records, 2)
-    if not table_fits_console(console, table):
+    if not table_fits_console(table):
         table = console_table(head, [[name, fill(event, 12), *rest] for name, event, *rest in records], 2)
-    print_console_table(console, table)
-    console.print()
+    print_console_table(table)
+    print_line()
     heads = [f"{measure.head} [g]" if in_g else measure.with_unit(measure.head) for measure, in_g in chosen]
     spectral = (f"Sa({period:g} s) [g]" for period in periods)
-    print_console_table(
-        console, console_table(("name", *(head.translate(PLAIN) for head in heads), *spectral), measures)
-    )
+    print_rows(("name", *(head.translate(PLAIN) for head in heads), *spectral), measures)
     if any("pva" in row for row in rows):
-        console.print("\nVertical component", markup=False)
-        print_console_table(console, _vertical_measures_table(rows, periods))
-    console.print(f"\nSa: pseudo-acceleration with {damping:g} damping; g = {GRAVITY} m/s²", markup=False)
+        print_line("\nVertical component")
+        _print_vertical_measures(rows, periods)
+    print_line(f"\nSa: pseudo-acceleration with {damping:g} damping; g = {GRAVITY} m/s²")
 
 
-def _vertical_measures_table(rows: Sequence[dict[str, Any]], periods: Sequence[float]) -> "Table":
+def _print_vertical_measures(rows: Sequence[dict[str, Any]], periods: Sequence[float]) -> None:
     from rockflex._constants import GRAVITY
 
     cells: list[list[str]] = []
@@ -193,11 +188,11 @@ def _vertical_measures_table(rows: Sequence[dict[str, Any]], periods: Sequence[f
             keys += [(f"sa_vertical_{period:g}", GRAVITY), (f"v_h_{period:g}", 1.0)]
         cells.append([row["name"], *(number_for_console(row[key] / unit) if key in row else "-" for key, unit in keys)])
     spectral = [head for period in periods for head in (f"Sa,v({period:g} s) [g]", f"V/H({period:g} s)")]
-    return console_table(("name", "PVA [g]", "PVA/PGA", *spectral), cells)
+    print_rows(("name", "PVA [g]", "PVA/PGA", *spectral), cells)
 
 
 def _write_motion_measures(
-    folder: "Path", document: dict[str, Any], found: Sequence["FoundMotion"], figures: int, *, force: bool
+    folder: Path, document: dict[str, Any], found: Sequence["FoundMotion"], figures: int, *, force: bool
 ) -> None:
     from dataclasses import asdict
 
@@ -225,4 +220,102 @@ def _write_motion_measures(
     print_remark(
         f"Written to {folder}"
         + ("" if few else f"; series and figures only of up to {number_with_noun(figures, 'motion')}, by --figures")
+    )
+
+
+SURVEY_EPILOG = """[bold]Examples[/bold]
+
+rockflex survey records
+
+rockflex survey records --vertical pair --json
+
+rockflex survey *.AT2 flatfile.csv"""
+
+MAX_NAMED_FILES = 6  # files that share a reason and are named; of more, the number is told
+
+
+def survey(
+    paths: Annotated[
+        list[Path], typer.Argument(metavar="FOLDER|FILES", help="A folder of records, or files.", show_default=False)
+    ],
+    json: options.Json = False,
+    units: options.Units = None,
+    dt: options.Dt = None,
+    vertical: Annotated[
+        str | None,
+        typer.Option(
+            "--vertical",
+            metavar="pair",
+            help="pair: take the vertical component of each station too.",
+            rich_help_panel=options.RECORD_FILES,
+        ),
+    ] = None,
+) -> None:
+    """Say of each record file what it holds, whether it is taken, and why not."""
+    from rockflex.motion import survey_records
+
+    folders = [path for path in paths if path.is_dir()]
+    if folders and len(paths) > 1:
+        raise InputError(
+            f"One folder or several files are expected, but {folders[0]} is a folder among {len(paths)} paths. Survey "
+            "one folder at a time."
+        )
+    single = len(paths) == 1 and not paths[0].is_file()
+    found = survey_records(paths[0] if single else paths, units, dt, vertical, None)  # pyright: ignore[reportArgumentType]
+    if json:
+        stations = [
+            {
+                "name": each.name,
+                "horizontal": [motion.name for motion in each.horizontal],
+                "vertical": None if each.vertical is None else each.vertical.name,
+            }
+            for each in found.stations
+        ]
+        document: dict[str, Any] = {
+            "versions": versions_in_results(),
+            "units": {"dt": "s", "pga": "m/s²", "stated_pga": "m/s²", "distance_km": "km", "vs30": "m/s"},
+            "entries": found.entries,
+            "stations": stations,
+        }
+        typer.echo(document_to_json(document))
+    else:
+        _print_record_survey(found)
+
+
+def _print_record_survey(found: "RecordSurvey") -> None:
+    from rockflex._constants import GRAVITY
+
+    def cells(entry: "SurveyEntry") -> list[str]:
+        words = [entry.file, entry.format, entry.station, entry.component]
+        facts = [entry.magnitude, entry.distance_km, entry.vs30]
+        samples = ["-" if value is None else f"{value:g}" for value in (entry.dt, entry.n_samples)]
+        peak = "-" if entry.pga is None else number_for_console(entry.pga / GRAVITY)
+        return [
+            *(word or "-" for word in words),
+            "yes" if entry.taken else "no",
+            *samples,
+            peak,
+            *("-" if fact is None else f"{fact:g}" for fact in facts),
+        ]
+
+    head = ("file", "format", "station", "component", "taken", "dt [s]", "npts", "PGA [g]", "M", "R [km]", "Vs30 [m/s]")
+    print_rows(head, map(cells, found.entries), 5)
+    taken, left = len(found.taken), len(found.left_out)
+    print_line(f"\n{taken} taken, {left} left out; {_station_count_text(found)}")
+    for title, entries in (("Left out", found.left_out), ("Taken, but", [each for each in found.taken if each.reason])):
+        if entries:
+            print_line(f"\n{title}:")
+        for reason in dict.fromkeys(entry.reason for entry in entries):
+            names = list(dict.fromkeys(entry.file for entry in entries if entry.reason == reason))
+            more = f" and {len(names) - MAX_NAMED_FILES} more" if len(names) > MAX_NAMED_FILES else ""
+            print_line(f"  {', '.join(names[:MAX_NAMED_FILES])}{more}: {reason}")
+
+
+def _station_count_text(found: "RecordSurvey") -> str:
+    pairs = [len(each.horizontal) == 2 for each in found.stations]
+    upright = [each.vertical is not None for each in found.stations]
+    both = sum(pair and vertical for pair, vertical in zip(pairs, upright, strict=True))
+    return (
+        f"{number_with_noun(len(pairs), 'recording')}: {sum(pairs)} with a horizontal pair, {sum(upright)} with a "
+        f"vertical component, {both} with both"
     )

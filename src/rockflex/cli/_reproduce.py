@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rockflex.cli import _options as options
-from rockflex.cli._console import console_progress_bar, console_table, print_console_table, print_remark, stdout_console
+from rockflex.cli._console import console_progress_bar, print_remark, print_rows
 from rockflex.cli._output import check_output_folder, staged_output_folder, versions_in_results
 
 if TYPE_CHECKING:
@@ -120,22 +120,16 @@ def _write_reproduction(results: "list[ReproducedResult]", records: "PaperRecord
 
 
 def _print_reproduced_numbers(results: "Sequence[ReproducedResult]") -> None:
-
-    console = stdout_console()
     for result in results:
         typer.echo(f"{result.name}: {result.title}")
         rows = [
             (n.name, n.printed, n.ours_as_text, n.unit, n.difference_as_text, str(n.verdict)) for n in result.numbers
         ]
         if rows:
-            print_console_table(
-                console, console_table(("number", "paper", "rockflex", "unit", "difference", "verdict"), rows)
-            )
+            print_rows(("number", "paper", "rockflex", "unit", "difference", "verdict"), rows)
         checks = [(c.name, c.printed, c.ours_as_text, c.unit, "yes" if c.holds else "no") for c in result.checks]
         if checks:
-            print_console_table(
-                console, console_table(("check of ourselves", "paper", "rockflex", "unit", "holds"), checks)
-            )
+            print_rows(("check of ourselves", "paper", "rockflex", "unit", "holds"), checks)
         typer.echo()
 
 
@@ -144,4 +138,4 @@ def _print_reproduction_counts(results: "Sequence[ReproducedResult]") -> None:
 
     rows = [(r.name, *(str(r.count(verdict)) for verdict in Verdict)) for r in results]
     rows.append(("all", *(str(sum(r.count(verdict) for r in results)) for verdict in Verdict)))
-    print_console_table(stdout_console(), console_table(("target", *map(str, Verdict)), rows))
+    print_rows(("target", *map(str, Verdict)), rows)

@@ -16,15 +16,15 @@ from rockflex.cli._console import (
     console_table,
     number_for_console,
     print_console_table,
+    print_line,
     print_remark,
-    stdout_console,
+    print_rows,
     table_fits_console,
 )
 from rockflex.cli._output import file_stems, staged_output_folder
 from rockflex.cli._run_options import lines_about_run_options
 from rockflex.cli._structures import LoadedStructure, elements_table
 from rockflex.fragility import NOMINAL
-from rockflex.modal import Ground
 from rockflex.motion import MEASURES, GroundMotion
 from rockflex.report.run import MAX_RUNS, checked_report_path, write_report
 from rockflex.response import IMPACT_WINDOW, Response, history_columns
@@ -60,55 +60,54 @@ Columns = list[tuple[str, list[str]]]
 
 def print_run_peaks(title: str, batch: RunBatch, runs: Sequence[BatchRun], elapsed: float, *, times: bool) -> None:
     """Print the peaks of every run, and their times if requested; by motion if the terminal is narrow."""
-    console = stdout_console()
     for line in (
         title,
         *lines_about_run_options(batch.options, batch.properties),
         *_vertical_component_names(batch.motions),
     ):
-        console.print(line, markup=False, soft_wrap=True)
-    peaks, ground, base = (
-        _peak_columns(runs),
-        _reaction_columns(runs),
-        _base_motion_columns(ground_under_structure(batch.properties, batch.options.ground), runs),
-    )
-    tables, elements = [(peaks + ground + base, 1)], batch.properties.elements
-    if not table_fits_console(console, _table_of_all_runs(batch, runs, *tables[0])):
-        tables = [(peaks, 1), (ground + base, 0)]
+        print_line(line)
+    elements, base = batch.properties.elements, _base_motion_columns(batch, runs)
+    peaks, ground = _peak_columns(runs), _columns_of_peaks(runs, REACTIONS) + base
+    tables = [(peaks + ground, 1)]
+    if not table_fits_console(_table_of_all_runs(batch, runs, *tables[0])):
+        tables = [(peaks, 1), (ground, 0)]
     if times:
-        tables.append((_peak_time_columns(runs), 0))
+        tables.append((_columns_of_peaks(runs, PEAK_TIMES, digits=5), 0))
     if batch.friction is not None:
         tables.append((_sliding_columns(runs), 0))
     if elements:
-        console.print("\nBetween base and ground", markup=False)
-        print_console_table(console, elements_table(elements))
+        print_line("\nBetween base and ground")
+        print_console_table(elements_table(elements))
         tables += [(columns, 0) for columns in _element_peak_columns(runs, len(elements))]
     for columns, n_words in tables:
-        flat = _table_of_all_runs(batch, runs, columns, n_words)
-        if table_fits_console(console, flat):
-            console.print()
-            print_console_table(console, flat)
-            continue
-        rows = zip(runs, _rows_of_cells(columns), strict=True)
-        for place, members in groupby(rows, key=lambda row: _motion_and_scale_cells(batch, row[0])):
-            console.print("\n" + " × ".join(place), markup=False, soft_wrap=True)
-            cells = [[run.model, *row] for run, row in members]
-            print_console_table(
-                console, console_table(["model", *(heading for heading, _ in columns)], cells, 1 + n_words)
-            )
-    console.print()
+        _print_columns(batch, runs, columns, n_words)
+    print_line()
     if any(run.peaks["nominal_overturning"] for run in runs):
-        console.print(PASSED, markup=False, soft_wrap=True)
-    console.print(LEGEND, markup=False, soft_wrap=True)
+        print_line(PASSED)
+    print_line(LEGEND)
     for name, said in OF_BASE.items():
         if any(heading.startswith(name) for heading, _ in base):
-            console.print(said, markup=False, soft_wrap=True)
+            print_line(said)
     if elements:
-        console.print(OF_ELEMENTS, markup=False, soft_wrap=True)
+        print_line(OF_ELEMENTS)
     if batch.friction is not None:
-        console.print(FRICTION.format(window=IMPACT_WINDOW, mu=batch.friction), markup=False, soft_wrap=True)
+        print_line(FRICTION.format(window=IMPACT_WINDOW, mu=batch.friction))
     each = "" if len(runs) == 1 else f", {number_for_console(1e3 * elapsed / len(runs), 3)} ms a run"
-    console.print(f"{number_with_noun(len(runs), 'run')} in {number_for_console(elapsed, 3)} s{each}", markup=False)
+    print_line(f"{number_with_noun(len(runs), 'run')} in {number_for_console(elapsed, 3)} s{each}")
+
+
+def _print_columns(batch: RunBatch, runs: Sequence[BatchRun], columns: Columns, n_words: int) -> None:
+    """Print columns of all runs; a table for each motion and scale if they do not fit."""
+    flat = _table_of_all_runs(batch, runs, columns, n_words)
+    if table_fits_console(flat):
+        print_line()
+        print_console_table(flat)
+        return
+    rows = zip(runs, _rows_of_cells(columns), strict=True)
+    for place, members in groupby(rows, key=lambda row: _motion_and_scale_cells(batch, row[0])):
+        print_line("\n" + " × ".join(place))
+        cells = [[run.model, *row] for run, row in members]
+        print_rows(["model", *(heading for heading, _ in columns)], cells, 1 + n_words)
 
 
 def print_run_warnings(runs: Sequence[BatchRun]) -> None:
@@ -135,51 +134,58 @@ def _print_first_lines(found: Sequence[str], rest: str) -> None:
         print_remark(rest.format(len(found) - MAX_LISTED))
 
 
+# Heading, name of the peak, and the unit of the column in that of the peak.
+Peaks = Sequence[tuple[str, str, float]]
+REACTIONS: Peaks = (("ΣF_x [kN]", "max_horizontal_reaction", 1e3), ("N_min [kN]", "min_vertical_reaction", 1e3))
+SLIPS: Peaks = (("slip [mm]", "max_slip", 1e-3), ("x_end [mm]", "residual_slip", 1e-3))
+EDGES: Peaks = (("edge up [mm]", "max_edge_uplift", 1e-3), ("edge down [mm]", "max_edge_settlement", 1e-3))
+PEAK_TIMES: Peaks = (
+    ("t(θ_max) [s]", "time_of_max_rotation", 1.0),
+    ("t(u_top relative) [s]", "time_of_max_top_displacement", 1.0),
+    ("t(u_top total) [s]", "time_of_max_total_top_displacement", 1.0),
+    ("t(M_b) [s]", "time_of_max_base_moment", 1.0),
+    ("t(V_b) [s]", "time_of_max_base_shear", 1.0),
+    ("t(ΣF_x) [s]", "time_of_max_horizontal_reaction", 1.0),
+    ("t(N_min) [s]", "time_of_min_vertical_reaction", 1.0),
+    ("end [s]", "end_time", 1.0),
+)
+
+
+def _columns_of_peaks(runs: Sequence[BatchRun], peaks: Peaks, digits: int = 4) -> Columns:
+    def cell(value: float | None, size: float) -> str:
+        return number_for_console(None if value is None else value / size, digits)
+
+    return [(heading, [cell(run.peaks[name], size) for run in runs]) for heading, name, size in peaks]
+
+
 def _peak_columns(runs: Sequence[BatchRun]) -> Columns:
-    moments = [abs(run.peaks["max_base_moment"] or 0.0) for run in runs]
-    size, unit = moment_unit(max(moments))
+    size, unit = moment_unit(max(abs(run.peaks["max_base_moment"] or 0.0) for run in runs))
+    peaks: list[tuple[str, str, float]] = [
+        ("θ_max [rad]", "max_rotation", 1.0),
+        ("u_top relative [m]", "max_top_displacement", 1.0),
+        ("u_top total [m]", "max_total_top_displacement", 1.0),
+        (f"M_b [{unit}]", "max_base_moment", size),
+        ("V_b [kN]", "max_base_shear", 1e3),
+    ]
     columns: Columns = [
         ("status", [_run_status_text(run) for run in runs]),
-        ("θ_max [rad]", _cells_of_peak(runs, "max_rotation")),
-        ("u_top relative [m]", _cells_of_peak(runs, "max_top_displacement")),
-        ("u_top total [m]", _cells_of_peak(runs, "max_total_top_displacement")),
-        (f"M_b [{unit}]", _cells_of_peak(runs, "max_base_moment", size)),
-        ("V_b [kN]", _cells_of_peak(runs, "max_base_shear", 1e3)),
+        *_columns_of_peaks(runs, peaks),
         ("impacts", ["-" if run.error else str(run.peaks["n_impacts"]) for run in runs]),
     ]
     if any(run.peaks["max_tendon_force"] for run in runs):
-        columns.append(("T [kN]", _cells_of_peak(runs, "max_tendon_force", 1e3)))
-        columns.append(("T/F_y", _cells_of_peak(runs, "tendon_utilisation")))
+        columns += _columns_of_peaks(runs, [("T [kN]", "max_tendon_force", 1e3), ("T/F_y", "tendon_utilisation", 1.0)])
     if any(run.elements and run.peaks["residual_rotation"] for run in runs):
-        columns.append(("θ_end [rad]", _cells_of_peak(runs, "residual_rotation")))
-    if any(run.run_time is not None for run in runs):
-        columns.append(
-            ("time [ms]", [number_for_console(None if run.run_time is None else 1e3 * run.run_time, 3) for run in runs])
-        )
-    return columns
+        columns += _columns_of_peaks(runs, [("θ_end [rad]", "residual_rotation", 1.0)])
+    times = [None if run.run_time is None else 1e3 * run.run_time for run in runs]
+    return columns if set(times) == {None} else [*columns, ("time [ms]", [number_for_console(t, 3) for t in times])]
 
 
-def _reaction_columns(runs: Sequence[BatchRun]) -> Columns:
-    return [
-        ("ΣF_x [kN]", _cells_of_peak(runs, "max_horizontal_reaction", 1e3)),
-        ("N_min [kN]", _cells_of_peak(runs, "min_vertical_reaction", 1e3)),
-    ]
-
-
-def _base_motion_columns(ground: Ground | None, runs: Sequence[BatchRun]) -> Columns:
+def _base_motion_columns(batch: RunBatch, runs: Sequence[BatchRun]) -> Columns:
     """How far the base moves on a ground that lets it slide, or that gives."""
-    columns: Columns = []
-    if ground is not None and ground.slides:
-        columns += [
-            ("slip [mm]", _cells_of_peak(runs, "max_slip", 1e-3)),
-            ("x_end [mm]", _cells_of_peak(runs, "residual_slip", 1e-3)),
-        ]
-    if ground is not None and ground.springs is not None:
-        columns += [
-            ("edge up [mm]", _cells_of_peak(runs, "max_edge_uplift", 1e-3)),
-            ("edge down [mm]", _cells_of_peak(runs, "max_edge_settlement", 1e-3)),
-        ]
-    return columns
+    ground = ground_under_structure(batch.properties, batch.options.ground)
+    slips = SLIPS if ground is not None and ground.slides else ()
+    edges = EDGES if ground is not None and ground.springs is not None else ()
+    return _columns_of_peaks(runs, [*slips, *edges])
 
 
 def _vertical_component_names(motions: Sequence[GroundMotion]) -> list[str]:
@@ -192,20 +198,6 @@ def _vertical_component_names(motions: Sequence[GroundMotion]) -> list[str]:
 def _record_source(motion: GroundMotion) -> str:
     source = None if motion.metadata is None else motion.metadata.vertical_source
     return f"{source} with {motion.name}" if source else f"of {motion.name}"
-
-
-def _peak_time_columns(runs: Sequence[BatchRun]) -> Columns:
-    names = {
-        "max_rotation": "θ_max",
-        "max_top_displacement": "u_top relative",
-        "max_total_top_displacement": "u_top total",
-        "max_base_moment": "M_b",
-        "max_base_shear": "V_b",
-        "max_horizontal_reaction": "ΣF_x",
-        "min_vertical_reaction": "N_min",
-    }
-    columns = [(f"t({label}) [s]", _cells_of_peak(runs, f"time_of_{name}", digits=5)) for name, label in names.items()]
-    return [*columns, ("end [s]", _cells_of_peak(runs, "end_time", digits=5))]
 
 
 def _sliding_columns(runs: Sequence[BatchRun]) -> Columns:
@@ -248,11 +240,6 @@ def _table_of_all_runs(batch: RunBatch, runs: Sequence[BatchRun], columns: Colum
         for run, row in zip(runs, _rows_of_cells(columns), strict=True)
     ]
     return console_table([*words, *(heading for heading, _ in columns)], rows, len(words) + n_words)
-
-
-def _cells_of_peak(runs: Sequence[BatchRun], name: str, size: float = 1.0, digits: int = 4) -> list[str]:
-    values = [run.peaks[name] for run in runs]
-    return [number_for_console(None if value is None else value / size, digits) for value in values]
 
 
 def _run_status_text(run: BatchRun) -> str:

@@ -9,7 +9,7 @@ import typer
 from rockflex._errors import InputError
 from rockflex._shown import number_with_noun, shown
 from rockflex.cli import _options as options
-from rockflex.cli._console import console_table, number_for_console, print_console_table, print_remark, stdout_console
+from rockflex.cli._console import number_for_console, print_line, print_remark, print_rows
 from rockflex.cli._output import (
     check_output_folder,
     document_to_json,
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 
 WORDS = {"yes": True, "no": False}
-Reader = Callable[[str, str], Any]
 
 
 def parse_target_spectrum(text: str, damping: float | None) -> "TargetSpectrum":
@@ -54,35 +53,16 @@ def parse_target_spectrum(text: str, damping: float | None) -> "TargetSpectrum":
         )
     items = _target_items(code, rest)
     if code == "ec8":
-        given = _read_target_items(code, items, {"ag": _target_acceleration}, {
-            "ground": _target_text, "type": _target_number, "importance": _target_number, "damping": _target_number,
-        })  # fmt: skip
-        return ec8_spectrum(**_renamed_target_arguments(given))
+        return ec8_spectrum(**_read_target_items(code, items, "ag", "ground type importance damping"))
     if code == "ec8-2024":
-        given = _read_target_items(code, items, {"s_alpha": _target_acceleration, "s_beta": _target_acceleration}, {
-            "site": _target_text, "f_alpha": _target_number, "f_beta": _target_number,
-            "topography": _target_number, "damping": _target_number,
-        })  # fmt: skip
+        given = _read_target_items(code, items, "s_alpha s_beta", "site f_alpha f_beta topography damping")
         factors = [given.pop(key, None) for key in ("f_alpha", "f_beta")]
         if (factors[0] is None) != (factors[1] is None):
             raise InputError(f"--target {code}:...: give both f_alpha and f_beta, or neither.")
-        amplification = None if factors[0] is None else tuple(factors)
-        return ec8_second_spectrum(**_renamed_target_arguments(given), amplification=amplification)
+        return ec8_second_spectrum(**given, amplification=None if factors[0] is None else tuple(factors))
     if "ss" in items or "s1" in items or "site" in items:
-        needed: dict[str, Reader] = {
-            "ss": _target_acceleration,
-            "s1": _target_acceleration,
-            "site": _target_text,
-            "tl": _target_number,
-        }
-        return asce7_site_spectrum(**_read_target_items(code, items, needed, {"mce": _target_yes_or_no}))
-    needed = {"sds": _target_acceleration, "sd1": _target_acceleration, "tl": _target_number}
-    return asce7_spectrum(**_read_target_items(code, items, needed, {"mce": _target_yes_or_no}))
-
-
-def _renamed_target_arguments(given: dict[str, Any]) -> dict[str, Any]:
-    names = {"type": "kind", "damping": "damping_ratio"}
-    return {names.get(key, key): value for key, value in given.items()}
+        return asce7_site_spectrum(**_read_target_items(code, items, "ss s1 site tl", "mce"))
+    return asce7_spectrum(**_read_target_items(code, items, "sds sd1 tl", "mce"))
 
 
 def parse_comma_separated_numbers(flag: str, text: str, least: int, most: int | None = None) -> list[float]:
@@ -107,18 +87,18 @@ def _target_items(code: str, rest: str) -> dict[str, str]:
     return items
 
 
-def _read_target_items(
-    code: str, items: dict[str, str], needed: dict[str, Reader], optional: dict[str, Reader]
-) -> dict[str, Any]:
-    readers = needed | optional
-    unknown, missing = [key for key in items if key not in readers], [key for key in needed if key not in items]
+def _read_target_items(code: str, items: dict[str, str], needed: str, optional: str) -> dict[str, Any]:
+    """Return the values of the items of a code by argument; blanks separate the keys that it needs and may have."""
+    known = [*needed.split(), *optional.split()]
+    unknown, missing = [key for key in items if key not in known], [key for key in needed.split() if key not in items]
     if unknown or missing:
         what = f"{shown(unknown[0])} is not known" if unknown else f"{missing[0]} is missing"
         raise InputError(
-            f"--target {code}:...: {what}. The keys are {', '.join(needed)}"
-            + (f", and {', '.join(optional)} if wanted." if optional else ".")
+            f"--target {code}:...: {what}. The keys are {', '.join(needed.split())}, and "
+            f"{', '.join(optional.split())} if wanted."
         )
-    return {key: readers[key](f"--target {code}: {key}", value) for key, value in items.items()}
+    values = ((key, READERS.get(key, _target_number)(f"--target {code}: {key}", text)) for key, text in items.items())
+    return {ARGUMENTS.get(key, key): value for key, value in values}
 
 
 def _target_acceleration(name: str, text: str) -> float:
@@ -140,15 +120,18 @@ def _target_number(name: str, text: str) -> float:
         raise InputError(f"{name} must be a number, but {shown(text)} was given.") from None
 
 
-def _target_text(name: str, text: str) -> str:
-    del name
-    return text
-
-
 def _target_yes_or_no(name: str, text: str) -> bool:
     if text not in WORDS:
         raise InputError(f"{name} must be yes or no, but {shown(text)} was given.")
     return WORDS[text]
+
+
+ARGUMENTS = {"type": "kind", "damping": "damping_ratio"}  # of the functions, where they are not the keys
+READERS: dict[str, Callable[[str, str], Any]] = {  # of the keys that are not plain numbers
+    **dict.fromkeys(("ag", "s_alpha", "s_beta", "ss", "s1", "sds", "sd1"), _target_acceleration),
+    **dict.fromkeys(("ground", "site"), lambda _, text: text),
+    "mce": _target_yes_or_no,
+}
 
 
 EPILOG = """[bold]Examples[/bold]
@@ -302,7 +285,6 @@ def select(
 
 
 def _check_selected_records_folder(folder: Path, out: Path | None, *, force: bool) -> None:
-
     if out is not None and folder.absolute() == out.absolute():
         raise InputError(
             f"--records {folder} is the folder of --out, too. Give it one of its own: every CSV file in it is a record."
@@ -322,8 +304,6 @@ def _selected_record_rows(chosen: "Selection[Any]") -> list[dict[str, Any]]:
 
 
 def _print_selection(chosen: "Selection[Any]") -> None:
-
-    console = stdout_console()
     rows = [
         [
             row["record"],
@@ -337,9 +317,7 @@ def _print_selection(chosen: "Selection[Any]") -> None:
         ]
         for row in _selected_record_rows(chosen)
     ]
-    print_console_table(
-        console, console_table(("record", "event", "year", "M", "R [km]", "factor", "misfit", "Sa/target"), rows, 2)
-    )
+    print_rows(("record", "event", "year", "M", "R [km]", "factor", "misfit", "Sa/target"), rows, 2)
     target = chosen.target
     lines = [
         f"\nTarget: {target.name}, damping {target.damping_ratio:g}, {chosen.periods[0]:g} to {chosen.periods[-1]:g} s",
@@ -350,7 +328,7 @@ def _print_selection(chosen: "Selection[Any]") -> None:
         lines.append(f"Standard deviation of ln Sa: {spread.min():.2f} to {spread.max():.2f}")
     if target.periods[0] == 0.0:
         lines.append(f"At a period of zero the mean is {chosen.zero_period_ratio:.3f} of the target")
-    console.print("\n".join(lines), markup=False, soft_wrap=True)
+    print_line("\n".join(lines))
 
 
 def _write_selection(folder: Path, document: dict[str, Any], chosen: "Selection[Any]", *, force: bool) -> None:

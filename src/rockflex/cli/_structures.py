@@ -113,6 +113,7 @@ class LoadedStructure:
     built: Built
     run_options: dict[str, Any] = field(default_factory=dict[str, Any])
     """`impact`, `restitution`, `bouc_wen` and `ground`, as far as the file has them."""
+    file: Path | None = None
 
     @property
     def properties(self) -> RockingProperties:
@@ -177,7 +178,7 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
     document = parse_toml_table(StructureFile, content, str(file))
     run_options = document.model_dump(include=set(RunOptionKeys.model_fields), exclude_unset=True)
     built = build_structure_in_file(file, document)
-    return LoadedStructure(document.name or file.stem, document.kind, document.describe(), built, run_options)
+    return LoadedStructure(document.name or file.stem, document.kind, document.describe(), built, run_options, file)
 
 
 def _study_in_place_of_structure(file: Path, name: object) -> InputError:

@@ -11,14 +11,7 @@ import typer
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import number_with_noun, shown
 from rockflex.cli import _options as options
-from rockflex.cli._console import (
-    console_table,
-    number_for_console,
-    print_console_table,
-    print_error,
-    print_remark,
-    stdout_console,
-)
+from rockflex.cli._console import number_for_console, print_error, print_line, print_remark, print_rows
 from rockflex.cli._output import check_output_folder, document_to_json, staged_output_folder, versions_in_results
 from rockflex.kinds import KINDS, StudyFindings, StudyKind, study_kind_named
 from rockflex.study.progress import duration_text, progress_bar, row_rate_text
@@ -261,18 +254,11 @@ def _plain_summary_value(value: Any) -> Any:
 
 
 def _print_summary_tables(tables: Tables) -> None:
-    console = stdout_console()
     for place, (title, rows) in enumerate(tables.items()):
-        if not rows:
-            continue
-        console.print(("\n" if place else "") + title, style="bold", markup=False)
-        words = sum(isinstance(value, str) for value in rows[0].values())
-        print_console_table(
-            console,
-            console_table(
-                list(rows[0]), ([_summary_cell(value) for value in row.values()] for row in rows), n_left=words
-            ),
-        )
+        if rows:
+            print_line(("\n" if place else "") + title, style="bold")
+            words = sum(isinstance(value, str) for value in rows[0].values())
+            print_rows(list(rows[0]), ([_summary_cell(value) for value in row.values()] for row in rows), words)
 
 
 def _summary_cell(value: Any) -> str:
