@@ -24,8 +24,7 @@ rockflex serve --port 9000 --open"""
 def serve(
     port: Annotated[int, typer.Option("--port", "-p", help="TCP port.")] = 8080,
     host: Annotated[
-        str,
-        typer.Option(help="Address to listen on. The default accepts only this machine."),
+        str, typer.Option(help="Address to listen on. The default accepts only this machine.")
     ] = "127.0.0.1",
     name: Annotated[
         list[str] | None,
@@ -116,8 +115,7 @@ def _print_version(asked: bool) -> None:
 @app.callback()
 def rockflex(
     _: Annotated[
-        bool,
-        typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit."),
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
     ] = False,
 ) -> None:
     """Seismic response of flexible structures whose base may uplift and rock: exact, and fast."""

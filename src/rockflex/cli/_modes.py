@@ -72,7 +72,7 @@ def modes(
         str | None, typer.Argument(metavar="STRUCTURE.toml", help="The structure file.", show_default=False)
     ] = None,
     structure: options.StructureFile = None,
-    n_modes: Annotated[int | None, typer.Option("--modes", metavar="N", help="Show only the first N modes.")] = None,
+    n_modes: Annotated[int | None, options.option("--modes", "N", "Show only the first N modes.")] = None,
     adequacy: Annotated[
         bool,
         typer.Option(

@@ -59,11 +59,9 @@ def motion(
     ] = None,
     period: Annotated[
         list[float] | None,
-        typer.Option(
-            "--period", metavar="S", help="Period of Sa in s; may be repeated. Default: 1.", show_default=False
-        ),
+        options.option("--period", "S", "Period of Sa in s; may be repeated. Default: 1.", show_default=False),
     ] = None,
-    damping: Annotated[float, typer.Option("--damping", metavar="ZETA", help="Damping ratio of Sa.")] = 0.05,
+    damping: Annotated[float, options.option("--damping", "ZETA", "Damping ratio of Sa.")] = 0.05,
     json: options.Json = False,
     out: options.Out = None,
     figures: options.Figures = 4,
@@ -243,10 +241,10 @@ def survey(
     dt: options.Dt = None,
     vertical: Annotated[
         str | None,
-        typer.Option(
+        options.option(
             "--vertical",
-            metavar="pair",
-            help="pair: take the vertical component of each station too.",
+            "pair",
+            "pair: take the vertical component of each station too.",
             rich_help_panel=options.RECORD_FILES,
         ),
     ] = None,

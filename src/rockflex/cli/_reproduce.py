@@ -41,12 +41,7 @@ def reproduce(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(
-            "--out",
-            "-o",
-            metavar="DIR",
-            help="Write report.html, report.md, numbers.csv and the figures to this folder.",
-        ),
+        options.option("--out -o", "DIR", "Write report.html, report.md, numbers.csv and the figures to this folder."),
     ] = None,
     records: Annotated[
         Path | None,

@@ -46,8 +46,7 @@ def run(
     free_vibration: options.FreeVibration = "0",
     times: Annotated[bool, typer.Option("--times", help="Also print the times of the peaks.")] = False,
     workers: Annotated[
-        int | None,
-        typer.Option(min=1, metavar="N", help="Threads. Default: one per core; only one for up to 64 runs."),
+        int | None, typer.Option(min=1, metavar="N", help="Threads. Default: one per core; only one for up to 64 runs.")
     ] = None,
     work_limit: options.WorkLimit = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 if any run could not be solved.")] = False,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockflex._errors import InputError
 from rockflex._number_format import moment_unit
+from rockflex._schema import schema_keys
 from rockflex._shown import number_with_noun, shortened
 from rockflex.cli._batch import SLIDING, BatchRun, RunBatch
 from rockflex.cli._console import (
@@ -29,6 +30,7 @@ from rockflex.motion import MEASURES, GroundMotion
 from rockflex.report.run import MAX_RUNS, checked_report_path, write_report
 from rockflex.response import IMPACT_WINDOW, Response, history_columns
 from rockflex.study import ground_under_structure
+from rockflex.study.spec import GroundTable, SpringBedTable, SpringsTable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -247,6 +249,10 @@ def _run_status_text(run: BatchRun) -> str:
     return StyledCell(status.replace("_", " ") + (" †" if run.peaks["nominal_overturning"] else ""), STYLES[status])
 
 
+def _units_of_keys(place: str, table: type) -> dict[str, str]:
+    return {f"{place}.{name}": key.unit for name, _, key in schema_keys(table) if key.unit}
+
+
 UNITS = {
     "dt": "s",
     "duration": "s",
@@ -276,16 +282,9 @@ UNITS = {
     "impact.shortest_excursion": "s",
     "bouc_wen.yield_displacement": "m",
     "initial_rotation": "rad",
-    "ground.base_inertia": "kg m²",
-    "ground.mat_mass": "kg",
-    "ground.springs.positions": "m",
-    "ground.springs.stiffness": "N/m",
-    "ground.springs.damping": "N s/m",
-    "ground.bed.breadth": "m",
-    "ground.bed.subgrade_modulus": "N/m³",
-    "ground.bed.shear_modulus": "N/m²",
-    "ground.bed.damping": "N s/m",
-    "ground.bed.end_zone": "m",
+    **_units_of_keys("ground", GroundTable),
+    **_units_of_keys("ground.springs", SpringsTable),
+    **_units_of_keys("ground.bed", SpringBedTable),
 }
 
 

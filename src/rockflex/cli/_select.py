@@ -1,6 +1,7 @@
 """``rockflex select``: records chosen and scaled for a target spectrum."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -157,7 +158,7 @@ A file with the columns "period (s), sa (g)".
 
 Accelerations A are written with their unit, such as 0.25g or 2.45m/s2."""
 
-CHOICE = "Choice"
+_choice = partial(options.option, rich_help_panel="Choice")
 _MEASURES: "dict[str, Combination]" = {
     "component": "component",
     "geometric-mean": "geometric mean",
@@ -172,60 +173,39 @@ def select(
         typer.Argument(metavar="MOTION", help="Suites, records (suite/name), files or directories to choose from."),
     ],
     target: Annotated[
-        str,
-        typer.Option("--target", metavar="TARGET", help="ec8:KEY=VALUE,..., asce7:KEY=VALUE,... or a file; see below."),
+        str, options.option("--target", "TARGET", "ec8:KEY=VALUE,..., asce7:KEY=VALUE,... or a file; see below.")
     ],
-    count: Annotated[int, typer.Option("--count", "-n", metavar="N", help="Number of records; of pairs, if combined.")],
+    count: Annotated[int, options.option("--count -n", "N", "Number of records; of pairs, if combined.")],
     periods: Annotated[
-        str,
-        typer.Option("--periods", metavar="S,S", help="The ends of the range of periods, or three and more periods."),
+        str, options.option("--periods", "S,S", "The ends of the range of periods, or three and more periods.")
     ],
     measure: Annotated[
         Literal["component", "geometric-mean", "rotd50", "rotd100"],
         typer.Option(
             "--measure",
             help="The ordinate of a record: of each component, or of the two of a recording.",
-            rich_help_panel=CHOICE,
+            rich_help_panel="Choice",
         ),
     ] = "component",
-    limits: Annotated[
-        str, typer.Option("--limits", metavar="F,F", help="Smallest and largest factor.", rich_help_panel=CHOICE)
-    ] = "0.25,4",
-    per_event: Annotated[
-        int | None,
-        typer.Option("--per-event", metavar="N", help="Most records of one earthquake.", rich_help_panel=CHOICE),
-    ] = None,
-    per_station: Annotated[
-        int | None,
-        typer.Option("--per-station", metavar="N", help="Most records at one station.", rich_help_panel=CHOICE),
-    ] = None,
+    limits: Annotated[str, _choice("--limits", "F,F", "Smallest and largest factor.")] = "0.25,4",
+    per_event: Annotated[int | None, _choice("--per-event", "N", "Most records of one earthquake.")] = None,
+    per_station: Annotated[int | None, _choice("--per-station", "N", "Most records at one station.")] = None,
     record_weight: Annotated[
-        float,
-        typer.Option(
-            "--record-weight",
-            metavar="W",
-            help="0: only the misfit of the mean counts; 1: only those of the records.",
-            rich_help_panel=CHOICE,
-        ),
+        float, _choice("--record-weight", "W", "0: only the misfit of the mean counts; 1: only those of the records.")
     ] = 0.0,
     least: Annotated[
         float | None,
-        typer.Option(
-            "--least",
-            metavar="R",
-            help="Raise all factors together until the mean is at least R times the target, such as 0.9.",
-            rich_help_panel=CHOICE,
+        _choice(
+            "--least", "R", "Raise all factors together until the mean is at least R times the target, such as 0.9."
         ),
     ] = None,
     damping: Annotated[
-        float | None,
-        typer.Option("--damping", metavar="ZETA", help="Damping ratio of a target from a file. Default: 0.05."),
+        float | None, options.option("--damping", "ZETA", "Damping ratio of a target from a file. Default: 0.05.")
     ] = None,
     json: options.Json = False,
     out: options.Out = None,
     records: Annotated[
-        Path | None,
-        typer.Option("--records", metavar="DIR", help="Write the scaled records to a folder, as CSV files."),
+        Path | None, options.option("--records", "DIR", "Write the scaled records to a folder, as CSV files.")
     ] = None,
     force: options.Force = False,
     units: options.Units = None,

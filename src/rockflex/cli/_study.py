@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from functools import partial
 from numbers import Integral, Number
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
@@ -42,13 +43,11 @@ rockflex figures draws them."""
 
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study's file.", show_default=False)]
 Folder = Annotated[
-    Path | None,
-    typer.Option("--out", "-o", metavar="DIR", help="Store the study here, and resume it if it is there."),
+    Path | None, options.option("--out -o", "DIR", "Store the study here, and resume it if it is there.")
 ]
 DryRun = Annotated[bool, typer.Option("--dry-run", help="Count the runs and estimate the time; run nothing.")]
 Dask = Annotated[
-    str | None,
-    typer.Option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster, such as tcp://10.0.0.1:8786."),
+    str | None, options.option("--dask", "ADDRESS", "Scheduler of a Dask cluster, such as tcp://10.0.0.1:8786.")
 ]
 Workers = Annotated[int | None, typer.Option(min=1, metavar="N", help="Threads. Default: one a core.")]
 AnyVersion = Annotated[
@@ -56,10 +55,10 @@ AnyVersion = Annotated[
 ]
 Share = Annotated[
     str | None,
-    typer.Option(
+    options.option(
         "--share",
-        metavar="K/N",
-        help="Only store share K of N of the study, each in a folder of its own; report nothing. For job arrays.",
+        "K/N",
+        "Only store share K of N of the study, each in a folder of its own; report nothing. For job arrays.",
     ),
 ]
 Strict = Annotated[bool, typer.Option("--strict", help="Exit with 1 if a run or a fit failed.")]
@@ -81,25 +80,18 @@ def study_command(kind: StudyKind) -> Callable[..., None]:
         strict: Strict = False,
     ) -> None:
         study = _load_study_of_kind(kind, file, work_limit)
+        how = {"workers": workers, "dask": dask, "any_version": any_version}
         if share is not None:
             if out is None or dry_run or json or strict:
                 raise InputError("--share only stores runs: it needs --out, and no --dry-run, --json or --strict.")
-            _store_study_share(study, file, out, share, dask, workers, any_version=any_version)
+            _store_study_share(study, file, out, share, how)
             return
         if dry_run:
             _announce_study(study, file, workers, json=json)
             return
         from rockflex.kinds import run_study
 
-        table, seconds = _study_with_progress(
-            study,
-            file,
-            out,
-            lambda progress: run_study(
-                study, out, workers=workers, dask=dask, any_version=any_version, progress=progress
-            ),
-        )
-
+        table, seconds = _study_with_progress(study, file, out, partial(run_study, study, out, **how))
         if out is not None:
             print_remark(f"Stored in {out}; rockflex figures {out} draws it")
         failed, unfitted = print_study_summary(kind, study, table, seconds, json=json)
@@ -111,7 +103,7 @@ def study_command(kind: StudyKind) -> Callable[..., None]:
 
 
 def _load_study_of_kind(kind: StudyKind, file: Path, work_limit: str | None) -> "StudySpec":
-    from rockflex.kinds import KINDS, load_study
+    from rockflex.kinds import load_study
 
     study = load_study(file)
     if study.kind != kind.name:
@@ -149,9 +141,7 @@ def _announce_study(study: "StudySpec", file: Path, workers: int | None, *, json
     )
 
 
-def _store_study_share(
-    study: "StudySpec", file: Path, out: Path, share: str, dask: str | None, workers: int | None, *, any_version: bool
-) -> None:
+def _store_study_share(study: "StudySpec", file: Path, out: Path, share: str, how: dict[str, Any]) -> None:
     """Store one share of a study."""
     from rockflex.kinds import fill_study
 
@@ -159,18 +149,7 @@ def _store_study_share(
     if not (stroke and place.isdecimal() and count.isdecimal()):
         raise InputError(f'--share must be K/N, such as 3/10, but "{share}" was given.')
     folder, _ = _study_with_progress(
-        study,
-        file,
-        out,
-        lambda progress: fill_study(
-            study,
-            out,
-            share=(int(place), int(count)),
-            workers=workers,
-            dask=dask,
-            any_version=any_version,
-            progress=progress,
-        ),
+        study, file, out, partial(fill_study, study, out, share=(int(place), int(count)), **how)
     )
     print_remark(
         f"Share {share} is stored in {out}: {folder.n_chunks - len(folder.missing())} of {folder.n_chunks} parts"
@@ -178,7 +157,7 @@ def _store_study_share(
 
 
 def _study_with_progress(
-    study: "StudySpec", file: Path, out: Path | None, work: "Callable[[Callable[[Progress], None]], Result]"
+    study: "StudySpec", file: Path, out: Path | None, work: Callable[..., Result]
 ) -> tuple[Result, float]:
     """Return the result of `work` and the time that it took in s; a terminal shows a progress bar."""
     from time import perf_counter
@@ -196,7 +175,7 @@ def _study_with_progress(
                 last[:] = [now]
                 show(now.done, now.parts, row_rate_text(now, perf_counter() - start))
 
-            result = work(progress)
+            result = work(progress=progress)
     except KeyboardInterrupt as stop:
         done = f"{last[0].done} of {last[0].parts} parts are stored in {out}" if last and out else "Nothing was stored"
         print_remark(f"Stopped. {done}{'; the same command resumes it' if out else ', because no --out was given'}.")
@@ -285,9 +264,7 @@ def figures(
     folder: Annotated[
         Path, typer.Argument(metavar="FOLDER", help="Folder of a study, finished or not.", show_default=False)
     ],
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="DIR", help="Where to. Default: FOLDER/figures.")
-    ] = None,
+    out: Annotated[Path | None, options.option("--out -o", "DIR", "Where to. Default: FOLDER/figures.")] = None,
     measure: Annotated[
         str | None,
         typer.Option(
@@ -295,7 +272,7 @@ def figures(
             help=f"Intensity measure of {', '.join(OTHERS)} or {LAST} studies, such as sa_t1_5. Default: pgv.",
         ),
     ] = None,
-    form: Annotated[str, typer.Option("--format", metavar="|".join(FORMATS), help="Format of the files.")] = "png",
+    form: Annotated[str, options.option("--format", "|".join(FORMATS), "Format of the files.")] = "png",
     force: options.Force = False,
 ) -> None:
     """Draw the results of a study: fragility curves, clouds, capacities, designs, or the agreement of models."""
