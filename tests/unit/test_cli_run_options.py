@@ -312,16 +312,16 @@ def structure_with(tmp_path):
             [*BED, *INERTIA, "--heave-damping-ratio", 0.3],
             lambda: rf.Ground(springs=rf.winkler_bed(B, 3.0, 2e8).damped(0.3, MASS), base_inertia=2e4),
             {"base_inertia": 2e4,
-             "bed": {"breadth": 3.0, "subgrade_modulus": 2e8, "heave_damping_ratio": 0.3, "n": 20}},
+             "bed": {"breadth": 3.0, "subgrade_modulus": 2e8, "heave_damping_ratio": 0.3, "n": 20}}
         ),
         (
             ["--breadth", 2, "--shear-modulus", 9e7, "--poisson-ratio", 0.3, "--mat-mass", 4e4,
              "--ground-friction", "inf"],
             lambda: rf.Ground(float("inf"), rf.asce41_bed(B, 2.0, 9e7, 0.3), 4e4 * B**2 / 3.0),
             {"friction": float("inf"), "mat_mass": 4e4,
-             "bed": {"breadth": 2.0, "shear_modulus": 9e7, "poisson_ratio": 0.3, "n": 20}},
-        ),
-    ],
+             "bed": {"breadth": 2.0, "shear_modulus": 9e7, "poisson_ratio": 0.3, "n": 20}}
+        )
+    ]
 )  # fmt: skip
 def test_flags(made, flags, ground, options):
     found = document(STRUCTURE, RECORD, *flags)
@@ -389,8 +389,8 @@ def test_usual_models_on_a_ground(made, tmp_path):
          "finite number in N/m³, but -1.0 was given. On the command line this is --subgrade-modulus."),
         ([*INERTIA], "[ground]: Ground needs friction, springs or both"),
         ([*BED, *INERTIA, "--model", "MDOF-S,fixed"], "Springs need a simplified model"),
-        ([*BED, *INERTIA, "--impact", "simplified"], "No impact law acts on springs"),
-    ],
+        ([*BED, *INERTIA, "--impact", "simplified"], "No impact law acts on springs")
+    ]
 )  # fmt: skip
 def test_messages(made, flags, message):
     result = invoke(STRUCTURE, RECORD, *flags)

@@ -345,10 +345,7 @@ STUDIES = {
         "scales = [0.2, 1.0]\n" + TWO_RECORDS + SHORT_FRAME,
         ["fragility", "rotation", "top_displacement", "total_top_displacement"],
     ),
-    "incremental": (
-        'models = ["2DOF-S"]\ngrowth = 1.5\ntolerance = 0.1\n' + TWO_RECORDS + SHORT_FRAME,
-        ["capacities"],
-    ),
+    "incremental": ('models = ["2DOF-S"]\ngrowth = 1.5\ntolerance = 0.1\n' + TWO_RECORDS + SHORT_FRAME, ["capacities"]),
     "stripes": ('levels = [0.5, 1.0, 2.0]\nmeasure = "pgv"\n' + TWO_RECORDS + SHORT_FRAME, ["stripes"]),
     "population": ("pairs = 12\n" + TWO_RECORDS, ["agreement", "modal_combination", "population"]),
     "monte_carlo": (

@@ -246,8 +246,7 @@ def test_a_table_of_a_file_gives_the_options_of_a_call():
 
 
 @pytest.mark.parametrize(
-    ("labels", "with_hysteresis"),
-    [(["2DOF-S", "2DOF-S-BW"], [False, True]), (["2DOF-S", "1DOF-fixed"], [True, True])],
+    ("labels", "with_hysteresis"), [(["2DOF-S", "2DOF-S-BW"], [False, True]), (["2DOF-S", "1DOF-fixed"], [True, True])]
 )
 def test_the_hysteresis_is_of_the_labelled_models_or_of_all_if_none_is(labels, with_hysteresis):
     models = list(map(parse_model, labels))

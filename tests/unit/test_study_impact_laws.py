@@ -232,11 +232,7 @@ def test_a_law_may_throw_the_base_back():
     """A law that reverses the rotation keeps it on its side: an impact all the same."""
     for model in ("rigid", "rigid-C", "2DOF-S", "2DOF-C"):
         run = simulate(
-            FRAME,
-            quiet_motion(2.0),
-            model,
-            impact=Law(lambda v, s: (v, -0.5 * s)),
-            initial=InitialState(0.02),
+            FRAME, quiet_motion(2.0), model, impact=Law(lambda v, s: (v, -0.5 * s)), initial=InitialState(0.02)
         )
         assert run.n_impacts >= 2
         assert run.impact_times.size == run.n_impacts

@@ -19,7 +19,7 @@ def test_peaks_are_combined_as_the_paper_has_it():
     # The second mode alone, as a structure of its own on a fixed base.
     alone = rf.RockingProperties(
         p.omega[1:2], p.effective_mass[1:2], p.effective_height[1:2], p.top_ordinate[1:2],
-        p.i_theta, p.l0r, p.m_tot, p.half_width, p.zeta[1:2], p.translational_inertia,
+        p.i_theta, p.l0r, p.m_tot, p.half_width, p.zeta[1:2], p.translational_inertia
     )  # fmt: skip
     second = rf.simulate(alone, MOTION, "1DOF-fixed", output="peaks")
     for name in ("top_displacement", "base_shear", "base_moment"):

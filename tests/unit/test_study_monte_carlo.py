@@ -83,7 +83,7 @@ def test_what_is_a_formula():
     "formula",
     ["=", "= ", "= 2 x", "= x.real", "= x[0]", "= 'a'", "= True", "= 1j", "= sum(x)", "= min()", "= min(x, key=x)",
      "= min", "= (x for x in y)", "= __import__('os')", "= x if x else y", "= x; y", "= x := 2", "= a and b", "= ~x",
-     "= x % 2", "= x // 2", "= f'{x}'", "= lambda: 1", "= min(*x)", f"= {'(' * 150}x", f"= {'x + ' * 60}x", "= x\0"],
+     "= x % 2", "= x // 2", "= f'{x}'", "= lambda: 1", "= min(*x)", f"= {'(' * 150}x", f"= {'x + ' * 60}x", "= x\0"]
 )  # fmt: skip
 def test_only_arithmetic_is_a_formula(formula):
     if formula == "= min":

@@ -130,14 +130,8 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
         ('models = ["2DOF-S", "2DOF-S"]\n' + CLOUD, "models: '2DOF-S' occurs more than once. Give each once."),
         ("friction = 1\n" + CLOUD, "friction must be true or false: whether to find the required friction too"),
         ("runs_per_chunk = 0\n" + CLOUD, "runs_per_chunk must be about how many runs to compute and store together"),
-        (
-            'impact = "soft"\n' + CLOUD,
-            'impact must be "simplified", "complete" or "restitution", but \'soft\' was',
-        ),
-        (
-            'impact = "restitution"\n' + CLOUD,
-            'The impact law "restitution" needs its coefficient. Give restitution,',
-        ),
+        ('impact = "soft"\n' + CLOUD, 'impact must be "simplified", "complete" or "restitution", but \'soft\' was'),
+        ('impact = "restitution"\n' + CLOUD, 'The impact law "restitution" needs its coefficient. Give restitution,'),
         (
             "restitution = 0.5\n" + CLOUD,
             "A restitution of 0.5 was given, but the impact law is the model's own. Choose",
@@ -149,10 +143,7 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
         ),
         (CLOUD.replace('suites = ["el-centro-1940"]', ""), "[records]: no record is named. Give suites = "),
         (CLOUD.replace("el-centro-1940", "el-centro"), "No embedded suite is named 'el-centro'. The suites are"),
-        (
-            CLOUD.replace("[records]", '[records]\ninclude = ["X*"]'),
-            "[records] include: no record's name fits 'X*'.",
-        ),
+        (CLOUD.replace("[records]", '[records]\ninclude = ["X*"]'), "[records] include: no record's name fits 'X*'."),
         (CLOUD.replace("[records]", '[records]\nfolder = "none"'), ""),
         (
             CLOUD.replace("suites", "suite"),
@@ -161,18 +152,9 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
         (CLOUD.replace(RECORDS, ""), "records is missing: a table of suites or a folder."),
         (CLOUD.replace(STRUCTURE, ""), "structures is missing: one or more tables [[structures]]."),
         (CLOUD + STRUCTURE, "the names of the structures: 'one' occurs more than once. Give each once."),
-        (
-            CLOUD.replace("period = 0.5", ""),
-            "[[structures]] no. 1, [structures.frame] period is missing: the first",
-        ),
-        (
-            CLOUD.replace("period = 0.5", "period = -1"),
-            "[[structures]] no. 1, 'one': [frame]: period must be a",
-        ),
-        (
-            CLOUD + "[bouc_wen]\ngamma = 1.0\n",
-            "[bouc_wen] yield_displacement is missing: D_y of",
-        ),
+        (CLOUD.replace("period = 0.5", ""), "[[structures]] no. 1, [structures.frame] period is missing: the first"),
+        (CLOUD.replace("period = 0.5", "period = -1"), "[[structures]] no. 1, 'one': [frame]: period must be a"),
+        (CLOUD + "[bouc_wen]\ngamma = 1.0\n", "[bouc_wen] yield_displacement is missing: D_y of"),
         ("study = ", "is not a valid TOML file"),
     ],
 )

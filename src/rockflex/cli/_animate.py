@@ -97,7 +97,7 @@ def animate(
         raise InputError(f"The file {target} exists. Give another one by --out, or --force to replace it.")
     asked = RunArguments(
         arguments=arguments or [], structure=structure, motion=motion, model=model, scale=[repr(scale)],
-        free_vibration=free_vibration, work_limit=work_limit, units=units, dt=dt, vertical=vertical,
+        free_vibration=free_vibration, work_limit=work_limit, units=units, dt=dt, vertical=vertical
     )  # fmt: skip
     prepared = prepare_batch(context, asked, histories=1)
     loaded, batch = prepared.loaded, prepared.batch
@@ -115,7 +115,7 @@ def animate(
             responses, target, [response.model for response in responses], structure=loaded.built, speed=speed,
             frames_per_second=frames_per_second, amplification=amplification, start=start, stop=stop,
             panels=None if panels is None else [name.strip() for name in panels.split(",")], title=title, width=width,
-            progress=lambda done, total: show(done, total, ""),
+            progress=lambda done, total: show(done, total, "")
         )  # fmt: skip
     print_remark(f"Written to {target}")
     print_warning_messages(loaded.warnings)

@@ -86,7 +86,7 @@ def run(
     asked = RunArguments(
         arguments=arguments or [], structure=structure, motion=motion, model=model, scale=scale,
         free_vibration=free_vibration, work_limit=work_limit, workers=workers, friction=friction, units=units, dt=dt,
-        on_error=on_error, vertical=vertical,
+        on_error=on_error, vertical=vertical
     )  # fmt: skip
     drawn = 0 if out is None else figures
     prepared = prepare_batch(context, asked, histories=drawn if page is None else max(drawn, 1))

@@ -31,13 +31,7 @@ def parse_target_spectrum(text: str, damping: float | None) -> "TargetSpectrum":
 
     `damping` is the damping ratio of a target from a file; None means 5 %.
     """
-    from rockflex.motion import (
-        asce7_site_spectrum,
-        asce7_spectrum,
-        ec8_second_spectrum,
-        ec8_spectrum,
-        read_target,
-    )
+    from rockflex.motion import asce7_site_spectrum, asce7_spectrum, ec8_second_spectrum, ec8_spectrum, read_target
 
     code, colon, rest = text.partition(":")
     if not colon or code not in ("ec8", "ec8-2024", "asce7"):

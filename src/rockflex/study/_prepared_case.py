@@ -14,15 +14,7 @@ from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model, Quantities, RockingModel, parse_model
 from rockflex.motion import GroundMotion
-from rockflex.response import (
-    STATUSES,
-    Response,
-    Tracked,
-    columns_among,
-    columns_of,
-    respond,
-    tracked_quantities,
-)
+from rockflex.response import STATUSES, Response, Tracked, columns_among, columns_of, respond, tracked_quantities
 from rockflex.solve import Engine, Excitation, Solution, Solutions, Start, Task, gather, preparing, run_all
 from rockflex.study._arguments import (
     WORK_LIMIT,

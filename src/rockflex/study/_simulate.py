@@ -62,12 +62,7 @@ _lock = Lock()
 
 
 def simulate_with_cached_case(
-    model: Model,
-    properties: RockingProperties,
-    options: RunOptions,
-    motion: GroundMotion,
-    *,
-    history: bool,
+    model: Model, properties: RockingProperties, options: RunOptions, motion: GroundMotion, *, history: bool
 ) -> Response:
     """Run a motion on a structure, with the case of an earlier run if everything but the motion is the same.
 

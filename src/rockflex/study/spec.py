@@ -432,7 +432,7 @@ class RunsStudySpec(RunOptionKeys, StudySpec):
         """Return the options that all runs share."""
         options = StudyOptions.of(
             self.free_vibration, impact=self.law(), bouc_wen=self.hysteresis(), ground=self.ground_rule(),
-            work_limit=self.work_limit,
+            work_limit=self.work_limit
         )  # fmt: skip
         return replace(options, models=tuple(map(parse_model, self.models)), friction=friction)
 

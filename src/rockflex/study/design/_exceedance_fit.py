@@ -265,7 +265,7 @@ def design_row(
 
 def _empty_exceedance_columns(level: ShakingLevel) -> dict[str, Any]:
     names = ("probability", "low", "high", "overturning") if level.hazard is None else (
-        "rate", "low", "high", "overturning", "beyond",
+        "rate", "low", "high", "overturning", "beyond"
     )  # fmt: skip
     return dict.fromkeys(names, math.nan)
 

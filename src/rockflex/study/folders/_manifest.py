@@ -130,11 +130,7 @@ class StudyManifest:
 
     @classmethod
     def of(
-        cls,
-        spec: Mapping[str, Any],
-        n_chunks: SupportsIndex,
-        versions: Mapping[str, str],
-        checksums: Mapping[str, str],
+        cls, spec: Mapping[str, Any], n_chunks: SupportsIndex, versions: Mapping[str, str], checksums: Mapping[str, str]
     ) -> Self:
         for name, given in (("spec", spec), ("versions", versions), ("checksums", checksums)):
             if not isinstance(given, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
