@@ -195,15 +195,10 @@ class Progress:
 PartProgress = Literal["bar"] | Callable[[Progress], object] | None
 
 
-def check_part_progress(progress: PartProgress) -> None:
-    """Raise an InputError unless `progress` is None, "bar" or a function."""
-    check_progress(progress, "one Progress")
-
-
 @contextmanager
 def reporting_part_progress(progress: PartProgress) -> Generator[Callable[[Progress], object]]:
     """Yield a function that tells the progress of a study."""
-    check_part_progress(progress)
+    check_progress(progress, "one Progress")
     if progress is None:
         yield lambda _: None
     elif isinstance(progress, str):

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array
 from rockflex._checks import checked_instance
-from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
@@ -18,7 +17,7 @@ from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Motions, Rocking
 from rockflex.study._plan import ChunkedPlan, run_plan
 from rockflex.study._result_tables import Columns, Table
 from rockflex.study._run_matrix import Run, StudyMatrix, check_base_can_lift, study_matrix
-from rockflex.study.design._designs import VARIABLES, DesignSearch, Point, total_dissipator_force
+from rockflex.study.design._designs import VARIABLES, DesignSearch, Point, facts_of_design, total_dissipator_force
 from rockflex.study.design._exceedance_fit import check_hazard_damping, design_limit_state, first_damping_column
 from rockflex.study.design._requirements import (
     DesignCost,
@@ -269,15 +268,9 @@ class DesignSearchPlan(ChunkedPlan):
 
     def _facts_of(self, place: int) -> dict[str, Any]:
         p = self._matrix.structures[place]
-        height = float(p.effective_height[0]) if p.n_modes else p.l0r / p.m_tot
-        return {
-            **dict(zip(VARIABLES, map(float, self.search.at(self.points[place])[0]), strict=True)),
-            "aspect_ratio": height / p.half_width,
-            "prestress": p.prestress,
-            "dissipator_force": total_dissipator_force(p),
-            "prestress_ratio": p.prestress / (p.m_tot * GRAVITY),
-            "resisting_moment": p.resisting_moment,
-        }
+        variables = dict(zip(VARIABLES, map(float, self.search.at(self.points[place])[0]), strict=True))
+        forces = {"prestress": p.prestress, "dissipator_force": total_dissipator_force(p)}
+        return facts_of_design(p) | variables | forces
 
     def check_work(self) -> None:
         """Refuse a search if every run of its first round exceeds its work limit."""

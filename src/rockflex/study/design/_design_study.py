@@ -29,6 +29,7 @@ from rockflex.study.design._designs import (
     checked_design_factors,
     checked_half_widths,
     designs_of_structure,
+    facts_of_design,
 )
 from rockflex.study.design._exceedance_fit import (
     check_design_limit,
@@ -270,6 +271,9 @@ class DesignStudy(StructuresStudySpec):
         return DesignPlan(matrix, designs, self.scales, self.runs_per_chunk)
 
 
+ORDER = ("half_width", "aspect_ratio", "tendon", "prestress_ratio", "stiffness_ratio", "resisting_moment")
+
+
 class DesignPlan(CloudPlan):
     """The cross product of designs, records, models and scales, cut into chunks."""
 
@@ -284,15 +288,9 @@ class DesignPlan(CloudPlan):
 
     def _facts_of(self, design: BaseDesign) -> Row:
         p = design.properties
-        height = float(p.effective_height[0]) if p.n_modes else p.l0r / p.m_tot
-        return {
-            "half_width": p.half_width,
-            "aspect_ratio": height / p.half_width,
-            "tendon": self._tendons.index(design.tendon),
-            "prestress_ratio": p.prestress / (p.m_tot * GRAVITY),
-            "stiffness_ratio": p.tendon_stiffness / (p.l0r * GRAVITY),
-            "resisting_moment": p.resisting_moment,
-        }
+        found: Row = {**facts_of_design(p), "tendon": self._tendons.index(design.tendon)}
+        found["stiffness_ratio"] = p.tendon_stiffness / (p.l0r * GRAVITY)
+        return {name: found[name] for name in ORDER}
 
     @property
     def columns(self) -> Columns:

@@ -130,6 +130,17 @@ def designs_of_structure(
     return found
 
 
+def facts_of_design(p: RockingProperties) -> dict[str, float]:
+    """What describes the base and the tendons of a design, by the names of columns."""
+    height = float(p.effective_height[0]) if p.n_modes else p.l0r / p.m_tot
+    return {
+        "half_width": p.half_width,
+        "aspect_ratio": height / p.half_width,
+        "prestress_ratio": p.prestress / (p.m_tot * GRAVITY),
+        "resisting_moment": p.resisting_moment,
+    }
+
+
 def structure_on_base_width(properties: RockingProperties, half_width: float, per_width: float) -> RockingProperties:
     """The structure on another base, which gains `per_width` in kg for each metre of its width 2 B.
 
@@ -145,8 +156,6 @@ def structure_on_base_width(properties: RockingProperties, half_width: float, pe
 
 def checked_half_widths(given: Any) -> list[float]:
     """Half widths in m, rising: a sequence, or a mapping with `smallest`, `largest` and `count`, both ends included."""
-    import numpy as np
-
     if isinstance(given, dict):
         smallest, largest, count = (real_or_nan(given.get(key)) for key in RANGE)
         sound = 0.0 < smallest < largest < np.inf and 2.0 <= count <= MAX_BASES and count == int(count)
