@@ -363,20 +363,11 @@ def test_nothing_solved_is_a_solver_error(monkeypatch, tmp_path, strict):
         ([STRUCTURE, "el-centro-1940", "--model", "2DOF-X"], "Unknown model '2DOF-X'. Expected \"2DOF-S\""),
         ([STRUCTURE, "el-centro-1940", "--model", ","], "No model was given. Expected labels such as"),
         ([STRUCTURE, "el-centro-1940", "--model", "9DOF-S"], "Model 9DOF-S needs 8 modes, but the structure has 5."),
-        (
-            [STRUCTURE, "el-centro-1940", "--scale", "nan"],
-            "--scale must be one or more finite factors, but [nan] was given.",
-        ),
-        (
-            [STRUCTURE, "el-centro-1940", "--free-vibration", "-1"],
-            "--free-vibration must be zero or more seconds (at most 1e+09), or",
-        ),
+        ([STRUCTURE, "el-centro-1940", "--scale", "nan"], "--scale must be one or more finite factors, but [nan] was"),
+        ([STRUCTURE, "el-centro-1940", "--free-vibration", "-1"], "--free-vibration must be zero or more seconds (at"),
         ([STRUCTURE, "el-centro-1940", "--free-vibration", "soon"], "or \"settle\", but 'soon' was given."),
         ([STRUCTURE, "el-centro-1940", "--stories", "3"], "The structure was given by"),
-        (
-            ["el-centro-1940", *FLAGS, "--story-mass", "-4"],
-            "--story-mass must be a positive, finite number in kg, but -4.0",
-        ),
+        (["el-centro-1940", *FLAGS, "--story-mass", "-4"], "--story-mass must be a positive, finite number in kg, but"),
         (["el-centro-1940", *FLAGS, "--period", "nan"], "period must be a positive, finite number in s, but nan"),
     ],
 )

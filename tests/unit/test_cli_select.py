@@ -208,23 +208,14 @@ def test_records_keep_their_vertical_component(tmp_path):
     ("arguments", "text"),
     [
         (("--target", "ec9:ag=1"), "--target 'ec9:ag=1' is neither a file nor a code. Write ec8:ag=0.25g,ground=C, or"),
-        (
-            ("--target", "ec8:"),
-            "--target ec8:...: ag is missing. The keys are ag, and ground, type, importance, damping",
-        ),
+        (("--target", "ec8:"), "--target ec8:...: ag is missing. The keys are ag, and ground, type, importance,"),
         (("--target", "ec8:ag=1,soil=C"), "--target ec8:...: 'soil' is not known. The keys are ag, and ground"),
-        (
-            ("--target", "ec8-2024:s_alpha=5m/s²,s_beta=200gal,f_beta=2"),
-            "--target ec8-2024:...: give both f_alpha and f_beta, or",
-        ),
+        (("--target", "ec8-2024:s_alpha=5m/s²,s_beta=200gal,f_beta=2"), "--target ec8-2024:...: give both f_alpha and"),
         (("--target", "ec8:ag"), "--target ec8:...: 'ag' has no value. Write each key once, as in ec8:key=value"),
         (("--target", "ec8:ag=1,ag=2"), "--target ec8:...: 'ag' occurs twice"),
         (("--target", "ec8:ag=0.2 miles"), "--target ec8: ag must be a number with its unit"),
         (("--target", "ec8:ag=1g,ground=Z"), "ground must be one of A, B, C, D, E"),
-        (
-            ("--target", "asce7:sds=1"),
-            "--target asce7:...: sd1 is missing. The keys are sds, sd1, tl, and mce if wanted.",
-        ),
+        (("--target", "asce7:sds=1"), "--target asce7:...: sd1 is missing. The keys are sds, sd1, tl, and mce if"),
         (("--target", "asce7:ss=1"), "--target asce7:...: s1 is missing. The keys are ss, s1, site, tl, and mce"),
         (("--target", "asce7:sds=1g,sd1=1g,tl=8,mce=1"), "--target asce7: mce must be yes or no, but '1' was given"),
         (("--damping", 0.02), "--damping is for a target from a file. Write ec8:...,damping=0.02"),

@@ -266,10 +266,7 @@ def test_checksums_follow_the_samples():
         ({"models": "2DOF-X"}, "Unknown model '2DOF-X'."),
         ({"scales": []}, "scales must be one or more finite factors, but [] was given."),
         ({"scales": math.inf}, "scales must be one or more finite factors, but inf was given."),
-        (
-            {"bouc_wen": rf.BoucWen(0.01), "free_vibration": "settle"},
-            'free_vibration="settle" cannot tell when a hysteretic spring is at rest. Give the free',
-        ),
+        ({"bouc_wen": rf.BoucWen(0.01), "free_vibration": "settle"}, 'free_vibration="settle" cannot tell when a'),
         ({"impact": 0.5}, "impact must be an impact law, but float was given."),
     ],
 )

@@ -207,16 +207,8 @@ ENDLESS["itself"] = ENDLESS
         ({"spec": {1: 2}}, r"keys of spec must be strings, but 1 was given"),
         ({"spec": [1]}, r"spec must be a mapping, but list was given"),
         ({"n_chunks": 0}, r"n_chunks must be a whole number of at least 1"),
-        (
-            {"n_chunks": 10**12},
-            r"n_chunks must be at most 100000, because each chunk is a file, but 1000000000000 was given\. Compute "
-            r"more runs per chunk: runs_per_chunk in a study\.$",
-        ),
-        (
-            {"spec": {"a": nested(5000)}},
-            r"^spec\.a\[0\]\[0\].*\[0\] is nested more than 50 deep, which no specification is\. Give the value "
-            r"itself, not lists within lists, and no list that holds itself\.$",
-        ),
+        ({"n_chunks": 10**12}, r"n_chunks must be at most 100000, because each chunk is a file, but 1000000000000 was"),
+        ({"spec": {"a": nested(5000)}}, r"^spec\.a\[0\]\[0\].*\[0\] is nested more than 50 deep, which no"),
         ({"spec": {"a": [ENDLESS]}}, r"is nested more than 50 deep"),
         ({"versions": None}, r"versions must be a mapping"),
         ({"checksums": {"a": {1}}}, r"checksums\.a is of type set"),

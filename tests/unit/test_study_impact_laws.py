@@ -115,23 +115,10 @@ def test_a_restitution_may_return_energy_in_a_complete_model():
     ("after", "text"),
     [
         (raising, "The impact law Law() failed: no idea"),
-        (
-            lambda v, s: 0.0,
-            "The impact law Law() failed: after must return the modal velocities in m/s and the rotation velocity in "
-            "rad/s, but it returned 0.0.",
-        ),
-        (
-            lambda v, s: (v[:1], 0.0),
-            "The impact law Law() failed: The modal velocity after an impact must have 3 values, but 1 were returned.",
-        ),
-        (
-            lambda v, s: (v * np.nan, 0.0),
-            "The impact law Law() failed: the modal velocity after an impact must be finite, but 3 of 3 values are",
-        ),
-        (
-            lambda v, s: (v, np.nan),
-            "The impact law Law() failed: the rotation velocity after an impact must be a finite number in rad/s",
-        ),
+        (lambda v, s: 0.0, "The impact law Law() failed: after must return the modal velocities in m/s and the"),
+        (lambda v, s: (v[:1], 0.0), "The impact law Law() failed: The modal velocity after an impact must have 3"),
+        (lambda v, s: (v * np.nan, 0.0), "The impact law Law() failed: the modal velocity after an impact must be"),
+        (lambda v, s: (v, np.nan), "The impact law Law() failed: the rotation velocity after an impact must be a"),
     ],
 )
 def test_a_law_that_fails(model, after, text):

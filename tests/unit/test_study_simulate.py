@@ -94,10 +94,7 @@ def test_many_modes_of_few_floors():
 @pytest.mark.parametrize(
     ("changes", "text"),
     [
-        (
-            {"structure": 3},
-            "structure must be a structure such as a Frame or a TaperedTower, or RockingProperties, but int was given.",
-        ),
+        ({"structure": 3}, "structure must be a structure such as a Frame or a TaperedTower, or RockingProperties,"),
         ({"structure": None}, "structure must be .*, but NoneType was given"),
         ({"structure": Frame}, "structure must be .*, but the class Frame was given"),
         ({"structure": RockingProperties}, "structure must be .*, but the class RockingProperties was given"),
@@ -108,10 +105,7 @@ def test_many_modes_of_few_floors():
         ({"model": None}, "Unknown model None. Expected "),
         ({"output": "everything"}, 'output must be "history" or "peaks", but \'everything\' was given'),
         ({"output": None}, 'output must be "history" or "peaks", but None was given'),
-        (
-            {"initial": 0.1},
-            r"initial must be an InitialState or None, but 0\.1 was given. Write InitialState\(rotation=",
-        ),
+        ({"initial": 0.1}, r"initial must be an InitialState or None, but 0\.1 was given. Write"),
         ({"initial": (0.1,)}, r"initial must be an InitialState or None, but \(0\.1,\) was given"),
         ({"initial": InitialState}, "initial must be an InitialState or None, but <class .*InitialState'> was given"),
     ],

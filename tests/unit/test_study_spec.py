@@ -115,10 +115,7 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (
-            RECORDS + STRUCTURE,
-            'study must be one of "cloud", "incremental", "stripes", "population", "monte_carlo", "design", but it is',
-        ),
+        (RECORDS + STRUCTURE, 'study must be one of "cloud", "incremental", "stripes", "population", "monte_carlo",'),
         (CLOUD.replace('"cloud"', '"clod"'), "study must be one of "),
         (CLOUD.replace('"cloud"', "7"), "study must be one of "),
         ("scale = [1.0]\n" + CLOUD, "scale is not known; there are name, records, "),
@@ -132,23 +129,14 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
         ("runs_per_chunk = 0\n" + CLOUD, "runs_per_chunk must be about how many runs to compute and store together"),
         ('impact = "soft"\n' + CLOUD, 'impact must be "simplified", "complete" or "restitution", but \'soft\' was'),
         ('impact = "restitution"\n' + CLOUD, 'The impact law "restitution" needs its coefficient. Give restitution,'),
-        (
-            "restitution = 0.5\n" + CLOUD,
-            "A restitution of 0.5 was given, but the impact law is the model's own. Choose",
-        ),
+        ("restitution = 0.5\n" + CLOUD, "A restitution of 0.5 was given, but the impact law is the model's own."),
         ("free_vibration = -1.0\n" + CLOUD, "free_vibration: free_vibration must be zero or more seconds"),
-        (
-            'free_vibration = "long"\n' + CLOUD,
-            "free_vibration must be the free vibration after the record, a number in s",
-        ),
+        ('free_vibration = "long"\n' + CLOUD, "free_vibration must be the free vibration after the record, a number"),
         (CLOUD.replace('suites = ["el-centro-1940"]', ""), "[records]: no record is named. Give suites = "),
         (CLOUD.replace("el-centro-1940", "el-centro"), "No embedded suite is named 'el-centro'. The suites are"),
         (CLOUD.replace("[records]", '[records]\ninclude = ["X*"]'), "[records] include: no record's name fits 'X*'."),
         (CLOUD.replace("[records]", '[records]\nfolder = "none"'), ""),
-        (
-            CLOUD.replace("suites", "suite"),
-            "[records] suite is not known; there are suites, folder, on_error, vertical, include. Did",
-        ),
+        (CLOUD.replace("suites", "suite"), "[records] suite is not known; there are suites, folder, on_error,"),
         (CLOUD.replace(RECORDS, ""), "records is missing: a table of suites or a folder."),
         (CLOUD.replace(STRUCTURE, ""), "structures is missing: one or more tables [[structures]]."),
         (CLOUD + STRUCTURE, "the names of the structures: 'one' occurs more than once. Give each once."),

@@ -225,7 +225,7 @@ def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "Rocking
         for side in ("",) if p.symmetric else ("right", "left"):
             about = f" about the {side} edge" if side else ""
             note = "" if side == "left" else "; with fewer (--modes) ζ*_n differs"
-            print_line(f"\nWhile uplifted{about}, with these modes{note}")
+            print_line(f"\nWhile uplifted{about}, with these modes{note}", wrap=True)
             kept = [row for row in lifted if row.get("side", "") == side]
             headings = ("mode", "T*_n [s]", "ω*_n [rad/s]", "ω*_n/ω_n", "ζ*_n")
             print_rows(headings, _mode_cells(kept, "period omega ratio zeta"))

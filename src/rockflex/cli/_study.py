@@ -235,7 +235,7 @@ def _plain_summary_value(value: Any) -> Any:
 def _print_summary_tables(tables: Tables) -> None:
     for place, (title, rows) in enumerate(tables.items()):
         if rows:
-            print_line(("\n" if place else "") + title, style="bold")
+            print_line(("\n" if place else "") + title, style="bold", wrap=True)
             words = sum(isinstance(value, str) for value in rows[0].values())
             print_rows(list(rows[0]), ([_summary_cell(value) for value in row.values()] for row in rows), words)
 
