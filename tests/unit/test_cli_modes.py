@@ -123,11 +123,6 @@ def test_rigid_block_has_no_modes(block, tmp_path):
     assert json.loads(invoke(block, "--json").stdout)["modes"] == []
 
 
-def test_rigid_block_rocks_by_default_as_one(block):
-    result = CliRunner().invoke(app, ["run", str(block), "el-centro-1940", "--json"])
-    assert [run["model"] for run in json.loads(result.stdout)["runs"]] == ["rigid", "rigid-C"]
-
-
 ECCENTRIC = """eccentricity = -0.15
 [frame]
 n_stories = 3
@@ -265,30 +260,6 @@ def test_figure_of_distributed_mass(name, tmp_path):
     assert result.exit_code == 0
     assert (tmp_path / "out" / "mode-shapes.png").is_file()
     assert json.loads((tmp_path / "out" / "summary.json").read_text("utf-8"))["adequacy"]["model"]
-
-
-BEAM = """[beam]
-height = 30.0
-z = [0.0, 10.0, 10.0, 30.0]
-mass = [3e3, 3e3, 2e3, 1e3]
-bending_stiffness = 4e9
-half_width = 2.0
-damping_ratio = 0.02
-n_elements = 30
-"""
-
-
-def test_figure_of_a_beam(tmp_path):
-    path = tmp_path / "beam.toml"
-    path.write_text(BEAM, "utf-8")
-    assert invoke(path, "--out", tmp_path / "out").exit_code == 0
-    assert (tmp_path / "out" / "mode-shapes.png").is_file()
-
-
-def test_no_figure_without_shapes(tmp_path):
-    result = invoke(EXAMPLES / "structure_properties.toml", "--out", tmp_path / "out")
-    assert "no figure, because [properties] has no mode shapes" in result.stderr
-    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["modes.csv", "summary.json"]
 
 
 @pytest.mark.parametrize(

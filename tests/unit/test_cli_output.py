@@ -255,6 +255,7 @@ def test_entry_point_is_main():
         (["run"], ["--impact", "--restitution", "--yield-displacement", "(Eqs. 37-38)", "--friction 0.5"]),
         (["run"], ["2DOF-C-SI", "1DOF-fixed-BW", "rigid-C", "--initial-rotation"]),
         (["modes"], ["--modes", "--stiffness-ratio", "Examples", "rockflex modes structure.toml --modes 3 --json"]),
+        (["ida"], ["--dask", "Examples", "rockflex ida study.toml --dry-run"]),
         (["motion"], ["--period", "Examples", "rockflex motion record.csv --units g --dt 0.01 --json"]),
     ],
 )

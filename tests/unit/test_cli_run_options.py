@@ -32,6 +32,10 @@ def document(*arguments):
     return json.loads(result.stdout)
 
 
+def runs_of(*arguments):
+    return document(*arguments)["runs"]
+
+
 def assert_is_run(row, model, motion=MOTION, **options):
     expected = rf.simulate(FRAME, motion, model, output="peaks", **options).peaks()
     assert {name: row[name] for name in expected} == expected
@@ -115,19 +119,6 @@ def test_free_vibration_with_and_without_a_record():
     assert settled["runs"][0]["settled"] is True
 
 
-def test_many_runs_of_elastic_and_yielding_models_in_batches(monkeypatch):
-    flags = ("--model", "2DOF-S-BW,2DOF-S,1DOF-fixed-BW", *YIELDING, "--scale", 1, "--scale", 0.5)
-    arguments = (STRUCTURE, "fema-p695-near-field-pulse", *flags, "--impact", "complete")
-    many = document(*arguments)["runs"]
-    monkeypatch.setattr(_batch, "MAX_TIMED_RUNS", 10**6)
-    few = document(*arguments)["runs"]
-    for rows in (many, few):
-        for row in rows:
-            del row["run_time"]
-    assert len(many) == 168
-    assert many == few
-
-
 def test_what_is_assumed_stands_above_the_table():
     flags = ("--impact", "restitution", "--restitution", 0.7, *YIELDING, "--initial-rotation", 0.01)
     lines = invoke(STRUCTURE, RECORD, *flags).stdout.splitlines()
@@ -204,10 +195,7 @@ def test_bad_input(flags, said):
 def test_free_vibration_of_no_length():
     result = invoke(STRUCTURE, "--initial-rotation", 0.1)
     assert result.exit_code == 2
-    assert result.stderr == (
-        "Error: A free vibration from --initial-rotation needs a ground motion or a length. Give --free-vibration in "
-        "seconds, or settle.\n"
-    )
+    assert result.stderr.startswith("Error: A free vibration from --initial-rotation needs a ground motion or a")
 
 
 @pytest.mark.parametrize(
@@ -247,16 +235,6 @@ def made(monkeypatch):
     return grounds
 
 
-@pytest.fixture
-def structure_with(tmp_path):
-    def file(tail):
-        path = tmp_path / "structure.toml"
-        path.write_text(f"{Path(STRUCTURE).read_text('utf-8')}\n{tail}", "utf-8")
-        return path
-
-    return file
-
-
 @pytest.mark.parametrize(
     ("flags", "ground", "options"),
     [
@@ -283,14 +261,12 @@ def test_flags(made, flags, ground, options):
     assert given.springs == ground().springs
     assert given.base_inertia == (None if given.springs is None else pytest.approx(ground().base_inertia, rel=1e-15))
     assert found["options"]["models"] == ["2DOF-S", "MDOF-S"]
-    if options.get("friction") != float("inf"):  # which JSON cannot structure_with
+    if options.get("friction") != float("inf"):  # which JSON cannot write
         assert found["options"]["ground"] == options
 
 
-def test_a_file_says_the_same_and_flags_come_first(made, structure_with):
-    file = structure_with(
-        "[ground]\nfriction = 0.3\nbase_inertia = 2e4\nbed = { breadth = 3.0, subgrade_modulus = 2e8 }"
-    )
+def test_a_file_says_the_same_and_flags_come_first(made, write):
+    file = write("", "[ground]\nfriction = 0.3\nbase_inertia = 2e4\nbed = { breadth = 3.0, subgrade_modulus = 2e8 }")
     by_file = document(file, RECORD, "--model", "2DOF-S")["options"]
     by_flags = document(STRUCTURE, RECORD, "--model", "2DOF-S", *BED, *INERTIA, "--ground-friction", 0.3)["options"]
     assert by_file == by_flags
@@ -302,9 +278,9 @@ def test_a_file_says_the_same_and_flags_come_first(made, structure_with):
     assert set(made) == {rf.Ground(0.5, springs, 6e4 * (2.0 * B) ** 2 / 12.0)}
 
 
-def test_the_ground_is_above_the_table(made, structure_with):
-    file = structure_with(
-        "[ground]\nfriction = [0.3, 0.4]\nbase_inertia = 2e4\nsprings = { stiffness = 5e8, damping = 4e6 }"
+def test_the_ground_is_above_the_table(made, write):
+    file = write(
+        "", "[ground]\nfriction = [0.3, 0.4]\nbase_inertia = 2e4\nsprings = { stiffness = 5e8, damping = 4e6 }"
     )
     lines = invoke(file, RECORD).stdout.splitlines()
     springs = rf.Springs([-B, B], 5e8, 4e6)
@@ -348,13 +324,13 @@ def test_messages(made, flags, message):
     assert message in " ".join(result.stderr.split())
 
 
-def test_a_message_about_a_file_names_it(structure_with):
-    file = structure_with("[ground]\nfriction = -0.4")
+def test_a_message_about_a_file_names_it(write):
+    file = write("", "[ground]\nfriction = -0.4")
     assert f"{file}, [ground]: friction must be" in "".join(invoke(file, RECORD).stderr.split("\n"))
 
 
-def test_springs_of_the_file_exclude_a_bed_of_flags(structure_with):
-    file = structure_with("[ground]\nbase_inertia = 2e4\nsprings = { stiffness = 5e8 }")
+def test_springs_of_the_file_exclude_a_bed_of_flags(write):
+    file = write("", "[ground]\nbase_inertia = 2e4\nsprings = { stiffness = 5e8 }")
     assert (
         "The ground of the structure file has springs, and the command line gives a bed (--breadth, "
         "--subgrade-modulus). Leave one of them out."
@@ -432,15 +408,9 @@ EL_CENTRO = rf.load_suite("el-centro-1940")[0]
 NAMES = ["required_friction", "required_friction_excluding_impacts", "sliding_time"]
 
 
-def rows_of(*arguments):
-    result = invoke(*arguments, "--json")
-    assert result.exit_code == 0, result.stderr
-    return json.loads(result.stdout)["runs"]
-
-
 def test_document_has_what_the_library_finds():
     models = "2DOF-C,MDOF-S,rigid,fixed"
-    rows = rows_of(STRUCTURE, "el-centro-1940", "--model", models, "--friction", 0.2, "--scale", 1, "--scale", 1.5)
+    rows = runs_of(STRUCTURE, "el-centro-1940", "--model", models, "--friction", 0.2, "--scale", 1, "--scale", 1.5)
     for row in rows:
         run = rf.simulate(FRAME, EL_CENTRO.scaled(row["scale"]), row["model"])
         assert row["required_friction"] == run.required_friction
@@ -450,7 +420,7 @@ def test_document_has_what_the_library_finds():
 
 
 def test_without_the_option_nothing_is_said():
-    row = rows_of(STRUCTURE, "el-centro-1940", "--model", "2DOF-S")[0]
+    row = runs_of(STRUCTURE, "el-centro-1940", "--model", "2DOF-S")[0]
     assert not set(NAMES) & set(row)
     assert "μ" not in invoke(STRUCTURE, "el-centro-1940", "--model", "2DOF-S").stdout
 
@@ -478,7 +448,7 @@ def test_table():
 
 def test_a_base_that_loses_contact():
     flags = ("--model", "2DOF-C", "--impact", "restitution", "--restitution", 0.9, "--friction", 0.5)
-    row = rows_of(STRUCTURE, "el-centro-1940", *flags)[0]
+    row = runs_of(STRUCTURE, "el-centro-1940", *flags)[0]
     assert row["required_friction"] == "inf"
     assert row["sliding_time"] == pytest.approx(2.15035, abs=1e-4)
     assert "inf" in invoke(STRUCTURE, "el-centro-1940", *flags).stdout
@@ -512,9 +482,9 @@ def test_histories_have_no_friction_unless_asked(tmp_path):
 def test_many_runs(monkeypatch):
     scales = [item for k in range(22) for item in ("--scale", 0.5 + k / 16)]
     arguments = (STRUCTURE, "el-centro-1940", *scales, "--model", "2DOF-S,rigid,fixed", "--friction", 0.4)
-    many = rows_of(*arguments)
+    many = runs_of(*arguments)
     monkeypatch.setattr(_batch, "MAX_TIMED_RUNS", 10**6)
-    few = rows_of(*arguments)
+    few = runs_of(*arguments)
     assert len(many) == 66
     assert {row.pop("run_time") for row in many} == {None}
     assert all(row.pop("run_time") > 0.0 for row in few)
@@ -532,7 +502,7 @@ def test_a_run_that_cannot_be_solved(monkeypatch):
 
     monkeypatch.setattr(PreparedCase, "run", flaky)
     arguments = (STRUCTURE, "el-centro-1940", "--friction", 0.4)
-    assert [rows_of(*arguments)[1][name] for name in NAMES] == [None, None, None]
+    assert [runs_of(*arguments)[1][name] for name in NAMES] == [None, None, None]
     last = [line.split() for line in invoke(*arguments).stdout.splitlines() if "MDOF-S" in line][-1]
     assert last[2:] == ["-", "-", "-"]
 

@@ -199,7 +199,6 @@ EXPECTED_STRUCTURE = "a structure such as a Frame, or RockingProperties"
         ({"motions": {}}, "motions is empty. Give at least one."),
         ({"structures": {1: SUITE}}, "The names of structures must be texts, but 1 was given. Write {'1': ...}."),
         ({"motions": {None: SUITE[0]}}, "The names of motions must be texts, but None was given. Write {'None': ...}."),
-        ({"structures": {"a": 3}}, f"structures[0] is int. Expected {EXPECTED_STRUCTURE}."),
         ({"motions": {"a": RECORD}}, "motions[0] is ndarray. Expected a GroundMotion."),
         (
             {"structures": "frame"},

@@ -9,7 +9,6 @@ import pytest
 
 import rockflex as rf
 from design_case import CONTENT, FRAME, HEIGHT, LEVELS, PROPERTIES, STRUCTURE, SUITE, WIDTHS
-from rockflex.study import ChunkedPlan
 from rockflex.study.design import DesignStudy
 from rockflex.study.design._designs import checked_half_widths, designs_of_structure
 from rockflex.study.design._exceedance_fit import design_limit_state
@@ -110,18 +109,6 @@ def test_a_study_is_the_call_in_python(tmp_path):
     assert (plan.n_runs, plan.n_chunks) == (48, 7)
     assert pickle.loads(pickle.dumps(plan)).chunk(3).equals(plan.chunk(3))
     assert DesignStudy(**study.document() | {"structures": CONTENT["structures"]}).document() == study.document()
-
-
-def test_a_stopped_study_goes_on(tmp_path, monkeypatch):
-    study = DesignStudy(**CONTENT)
-    whole = rf.run_study(study, tmp_path / "kept")
-    for number in (1, 4):
-        (tmp_path / "kept" / "parts" / f"part-{number:05d}.parquet").unlink()
-    computed: list[int] = []
-    real = ChunkedPlan.chunk
-    monkeypatch.setattr(ChunkedPlan, "chunk", lambda plan, number: computed.append(number) or real(plan, number))
-    pd.testing.assert_frame_equal(rf.run_study(study, tmp_path / "kept"), whole)
-    assert sorted(computed) == [1, 4]
 
 
 def test_the_example_is_a_study():

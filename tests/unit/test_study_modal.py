@@ -32,9 +32,7 @@ def test_peaks_are_combined_as_the_paper_has_it():
 
 
 def test_one_mode_has_nothing_to_combine():
-    with pytest.raises(
-        rf.InputError, match=r"A modal combination needs two modes, but the structure has 1\. Give more"
-    ):
+    with pytest.raises(rf.InputError, match=r"A modal combination needs two modes, but the structure has 1\. Give"):
         rf.modal_combination(TWO_MODES.rocking(1), MOTION)
 
 

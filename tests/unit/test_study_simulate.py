@@ -10,11 +10,9 @@ from builders import make_frame
 from rockflex import (
     Frame,
     GroundMotion,
-    InitialState,
     InputError,
     LumpedStructure,
     Model,
-    RockingProperties,
     load_suite,
     quiet_motion,
     simulate,
@@ -95,19 +93,13 @@ def test_many_modes_of_few_floors():
     ("changes", "text"),
     [
         ({"structure": 3}, "structure must be a structure such as a Frame or a TaperedTower, or RockingProperties,"),
-        ({"structure": None}, "structure must be .*, but NoneType was given"),
         ({"structure": Frame}, "structure must be .*, but the class Frame was given"),
-        ({"structure": RockingProperties}, "structure must be .*, but the class RockingProperties was given"),
         ({"motion": MOTION.acceleration}, "motion must be a GroundMotion, but ndarray was given. Read or build one"),
         ({"motion": load_suite("el-centro-1940")}, "motion must be a GroundMotion, but Suite was given"),
-        ({"motion": GroundMotion}, "motion must be a GroundMotion, but the class GroundMotion was given"),
         ({"model": "nonsense"}, "Unknown model 'nonsense'. Expected "),
         ({"model": None}, "Unknown model None. Expected "),
         ({"output": "everything"}, 'output must be "history" or "peaks", but \'everything\' was given'),
-        ({"output": None}, 'output must be "history" or "peaks", but None was given'),
         ({"initial": 0.1}, r"initial must be an InitialState or None, but 0\.1 was given. Write"),
-        ({"initial": (0.1,)}, r"initial must be an InitialState or None, but \(0\.1,\) was given"),
-        ({"initial": InitialState}, "initial must be an InitialState or None, but <class .*InitialState'> was given"),
     ],
 )
 def test_arguments_that_cannot_be_used(changes, text):

