@@ -138,12 +138,12 @@ def run_batch(batch: RunBatch) -> list[BatchRun]:
     cases = {model: batch.case(model) for model in batch.models}
     many = batch.size > MAX_TIMED_RUNS
     tasks = product(batch.motions, batch.scales, batch.models)
-    with console_progress_bar("Simulating", batch.size) if many else nullcontext(lambda _: None) as advance:
+    with console_progress_bar("Simulating", batch.size) if many else nullcontext() as advance:
         runs = map_runs_in_order(
             lambda task: _run_one_of_batch(batch, cases[task[2]], task[0], task[1], timed=not many),
             tasks,
             batch.workers if many else batch.workers or 1,
-            lambda _: advance(1),
+            lambda _: None if advance is None else advance(1),
         )
     failed = [found for found in runs if found.error is not None]
     if len(failed) == len(runs):

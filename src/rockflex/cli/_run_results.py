@@ -83,19 +83,23 @@ def print_run_peaks(title: str, batch: RunBatch, runs: Sequence[BatchRun], elaps
         tables += [(columns, 0) for columns in _element_peak_columns(runs, len(elements))]
     for columns, n_words in tables:
         _print_columns(batch, runs, columns, n_words)
-    print_line()
-    if any(run.peaks["nominal_overturning"] for run in runs):
-        print_line(PASSED)
-    print_line(LEGEND)
-    for name, said in OF_BASE.items():
-        if any(heading.startswith(name) for heading, _ in base):
-            print_line(said)
-    if elements:
-        print_line(OF_ELEMENTS)
-    if batch.friction is not None:
-        print_line(FRICTION.format(window=IMPACT_WINDOW, mu=batch.friction))
+    for line in _legend(batch, runs, base):
+        print_line(line)
     each = "" if len(runs) == 1 else f", {number_for_console(1e3 * elapsed / len(runs), 3)} ms a run"
     print_line(f"{number_with_noun(len(runs), 'run')} in {number_for_console(elapsed, 3)} s{each}")
+
+
+def _legend(batch: RunBatch, runs: Sequence[BatchRun], base: Columns) -> Iterator[str]:
+    """Yield lines below the tables about what they show."""
+    yield ""
+    if any(run.peaks["nominal_overturning"] for run in runs):
+        yield PASSED
+    yield LEGEND
+    yield from (said for name, said in OF_BASE.items() if any(heading.startswith(name) for heading, _ in base))
+    if batch.properties.elements:
+        yield OF_ELEMENTS
+    if batch.friction is not None:
+        yield FRICTION.format(window=IMPACT_WINDOW, mu=batch.friction)
 
 
 def _print_columns(batch: RunBatch, runs: Sequence[BatchRun], columns: Columns, n_words: int) -> None:

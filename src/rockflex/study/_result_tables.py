@@ -50,7 +50,7 @@ def arrow_table(values: Table, columns: Columns, missing: "NDArray[np.bool_] | N
     return pa.table({name: column(values.get(name, absent), kind) for name, kind in columns.items()})
 
 
-def joined_tables(tables: Sequence[Mapping[str, list[Any]]]) -> Table:
+def joined_tables(tables: Sequence[Mapping[str, list[Any]]]) -> dict[str, list[Any]]:
     """Return the columns of tables, one after another."""
     return {name: [value for each in tables for value in each[name]] for name in tables[0]}
 

@@ -321,7 +321,9 @@ def simulate_many(
             **tables_to_dataframe(results),
         }
     )
-    return table.assign(response=[found.responses.get(place) for place in range(total)]) if history else table
+    if history:
+        table["response"] = pd.Series([found.responses.get(place) for place in range(total)], dtype=object)
+    return table
 
 
 def _categorical_column(codes: NDArray[np.int32], names: list[str]) -> "pd.Categorical[Any]":
