@@ -93,21 +93,9 @@ class ChunkedPlan(ABC):
 def run_plan(
     plan: ChunkedPlan, workers: SupportsIndex | None = None, progress: ProgressChoice = None
 ) -> "pd.DataFrame":
-    """Compute all chunks of a plan, and return them as one table, in order.
+    """Compute all chunks of a plan on threads, and return them as one table, in order.
 
-    Parameters
-    ----------
-    plan
-        The plan that `.plan()` of a study returns.
-    workers
-        Number of threads; None for one a core.
-    progress
-        None, "bar", or a function of the number of units that are done, and of all.
-
-    Returns
-    -------
-    pandas.DataFrame
-        The rows of all chunks; see the study for its columns.
+    `progress` is None, "bar", or a function of the number of units that are done, and of all.
     """
     tables: list[ArrowTable] = []
     with reporting_progress(progress, plan.n_units, plan.units) as advance:

@@ -31,26 +31,14 @@ from rockflex.study._arguments import (
 class PreparedCase:
     """A model tied to a structure, with the options of its runs. Its engine is built once, for any number of runs.
 
-    Attributes
-    ----------
-    model
-        The model, tied to its structure.
-    free_vibration
-        Seconds of free vibration; None means until settled.
-    initial
-        The state at t = 0; at rest if None.
-    work_limit
-        Limit of the work of a run in s; None for no limit.
-    history
-        Whether the history of the states is stored.
-    floors
-        Whether the peaks of the floors are tracked.
-    extra
-        Additional quantities whose peaks are tracked, by name.
-    tracked
-        All quantities whose peaks are tracked.
-    engine
-        The engine of the model, ready to run records.
+    `free_vibration` is in s, None until settled; `initial` is the state at t = 0, None for rest; `work_limit` is in s.
+    `history` tells whether the states are stored, and `floors` whether the peaks of the floors are tracked; `extra` are
+    further quantities whose peaks are, by name, and `tracked` all of them.
+
+    Raises
+    ------
+    InputError
+        If a run with a hysteretic spring is to settle, or the numbers of the model overflow.
     """
 
     model: RockingModel
@@ -122,20 +110,10 @@ def has_vertical_motion(motion: GroundMotion) -> bool:
 class RunOptions:
     """The options of a run.
 
-    Attributes
-    ----------
-    free_vibration
-        Seconds of free vibration after the record; None until settled.
-    impact
-        Impact law in place of each model's own, if not None.
-    bouc_wen
-        Hysteresis of the models whose label ends in -BW, or of every model if `all_yield`.
-    ground
-        The ground, or a function that returns the ground of each structure; None: rigid, without sliding.
-    initial
-        The state at t = 0; at rest if None.
-    work_limit
-        Limit of the work of a run in s; None for no limit.
+    `free_vibration` is in s, None until settled. `impact` stands in place of each model's own law. `bouc_wen` is the
+    hysteresis of the models whose label ends in -BW, or of every model if `all_yield`. `ground` is the ground, or a
+    function that returns that of each structure; None: rigid, without sliding. `initial` is the state at t = 0, None
+    for rest. `work_limit` is the limit of the work of a run in s; None for no limit.
     """
 
     free_vibration: float | None = 0.0
@@ -198,19 +176,11 @@ Scaled = tuple[PreparedCase | InputError, GroundMotion, float]
 
 @dataclass(frozen=True, eq=False)
 class RunPeaks:
-    """Results of some runs.
+    """Results of some runs, by their places.
 
-    Attributes
-    ----------
-    count
-        Number of runs.
-    columns
-        The status, as a place in `rockflex.response.STATUSES`, and every scalar of the responses, each of shape
-        (count,); empty if all runs failed. The values of runs that failed mean nothing.
-    failures
-        Errors of the runs that failed, by index.
-    responses
-        Response of each run of a case with histories by index.
+    `columns` are the status, as a place in `rockflex.response.STATUSES`, and every scalar of the responses, each of
+    shape (count,); empty if all runs failed. The values of runs that failed mean nothing; their errors are the
+    `failures`. `responses` are those of the runs of cases with histories.
     """
 
     count: int

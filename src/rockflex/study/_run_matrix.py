@@ -65,7 +65,8 @@ def checked_demands(demands: Demands | None, taken: Collection[str]) -> Demands:
 def friction_and_demand_columns(response: Response, demands: Demands, *, friction: bool) -> Row:
     """Return the friction that a response with its history requires, if asked for, and the value of each demand.
 
-    A friction that cannot be found is a message in `error`.
+    A friction that cannot be found is a message in `error`; a demand that is no number is an `InputError`, but NaN is
+    one.
     """
     found: Row = {name: _demand_value(name, demand, response) for name, demand in demands.items()}
     return found | _required_friction_column(response) if friction else found
@@ -141,21 +142,8 @@ class RunMatrix:
     """Every structure with every model, and the runs of each under records at a scale.
 
     Engines are built when needed. A pickle holds none, so that it is small; they are rebuilt where it is loaded.
-
-    Parameters
-    ----------
-    structures
-        Structures, or their properties.
-    motions
-        The records.
-    models
-        Models that are run on every structure.
-    options
-        Options of all runs.
-    history
-        Whether the response of each run with its history is kept.
-    floors
-        Whether the peaks of the floors are tracked.
+    `history` tells whether the response of each run with its history is kept, `floors` whether the peaks of the floors
+    are tracked.
     """
 
     def __init__(

@@ -69,13 +69,6 @@ def simulate_with_cached_case(
     The structure and the ground are the same only if they are the same objects, which cannot change; a user-defined
     impact law can. A case is kept only for the time step of its run, and not if its run failed, so that no run depends
     on those before it.
-
-    Raises
-    ------
-    InputError
-        If the model does not apply to the structure, its numbers overflow, or the run exceeds its work limit.
-    SolverError
-        If the run cannot be solved.
     """
     rest = (options.bouc_wen, options.free_vibration, options.work_limit, history, motion.dt)
     key = (id(properties), id(options.ground), id(options.initial), model, options.impact, *rest)

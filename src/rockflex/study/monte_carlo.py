@@ -51,16 +51,9 @@ class _GroundHolder(TomlTable):
 class RandomPopulation:
     """Structures that differ in the values of variables.
 
-    Parameters
-    ----------
-    variables
-        The variables.
-    structure
-        A structure as a file describes it, with formulas such as "= 0.3 * weight" in place of some numbers.
-    folder
-        Where relative paths of files of numbers start.
-    ground
-        The ground as a file describes it, with formulas in place of some numbers; None for rigid ground.
+    `structure` is a structure as a file describes it, with formulas such as "= 0.3 * weight" in place of some numbers,
+    and `ground` the ground in the same way, None for rigid ground. Relative paths of files of numbers start in
+    `folder`. An `InputError` tells of a formula that cannot be read, or refers to unknown names.
     """
 
     def __init__(

@@ -251,15 +251,8 @@ MAX_PARTS_OF_STEP = 16  # parts of a step between two values given
 class InterpolatedMargins:
     """Margins of a search as functions of its variables.
 
-    Attributes
-    ----------
-    surface : Surface
-    given : dict
-        The values that the search was given, of each variable that it varies.
-    fixed : dict
-        The value of each other variable.
-    forces : dict
-        Force in N for a factor of 1, of the tendons and of the dissipators.
+    `given` are the values that the search was given of each variable that it varies, `fixed` is the value of each other
+    one, and `forces` the force in N for a factor of 1, of the tendons and of the dissipators.
     """
 
     surface: MarginSurface

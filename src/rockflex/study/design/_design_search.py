@@ -46,12 +46,8 @@ class MarginSurface:
     The smoothing of each spline is the one with the smallest error where each design is left out in turn (Wahba 1990,
     Spline Models for Observational Data, Chapter 4).
 
-    Parameters
-    ----------
-    steps : ndarray, shape (n, d)
-        Coordinates of the designs in the variables that are varied.
-    margins : ndarray, shape (n, m)
-        Their margins; designs without a margin are left out.
+    `steps`, shape (n, d), are the coordinates of the designs in the variables that are varied; `margins` has the shape
+    (n, m). Designs without a margin are left out; an `InputError` says if too few are left.
     """
 
     def __init__(self, steps: Array, margins: Array) -> None:

@@ -49,17 +49,7 @@ if TYPE_CHECKING:
 def design_tables_by_limit(
     runs: "pd.DataFrame", spec: Mapping[str, Any], confidence: float | None = 0.9
 ) -> "Iterator[tuple[float | str, pd.DataFrame]]":
-    """Yield each limit of a study with its `design_table`.
-
-    Parameters
-    ----------
-    runs
-        The table of the study.
-    spec
-        The study as returned by its `document()`.
-    confidence
-        As in `design_table`.
-    """
+    """Yield each limit of a study, from its `document()`, with its `design_table`."""
     for limit, at, _, hazard in stored_design_limits(spec):
         yield limit, design_table(runs, limit, measure=spec["measure"], at=at, hazard=hazard, confidence=confidence)
 

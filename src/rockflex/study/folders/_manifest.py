@@ -105,20 +105,10 @@ MAX_PARTS = 100_000  # every part is a file, whose number has five digits
 class StudyManifest:
     """Identity and origin of a study.
 
-    Parameters
-    ----------
-    spec
-        The study's specification, as plain JSON; stored in a separate file.
-    study
-        Digest of the specification, the number of chunks and the checksums; every part records it.
-    n_chunks
-        Number of parts of the complete study.
-    versions
-        Version of each library that the numbers depend on; those that end in " commit" only say where code came from.
-    checksums
-        Checksum of each record, matrix from a file and other file that the study depends on, by name.
-    created
-        Date and time, UTC, ISO 8601.
+    `spec` is its specification as plain JSON, stored in a file of its own; `study` the digest of the specification, the
+    number of chunks and the checksums, which every part records. `versions` are those of the libraries that the numbers
+    depend on; those that end in " commit" only say where code came from. `checksums` are of each record, matrix from a
+    file and other file that the study depends on, by name; `created` is the date and time, UTC, ISO 8601.
     """
 
     spec: dict[str, Any]
