@@ -63,7 +63,7 @@ PI = 0.5 * math.pi
         ({"modal_displacement": [math.nan]}, "modal_displacement must be finite, but 1 of 1 values are not, the first"),
         ({"modal_displacement": [0.1, -1e10]}, "modal_displacement[1] must be a number between -1e+09 and 1e+09 m,"),
         ({"modal_velocity": "fast"}, "modal_velocity must be a sequence of numbers in m/s, but str was given."),
-        ({"modal_velocity": (1e200)}, "modal_velocity[0] must be a number between -1e+09 and 1e+09 m/s, but 1e+200"),
+        ({"modal_velocity": (1e200,)}, "modal_velocity[0] must be a number between -1e+09 and 1e+09 m/s, but 1e+200"),
     ],
 )
 def test_values_that_no_state_has(changes, text):
