@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 import rockflex as rf
 from builders import make_frame
 from rockflex.cli import _batch, _run_results, app
-from rockflex.cli._console import StyledCell, console_table, number_for_console
+from rockflex.cli import _console as console
 from rockflex.response import PEAKS
 from rockflex.study import PreparedCase
 
@@ -158,7 +158,7 @@ def test_narrow_terminal_gets_a_table_a_motion_and_nothing_is_cut():
 
 def test_colours_are_of_statuses_and_not_of_whatever_reads_like_one():
     written = io.StringIO()
-    table = console_table(["motion", "status"], [["overturned", StyledCell("rocking †", "yellow")]], 2)
+    table = console.table(["motion", "status"], [["overturned", console.StyledCell("rocking †", "yellow")]], 2)
     Console(file=written, force_terminal=True, color_system="standard", width=60).print(table)
     assert "\noverturned  \x1b[33mrocking †\x1b[0m" in written.getvalue()
 
@@ -429,8 +429,8 @@ def test_elements_are_told_with_their_forces_and_energies(fused, tmp_path):
     printed = invoke(*arguments, "--out", tmp_path / "out").stdout
     rows = [line.split() for line in printed.splitlines()]
     assert ["2", "yielding", "dissipator", "0.5000", "200000", "-", "400.0", "0"] in rows
-    assert ["FF-2-a", "2", "MDOF-S", *(number_for_console(each / 1e3) for each in forces)] in rows
-    assert ["FF-2-a", "2", "MDOF-S", *(number_for_console(each / 1e3) for each in energies)] in rows
+    assert ["FF-2-a", "2", "MDOF-S", *(console.number(each / 1e3) for each in forces)] in rows
+    assert ["FF-2-a", "2", "MDOF-S", *(console.number(each / 1e3) for each in energies)] in rows
     assert "F, E: largest force of each element, and the energy that it takes (with --out);" in printed
     with (tmp_path / "out" / "results.csv").open(newline="") as table:
         (kept,) = csv.DictReader(table)

@@ -7,8 +7,8 @@ from typing import Annotated
 import typer
 
 from rockflex._errors import InputError
+from rockflex.cli import _console as console
 from rockflex.cli import _options as options
-from rockflex.cli._console import print_remark, print_warning_messages
 from rockflex.study.progress import progress_bar
 
 EPILOG = """[bold]Examples[/bold]
@@ -117,8 +117,8 @@ def animate(
             panels=None if panels is None else [name.strip() for name in panels.split(",")], title=title, width=width,
             progress=lambda done, total: show(done, total, "")
         )  # fmt: skip
-    print_remark(f"Written to {target}")
-    print_warning_messages(loaded.warnings)
+    console.print_remark(f"Written to {target}")
+    console.print_warnings(loaded.warnings)
     print_run_warnings(runs)
     if print_failed_runs(runs):
         raise typer.Exit(1)

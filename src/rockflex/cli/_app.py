@@ -10,7 +10,7 @@ from typer.core import TyperGroup
 from rockflex import __version__
 from rockflex._errors import InputError, SolverError
 from rockflex.cli import _animate, _modes, _motion, _reproduce, _run, _select, _study
-from rockflex.cli._console import print_error, print_remark, printing_warnings_as_remarks
+from rockflex.cli import _console as console
 from rockflex.cli._options import FrameCommand, RunCommand
 from rockflex.kinds import KINDS
 
@@ -37,8 +37,8 @@ def serve(
     from rockflex.web._hosts import is_loopback_host, page_address
 
     if not is_loopback_host(host):
-        print_remark(f"Everyone who can reach {host} can use the page: it has no passwords.")
-    print_remark(f"{page_address(host, port)} (stop with Ctrl-C)")
+        console.print_remark(f"Everyone who can reach {host} can use the page: it has no passwords.")
+    console.print_remark(f"{page_address(host, port)} (stop with Ctrl-C)")
     with suppress(KeyboardInterrupt):  # the usual way to stop it
         start(port, host, names=name or (), open_browser=open_browser)
 
@@ -71,13 +71,13 @@ class RockflexCommands(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         """Run the command."""
         try:
-            with printing_warnings_as_remarks():
+            with console.printing_warnings_as_remarks():
                 return super().invoke(ctx)
         except (InputError, SolverError) as error:
-            print_error(str(error))
+            console.print_error(str(error))
             raise typer.Exit(2 if isinstance(error, InputError) else 1) from error
         except KeyboardInterrupt as stop:
-            print_remark("Stopped; nothing was written.")
+            console.print_remark("Stopped; nothing was written.")
             raise typer.Exit(130) from stop
 
 

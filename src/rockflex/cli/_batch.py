@@ -13,7 +13,7 @@ import typer
 
 from rockflex._errors import SolverError
 from rockflex._schema import BoucWenKeys, FrameFlags, InitialStateKeys
-from rockflex.cli._console import console_progress_bar, print_remark
+from rockflex.cli import _console as console
 from rockflex.cli._find_motions import FoundMotion, find_motions, quiet_ground_motion
 from rockflex.cli._options import flag_values, naming_flags_in_errors
 from rockflex.cli._run_options import (
@@ -138,7 +138,7 @@ def run_batch(batch: RunBatch) -> list[BatchRun]:
     cases = {model: batch.case(model) for model in batch.models}
     many = batch.size > MAX_TIMED_RUNS
     tasks = product(batch.motions, batch.scales, batch.models)
-    with console_progress_bar("Simulating", batch.size) if many else nullcontext() as advance:
+    with console.step_bar("Simulating", batch.size) if many else nullcontext() as advance:
         runs = map_runs_in_order(
             lambda task: _run_one_of_batch(batch, cases[task[2]], task[0], task[1], timed=not many),
             tasks,
@@ -221,7 +221,7 @@ def prepare_batch(context: typer.Context, arguments: RunArguments, *, histories:
     by_flag = bool(flag_values(context, BoucWenKeys))
     models = choose_run_models(arguments.model, loaded.properties, options, by_flag=by_flag)
     if options.bouc_wen is not None and not yielding_model_labels(models):
-        print_remark(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was given")
+        console.print_remark(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was given")
     names += arguments.motion or []
     with naming_flags_in_errors(FLAGS):
         free = number_or_word(arguments.free_vibration)

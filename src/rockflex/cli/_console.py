@@ -30,7 +30,7 @@ def print_remark(message: str) -> None:
     Console(stderr=True).print(message, markup=False, highlight=False, soft_wrap=True)
 
 
-def print_warning_messages(messages: Iterable[str]) -> None:
+def print_warnings(messages: Iterable[str]) -> None:
     """Print warnings to stderr."""
     for message in messages:
         print_remark(f"Warning: {message}")
@@ -79,7 +79,7 @@ class StyledCell(str):
         return cell
 
 
-def console_table(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1) -> "Table":
+def table(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1) -> "Table":
     """Return a table with `n_left` columns of words, aligned to the left, followed by columns of numbers."""
     from rich import box
     from rich.table import Table
@@ -97,19 +97,19 @@ def console_table(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left
 
 
 @contextmanager
-def console_progress_bar(title: str, total: int) -> Generator[Callable[[int], None]]:
+def step_bar(title: str, total: int) -> Generator[Callable[[int], None]]:
     """Show a bar on stderr, or lines if it is no terminal; the yielded function advances it by a number of steps."""
     with progress_bar(title, transient=True) as show:
         yield progress_counter(lambda done, total: show(done, total, ""), total)
 
 
-def table_fits_console(table: "Table") -> bool:
+def table_fits(table: "Table") -> bool:
     """Tell whether a table fits the width of the terminal."""
     console = _stdout()
     return _table_width(console, table) <= console.width
 
 
-def print_console_table(table: "Table") -> None:
+def print_table(table: "Table") -> None:
     """Print a table in full, even where it is wider than the terminal."""
     console = _stdout()
     width = _table_width(console, table)
@@ -117,15 +117,15 @@ def print_console_table(table: "Table") -> None:
 
 
 def print_rows(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1) -> None:
-    """Print a table of rows, as `console_table` makes it."""
-    print_console_table(console_table(headings, rows, n_left))
+    """Print a table of rows, as `table` makes it."""
+    print_table(table(headings, rows, n_left))
 
 
 def _table_width(console: "Console", table: "Table") -> int:
     return console.measure(table, options=console.options.update(width=100_000)).maximum
 
 
-def number_for_console(value: float | None, digits: int = 4) -> str:
+def number(value: float | None, digits: int = 4) -> str:
     """Write a number with `digits` significant digits, with an exponent only if it is very large or small."""
     if value is None or math.isnan(value):
         return "-"

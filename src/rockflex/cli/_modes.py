@@ -8,17 +8,10 @@ import typer
 from rockflex._errors import InputError
 from rockflex._number_format import moment_unit
 from rockflex._schema import FrameFlags
+from rockflex.cli import _console as console
 from rockflex.cli import _options as options
-from rockflex.cli._console import (
-    number_for_console,
-    print_console_table,
-    print_line,
-    print_remark,
-    print_rows,
-    print_warning_messages,
-)
+from rockflex.cli import _output as output
 from rockflex.cli._options import flag_values
-from rockflex.cli._output import check_output_folder, document_to_json, staged_output_folder, versions_in_results
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -93,7 +86,7 @@ def modes(
     )
     from rockflex.modal import adequacy as adequacy_of
 
-    check_output_folder(out, force=force)
+    output.check_folder(out, force=force)
     path, rest = split_structure_file_argument(structure, [] if file is None else [file])
     if rest:
         raise InputError(f"{file} is not a structure file: a name that ends in .toml is expected.")
@@ -105,7 +98,7 @@ def modes(
     lifted = _uplifted_mode_rows(properties)
     rocking = describe_rocking_properties(properties)
     document: dict[str, Any] = {
-        "versions": versions_in_results(),
+        "versions": output.versions(),
         "structure": loaded.describe(),
         "modes": rows,
         "uplifted": lifted,
@@ -119,12 +112,12 @@ def modes(
     if out is not None:
         _write_modes(out, document, loaded, properties.n_modes, force=force)
     if json:
-        typer.echo(document_to_json(document))
+        typer.echo(output.to_json(document))
     else:
         print_modes(loaded, rows, lifted, properties)
         if need is not None:
             _print_adequacy(need)
-    print_warning_messages(document["warnings"])
+    console.print_warnings(document["warnings"])
 
 
 def _fixed_base_mode_rows(loaded: "LoadedStructure", properties: "RockingProperties") -> list[dict[str, Any]]:
@@ -185,11 +178,11 @@ def _print_adequacy(need: "Adequacy") -> None:
         100.0 * need.base_shear_left,
         *(100.0 * need.frequency_error).T,
     )
-    rows = [[str(k + 1), *(number_for_console(float(column[k]), 3) for column in columns)] for k in range(need.n_modes)]
-    print_line("\nNumber of modes needed")
-    print_rows(headings, rows)
-    print_line()
-    print_line(need.reason, wrap=True)
+    rows = [[str(k + 1), *(console.number(float(column[k]), 3) for column in columns)] for k in range(need.n_modes)]
+    console.print_line("\nNumber of modes needed")
+    console.print_rows(headings, rows)
+    console.print_line()
+    console.print_line(need.reason, wrap=True)
 
 
 def _write_modes(
@@ -201,7 +194,7 @@ def _write_modes(
 
     built = loaded.built
     drawn = not isinstance(built, RockingProperties)
-    with staged_output_folder(folder, document, force=force) as stage:
+    with output.staged_folder(folder, document, force=force) as stage:
         # As in the printed tables: each mode on a fixed base, then the mode of the same number while uplifted.
         lifted = pd.DataFrame(document["uplifted"]).drop(columns="mode", errors="ignore").add_prefix("uplifted_")
         pd.DataFrame(document["modes"]).join(lifted).to_csv(stage / "modes.csv", index=False, lineterminator="\n")
@@ -209,7 +202,9 @@ def _write_modes(
             from rockflex.plot import plot_mode_shapes, save_figure
 
             save_figure(plot_mode_shapes(built.modal(), n_modes=n_modes), stage / "mode-shapes.png")
-    print_remark(f"Written to {folder}" + ("" if drawn else f"; no figure, because [{loaded.kind}] has no mode shapes"))
+    console.print_remark(
+        f"Written to {folder}" + ("" if drawn else f"; no figure, because [{loaded.kind}] has no mode shapes")
+    )
 
 
 Rows = list[dict[str, Any]]
@@ -217,19 +212,19 @@ Rows = list[dict[str, Any]]
 
 def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "RockingProperties") -> None:
     """Print the modes on a fixed base and while uplifted, and the rocking parameters, for each edge if they differ."""
-    print_line(f"{loaded.title}\n")
+    console.print_line(f"{loaded.title}\n")
     share = "m*_n/m_tot" if loaded.base_mass is None else "m*_n/Σm"
     if rows:
         headings = ("mode", "T_n [s]", "ω_n [rad/s]", share, "h*_n [m]", "Γ_n φ_top", "ζ_n")
-        print_rows(headings, _mode_cells(rows, "period omega mass_share effective_height top_ordinate zeta"))
+        console.print_rows(headings, _mode_cells(rows, "period omega mass_share effective_height top_ordinate zeta"))
         for side in ("",) if p.symmetric else ("right", "left"):
             about = f" about the {side} edge" if side else ""
             note = "" if side == "left" else "; with fewer (--modes) ζ*_n differs"
-            print_line(f"\nWhile uplifted{about}, with these modes{note}", wrap=True)
+            console.print_line(f"\nWhile uplifted{about}, with these modes{note}", wrap=True)
             kept = [row for row in lifted if row.get("side", "") == side]
             headings = ("mode", "T*_n [s]", "ω*_n [rad/s]", "ω*_n/ω_n", "ζ*_n")
-            print_rows(headings, _mode_cells(kept, "period omega ratio zeta"))
-        print_line()
+            console.print_rows(headings, _mode_cells(kept, "period omega ratio zeta"))
+        console.print_line()
     total = sum(float(row["mass_share"]) for row in rows)
     values = (
         *_named_cells(rows, f"Sum of {share}", total, ""),
@@ -244,22 +239,22 @@ def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "Rocking
     )
     of_pivots = _parameters_of_pivots(p)
     # Where both pivots are alike, one column has the values of both.
-    print_rows(
+    console.print_rows(
         ("Rocking", "", ""), (*values, *((name, right, unit) for name, right, _, unit in of_pivots if p.symmetric))
     )
     if not p.symmetric:
-        print_line()
-        print_rows(("About the edge", "right", "left", ""), of_pivots)
+        console.print_line()
+        console.print_rows(("About the edge", "right", "left", ""), of_pivots)
     if p.elements:
         from rockflex.cli._structures import elements_table
 
-        print_line("\nBetween base and ground, x to the right of the masses")
-        print_console_table(elements_table(p.elements))
+        console.print_line("\nBetween base and ground, x to the right of the masses")
+        console.print_table(elements_table(p.elements))
 
 
 def _named_cells(wanted: object, name: str, value: float, unit: str) -> list[tuple[str, str, str]]:
     """Return the row of a value, if it is wanted."""
-    return [(name, number_for_console(value), unit)] if wanted else []
+    return [(name, console.number(value), unit)] if wanted else []
 
 
 def _parameters_of_pivots(p: "RockingProperties") -> list[tuple[str, str, str, str]]:
@@ -269,7 +264,7 @@ def _parameters_of_pivots(p: "RockingProperties") -> list[tuple[str, str, str, s
     rows: list[tuple[str, str, str, str]] = []
 
     def row(name: str, of: "Callable[[Pivot], float | str]", unit: str) -> None:
-        first, second = (each if isinstance(each, str) else number_for_console(each) for each in (of(right), of(left)))
+        first, second = (each if isinstance(each, str) else console.number(each) for each in (of(right), of(left)))
         rows.append((name, first, second, unit))
 
     width = "B" if p.symmetric else "b"
@@ -298,4 +293,4 @@ def _parameters_of_pivots(p: "RockingProperties") -> list[tuple[str, str, str, s
 
 
 def _mode_cells(rows: Rows, keys: str) -> list[list[str]]:
-    return [[str(row["mode"]), *(number_for_console(float(row[key])) for key in keys.split())] for row in rows]
+    return [[str(row["mode"]), *(console.number(float(row[key])) for key in keys.split())] for row in rows]

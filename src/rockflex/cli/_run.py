@@ -4,9 +4,9 @@ from typing import Annotated, Any
 
 import typer
 
+from rockflex.cli import _console as console
 from rockflex.cli import _options as options
-from rockflex.cli._console import print_warning_messages
-from rockflex.cli._output import check_output_folder, document_to_json, versions_in_results
+from rockflex.cli import _output as output
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -81,7 +81,7 @@ def run(
     )
     from rockflex.cli._structures import describe_rocking_properties
 
-    check_output_folder(out, force=force and (out is not None or report is None))
+    output.check_folder(out, force=force and (out is not None or report is None))
     page = None if report is None else checked_path_of_report(report, force=force)
     asked = RunArguments(
         arguments=arguments or [], structure=structure, motion=motion, model=model, scale=scale,
@@ -98,7 +98,7 @@ def run(
         runs = run_batch(batch)
     elapsed = perf_counter() - start
     document: dict[str, Any] = {
-        "versions": versions_in_results(),
+        "versions": output.versions(),
         "structure": loaded.describe(),
         "properties": describe_rocking_properties(batch.properties),
         "motions": [item.describe() for item in found],
@@ -111,10 +111,10 @@ def run(
     if out is not None:
         write_run_results(out, document, batch, runs, figures=figures, force=force)
     if json:
-        typer.echo(document_to_json(document))
+        typer.echo(output.to_json(document))
     else:
         print_run_peaks(loaded.title, batch, runs, elapsed, times=times)
-    print_warning_messages(document["warnings"])
+    console.print_warnings(document["warnings"])
     print_run_warnings(runs)
     failed = print_failed_runs(runs)
     if page is not None:

@@ -11,18 +11,9 @@ from rockflex._errors import InputError
 from rockflex._number_format import moment_unit
 from rockflex._schema import schema_keys
 from rockflex._shown import number_with_noun, shortened
+from rockflex.cli import _console as console
+from rockflex.cli import _output as output
 from rockflex.cli._batch import SLIDING, BatchRun, RunBatch
-from rockflex.cli._console import (
-    StyledCell,
-    console_table,
-    number_for_console,
-    print_console_table,
-    print_line,
-    print_remark,
-    print_rows,
-    table_fits_console,
-)
-from rockflex.cli._output import file_stems, staged_output_folder
 from rockflex.cli._run_options import lines_about_run_options
 from rockflex.cli._structures import LoadedStructure, elements_table
 from rockflex.fragility import NOMINAL
@@ -67,26 +58,26 @@ def print_run_peaks(title: str, batch: RunBatch, runs: Sequence[BatchRun], elaps
         *lines_about_run_options(batch.options, batch.properties),
         *_vertical_component_names(batch.motions),
     ):
-        print_line(line)
+        console.print_line(line)
     elements, base = batch.properties.elements, _base_motion_columns(batch, runs)
     peaks, ground = _peak_columns(runs), _columns_of_peaks(runs, REACTIONS) + base
     tables = [(peaks + ground, 1)]
-    if not table_fits_console(_table_of_all_runs(batch, runs, *tables[0])):
+    if not console.table_fits(_table_of_all_runs(batch, runs, *tables[0])):
         tables = [(peaks, 1), (ground, 0)]
     if times:
         tables.append((_columns_of_peaks(runs, PEAK_TIMES, digits=5), 0))
     if batch.friction is not None:
         tables.append((_sliding_columns(runs), 0))
     if elements:
-        print_line("\nBetween base and ground")
-        print_console_table(elements_table(elements))
+        console.print_line("\nBetween base and ground")
+        console.print_table(elements_table(elements))
         tables += [(columns, 0) for columns in _element_peak_columns(runs, len(elements))]
     for columns, n_words in tables:
         _print_columns(batch, runs, columns, n_words)
     for line in _legend(batch, runs, base):
-        print_line(line)
-    each = "" if len(runs) == 1 else f", {number_for_console(1e3 * elapsed / len(runs), 3)} ms a run"
-    print_line(f"{number_with_noun(len(runs), 'run')} in {number_for_console(elapsed, 3)} s{each}")
+        console.print_line(line)
+    each = "" if len(runs) == 1 else f", {console.number(1e3 * elapsed / len(runs), 3)} ms a run"
+    console.print_line(f"{number_with_noun(len(runs), 'run')} in {console.number(elapsed, 3)} s{each}")
 
 
 def _legend(batch: RunBatch, runs: Sequence[BatchRun], base: Columns) -> Iterator[str]:
@@ -105,15 +96,15 @@ def _legend(batch: RunBatch, runs: Sequence[BatchRun], base: Columns) -> Iterato
 def _print_columns(batch: RunBatch, runs: Sequence[BatchRun], columns: Columns, n_words: int) -> None:
     """Print columns of all runs; a table for each motion and scale if they do not fit."""
     flat = _table_of_all_runs(batch, runs, columns, n_words)
-    if table_fits_console(flat):
-        print_line()
-        print_console_table(flat)
+    if console.table_fits(flat):
+        console.print_line()
+        console.print_table(flat)
         return
     rows = zip(runs, _rows_of_cells(columns), strict=True)
     for place, members in groupby(rows, key=lambda row: _motion_and_scale_cells(batch, row[0])):
-        print_line("\n" + " × ".join(place))
+        console.print_line("\n" + " × ".join(place))
         cells = [[run.model, *row] for run, row in members]
-        print_rows(["model", *(heading for heading, _ in columns)], cells, 1 + n_words)
+        console.print_rows(["model", *(heading for heading, _ in columns)], cells, 1 + n_words)
 
 
 def print_run_warnings(runs: Sequence[BatchRun]) -> None:
@@ -126,7 +117,7 @@ def print_failed_runs(runs: Sequence[BatchRun]) -> int:
     """List on stderr the runs that could not be solved, and return their number."""
     failed = [run for run in runs if run.error is not None]
     if failed:
-        print_remark(f"{len(failed)} of {len(runs)} runs could not be solved:")
+        console.print_remark(f"{len(failed)} of {len(runs)} runs could not be solved:")
     found = [f"  {run.model} under {run.motion} × {run.scale:g}: {run.error}" for run in failed]
     _print_first_lines(found, "  and {} more; --json and results.csv list them all")
     return len(failed)
@@ -135,9 +126,9 @@ def print_failed_runs(runs: Sequence[BatchRun]) -> int:
 def _print_first_lines(found: Sequence[str], rest: str) -> None:
     """Print the first of many lines on stderr, and how many more there are."""
     for line in found[:MAX_LISTED]:
-        print_remark(line)
+        console.print_remark(line)
     if len(found) > MAX_LISTED:
-        print_remark(rest.format(len(found) - MAX_LISTED))
+        console.print_remark(rest.format(len(found) - MAX_LISTED))
 
 
 # Heading, name of the peak, and the unit of the column in that of the peak.
@@ -159,7 +150,7 @@ PEAK_TIMES: Peaks = (
 
 def _columns_of_peaks(runs: Sequence[BatchRun], peaks: Peaks, digits: int = 4) -> Columns:
     def cell(value: float | None, size: float) -> str:
-        return number_for_console(None if value is None else value / size, digits)
+        return console.number(None if value is None else value / size, digits)
 
     return [(heading, [cell(run.peaks[name], size) for run in runs]) for heading, name, size in peaks]
 
@@ -183,7 +174,7 @@ def _peak_columns(runs: Sequence[BatchRun]) -> Columns:
     if any(run.elements and run.peaks["residual_rotation"] for run in runs):
         columns += _columns_of_peaks(runs, [("θ_end [rad]", "residual_rotation", 1.0)])
     times = [None if run.run_time is None else 1e3 * run.run_time for run in runs]
-    return columns if set(times) == {None} else [*columns, ("time [ms]", [number_for_console(t, 3) for t in times])]
+    return columns if set(times) == {None} else [*columns, ("time [ms]", [console.number(t, 3) for t in times])]
 
 
 def _base_motion_columns(batch: RunBatch, runs: Sequence[BatchRun]) -> Columns:
@@ -209,10 +200,10 @@ def _record_source(motion: GroundMotion) -> str:
 def _sliding_columns(runs: Sequence[BatchRun]) -> Columns:
     times = [run.friction["sliding_time"] for run in runs]
     moments = [
-        "-" if run.error is not None else "no" if time is None else number_for_console(time, 5)
+        "-" if run.error is not None else "no" if time is None else console.number(time, 5)
         for run, time in zip(runs, times, strict=True)
     ]
-    required = [[number_for_console(run.friction[name]) for run in runs] for name in SLIDING[:2]]
+    required = [[console.number(run.friction[name]) for run in runs] for name in SLIDING[:2]]
     return [("μ_req", required[0]), ("μ_req [no impacts]", required[1]), ("slides at [s]", moments)]
 
 
@@ -223,7 +214,7 @@ def _element_peak_columns(runs: Sequence[BatchRun], count: int) -> Iterator[Colu
             yield [
                 (
                     heading.format(k + 1),
-                    [number_for_console(run.elements[name][k] / 1e3 if run.elements else None) for run in runs],
+                    [console.number(run.elements[name][k] / 1e3 if run.elements else None) for run in runs],
                 )
                 for k in range(count)
             ]
@@ -245,12 +236,14 @@ def _table_of_all_runs(batch: RunBatch, runs: Sequence[BatchRun], columns: Colum
         [*_motion_and_scale_cells(batch, run), run.model, *row]
         for run, row in zip(runs, _rows_of_cells(columns), strict=True)
     ]
-    return console_table([*words, *(heading for heading, _ in columns)], rows, len(words) + n_words)
+    return console.table([*words, *(heading for heading, _ in columns)], rows, len(words) + n_words)
 
 
 def _run_status_text(run: BatchRun) -> str:
     status = run.status or "failed"
-    return StyledCell(status.replace("_", " ") + (" †" if run.peaks["nominal_overturning"] else ""), STYLES[status])
+    return console.StyledCell(
+        status.replace("_", " ") + (" †" if run.peaks["nominal_overturning"] else ""), STYLES[status]
+    )
 
 
 def _units_of_keys(place: str, table: type) -> dict[str, str]:
@@ -299,11 +292,11 @@ def write_run_results(
     import pandas as pd
 
     histories = batch.history and len(batch.motions) * len(batch.scales) <= figures
-    with staged_output_folder(folder, document, force=force) as stage:
+    with output.staged_folder(folder, document, force=force) as stage:
         pd.DataFrame([run.row() for run in runs]).to_csv(stage / "results.csv", index=False, lineterminator="\n")
         if histories:
             _write_histories(stage, batch, runs)
-    print_remark(
+    console.print_remark(
         f"Written to {folder}" + ("" if histories else "; no histories and figures of more than --figures motions")
     )
 
@@ -316,7 +309,7 @@ def _write_histories(stage: Path, batch: RunBatch, runs: Sequence[BatchRun]) -> 
     groups = [(place, list(members)) for place, members in groupby(runs, key=lambda run: (run.motion, run.scale))]
     several = len({scale for (_, scale), _ in groups}) > 1
     names = [f"history-{motion}-x{scale:g}" if several else f"history-{motion}" for (motion, scale), _ in groups]
-    for stem, ((motion, scale), members) in zip(file_stems(names), groups, strict=True):
+    for stem, ((motion, scale), members) in zip(output.file_stems(names), groups, strict=True):
         responses = [run.response for run in members if run.response is not None]
         if not responses:
             continue
@@ -384,7 +377,7 @@ def write_report_of_run(page: Path, loaded: LoadedStructure, batch: RunBatch, ru
         friction=batch.friction,
         notes=[*failed[:1], *_typed_command()],
     )
-    print_remark(f"Written to {page}; any browser prints it on one sheet of A4")
+    console.print_remark(f"Written to {page}; any browser prints it on one sheet of A4")
 
 
 def _typed_command() -> list[str]:

@@ -9,15 +9,9 @@ import typer
 
 from rockflex._errors import InputError
 from rockflex._shown import number_with_noun, shown
+from rockflex.cli import _console as console
 from rockflex.cli import _options as options
-from rockflex.cli._console import number_for_console, print_line, print_remark, print_rows
-from rockflex.cli._output import (
-    check_output_folder,
-    document_to_json,
-    file_stems,
-    staged_output_folder,
-    versions_in_results,
-)
+from rockflex.cli import _output as output
 
 if TYPE_CHECKING:
     from rockflex.motion import Combination, Selection, TargetSpectrum
@@ -212,7 +206,7 @@ def select(
     from rockflex.motion import Suite
 
     if out is not None or records is None:
-        check_output_folder(out, force=force)
+        output.check_folder(out, force=force)
     if records is not None:
         _check_selected_records_folder(records, out, force=force)
     wanted = parse_target_spectrum(target, damping)
@@ -230,7 +224,7 @@ def select(
         least_ratio=least,
     )
     document: dict[str, Any] = {
-        "versions": versions_in_results(),
+        "versions": output.versions(),
         "options": {
             "measure": measure,
             "scale_limits": [low, high],
@@ -253,7 +247,7 @@ def select(
     if records is not None:
         _write_selected_records(records, document, chosen, force=force)
     if json:
-        typer.echo(document_to_json(document))
+        typer.echo(output.to_json(document))
     else:
         _print_selection(chosen)
 
@@ -264,7 +258,7 @@ def _check_selected_records_folder(folder: Path, out: Path | None, *, force: boo
             f"--records {folder} is the folder of --out, too. Give it one of its own: every CSV file in it is a record."
         )
     try:
-        check_output_folder(folder, force=force)
+        output.check_folder(folder, force=force)
     except InputError as error:
         raise InputError(str(error).replace("--out", "--records")) from error
 
@@ -285,40 +279,40 @@ def _print_selection(chosen: "Selection[Any]") -> None:
             str(row["year"] or "-"),
             "-" if row["magnitude"] is None else f"{row['magnitude']:g}",
             "-" if row["distance_km"] is None else f"{row['distance_km']:g}",
-            number_for_console(row["factor"]),
-            number_for_console(row["misfit"], 3),
+            console.number(row["factor"]),
+            console.number(row["misfit"], 3),
             f"{row['least_ratio']:.2f} ... {row['largest_ratio']:.2f}",
         ]
         for row in _selected_record_rows(chosen)
     ]
-    print_rows(("record", "event", "year", "M", "R [km]", "factor", "misfit", "Sa/target"), rows, 2)
+    console.print_rows(("record", "event", "year", "M", "R [km]", "factor", "misfit", "Sa/target"), rows, 2)
     target = chosen.target
     lines = [
         f"\nTarget: {target.name}, damping {target.damping_ratio:g}, {chosen.periods[0]:g} to {chosen.periods[-1]:g} s",
-        f"Mean: misfit {number_for_console(chosen.misfit, 3)}, at least {chosen.least_ratio:.3f} of the target",
+        f"Mean: misfit {console.number(chosen.misfit, 3)}, at least {chosen.least_ratio:.3f} of the target",
     ]
     if len(chosen.names) > 1:
         spread = chosen.dispersion
         lines.append(f"Standard deviation of ln Sa: {spread.min():.2f} to {spread.max():.2f}")
     if target.periods[0] == 0.0:
         lines.append(f"At a period of zero the mean is {chosen.zero_period_ratio:.3f} of the target")
-    print_line("\n".join(lines))
+    console.print_line("\n".join(lines))
 
 
 def _write_selection(folder: Path, document: dict[str, Any], chosen: "Selection[Any]", *, force: bool) -> None:
     from rockflex.plot import plot_selection, save_figure
 
-    with staged_output_folder(folder, document, force=force) as stage:
+    with output.staged_folder(folder, document, force=force) as stage:
         chosen.table().to_csv(stage / "selection.csv", index=False, lineterminator="\n")
         chosen.spectra().to_csv(stage / "spectra.csv", index=False, lineterminator="\n")
         save_figure(plot_selection(chosen), stage / "selection.png")
-    print_remark(f"Written to {folder}")
+    console.print_remark(f"Written to {folder}")
 
 
 def _write_selected_records(folder: Path, document: dict[str, Any], chosen: "Selection[Any]", *, force: bool) -> None:
     from rockflex.motion import record_csv
 
-    with staged_output_folder(folder, document, force=force) as stage:
-        for stem, motion in zip(file_stems(motion.name for motion in chosen.suite), chosen.suite, strict=True):
+    with output.staged_folder(folder, document, force=force) as stage:
+        for stem, motion in zip(output.file_stems(motion.name for motion in chosen.suite), chosen.suite, strict=True):
             (stage / f"{stem}.csv").write_text(record_csv(motion), "utf-8", newline="\n")
-    print_remark(f"{number_with_noun(len(chosen.suite), 'scaled record')} written to {folder}")
+    console.print_remark(f"{number_with_noun(len(chosen.suite), 'scaled record')} written to {folder}")

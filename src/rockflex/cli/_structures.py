@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rockflex._errors import InputError
 from rockflex._schema import FrameFlags, FrameKeys
 from rockflex._shown import number_with_noun
-from rockflex.cli._console import console_table, number_for_console
+from rockflex.cli import _console as console
 from rockflex.cli._options import flags_of_tables, naming_flags_in_errors
 from rockflex.modal import (
     BaseElement,
@@ -69,7 +69,7 @@ def elements_table(elements: Sequence[BaseElement]) -> "Table":
     """Return the table of elements, without the columns that none of them needs."""
     rows = [(str(place), *_element_row(each)) for place, each in enumerate(elements, start=1)]
     kept = [k for k in range(len(_ELEMENT_HEADINGS)) if k < _WORDS or any(row[k] != "-" for row in rows)]
-    return console_table([_ELEMENT_HEADINGS[k] for k in kept], ([row[k] for k in kept] for row in rows), _WORDS)
+    return console.table([_ELEMENT_HEADINGS[k] for k in kept], ([row[k] for k in kept] for row in rows), _WORDS)
 
 
 def _element_row(element: BaseElement) -> tuple[str, ...]:
@@ -89,7 +89,7 @@ def _element_row(element: BaseElement) -> tuple[str, ...]:
         strength = element.force / 1e3
     only = ", tension only" if isinstance(element, YieldingDissipator) and element.tension_only else ""
     values = (element.position, stiffness, damping, prestress, strength, ratio, breaks)
-    return (_element_kind(element).replace("_", " ") + only, *map(number_for_console, values))
+    return (_element_kind(element).replace("_", " ") + only, *map(console.number, values))
 
 
 def _element_kind(element: BaseElement) -> str:

@@ -11,9 +11,9 @@ import typer
 
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import number_with_noun, shown
+from rockflex.cli import _console as console
 from rockflex.cli import _options as options
-from rockflex.cli._console import number_for_console, print_error, print_line, print_remark, print_rows
-from rockflex.cli._output import check_output_folder, document_to_json, staged_output_folder, versions_in_results
+from rockflex.cli import _output as output
 from rockflex.kinds import KINDS, StudyFindings, StudyKind, study_kind_named
 from rockflex.study.progress import duration_text, progress_bar, row_rate_text
 
@@ -93,7 +93,7 @@ def study_command(kind: StudyKind) -> Callable[..., None]:
 
         table, seconds = _study_with_progress(study, file, out, partial(run_study, study, out, **how))
         if out is not None:
-            print_remark(f"Stored in {out}; rockflex figures {out} draws it")
+            console.print_remark(f"Stored in {out}; rockflex figures {out} draws it")
         failed, unfitted = print_study_summary(kind, study, table, seconds, json=json)
         if strict and (failed or unfitted):
             raise typer.Exit(1)
@@ -132,7 +132,7 @@ def _announce_study(study: "StudySpec", file: Path, workers: int | None, *, json
         "estimated_time": seconds,
     }
     if json:
-        typer.echo(document_to_json(document))
+        typer.echo(output.to_json(document))
         return
     typer.echo(
         f"{file}: {at_most}{number_with_noun(plan.n_runs, 'run')} in {number_with_noun(plan.n_chunks, 'part')}, "
@@ -151,7 +151,7 @@ def _store_study_share(study: "StudySpec", file: Path, out: Path, share: str, ho
     folder, _ = _study_with_progress(
         study, file, out, partial(fill_study, study, out, share=(int(place), int(count)), **how)
     )
-    print_remark(
+    console.print_remark(
         f"Share {share} is stored in {out}: {folder.n_chunks - len(folder.missing())} of {folder.n_chunks} parts"
     )
 
@@ -171,17 +171,19 @@ def _study_with_progress(
 
             def progress(now: "Progress") -> None:
                 if not last and now.kept:
-                    print_remark(f"{now.kept} of {now.parts} parts are already in {out}")
+                    console.print_remark(f"{now.kept} of {now.parts} parts are already in {out}")
                 last[:] = [now]
                 show(now.done, now.parts, row_rate_text(now, perf_counter() - start))
 
             result = work(progress=progress)
     except KeyboardInterrupt as stop:
         done = f"{last[0].done} of {last[0].parts} parts are stored in {out}" if last and out else "Nothing was stored"
-        print_remark(f"Stopped. {done}{'; the same command resumes it' if out else ', because no --out was given'}.")
+        console.print_remark(
+            f"Stopped. {done}{'; the same command resumes it' if out else ', because no --out was given'}."
+        )
         raise typer.Exit(130) from stop
     except ClusterError as error:
-        print_error(str(error))
+        console.print_error(str(error))
         raise typer.Exit(1) from error
     return result, perf_counter() - start
 
@@ -207,21 +209,21 @@ def print_study_summary(
     lifts = count_pivot_lifts(kind.runs(table))
     failed = int(table["error"].notna().sum())
     if json:
-        document = {"versions": versions_in_results(), "study": study.document(), "rows": len(table), "failed": failed}
+        document = {"versions": output.versions(), "study": study.document(), "rows": len(table), "failed": failed}
         document |= {"elapsed": seconds, "unfitted": found.unfitted}
-        typer.echo(document_to_json(document | {"pivot_lifts": [each._asdict() for each in lifts], **tables}))
+        typer.echo(output.to_json(document | {"pivot_lifts": [each._asdict() for each in lifts], **tables}))
     else:
         _print_summary_tables(tables)
         for text in (text for each in lifts for text in each.warnings):
             typer.echo(f"\n{text}")
         typer.echo(f"\n{number_with_noun(len(table), 'row')} in {duration_text(seconds)}")
     for remark in found.remarks:
-        print_remark(remark)
+        console.print_remark(remark)
     for reason in dict.fromkeys(found.unfitted):
-        print_remark(f"No fit: {reason}")
+        console.print_remark(f"No fit: {reason}")
     if failed:
         first = table.loc[table["error"].notna(), "error"].iloc[0]
-        print_remark(f"{number_with_noun(failed, 'row has', 'rows have')} an error, the first: {first}")
+        console.print_remark(f"{number_with_noun(failed, 'row has', 'rows have')} an error, the first: {first}")
     return failed, len(found.unfitted)
 
 
@@ -235,9 +237,9 @@ def _plain_summary_value(value: Any) -> Any:
 def _print_summary_tables(tables: Tables) -> None:
     for place, (title, rows) in enumerate(tables.items()):
         if rows:
-            print_line(("\n" if place else "") + title, style="bold", wrap=True)
+            console.print_line(("\n" if place else "") + title, style="bold", wrap=True)
             words = sum(isinstance(value, str) for value in rows[0].values())
-            print_rows(list(rows[0]), ([_summary_cell(value) for value in row.values()] for row in rows), words)
+            console.print_rows(list(rows[0]), ([_summary_cell(value) for value in row.values()] for row in rows), words)
 
 
 def _summary_cell(value: Any) -> str:
@@ -245,7 +247,7 @@ def _summary_cell(value: Any) -> str:
         return value
     if value is None:
         return "-"
-    return str(int(value)) if isinstance(value, Integral) else number_for_console(float(value))
+    return str(int(value)) if isinstance(value, Integral) else console.number(float(value))
 
 
 FIGURES_EPILOG = """[bold]Examples[/bold]
@@ -281,7 +283,7 @@ def figures(
     from rockflex.study.folders import StudyFolder
 
     target = folder / "figures" if out is None else out
-    check_output_folder(target, force=force)
+    output.check_folder(target, force=force)
     study = StudyFolder.load(folder)
     kind = study_kind_named(study.spec.get("study"))
     if measure is not None and not kind.measured:
@@ -292,9 +294,9 @@ def figures(
     missing = len(study.missing())
     table = study.frame(partial=True)
     if missing:
-        print_remark(f"{missing} of {study.n_chunks} parts are missing: the figures show the others")
+        console.print_remark(f"{missing} of {study.n_chunks} parts are missing: the figures show the others")
     document: dict[str, Any] = {
-        "versions": versions_in_results(),
+        "versions": output.versions(),
         "study": study.spec,
         "parts": study.n_chunks,
         "missing_parts": missing,
@@ -302,8 +304,8 @@ def figures(
     from rockflex.plot import save_figure
 
     undrawn: list[str] = []
-    with staged_output_folder(target, document, force=force) as stage:
-        for stem, draw in kind.figures(study.spec, table, measure or "pgv", print_remark):
+    with output.staged_folder(target, document, force=force) as stage:
+        for stem, draw in kind.figures(study.spec, table, measure or "pgv", console.print_remark):
             try:
                 save_figure(draw(), stage / f"{stem}.{form}")
             except (InputError, SolverError) as error:
@@ -311,5 +313,5 @@ def figures(
         if not any(stage.iterdir()):
             raise InputError(f"No figure of {folder} can be drawn. {' '.join(undrawn)}")
     for reason in undrawn:
-        print_remark(f"No figure {reason}")
-    print_remark(f"Written to {target}")
+        console.print_remark(f"No figure {reason}")
+    console.print_remark(f"Written to {target}")
