@@ -182,7 +182,7 @@ def test_file_names():
     ],
 )
 def test_numbers_in_tables(value, text):
-    assert _console.number_for_console(value) == text
+    assert _console.number(value) == text
 
 
 @pytest.mark.parametrize(("largest", "unit"), [(9.99e6, "kN m"), (1e7, "MN m")])
