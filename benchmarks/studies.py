@@ -85,7 +85,7 @@ def breakdown(studies: dict[str, "rf.CloudStudy | rf.PopulationStudy"]) -> dict[
     begun = time.perf_counter()
     for structure in range(len(matrix.names)):
         for model in range(len(matrix.labels)):
-            matrix.run(structure, 0, model, 1.0)
+            matrix.results([(structure, 0, model, 1.0)])
     engines = time.perf_counter() - begun
     population = studies["population"].plan()
     drawn = [rf.draw_prototype(0, number, len(population.motions)).frame() for number in range(population.n_units)]

@@ -31,7 +31,7 @@ def test_writes_what_the_library_does(tmp_path):
     runs = [rf.simulate(make_frame(), record.scaled(1.5), model) for model in ("MDOF-S", "fixed")]
     same = rf.animate(
         runs, tmp_path / "same.gif", width=320, frames_per_second=5, panels=["rotation", "base_moment"], stop=2.0,
-        title=f"{record.name} × 1.5", structure=make_frame(),
+        title=f"{record.name} × 1.5", structure=make_frame()
     )  # fmt: skip
     with Image.open(file) as image, Image.open(same) as other:
         assert image.n_frames == other.n_frames == 11

@@ -42,7 +42,7 @@ def test_measures_are_those_of_the_motion():
     assert found["options"] == {"periods": [0.5, 2.0], "damping_ratio": 0.02}
 
 
-def record_at2(folder, name, component, peak):
+def record_at2(folder, name, component, peak=0.3):
     """A record file of four samples."""
     text = f"Event, 1/1/2001, Station, {component}\nUNITS OF G\nNPTS= 4, DT= .1\n0 {peak} -.2 0\n"
     (folder / name).write_text(text)
@@ -198,27 +198,15 @@ def test_two_motions_of_one_name(tmp_path, record):
 
 
 def test_unknown_names():
-    with pytest.raises(
-        InputError, match=r"'el-centro' is neither a suite \(fema.*\), nor a record in one.*el-centro-1940\?"
-    ):
+    with pytest.raises(InputError, match=r"'el-centro' is neither a suite \(fema.*\), nor a record in"):
         find_motions(["el-centro"])
     with pytest.raises(InputError, match=r"No motion of the suite 'el-centro-1940' is named 'EW'"):
         find_motions(["el-centro-1940/EW"])
 
 
-def test_nothing_given():
-    with pytest.raises(InputError, match=r"No ground motion was given\. Name a suite \(fema-p695-far-field, "):
-        find_motions([])
-
-
 def test_structure_among_motions():
     with pytest.raises(InputError, match=r"other\.toml is a structure file, and one structure is simulated at a time"):
         find_motions(["el-centro-1940", "other.toml"])
-
-
-def test_units_without_a_file():
-    with pytest.raises(InputError, match="--units, --dt and --on-error are for record files, but no file was given"):
-        find_motions(["el-centro-1940"], units="g")
 
 
 def test_missing_unit_and_step_name_the_options(record):
@@ -243,15 +231,8 @@ def test_options_are_named_where_one_of_several_files_lacks_its_unit(tmp_path, r
     assert caught.value.field == "units"
 
 
-def plain_at2(folder, name, component):
-    """A record file of four samples."""
-    file = folder / name
-    file.write_text(f"Event, 1/1/2001, Station, {component}\nUNITS OF G\nNPTS= 4, DT= .1\n0 .3 -.2 0\n")
-    return str(file)
-
-
 def test_vertical_components_of_a_list_of_files_are_left_out(tmp_path):
-    files = [plain_at2(tmp_path, name, name[2:-4]) for name in ("a-000.at2", "a-090.at2", "a-UP.at2")]
+    files = [str(record_at2(tmp_path, name, name[2:-4])) for name in ("a-000.at2", "a-090.at2", "a-UP.at2")]
     for given in (files, [str(tmp_path)]):
         with pytest.warns(RecordWarning, match=r"^Left out: 1 vertical component, a-UP\.at2\.$"):
             assert names(find_motions(given)) == ["a-000", "a-090"]
@@ -263,10 +244,8 @@ def test_all_files_that_cannot_be_read_are_told(tmp_path):
     bad = [tmp_path / name for name in ("b.at2", "c.at2")]
     for file in bad:
         file.write_text("no record")
-    files = [plain_at2(tmp_path, "a.at2", "90"), *map(str, bad)]
-    with pytest.raises(
-        InputError, match=r"2 of 3 files .*b\.at2: no .*c\.at2: no .*--on-error skip continues with the other files"
-    ) as caught:
+    files = [str(record_at2(tmp_path, "a.at2", "90")), *map(str, bad)]
+    with pytest.raises(InputError, match=r"2 of 3 files .*b\.at2: no .*c\.at2: no .*--on-error skip") as caught:
         find_motions(files)
     assert "on_error" not in str(caught.value)
     with pytest.warns(RecordWarning, match=r"^Left out: 2 of 3 files cannot be read\."):
@@ -276,15 +255,13 @@ def test_all_files_that_cannot_be_read_are_told(tmp_path):
 
 
 def test_a_vertical_file_belongs_to_one_motion(tmp_path):
-    along, upwards = plain_at2(tmp_path, "a-000.at2", "0"), plain_at2(tmp_path, "a-UP.at2", "UP")
+    along, upwards = str(record_at2(tmp_path, "a-000.at2", "0")), str(record_at2(tmp_path, "a-UP.at2", "UP"))
     (found,) = find_motions([along], vertical=upwards)
     assert found.motion == read_motion(along, vertical=upwards)
     assert found.describe()["pva"] == found.motion.pva
     assert "pva" not in find_motions([along])[0].describe()
-    other = plain_at2(tmp_path, "a-090.at2", "90")
-    with pytest.raises(
-        InputError, match=r"a-UP\.at2 is the vertical component of one motion, but 2 were given\. Name one"
-    ):
+    other = str(record_at2(tmp_path, "a-090.at2", "90"))
+    with pytest.raises(InputError, match=r"a-UP\.at2 is the vertical component of one motion, but 2 were given\. Name"):
         find_motions([along, other], vertical=upwards)
     paired = find_motions([along, other, upwards], vertical="pair")
     assert [item.motion.vertical.tolist() for item in paired] == [found.motion.vertical.tolist()] * 2

@@ -19,13 +19,7 @@ import rockflex
 from rockflex import InputError
 from rockflex._number_format import moment_unit
 from rockflex.cli import _console, app
-from rockflex.cli._output import (
-    check_output_folder,
-    document_to_json,
-    file_stems,
-    staged_output_folder,
-    versions_in_results,
-)
+from rockflex.cli import _output as output
 from rockflex.study import progress
 
 
@@ -34,7 +28,7 @@ def contents(folder):
 
 
 def write(folder, files, *, force=False):
-    with staged_output_folder(folder, {"versions": versions_in_results()}, force=force) as stage:
+    with output.staged_folder(folder, {"versions": output.versions()}, force=force) as stage:
         for name, text in files.items():
             (stage / name).write_text(text)
 
@@ -57,7 +51,7 @@ def test_json_is_strict():
     def refuse(token):
         pytest.fail(f"{token} is not JSON")
 
-    text = document_to_json(document)
+    text = output.to_json(document)
     assert text.isascii()
     assert json.loads(text, parse_constant=refuse) == {
         "nan": None,
@@ -72,7 +66,7 @@ def test_json_is_strict():
 
 def test_numbers_survive_json():
     values = np.random.default_rng(1).normal(size=100) * 10.0 ** np.arange(-50, 50)
-    assert json.loads(document_to_json({"values": values}))["values"] == values.tolist()
+    assert json.loads(output.to_json({"values": values}))["values"] == values.tolist()
 
 
 def test_new_folder_gets_everything_and_a_summary(tmp_path):
@@ -98,7 +92,7 @@ def test_nothing_is_left_of_a_failure(tmp_path, exists):
     before = contents(folder) if exists else None
 
     def fail():
-        with staged_output_folder(folder, {}, force=True) as stage:
+        with output.staged_folder(folder, {}, force=True) as stage:
             (stage / "x.csv").write_text("half")
             raise KeyboardInterrupt
 
@@ -110,7 +104,7 @@ def test_nothing_is_left_of_a_failure(tmp_path, exists):
 
 
 def test_document_that_is_not_json_leaves_nothing(tmp_path):
-    with pytest.raises(TypeError), staged_output_folder(tmp_path / "out", {"x": object()}, force=False) as stage:
+    with pytest.raises(TypeError), output.staged_folder(tmp_path / "out", {"x": object()}, force=False) as stage:
         (stage / "x.csv").write_text("half")
     assert list(tmp_path.iterdir()) == []
 
@@ -141,7 +135,7 @@ def test_summary_cannot_reach_out_of_its_folder(tmp_path):
     (tmp_path / "outside.csv").write_text("mine")
     folder = tmp_path / "out"
     write(folder, {"x.csv": "old"})
-    document = {"versions": versions_in_results(), "files": ["../outside.csv", 3, "x.csv"]}
+    document = {"versions": output.versions(), "files": ["../outside.csv", 3, "x.csv"]}
     (folder / "summary.json").write_text(json.dumps(document))
     write(folder, {"y.csv": "new"}, force=True)
     assert (tmp_path / "outside.csv").read_text() == "mine"
@@ -152,9 +146,9 @@ def test_where_results_cannot_go(tmp_path):
     file = tmp_path / "file"
     file.touch()
     with pytest.raises(InputError, match=r"--out .*file is a file\. Give a folder; it is created if it does not exist"):
-        check_output_folder(file, force=True)
+        output.check_folder(file, force=True)
     with pytest.raises(InputError, match=r"--force was given without --out, to which it belongs\."):
-        check_output_folder(None, force=True)
+        output.check_folder(None, force=True)
     with pytest.raises(InputError, match=r"Cannot write to .*file/out: .*\. Give a folder that can be written to\."):
         write(file / "out", {})
 
@@ -168,7 +162,7 @@ def test_new_folder_has_ordinary_permissions(tmp_path):
 
 
 def test_file_names():
-    stems = file_stems(["FF-1-a", "a/b: c", "a/b? c", "A_b_c", "..", "Kōbe 1995"])
+    stems = output.file_stems(["FF-1-a", "a/b: c", "a/b? c", "A_b_c", "..", "Kōbe 1995"])
     assert stems == ["FF-1-a", "a_b_c", "a_b_c-2", "A_b_c-3", "motion", "Kōbe_1995"]
 
 
@@ -188,7 +182,7 @@ def test_file_names():
     ],
 )
 def test_numbers_in_tables(value, text):
-    assert _console.number_for_console(value) == text
+    assert _console.number(value) == text
 
 
 @pytest.mark.parametrize(("largest", "unit"), [(9.99e6, "kN m"), (1e7, "MN m")])
@@ -255,6 +249,7 @@ def test_entry_point_is_main():
         (["run"], ["--impact", "--restitution", "--yield-displacement", "(Eqs. 37-38)", "--friction 0.5"]),
         (["run"], ["2DOF-C-SI", "1DOF-fixed-BW", "rigid-C", "--initial-rotation"]),
         (["modes"], ["--modes", "--stiffness-ratio", "Examples", "rockflex modes structure.toml --modes 3 --json"]),
+        (["ida"], ["--dask", "Examples", "rockflex ida study.toml --dry-run"]),
         (["motion"], ["--period", "Examples", "rockflex motion record.csv --units g --dt 0.01 --json"]),
     ],
 )

@@ -32,6 +32,10 @@ def document(*arguments):
     return json.loads(result.stdout)
 
 
+def runs_of(*arguments):
+    return document(*arguments)["runs"]
+
+
 def assert_is_run(row, model, motion=MOTION, **options):
     expected = rf.simulate(FRAME, motion, model, output="peaks", **options).peaks()
     assert {name: row[name] for name in expected} == expected
@@ -115,19 +119,6 @@ def test_free_vibration_with_and_without_a_record():
     assert settled["runs"][0]["settled"] is True
 
 
-def test_many_runs_of_elastic_and_yielding_models_in_batches(monkeypatch):
-    flags = ("--model", "2DOF-S-BW,2DOF-S,1DOF-fixed-BW", *YIELDING, "--scale", 1, "--scale", 0.5)
-    arguments = (STRUCTURE, "fema-p695-near-field-pulse", *flags, "--impact", "complete")
-    many = document(*arguments)["runs"]
-    monkeypatch.setattr(_batch, "MAX_TIMED_RUNS", 10**6)
-    few = document(*arguments)["runs"]
-    for rows in (many, few):
-        for row in rows:
-            del row["run_time"]
-    assert len(many) == 168
-    assert many == few
-
-
 def test_what_is_assumed_stands_above_the_table():
     flags = ("--impact", "restitution", "--restitution", 0.7, *YIELDING, "--initial-rotation", 0.01)
     lines = invoke(STRUCTURE, RECORD, *flags).stdout.splitlines()
@@ -172,64 +163,25 @@ def test_a_hysteresis_in_the_file_that_no_model_asks_for_is_told(write):
 @pytest.mark.parametrize(
     ("flags", "said"),
     [
-        (
-            ["--impact", "elastic"],
-            '--impact must be "simplified", "complete" or "restitution", but \'elastic\' was given.',
-        ),
-        (
-            ["--impact", "restitution"],
-            'The impact law "restitution" needs its coefficient. Give restitution, a number from 0 to 1. On the '
-            "command line this is --restitution.",
-        ),
-        (
-            ["--restitution", 0.5],
-            "A restitution of 0.5 was given, but the impact law is the model's own. Choose the impact law",
-        ),
+        (["--impact", "elastic"], '--impact must be "simplified", "complete" or "restitution", but \'elastic\''),
+        (["--impact", "restitution"], 'The impact law "restitution" needs its coefficient. Give restitution, a number'),
+        (["--restitution", 0.5], "A restitution of 0.5 was given, but the impact law is the model's own. Choose the"),
         (["--impact", "complete", "--restitution", 0.5], "but the impact law is 'complete'. Choose the impact law"),
-        (
-            ["--impact", "restitution", "--restitution", 1.5],
-            "The restitution e must lie from 0 to 1, but 1.5 was given",
-        ),
+        (["--impact", "restitution", "--restitution", 1.5], "The restitution e must lie from 0 to 1, but 1.5 was"),
         (["--bw-exponent", 4], "The hysteresis needs its yield displacement. Give --yield-displacement DY in m."),
-        (
-            ["--yield-displacement", -1],
-            "--yield-displacement must be a positive, finite number in m, but -1.0 was given",
-        ),
+        (["--yield-displacement", -1], "--yield-displacement must be a positive, finite number in m, but -1.0 was"),
         ([*YIELDING, "--bw-exponent", 0.5], "--bw-exponent must be at least 1, but 0.5 was given."),
-        (
-            [*YIELDING, "--model", "2DOF-S,MDOF-S"],
-            "A hysteresis was given, but 2DOF-S, MDOF-S do not yield. Models whose label ends in -BW do, such as "
-            "2DOF-S-BW, 2DOF-C-BW or 1DOF-fixed-BW: add one, or leave --yield-displacement out.",
-        ),
-        (
-            [*YIELDING, "--model", "MDOF-S-BW"],
-            "bouc_wen applies to models with one mode, but MDOF-S-BW has 5. Use 2DOF-S-BW, or leave it out.",
-        ),
-        (
-            [*YIELDING, "--model", "fixed-BW"],
-            "bouc_wen applies to models with one mode, but fixed-BW has 5. Use 1DOF-fixed-BW, or leave it out.",
-        ),
+        ([*YIELDING, "--model", "2DOF-S,MDOF-S"], "A hysteresis was given, but 2DOF-S, MDOF-S do not yield. Models"),
+        ([*YIELDING, "--model", "MDOF-S-BW"], "bouc_wen applies to models with one mode, but MDOF-S-BW has 5. Use"),
+        ([*YIELDING, "--model", "fixed-BW"], "bouc_wen applies to models with one mode, but fixed-BW has 5. Use"),
         ([*YIELDING, "--model", "3DOF-S-BW"], "A Bouc-Wen superstructure has one mode, but 2 were requested."),
-        (
-            ["--model", "2DOF-S-BW"],
-            "2DOF-S-BW needs its hysteresis. Give --yield-displacement, or [bouc_wen] in the structure file.",
-        ),
-        (
-            [*YIELDING, "--free-vibration", "settle"],
-            'free_vibration="settle" cannot tell when the hysteretic spring of 2DOF-S-BW is at rest. Give the free '
-            "vibration in seconds. On the command line this is --free-vibration.",
-        ),
+        (["--model", "2DOF-S-BW"], "2DOF-S-BW needs its hysteresis. Give --yield-displacement, or [bouc_wen] in the"),
+        ([*YIELDING, "--free-vibration", "settle"], 'free_vibration="settle" cannot tell when the hysteretic spring'),
         (["--initial-rotation", 0.1, "--model", "fixed"], "fixed has a base that cannot lift, but rotation=0.1"),
-        (
-            ["--initial-rotation", 2],
-            "--initial-rotation must be a number between -1.5708 and 1.5708 rad, but 2.0 was given.",
-        ),
+        (["--initial-rotation", 2], "--initial-rotation must be a number between -1.5708 and 1.5708 rad, but 2.0 was"),
         (["--model", "3DOF-C"], "3DOF-C has no impact law of its own: Eq. 19 is one equation for 2 velocities."),
         (["--friction", 0], "--friction must be a friction coefficient above zero, such as 0.5, but 0.0 was given."),
-        (
-            ["--friction", "nan"],
-            "--friction must be a friction coefficient above zero, such as 0.5, but nan was given.",
-        ),
+        (["--friction", "nan"], "--friction must be a friction coefficient above zero, such as 0.5, but nan was"),
     ],
 )
 def test_bad_input(flags, said):
@@ -243,27 +195,16 @@ def test_bad_input(flags, said):
 def test_free_vibration_of_no_length():
     result = invoke(STRUCTURE, "--initial-rotation", 0.1)
     assert result.exit_code == 2
-    assert result.stderr == (
-        "Error: A free vibration from --initial-rotation needs a ground motion or a length. Give --free-vibration in "
-        "seconds, or settle.\n"
-    )
+    assert result.stderr.startswith("Error: A free vibration from --initial-rotation needs a ground motion or a")
 
 
 @pytest.mark.parametrize(
     ("head", "tail", "said"),
     [
         ("", "[bouc_wen]\nyield_displacement = 0.05\ngama = 0.4", "[bouc_wen] gama is not known; there are yield_disp"),
-        (
-            "",
-            "[bouc_wen]\nexponent = 4",
-            "[bouc_wen] yield_displacement is missing: D_y of the first mode, a number in m.",
-        ),
+        ("", "[bouc_wen]\nexponent = 4", "[bouc_wen] yield_displacement is missing: D_y of the first mode, a number"),
         ("", "[bouc_wen]\nyield_displacement = -0.05", ", [bouc_wen]: yield_displacement must be a positive, finite"),
-        (
-            'impact = "elastic"',
-            "",
-            'impact must be "simplified", "complete" or "restitution", but \'elastic\' was given',
-        ),
+        ('impact = "elastic"', "", 'impact must be "simplified", "complete" or "restitution", but \'elastic\' was'),
         ("restitution = true", "", "restitution must be a number from 0 to 1, but True was given."),
         ('impact = "restitution"', "", "needs its coefficient. Give restitution, a number from 0 to 1."),
         ("bouc_wen = 0.05", "", "bouc_wen must be a table, but 0.05 was given."),
@@ -294,16 +235,6 @@ def made(monkeypatch):
     return grounds
 
 
-@pytest.fixture
-def structure_with(tmp_path):
-    def file(tail):
-        path = tmp_path / "structure.toml"
-        path.write_text(f"{Path(STRUCTURE).read_text('utf-8')}\n{tail}", "utf-8")
-        return path
-
-    return file
-
-
 @pytest.mark.parametrize(
     ("flags", "ground", "options"),
     [
@@ -312,16 +243,16 @@ def structure_with(tmp_path):
             [*BED, *INERTIA, "--heave-damping-ratio", 0.3],
             lambda: rf.Ground(springs=rf.winkler_bed(B, 3.0, 2e8).damped(0.3, MASS), base_inertia=2e4),
             {"base_inertia": 2e4,
-             "bed": {"breadth": 3.0, "subgrade_modulus": 2e8, "heave_damping_ratio": 0.3, "n": 20}},
+             "bed": {"breadth": 3.0, "subgrade_modulus": 2e8, "heave_damping_ratio": 0.3, "n": 20}}
         ),
         (
             ["--breadth", 2, "--shear-modulus", 9e7, "--poisson-ratio", 0.3, "--mat-mass", 4e4,
              "--ground-friction", "inf"],
             lambda: rf.Ground(float("inf"), rf.asce41_bed(B, 2.0, 9e7, 0.3), 4e4 * B**2 / 3.0),
             {"friction": float("inf"), "mat_mass": 4e4,
-             "bed": {"breadth": 2.0, "shear_modulus": 9e7, "poisson_ratio": 0.3, "n": 20}},
-        ),
-    ],
+             "bed": {"breadth": 2.0, "shear_modulus": 9e7, "poisson_ratio": 0.3, "n": 20}}
+        )
+    ]
 )  # fmt: skip
 def test_flags(made, flags, ground, options):
     found = document(STRUCTURE, RECORD, *flags)
@@ -330,14 +261,12 @@ def test_flags(made, flags, ground, options):
     assert given.springs == ground().springs
     assert given.base_inertia == (None if given.springs is None else pytest.approx(ground().base_inertia, rel=1e-15))
     assert found["options"]["models"] == ["2DOF-S", "MDOF-S"]
-    if options.get("friction") != float("inf"):  # which JSON cannot structure_with
+    if options.get("friction") != float("inf"):  # which JSON cannot write
         assert found["options"]["ground"] == options
 
 
-def test_a_file_says_the_same_and_flags_come_first(made, structure_with):
-    file = structure_with(
-        "[ground]\nfriction = 0.3\nbase_inertia = 2e4\nbed = { breadth = 3.0, subgrade_modulus = 2e8 }"
-    )
+def test_a_file_says_the_same_and_flags_come_first(made, write):
+    file = write("", "[ground]\nfriction = 0.3\nbase_inertia = 2e4\nbed = { breadth = 3.0, subgrade_modulus = 2e8 }")
     by_file = document(file, RECORD, "--model", "2DOF-S")["options"]
     by_flags = document(STRUCTURE, RECORD, "--model", "2DOF-S", *BED, *INERTIA, "--ground-friction", 0.3)["options"]
     assert by_file == by_flags
@@ -349,9 +278,9 @@ def test_a_file_says_the_same_and_flags_come_first(made, structure_with):
     assert set(made) == {rf.Ground(0.5, springs, 6e4 * (2.0 * B) ** 2 / 12.0)}
 
 
-def test_the_ground_is_above_the_table(made, structure_with):
-    file = structure_with(
-        "[ground]\nfriction = [0.3, 0.4]\nbase_inertia = 2e4\nsprings = { stiffness = 5e8, damping = 4e6 }"
+def test_the_ground_is_above_the_table(made, write):
+    file = write(
+        "", "[ground]\nfriction = [0.3, 0.4]\nbase_inertia = 2e4\nsprings = { stiffness = 5e8, damping = 4e6 }"
     )
     lines = invoke(file, RECORD).stdout.splitlines()
     springs = rf.Springs([-B, B], 5e8, 4e6)
@@ -379,18 +308,15 @@ def test_usual_models_on_a_ground(made, tmp_path):
 @pytest.mark.parametrize(
     ("flags", "message"),
     [
-        (["--ground-friction", -0.3], "[ground]: friction must be a positive Coulomb coefficient, such as 0.4, or "
-         "infinity for no sliding, but -0.3 was given. On the command line this is --ground-friction."),
+        (["--ground-friction", -0.3], "[ground]: friction must be a positive Coulomb coefficient, such as 0.4, or"),
         ([*BED], "[ground]: A base without rotary inertia on springs has no inertia"),
-        (["--subgrade-modulus", 2e8, *INERTIA], "A bed of springs needs the breadth of the base. Give --breadth M in "
-         "m."),
+        (["--subgrade-modulus", 2e8, *INERTIA], "A bed of springs needs the breadth of the base. Give --breadth M in"),
         (["--breadth", 3, *INERTIA], "[ground.bed]: A bed needs its stiffness. Give subgrade_modulus in N/m³;"),
-        (["--breadth", 3, "--subgrade-modulus", -1, *INERTIA], "[ground.bed]: subgrade_modulus must be a positive, "
-         "finite number in N/m³, but -1.0 was given. On the command line this is --subgrade-modulus."),
+        (["--breadth", 3, "--subgrade-modulus", -1, *INERTIA], "[ground.bed]: subgrade_modulus must be a positive,"),
         ([*INERTIA], "[ground]: Ground needs friction, springs or both"),
         ([*BED, *INERTIA, "--model", "MDOF-S,fixed"], "Springs need a simplified model"),
-        ([*BED, *INERTIA, "--impact", "simplified"], "No impact law acts on springs"),
-    ],
+        ([*BED, *INERTIA, "--impact", "simplified"], "No impact law acts on springs")
+    ]
 )  # fmt: skip
 def test_messages(made, flags, message):
     result = invoke(STRUCTURE, RECORD, *flags)
@@ -398,13 +324,13 @@ def test_messages(made, flags, message):
     assert message in " ".join(result.stderr.split())
 
 
-def test_a_message_about_a_file_names_it(structure_with):
-    file = structure_with("[ground]\nfriction = -0.4")
+def test_a_message_about_a_file_names_it(write):
+    file = write("", "[ground]\nfriction = -0.4")
     assert f"{file}, [ground]: friction must be" in "".join(invoke(file, RECORD).stderr.split("\n"))
 
 
-def test_springs_of_the_file_exclude_a_bed_of_flags(structure_with):
-    file = structure_with("[ground]\nbase_inertia = 2e4\nsprings = { stiffness = 5e8 }")
+def test_springs_of_the_file_exclude_a_bed_of_flags(write):
+    file = write("", "[ground]\nbase_inertia = 2e4\nsprings = { stiffness = 5e8 }")
     assert (
         "The ground of the structure file has springs, and the command line gives a bed (--breadth, "
         "--subgrade-modulus). Leave one of them out."
@@ -482,15 +408,9 @@ EL_CENTRO = rf.load_suite("el-centro-1940")[0]
 NAMES = ["required_friction", "required_friction_excluding_impacts", "sliding_time"]
 
 
-def rows_of(*arguments):
-    result = invoke(*arguments, "--json")
-    assert result.exit_code == 0, result.stderr
-    return json.loads(result.stdout)["runs"]
-
-
 def test_document_has_what_the_library_finds():
     models = "2DOF-C,MDOF-S,rigid,fixed"
-    rows = rows_of(STRUCTURE, "el-centro-1940", "--model", models, "--friction", 0.2, "--scale", 1, "--scale", 1.5)
+    rows = runs_of(STRUCTURE, "el-centro-1940", "--model", models, "--friction", 0.2, "--scale", 1, "--scale", 1.5)
     for row in rows:
         run = rf.simulate(FRAME, EL_CENTRO.scaled(row["scale"]), row["model"])
         assert row["required_friction"] == run.required_friction
@@ -500,7 +420,7 @@ def test_document_has_what_the_library_finds():
 
 
 def test_without_the_option_nothing_is_said():
-    row = rows_of(STRUCTURE, "el-centro-1940", "--model", "2DOF-S")[0]
+    row = runs_of(STRUCTURE, "el-centro-1940", "--model", "2DOF-S")[0]
     assert not set(NAMES) & set(row)
     assert "μ" not in invoke(STRUCTURE, "el-centro-1940", "--model", "2DOF-S").stdout
 
@@ -528,7 +448,7 @@ def test_table():
 
 def test_a_base_that_loses_contact():
     flags = ("--model", "2DOF-C", "--impact", "restitution", "--restitution", 0.9, "--friction", 0.5)
-    row = rows_of(STRUCTURE, "el-centro-1940", *flags)[0]
+    row = runs_of(STRUCTURE, "el-centro-1940", *flags)[0]
     assert row["required_friction"] == "inf"
     assert row["sliding_time"] == pytest.approx(2.15035, abs=1e-4)
     assert "inf" in invoke(STRUCTURE, "el-centro-1940", *flags).stdout
@@ -562,9 +482,9 @@ def test_histories_have_no_friction_unless_asked(tmp_path):
 def test_many_runs(monkeypatch):
     scales = [item for k in range(22) for item in ("--scale", 0.5 + k / 16)]
     arguments = (STRUCTURE, "el-centro-1940", *scales, "--model", "2DOF-S,rigid,fixed", "--friction", 0.4)
-    many = rows_of(*arguments)
+    many = runs_of(*arguments)
     monkeypatch.setattr(_batch, "MAX_TIMED_RUNS", 10**6)
-    few = rows_of(*arguments)
+    few = runs_of(*arguments)
     assert len(many) == 66
     assert {row.pop("run_time") for row in many} == {None}
     assert all(row.pop("run_time") > 0.0 for row in few)
@@ -582,7 +502,7 @@ def test_a_run_that_cannot_be_solved(monkeypatch):
 
     monkeypatch.setattr(PreparedCase, "run", flaky)
     arguments = (STRUCTURE, "el-centro-1940", "--friction", 0.4)
-    assert [rows_of(*arguments)[1][name] for name in NAMES] == [None, None, None]
+    assert [runs_of(*arguments)[1][name] for name in NAMES] == [None, None, None]
     last = [line.split() for line in invoke(*arguments).stdout.splitlines() if "MDOF-S" in line][-1]
     assert last[2:] == ["-", "-", "-"]
 

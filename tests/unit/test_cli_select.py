@@ -65,8 +65,8 @@ def test_document_is_the_selection():
          rf.ec8_spectrum(2.0, "E", 2, importance=1.2, damping_ratio=0.02)),
         ("asce7:sds=1g,sd1=0.6g,tl=8", rf.asce7_spectrum(G, 0.6 * G, 8.0)),
         ("asce7:sds=9m/s2,sd1=5m/s2,tl=8,mce=yes", rf.asce7_spectrum(9.0, 5.0, 8.0, mce=True)),
-        ("asce7:ss=1.5g,s1=0.6g,site=default,tl=8,mce=no", rf.asce7_site_spectrum(1.5 * G, 0.6 * G, "default", 8.0)),
-    ],
+        ("asce7:ss=1.5g,s1=0.6g,site=default,tl=8,mce=no", rf.asce7_site_spectrum(1.5 * G, 0.6 * G, "default", 8.0))
+    ]
 )  # fmt: skip
 def test_targets_of_codes(text, target):
     arguments = (
@@ -141,7 +141,7 @@ def test_files(tmp_path):
     assert "6 scaled records written to" in result.stderr
     chosen = rf.load_suite(SUITE).select(rf.ec8_spectrum(0.25 * G, "C"), 3, [0.2, 0.5, 1.0], measure="rotd50")
     assert sorted(file.name for file in out.iterdir()) == [
-        "selection.csv", "selection.png", "spectra.csv", "summary.json",
+        "selection.csv", "selection.png", "spectra.csv", "summary.json"
     ]  # fmt: skip
     table = pd.read_csv(out / "selection.csv")
     assert table["record"].tolist() == [" + ".join(names) for names in chosen.names]
@@ -182,8 +182,7 @@ def test_scaled_records_keep_their_origin_and_their_scale(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("line", "word"),
-    [("scale: twice", "scale"), ("year: 1999.5", "year"), ("direction: sideways", "direction")],
+    ("line", "word"), [("scale: twice", "scale"), ("year: 1999.5", "year"), ("direction: sideways", "direction")]
 )
 def test_a_fact_of_a_written_record_that_was_spoilt(tmp_path, line, word):
     (tmp_path / "a.csv").write_text(f"# Record of rockflex\n# {line}\ntime (s),acc (m/s2)\n0,0\n0.1,1\n0.2,0\n")
@@ -197,7 +196,7 @@ def test_records_keep_their_vertical_component(tmp_path):
         (tmp_path / name).write_text(text)
     result = invoke(
         tmp_path / "A-000.AT2", "--vertical", tmp_path / "A-UP.AT2", *USUAL[1:3], "--count", 1, "--periods", "0.2,2",
-        "--limits", "0.01,100", "--records", tmp_path / "scaled",
+        "--limits", "0.01,100", "--records", tmp_path / "scaled"
     )  # fmt: skip
     assert result.exit_code == 0
     assert "1 scaled record written" in result.stderr
@@ -209,23 +208,14 @@ def test_records_keep_their_vertical_component(tmp_path):
     ("arguments", "text"),
     [
         (("--target", "ec9:ag=1"), "--target 'ec9:ag=1' is neither a file nor a code. Write ec8:ag=0.25g,ground=C, or"),
-        (
-            ("--target", "ec8:"),
-            "--target ec8:...: ag is missing. The keys are ag, and ground, type, importance, damping",
-        ),
+        (("--target", "ec8:"), "--target ec8:...: ag is missing. The keys are ag, and ground, type, importance,"),
         (("--target", "ec8:ag=1,soil=C"), "--target ec8:...: 'soil' is not known. The keys are ag, and ground"),
-        (
-            ("--target", "ec8-2024:s_alpha=5m/s²,s_beta=200gal,f_beta=2"),
-            "--target ec8-2024:...: give both f_alpha and f_beta, or",
-        ),
+        (("--target", "ec8-2024:s_alpha=5m/s²,s_beta=200gal,f_beta=2"), "--target ec8-2024:...: give both f_alpha and"),
         (("--target", "ec8:ag"), "--target ec8:...: 'ag' has no value. Write each key once, as in ec8:key=value"),
         (("--target", "ec8:ag=1,ag=2"), "--target ec8:...: 'ag' occurs twice"),
         (("--target", "ec8:ag=0.2 miles"), "--target ec8: ag must be a number with its unit"),
         (("--target", "ec8:ag=1g,ground=Z"), "ground must be one of A, B, C, D, E"),
-        (
-            ("--target", "asce7:sds=1"),
-            "--target asce7:...: sd1 is missing. The keys are sds, sd1, tl, and mce if wanted.",
-        ),
+        (("--target", "asce7:sds=1"), "--target asce7:...: sd1 is missing. The keys are sds, sd1, tl, and mce if"),
         (("--target", "asce7:ss=1"), "--target asce7:...: s1 is missing. The keys are ss, s1, site, tl, and mce"),
         (("--target", "asce7:sds=1g,sd1=1g,tl=8,mce=1"), "--target asce7: mce must be yes or no, but '1' was given"),
         (("--damping", 0.02), "--damping is for a target from a file. Write ec8:...,damping=0.02"),

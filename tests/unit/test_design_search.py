@@ -282,59 +282,34 @@ def test_a_surface_passes_through_linear_margins_and_smooths_noise():
         (lambda: rf.DesignCost(), "cost: all unit costs are zero, so that no design is cheaper than another."),
         (lambda: rf.DesignCost(-1.0), "half_width must be a zero or positive, finite number in cost/m, but -1.0"),
         (lambda: rf.DesignSearch([1.0]), "There is only one design to look at. Give two values or more of half_widths"),
-        (
-            lambda: rf.DesignSearch([1.0, 2.0], [-1.0]),
-            "tendon_factors must be one or more different factors, zero or positive, on the forces of the structure",
-        ),
+        (lambda: rf.DesignSearch([1.0, 2.0], [-1.0]), "tendon_factors must be one or more different factors, zero or"),
         (
             lambda: rf.DesignSearch([1.0, 2.0], {"smallest": 1.0, "largest": 0.5, "count": 3}),
             "tendon_factors must be a list of factors, or a range {smallest = 0.5, largest = 2.0, count = 4} of two to",
         ),
-        (
-            lambda: rf.DesignSearch([1.0, 2.0], tendon_scaling="area"),
-            'tendon_scaling must be "size" or "force", but \'area\' was given.',
-        ),
-        (
-            lambda: rf.DesignSearch([1.0, 2.0], range(1, 30), range(1, 30)),
-            "The search would try 1714 designs, but at most 1000 are possible: 1682 of the values given, and 8 in each "
-            "of 4 refinements.",
-        ),
+        (lambda: rf.DesignSearch([1.0, 2.0], tendon_scaling="area"), 'tendon_scaling must be "size" or "force", but'),
+        (lambda: rf.DesignSearch([1.0, 2.0], range(1, 30), range(1, 30)), "The search would try 1714 designs, but at"),
         (
             lambda: rf.DesignSearch(range(1, 10), range(9), range(9), refinements=8),
             "The finest grid would have 8602523649 designs",
         ),
         (lambda: rf.DesignSearch([1.0, 2.0], refinements=9), "refinements must be a whole number from 0 to 8, but 9"),
         (lambda: rf.Requirement("half", 0.1, at=0.5), "limit must be a rotation from 0.0001 rad to below π/2"),
-        (
-            lambda: rf.Requirement("max_base_moment > x", 0.1, at=0.5),
-            "limit: the bound of max_base_moment must be zero or a positive number, but 'max_base_moment > x' was",
-        ),
+        (lambda: rf.Requirement("max_base_moment > x", 0.1, at=0.5), "limit: the bound of max_base_moment must be"),
         (lambda: rf.Requirement(0.02, 1.5, at=0.5), "target must lie in [0, 1), but 1.5 was given."),
         (lambda: rf.Requirement(0.02, 0.1), "Give either at, a level of the measure, or hazard, a HazardCurve in it."),
         (lambda: search([]), "requirements must be one or more Requirement objects, each with another limit or level"),
         (lambda: search([SLOW, SLOW]), "requirements must be one or more Requirement objects, each with another limit"),
         (lambda: search([0.02]), "requirements[0] is float. Expected a Requirement."),
-        (
-            lambda: search(structure=BARE),
-            "tendon_factors were given, but the structure has no tendon that they could multiply.",
-        ),
-        (
-            lambda: search(structure=rf.Restrained(BARE, ELEMENTS[0])),
-            "dissipator_factors were given, but the structure has no yielding dissipator or friction damper that they",
-        ),
-        (
-            lambda: rf.search_design(STRUCTURE, SUITE, SEARCH, [SLOW], COST, "fixed"),
-            "models: fixed has a fixed base, so the base width has no effect.",
-        ),
+        (lambda: search(structure=BARE), "tendon_factors were given, but the structure has no tendon that they could"),
+        (lambda: search(structure=rf.Restrained(BARE, ELEMENTS[0])), "dissipator_factors were given, but the"),
+        (lambda: rf.search_design(STRUCTURE, SUITE, SEARCH, [SLOW], COST, "fixed"), "models: fixed has a fixed base,"),
         (
             lambda: search(space=rf.DesignSearch([1.0, 2.0], [1.0, 5.0], tendon_scaling="force")),
             "B = 1 m, tendons times 5, dissipators times 1: initial_force must not exceed yield_force,",
         ),
         (lambda: search([rf.Requirement("2.5 nominal", 0.1, at=0.5)], rf.DesignSearch([1.0, 9.0])), "B = 9 m: limit "),
-        (
-            lambda: rf.best_design(pd.DataFrame({"a": [1]}), [SLOW], COST),
-            "The table lacks half_width, tendon_factor, dissipator_factor, aspect_ratio, prestress, dissipator_force,",
-        ),
+        (lambda: rf.best_design(pd.DataFrame({"a": [1]}), [SLOW], COST), "The table lacks half_width, tendon_factor,"),
     ],
 )
 def test_damaged_arguments_of_a_search(call, message):
@@ -477,18 +452,9 @@ def test_designs_without_a_search_are_the_same_documents_as_before():
         ({"search": {}}, "[search] cost is missing: a table of half_width, prestress and dissipator_force"),
         ({"search": {"cost": {}}}, "cost: all unit costs are zero"),
         ({"search": {"cost": {"width": 1.0}}}, "[search.cost] width is not known; there are half_width, prestress,"),
-        (
-            {"search": SEARCHED["search"] | {"tendon_factors": {"smallest": 1.0}}},
-            "tendon_factors must be a list of factors, or a range {smallest = 0.5, largest = 2.0, count = 4}",
-        ),
-        (
-            {"search": SEARCHED["search"] | {"tendon_factors": "all"}},
-            "[search] tendon_factors must be a list of factors on the tendons of the structure, or a range",
-        ),
-        (
-            {"search": SEARCHED["search"] | {"tendon_scaling": "area"}},
-            '[search] tendon_scaling must be "size" (force and stiffness) or "force", but \'area\' was given.',
-        ),
+        ({"search": SEARCHED["search"] | {"tendon_factors": {"smallest": 1.0}}}, "tendon_factors must be a list of"),
+        ({"search": SEARCHED["search"] | {"tendon_factors": "all"}}, "[search] tendon_factors must be a list of"),
+        ({"search": SEARCHED["search"] | {"tendon_scaling": "area"}}, '[search] tendon_scaling must be "size" (force'),
     ],
 )
 def test_a_search_that_is_wrong(changes, message):
@@ -501,17 +467,13 @@ def test_a_search_that_is_wrong(changes, message):
     ("changes", "message"),
     [
         ({"models": ["2DOF-S", "MDOF-S"]}, "models: a search needs one model, but 2DOF-S, MDOF-S were given."),
-        (
-            {"search": SEARCHED["search"] | {"dissipator_factors": [0.0, 1.0]}},
-            "dissipator_factors were given, but the structure has no yielding dissipator or friction damper that they "
-            "could multiply.",
-        ),
+        ({"search": SEARCHED["search"] | {"dissipator_factors": [0.0, 1.0]}}, "dissipator_factors were given, but the"),
     ],
 )
 def test_a_search_that_cannot_be_planned(changes, message):
     with pytest.raises(rf.InputError) as caught:
         DesignStudy(**SEARCHED | changes).plan()
-    assert str(caught.value) == message
+    assert str(caught.value).startswith(message)
 
 
 # The command line

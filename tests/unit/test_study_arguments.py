@@ -199,7 +199,6 @@ EXPECTED_STRUCTURE = "a structure such as a Frame, or RockingProperties"
         ({"motions": {}}, "motions is empty. Give at least one."),
         ({"structures": {1: SUITE}}, "The names of structures must be texts, but 1 was given. Write {'1': ...}."),
         ({"motions": {None: SUITE[0]}}, "The names of motions must be texts, but None was given. Write {'None': ...}."),
-        ({"structures": {"a": 3}}, f"structures[0] is int. Expected {EXPECTED_STRUCTURE}."),
         ({"motions": {"a": RECORD}}, "motions[0] is ndarray. Expected a GroundMotion."),
         (
             {"structures": "frame"},
@@ -246,8 +245,7 @@ def test_a_table_of_a_file_gives_the_options_of_a_call():
 
 
 @pytest.mark.parametrize(
-    ("labels", "with_hysteresis"),
-    [(["2DOF-S", "2DOF-S-BW"], [False, True]), (["2DOF-S", "1DOF-fixed"], [True, True])],
+    ("labels", "with_hysteresis"), [(["2DOF-S", "2DOF-S-BW"], [False, True]), (["2DOF-S", "1DOF-fixed"], [True, True])]
 )
 def test_the_hysteresis_is_of_the_labelled_models_or_of_all_if_none_is(labels, with_hysteresis):
     models = list(map(parse_model, labels))

@@ -118,9 +118,7 @@ def test_a_plan_that_workers_cannot_load_is_refused(cluster: Cluster, monkeypatc
     with pytest.raises(InputError, match=r"cannot be sent to workers: .*Local.* top of a module"):
         next(map_chunks_on_dask(Local(), [0], cluster.address))
     monkeypatch.setattr(parallel, "_pickled_plan", lambda plan: b"cnowhere_to_be_found\nPlan\n.")
-    with pytest.raises(
-        InputError, match=r"The worker tcp://\S+ cannot load the plan \(ModuleNotFoundError: .*nowhere_to_be_found"
-    ):
+    with pytest.raises(InputError, match=r"The worker tcp://\S+ cannot load the plan \(ModuleNotFoundError:"):
         next(map_chunks_on_dask(ToyPlan(), [0], cluster.address))
 
 
@@ -169,9 +167,7 @@ def test_without_dask_the_message_says_what_to_install(monkeypatch: pytest.Monke
         return real(name, *rest)
 
     monkeypatch.setattr(builtins, "__import__", lacking)
-    with pytest.raises(
-        InputError, match=r"needs the package 'distributed'\. Install it by pip install 'rockflex\[clus"
-    ):
+    with pytest.raises(InputError, match=r"needs the package 'distributed'\. Install it by pip install"):
         next(map_chunks_on_dask(ToyPlan(), [0], "tcp://127.0.0.1:1"))
 
 

@@ -9,7 +9,6 @@ import pytest
 
 import rockflex as rf
 from design_case import CONTENT, FRAME, HEIGHT, LEVELS, PROPERTIES, STRUCTURE, SUITE, WIDTHS
-from rockflex.study import ChunkedPlan
 from rockflex.study.design import DesignStudy
 from rockflex.study.design._designs import checked_half_widths, designs_of_structure
 from rockflex.study.design._exceedance_fit import design_limit_state
@@ -112,18 +111,6 @@ def test_a_study_is_the_call_in_python(tmp_path):
     assert DesignStudy(**study.document() | {"structures": CONTENT["structures"]}).document() == study.document()
 
 
-def test_a_stopped_study_goes_on(tmp_path, monkeypatch):
-    study = DesignStudy(**CONTENT)
-    whole = rf.run_study(study, tmp_path / "kept")
-    for number in (1, 4):
-        (tmp_path / "kept" / "parts" / f"part-{number:05d}.parquet").unlink()
-    computed: list[int] = []
-    real = ChunkedPlan.chunk
-    monkeypatch.setattr(ChunkedPlan, "chunk", lambda plan, number: computed.append(number) or real(plan, number))
-    pd.testing.assert_frame_equal(rf.run_study(study, tmp_path / "kept"), whole)
-    assert sorted(computed) == [1, 4]
-
-
 def test_the_example_is_a_study():
     from pathlib import Path
 
@@ -134,32 +121,17 @@ def test_the_example_is_a_study():
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        (
-            {"half_widths": {"smallest": 2.0, "largest": 1.0, "count": 3}},
-            "half_widths: half_widths must be a list in m, or a range {smallest = 1.0, largest = 3.0, count = 9} of "
-            "positive numbers in m, 2 to 10000 of them, but {'smallest': 2.0, 'largest': 1.0, 'count': 3} was given.",
-        ),
-        (
-            {"half_widths": {"smallest": 1.0, "largest": 2.0}},
-            "half_widths: half_widths must be a list in m, or a range",
-        ),
+        ({"half_widths": {"smallest": 2.0, "largest": 1.0, "count": 3}}, "half_widths: half_widths must be a list in"),
+        ({"half_widths": {"smallest": 1.0, "largest": 2.0}}, "half_widths: half_widths must be a list in m, or a"),
         ({"half_widths": [1.0, 1.0]}, "half_widths: half_widths: '1' occurs more than once. Give each once."),
         ({"half_widths": [1.0, -1.0]}, "half_widths: half_widths must be one or more positive numbers in m, but"),
         ({"half_widths": 3.0}, "half_widths must be a list of half widths B in m, or a range {smallest = 1.0,"),
-        (
-            {"limits": ["half"]},
-            "limits: limit must be a rotation from 0.0001 rad to below π/2, a multiple of 0.7 atan(B/h*_1) such as "
-            '"nominal" or "0.5 nominal" in the same range, a limit state (uplift, rocking, nominal, tendon_yield, '
-            "overturning), or a result with its bound, such as \"max_base_moment > 5e6\", but 'half' was given.",
-        ),
+        ({"limits": ["half"]}, "limits: limit must be a rotation from 0.0001 rad to below π/2, a multiple of 0.7"),
         ({"measure": "relative_pgv"}, "measure: measure must not depend on the base, as a level of relative_pgv does."),
         ({"measure": "pgw"}, "measure: measure must be one of pga, pgv,"),
         ({"level": None}, "level and hazard: give one of them, not both, for the strength of the shaking."),
         ({"hazard": {"im": [0.1, 1.0], "rate": [1e-2, 1e-4]}}, "level and hazard: give one of them, not both,"),
-        (
-            {"level": None, "hazard": {"im": [0.1, 1.0], "rate": [1e-2, 1e-1]}},
-            "rate must be positive and fall from point to point",
-        ),
+        ({"level": None, "hazard": {"im": [0.1, 1.0], "rate": [1e-2, 1e-1]}}, "rate must be positive and fall from"),
         ({"target": 1.5}, "target must lie in [0, 1), but 1.5 was given. With a level it is a probability."),
         ({"target": 0.0}, "target must be a positive, finite number in probability or 1/year, but 0.0 was given."),
         ({"level": -1.0}, "level must be a positive, finite number in the unit of the measure, but -1.0 was given."),
@@ -183,10 +155,7 @@ def test_a_specification_that_is_wrong(changes, message):
             {"structures": [{"frame": FRAME, "tendons": [{"initial_force": 1e5, "stiffness": 1e6}]}]},
             "The structure has its own tendons, and levels of tendons are given too. Leave out one or the other",
         ),
-        (
-            {"limits": ["2.5 nominal"], "half_widths": [9.0]},
-            "B = 9 m, none: limit must be a rotation from 0.0001 rad to",
-        ),
+        ({"limits": ["2.5 nominal"], "half_widths": [9.0]}, "B = 9 m, none: limit must be a rotation from 0.0001 rad"),
         ({"limits": ["2.5 nominal"], "half_widths": [9.0]}, "but '2.5 nominal' (1.62 rad) was given."),
         ({"base_mass_per_width": 1e6}, "B = 0.8 m, none: m_tot must be at least the sum of effective_mass,"),
         (SPECTRAL, "The fragility is in a spectral measure at a damping ratio of 0.02, but the hazard curve is at a"),

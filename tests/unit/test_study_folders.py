@@ -22,13 +22,7 @@ import rockflex as rf
 from builders import frame_values
 from rockflex import InputError, _files
 from rockflex.study.folders import StudyFolder, _folder
-from rockflex.study.folders._parts import (
-    PartError,
-    encode_part,
-    part_schema_of_content,
-    read_part_table,
-    verified_part_content,
-)
+from rockflex.study.folders._parts import PartError, encode_part, part_at, part_of_content
 from toy_study import SPEC, VERSIONS, ToyPlan, opened, run_study
 
 PLAN = ToyPlan(n_chunks=4, rows=30)
@@ -207,16 +201,8 @@ ENDLESS["itself"] = ENDLESS
         ({"spec": {1: 2}}, r"keys of spec must be strings, but 1 was given"),
         ({"spec": [1]}, r"spec must be a mapping, but list was given"),
         ({"n_chunks": 0}, r"n_chunks must be a whole number of at least 1"),
-        (
-            {"n_chunks": 10**12},
-            r"n_chunks must be at most 100000, because each chunk is a file, but 1000000000000 was given\. Compute "
-            r"more runs per chunk: runs_per_chunk in a study\.$",
-        ),
-        (
-            {"spec": {"a": nested(5000)}},
-            r"^spec\.a\[0\]\[0\].*\[0\] is nested more than 50 deep, which no specification is\. Give the value "
-            r"itself, not lists within lists, and no list that holds itself\.$",
-        ),
+        ({"n_chunks": 10**12}, r"n_chunks must be at most 100000, because each chunk is a file, but 1000000000000 was"),
+        ({"spec": {"a": nested(5000)}}, r"^spec\.a\[0\]\[0\].*\[0\] is nested more than 50 deep, which no"),
         ({"spec": {"a": [ENDLESS]}}, r"is nested more than 50 deep"),
         ({"versions": None}, r"versions must be a mapping"),
         ({"checksums": {"a": {1}}}, r"checksums\.a is of type set"),
@@ -279,11 +265,9 @@ def test_the_columns_to_compare_with_are_looked_for_once(tmp_path: Path, monkeyp
     run_study(str(tmp_path), plan)
     (tmp_path / "parts" / "part-00000.parquet").unlink()
     seen: list[int] = []
-    real = _folder.part_schema_at
+    real = _folder.part_at
     with opened(str(tmp_path), plan) as folder:
-        monkeypatch.setattr(
-            _folder, "part_schema_at", lambda path, study, number: seen.append(number) or real(path, study, number)
-        )
+        monkeypatch.setattr(_folder, "part_at", lambda path, *rest: seen.append(rest[1]) or real(path, *rest))
         for number in (0, 7, 8, 7):
             folder.write(number, plan.chunk(number))
     assert seen == [1]
@@ -443,13 +427,13 @@ def test_every_flipped_bit_is_seen(tmp_path: Path) -> None:
     path = tmp_path / "part"
     content = encode_part(ToyPlan(rows=3).chunk(0), "s", 0, VERSIONS)
     path.write_bytes(content)
-    assert verified_part_content(path, "s", 0) == content
+    part_at(path, "s", 0)
     for place in np.random.default_rng(1).integers(0, 8 * len(content), 1000):
         damaged = bytearray(content)
         damaged[place // 8] ^= 1 << (place % 8)
         path.write_bytes(damaged)
         with pytest.raises(PartError):
-            verified_part_content(path, "s", 0)
+            part_at(path, "s", 0)
 
 
 def test_every_cut_is_seen(tmp_path: Path) -> None:
@@ -459,14 +443,14 @@ def test_every_cut_is_seen(tmp_path: Path) -> None:
         for padding in (b"", bytes(len(content) - length)):
             path.write_bytes(content[:length] + padding)
             with pytest.raises(PartError):
-                verified_part_content(path, "s", 0)
+                part_at(path, "s", 0)
 
 
 def test_data_that_look_like_the_checksum_do_no_harm(tmp_path: Path) -> None:
     path = tmp_path / "part"
     table = pa.table({"rockflex-crc32:00000000": ["rockflex-crc32:00000000"] * 3})
     path.write_bytes(encode_part(table, "s", 0, {"a": "rockflex-crc32:00000000"}))
-    assert read_part_table(path, "s", 0).equals(table)
+    assert part_at(path, "s", 0).read().equals(table)
 
 
 def test_an_empty_chunk_keeps_its_columns(tmp_path: Path) -> None:
@@ -480,7 +464,7 @@ def test_parts_with_other_columns_are_refused_on_reading(done: Path) -> None:
     study = StudyFolder.load(done)
     content = encode_part(PLAN.chunk(1).drop_columns(["error"]), study.manifest.study, 1, VERSIONS)
     (done / "parts" / "part-00001.parquet").write_bytes(content)
-    assert "error" not in part_schema_of_content(content, study.manifest.study, 1).names
+    assert "error" not in part_of_content(content, study.manifest.study, 1).schema_arrow.names
     message = r"part-00001.parquet and the first part have other columns:\n  error: large_string, None\nAll chunks"
     with pytest.raises(InputError, match=message):
         study.table()

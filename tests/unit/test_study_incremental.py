@@ -2,6 +2,7 @@
 
 import math
 import pickle
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -29,13 +30,18 @@ STRUCTURES = [{"name": "one", "frame": FRAME}]
 RECORDS = {"suites": ["fema-p695-far-field"], "include": ["FF-1-*", "FF-3-a"]}
 
 
-def ladder(outcome, scales, growth=2.0, tolerance=0.01):
-    return ScaleLadder(
-        lambda scale: {"scale": scale, "overturned": outcome(scale)}, scales, growth, tolerance
-    ).run_all()
+GRID = rising_scales(1.0, 8.0, 2.0)
 
 
-def test_rungs():
+def ladder(outcome, scales=GRID):
+    """The outcomes of a ladder by rising scale, and its summary."""
+    made = ScaleLadder(outcome, growth=2.0, tolerance=0.01)
+    made.search(scales)
+    assert list(made.outcomes) == sorted(made.outcomes)
+    return made.outcomes, SimpleNamespace(**made.summary())
+
+
+def test_rising_scales():
     assert rising_scales(1.0, 8.0, 2.0) == [1.0, 2.0, 4.0, 8.0]
     assert rising_scales(1.0, 9.0, 2.0) == [1.0, 2.0, 4.0, 8.0, 9.0]
     assert rising_scales(0.1, 20.0, 1.15)[-1] == 20.0
@@ -43,57 +49,48 @@ def test_rungs():
 
 
 def test_one_boundary():
-    rows = ladder(lambda scale: scale > 3.1, rising_scales(1.0, 16.0, 2.0))
-    scales = [row["scale"] for row in rows]
-    assert scales == sorted(scales)
-    first = rows[0]
-    assert first["first_overturning_scale"] == pytest.approx(3.1, rel=0.01)
-    assert first["last_survival_scale"] == pytest.approx(3.1, rel=0.01)
-    assert first["last_survival_scale"] <= 3.1 < first["first_overturning_scale"]
-    assert (first["resurrections"], first["right_censored"]) == (0, False)
-    assert all(row["first_overturning_scale"] == first["first_overturning_scale"] for row in rows)
-    assert 5 < len(rows) <= 5 + max_bisections_between_scales(2.0, 0.01)
+    outcomes, found = ladder(lambda scale: scale > 3.1, rising_scales(1.0, 16.0, 2.0))
+    assert found.first_overturning_scale == pytest.approx(3.1, rel=0.01)
+    assert found.last_survival_scale == pytest.approx(3.1, rel=0.01)
+    assert found.last_survival_scale <= 3.1 < found.first_overturning_scale
+    assert (found.resurrections, found.right_censored) == (0, False)
+    assert 5 < len(outcomes) <= 5 + max_bisections_between_scales(2.0, 0.01)
 
 
 def test_resurrections_are_kept():
-    rows = ladder(lambda scale: 2.5 < scale < 5.0 or scale > 11.0, rising_scales(1.0, 32.0, 2.0))
-    first = rows[0]
-    assert first["first_overturning_scale"] == pytest.approx(2.5, rel=0.01)
-    assert first["last_survival_scale"] == pytest.approx(11.0, rel=0.01)
-    assert first["resurrections"] == 1
-    standing = ladder(lambda scale: 2.5 < scale < 5.0, rising_scales(1.0, 32.0, 2.0))[0]
-    assert (standing["last_survival_scale"], standing["resurrections"], standing["right_censored"]) == (32.0, 1, False)
+    grid = rising_scales(1.0, 32.0, 2.0)
+    _, found = ladder(lambda scale: 2.5 < scale < 5.0 or scale > 11.0, grid)
+    assert found.first_overturning_scale == pytest.approx(2.5, rel=0.01)
+    assert found.last_survival_scale == pytest.approx(11.0, rel=0.01)
+    assert found.resurrections == 1
+    _, found = ladder(lambda scale: 2.5 < scale < 5.0, grid)
+    assert (found.last_survival_scale, found.resurrections, found.right_censored) == (32.0, 1, False)
 
 
-def test_nothing_overturns():
-    rows = ladder(lambda scale: False, rising_scales(1.0, 8.0, 2.0))
-    assert len(rows) == 4
-    assert rows[0]["first_overturning_scale"] is None
-    assert (rows[0]["last_survival_scale"], rows[0]["right_censored"], rows[0]["resurrections"]) == (8.0, True, 0)
+def test_nothing_or_everything_overturns():
+    outcomes, found = ladder(lambda scale: False)
+    assert len(outcomes) == 4
+    assert found.first_overturning_scale is None
+    assert (found.last_survival_scale, found.right_censored, found.resurrections) == (8.0, True, 0)
+    outcomes, found = ladder(lambda scale: True)
+    assert len(outcomes) == 4 + max_bisections_below_scales(0.01)
+    assert found.last_survival_scale is None
 
 
 @pytest.mark.parametrize("boundary", [0.3, 0.9, 0.01])
-def test_all_rungs_overturn(boundary):
-    rows = ladder(lambda scale: scale > boundary, rising_scales(1.0, 8.0, 2.0))
-    assert rows[0]["first_overturning_scale"] == pytest.approx(boundary, rel=0.0101)
-    assert len(rows) <= 4 + max_bisections_below_scales(0.01)
-
-
-def test_everything_overturns():
-    rows = ladder(lambda scale: True, rising_scales(1.0, 8.0, 2.0))
-    assert len(rows) == 4 + max_bisections_below_scales(0.01)
-    assert rows[0]["last_survival_scale"] is None
+def test_all_scales_of_the_grid_overturn(boundary):
+    outcomes, found = ladder(lambda scale: scale > boundary)
+    assert found.first_overturning_scale == pytest.approx(boundary, rel=0.0101)
+    assert len(outcomes) <= 4 + max_bisections_below_scales(0.01)
 
 
 def test_unsolved_runs_say_nothing():
-    rows = ladder(lambda scale: None if scale == 4.0 else scale > 5.0, rising_scales(1.0, 8.0, 2.0))
-    assert rows[0]["first_overturning_scale"] == pytest.approx(5.0, rel=0.01)
-    assert sum(row["overturned"] is None for row in rows) == 1
-    failed = ladder(lambda scale: None, rising_scales(1.0, 8.0, 2.0))
-    assert failed[0]["right_censored"] is None
-    stopped = ladder(lambda scale: scale > 5.0 if scale in (1.0, 2.0, 4.0, 8.0) else None, rising_scales(1.0, 8.0, 2.0))
-    assert len(stopped) == 5
-    assert stopped[0]["first_overturning_scale"] == 8.0
+    outcomes, found = ladder(lambda scale: None if scale == 4.0 else scale > 5.0)
+    assert found.first_overturning_scale == pytest.approx(5.0, rel=0.01)
+    assert [*outcomes.values()].count(None) == 1
+    assert ladder(lambda scale: None)[1].right_censored is None
+    outcomes, found = ladder(lambda scale: scale > 5.0 if scale in GRID else None)
+    assert (len(outcomes), found.first_overturning_scale) == (5, 8.0)
 
 
 def test_ladder_of_a_block_is_what_overturning_scales_finds():
@@ -245,7 +242,5 @@ def test_stripe_messages():
 
 
 def test_a_ladder_beyond_double_precision():
-    with pytest.raises(
-        rf.InputError, match=r"largest_scale must be at most 1e\+12 times smallest_scale, 1e-300, but 1e"
-    ):
+    with pytest.raises(rf.InputError, match=r"largest_scale must be at most 1e\+12 times smallest_scale, 1e-300, but"):
         rf.run_incremental(rf.rigid_block(0.2, 2.0), rf.ricker_pulse(1.0, 1.0), "rigid", 1e-300, 1e300)

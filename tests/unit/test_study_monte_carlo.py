@@ -83,7 +83,7 @@ def test_what_is_a_formula():
     "formula",
     ["=", "= ", "= 2 x", "= x.real", "= x[0]", "= 'a'", "= True", "= 1j", "= sum(x)", "= min()", "= min(x, key=x)",
      "= min", "= (x for x in y)", "= __import__('os')", "= x if x else y", "= x; y", "= x := 2", "= a and b", "= ~x",
-     "= x % 2", "= x // 2", "= f'{x}'", "= lambda: 1", "= min(*x)", f"= {'(' * 150}x", f"= {'x + ' * 60}x", "= x\0"],
+     "= x % 2", "= x // 2", "= f'{x}'", "= lambda: 1", "= min(*x)", f"= {'(' * 150}x", f"= {'x + ' * 60}x", "= x\0"]
 )  # fmt: skip
 def test_only_arithmetic_is_a_formula(formula):
     if formula == "= min":
@@ -286,32 +286,14 @@ def changed(structure=None, **variables):
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        (
-            changed(height=True),
-            "[variables] height must be a distribution such as { uniform = [0.1, 0.5] }, a formula "
-            'such as "= 2 * height", or a number, but True was given.',
-        ),
+        (changed(height=True), "[variables] height must be a distribution such as { uniform = [0.1, 0.5] }, a formula"),
         (changed(height="tall"), "[variables] height must be a distribution such as"),
-        (
-            changed(height={}),
-            "[variables.height]: one distribution is expected, uniform, log_uniform, whole, normal, "
-            "lognormal or one_of, but 0 were given.",
-        ),
+        (changed(height={}), "[variables.height]: one distribution is expected, uniform, log_uniform, whole, normal,"),
         (changed(height={"uniform": [1.0, 2.0], "normal": [1.0, 0.1]}), "or one_of, but 2 were given."),
-        (
-            changed(height={"unifrom": [1.0, 2.0]}),
-            "[variables.height]: unifrom is not known; there are uniform, "
-            "log_uniform, whole, normal, lognormal, one_of. Did you mean uniform?",
-        ),
-        (
-            changed(height={"uniform": 3.0}),
-            "[variables.height]: uniform must be a list of the smallest and the largest value, but 3.0 was given.",
-        ),
+        (changed(height={"unifrom": [1.0, 2.0]}), "[variables.height]: unifrom is not known; there are uniform,"),
+        (changed(height={"uniform": 3.0}), "[variables.height]: uniform must be a list of the smallest and the"),
         (changed(height={"uniform": [3.0]}), "uniform must be a list of two finite numbers, but [3.0] was given."),
-        (
-            changed(height={"normal": [3.0, math.inf]}),
-            "normal must be a list of two finite numbers, but [3.0, inf] was",
-        ),
+        (changed(height={"normal": [3.0, math.inf]}), "normal must be a list of two finite numbers, but [3.0, inf]"),
         (changed(height={"uniform": [3.0, 2.0]}), "uniform must be a range whose first number is the smaller, but"),
         (changed(height={"whole": [3.0, 2.5]}), "whole must be a list of the smallest and the largest of equally"),
         (changed(height={"lognormal": [0.0, 0.1]}), "lognormal must begin with a positive number, but [0.0, 0.1] was"),
@@ -319,65 +301,33 @@ def changed(structure=None, **variables):
         (changed(height={"normal": [1.0, -0.1]}), "normal must end with a standard deviation, but -0.1 is negative."),
         (changed(height={"one_of": []}), "one_of must be a list of one number or more, but [] was given."),
         (changed(height={"one_of": [math.nan]}), "one_of must be a list of one number or more, but [nan] was given."),
-        (
-            changed(height="= 2 * hight"),
-            "[variables] height: hight is not known; there are height, ratio, hardening, period.",
-        ),
+        (changed(height="= 2 * hight"), "[variables] height: hight is not known; there are height, ratio, hardening,"),
         (changed(height="= period"), "[variables] Formulas refer to each other: "),
         (changed(height="= 2 * ("), "'= 2 * (' is not a formula. Expected numbers"),
-        (
-            changed(**{"fuse ratio": 1.0}),
-            "[variables] 'fuse ratio' is not a name. Expected letters, digits and _, such",
-        ),
-        (
-            changed(weight=1.0),
-            "[variables] weight is already the weight m_tot g of the structure in N. Give the variable another name.",
-        ),
+        (changed(**{"fuse ratio": 1.0}), "[variables] 'fuse ratio' is not a name. Expected letters, digits and _,"),
+        (changed(weight=1.0), "[variables] weight is already the weight m_tot g of the structure in N. Give the"),
         (changed(pga=1.0), "[variables] pga is already a column of the table. Give the variable another name."),
         (changed(min=1.0), "[variables] min is already a function. Give the variable another name."),
-        (
-            changed({"wall_frame": WALL | {"height": "= hieght"}}),
-            "[structure.wall_frame] height: hieght is not known; there are height, ratio, hardening, period.",
-        ),
-        (
-            changed({"wall_frame": WALL | {"mass": "= 0.1 * weight"}}),
-            "[structure.wall_frame] mass: weight is known only "
-            "after the structure is built, so only formulas of elements, tendons and the ground may use it.",
-        ),
+        (changed({"wall_frame": WALL | {"height": "= hieght"}}), "[structure.wall_frame] height: hieght is not known;"),
+        (changed({"wall_frame": WALL | {"mass": "= 0.1 * weight"}}), "[structure.wall_frame] mass: weight is known"),
         (
             changed({"wall_frame": WALL | {"damping_ratio": ["= 0.02", "= (x"]}}),
             "[structure.wall_frame] damping_ratio: '= (x' is not a formula.",
         ),
-        (
-            changed({"elements": [TENDON, FUSE | {"yield_force": "= share * weight"}]}),
-            "[[structure.elements]] no. 2, "
-            "yield_force: share is not known; there are height, ratio, hardening, period, weight, weight_moment, "
-            "half_width, l0r_g.",
-        ),
+        (changed({"elements": [TENDON, FUSE | {"yield_force": "= share * weight"}]}), "[[structure.elements]] no. 2,"),
         (
             changed({"elements": [FUSE | {"yield_force": "= weight / (hardening - hardening)"}]}),
             "None of the first 12 "
             "structures can be built. Number 0: [[structure.elements]] no. 1, yield_force: The formula "
             "'= weight / (hardening - hardening)' has no value for hardening = ",
         ),
-        (
-            changed({"wall_frame": WALL | {"heigth": 3.0}}),
-            "None of the first 12 structures can be built. Number 0: "
-            "[structure.wall_frame] heigth is not known; there are height, ",
-        ),
+        (changed({"wall_frame": WALL | {"heigth": 3.0}}), "None of the first 12 structures can be built. Number 0:"),
         (changed({"elements": [{"kind": "damper"}]}), '[[structure.elements]] no. 1, kind must be "tendon", '),
-        (
-            changed({"wall_frame": WALL | {"period": "= 0 * height"}}),
-            "Number 0: [wall_frame]: period must be a positive",
-        ),
+        (changed({"wall_frame": WALL | {"period": "= 0 * height"}}), "Number 0: [wall_frame]: period must be a"),
         (changed({"wall_frame": None}), "[structure]: one structure is expected, [frame], "),
         ({"count": 0}, "count must be the number of random structures, a whole number from 1 to 4294967295, but 0 was"),
         ({"seed": -1}, "seed must be what the draws depend on, a whole number of at least 0, but -1 was given."),
-        (
-            {"records_per_structure": 0},
-            "records_per_structure must be how many records to draw for each structure, a "
-            "whole number (default: all records), but 0 was given.",
-        ),
+        ({"records_per_structure": 0}, "records_per_structure must be how many records to draw for each structure, a"),
         ({"variables": [1]}, "variables must be a table of random variables, but [1] was given."),
         ({"structure": "wall"}, "structure must be a table of a structure, such as [structure.frame], but 'wall' was"),
         ({"scales": []}, "largest = 3.0, step = 0.25}, but [] was given."),

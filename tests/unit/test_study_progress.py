@@ -7,6 +7,7 @@ import threading
 import pytest
 
 import rockflex as rf
+from builders import frame_values
 from rockflex import InputError
 from rockflex.study.progress import MAX_INTERVAL, MIN_INTERVAL, ProgressLogLines, progress_bar
 
@@ -17,21 +18,7 @@ SCALES = [0.2 + 0.01 * step for step in range(100)]
 SEARCH = rf.DesignSearch([1.0, 2.0, 3.0], tendon_factors=[0.0, 1.0], refinements=1)
 COST = rf.DesignCost(half_width=1.0, prestress=5e-7)
 STUDY = rf.CloudStudy(
-    structures=[
-        {
-            "name": "A",
-            "frame": {
-                "n_stories": 2,
-                "story_height": 3.0,
-                "story_mass": 40e3,
-                "base_mass": 40e3,
-                "stiffness_ratio": 1.0,
-                "period": 0.5,
-                "aspect_ratio": 8.0,
-                "damping_ratio": 0.02,
-            },
-        }
-    ],
+    structures=[{"name": "A", "frame": frame_values(n_stories=2, period=0.5, aspect_ratio=8.0)}],
     records={"suites": ["el-centro-1940"]},
     scales=[0.5, 1.0, 1.5],
     runs_per_chunk=1,
@@ -102,10 +89,7 @@ def test_what_a_function_raises_ends_the_study(name):
 
 @each_call
 def test_anything_else_is_refused(name):
-    with pytest.raises(
-        InputError,
-        match=r'^progress must be None, "bar" or a function of \(done, total\), but \'dots\' was given\. Use "bar" for',
-    ):
+    with pytest.raises(InputError, match=r'^progress must be None, "bar" or a function of \(done, total\), but'):
         CALLS[name][0](progress="dots")
 
 
@@ -114,18 +98,6 @@ def test_a_study_refuses_anything_else_before_it_makes_a_folder(tmp_path):
         with pytest.raises(InputError, match=r"or a function of one Progress, but 3 was given\."):
             call(STUDY, tmp_path / "new", progress=3)
     assert not (tmp_path / "new").exists()
-
-
-def test_what_a_function_raises_leaves_a_folder_that_resumes(tmp_path):
-    def tell(now: rf.Progress) -> None:
-        if now.done == 1:
-            raise KeyError("enough")
-
-    with pytest.raises(KeyError, match="enough"):
-        rf.run_study(STUDY, tmp_path, workers=1, progress=tell)
-    seen: list[rf.Progress] = []
-    assert len(rf.run_study(STUDY, tmp_path, progress=seen.append)) == 3
-    assert (seen[0].kept, seen[-1].done) == (1, 3)
 
 
 class Terminal(io.StringIO):

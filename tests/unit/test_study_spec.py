@@ -115,10 +115,7 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (
-            RECORDS + STRUCTURE,
-            'study must be one of "cloud", "incremental", "stripes", "population", "monte_carlo", "design", but it is',
-        ),
+        (RECORDS + STRUCTURE, 'study must be one of "cloud", "incremental", "stripes", "population", "monte_carlo",'),
         (CLOUD.replace('"cloud"', '"clod"'), "study must be one of "),
         (CLOUD.replace('"cloud"', "7"), "study must be one of "),
         ("scale = [1.0]\n" + CLOUD, "scale is not known; there are name, records, "),
@@ -130,49 +127,26 @@ def test_paths_start_from_the_file(tmp_path, monkeypatch):
         ('models = ["2DOF-S", "2DOF-S"]\n' + CLOUD, "models: '2DOF-S' occurs more than once. Give each once."),
         ("friction = 1\n" + CLOUD, "friction must be true or false: whether to find the required friction too"),
         ("runs_per_chunk = 0\n" + CLOUD, "runs_per_chunk must be about how many runs to compute and store together"),
-        (
-            'impact = "soft"\n' + CLOUD,
-            'impact must be "simplified", "complete" or "restitution", but \'soft\' was',
-        ),
-        (
-            'impact = "restitution"\n' + CLOUD,
-            'The impact law "restitution" needs its coefficient. Give restitution,',
-        ),
-        (
-            "restitution = 0.5\n" + CLOUD,
-            "A restitution of 0.5 was given, but the impact law is the model's own. Choose",
-        ),
+        ('impact = "soft"\n' + CLOUD, 'impact must be "simplified", "complete" or "restitution", but \'soft\' was'),
+        ('impact = "restitution"\n' + CLOUD, 'The impact law "restitution" needs its coefficient. Give restitution,'),
+        ("restitution = 0.5\n" + CLOUD, "A restitution of 0.5 was given, but the impact law is the model's own."),
         ("free_vibration = -1.0\n" + CLOUD, "free_vibration: free_vibration must be zero or more seconds"),
-        (
-            'free_vibration = "long"\n' + CLOUD,
-            "free_vibration must be the free vibration after the record, a number in s",
-        ),
+        ('free_vibration = "long"\n' + CLOUD, "free_vibration must be the free vibration after the record, a number"),
         (CLOUD.replace('suites = ["el-centro-1940"]', ""), "[records]: no record is named. Give suites = "),
         (CLOUD.replace("el-centro-1940", "el-centro"), "No embedded suite is named 'el-centro'. The suites are"),
-        (
-            CLOUD.replace("[records]", '[records]\ninclude = ["X*"]'),
-            "[records] include: no record's name fits 'X*'.",
-        ),
+        (CLOUD.replace("[records]", '[records]\ninclude = ["X*"]'), "[records] include: no record's name fits 'X*'."),
         (CLOUD.replace("[records]", '[records]\nfolder = "none"'), ""),
         (
-            CLOUD.replace("suites", "suite"),
-            "[records] suite is not known; there are suites, folder, on_error, vertical, include. Did",
+            CLOUD.replace("[records]", '[records]\non_error = "skip"'),
+            "[records]: on_error is for the files of a folder",
         ),
+        (CLOUD.replace("suites", "suite"), "[records] suite is not known; there are suites, folder, on_error,"),
         (CLOUD.replace(RECORDS, ""), "records is missing: a table of suites or a folder."),
         (CLOUD.replace(STRUCTURE, ""), "structures is missing: one or more tables [[structures]]."),
         (CLOUD + STRUCTURE, "the names of the structures: 'one' occurs more than once. Give each once."),
-        (
-            CLOUD.replace("period = 0.5", ""),
-            "[[structures]] no. 1, [structures.frame] period is missing: the first",
-        ),
-        (
-            CLOUD.replace("period = 0.5", "period = -1"),
-            "[[structures]] no. 1, 'one': [frame]: period must be a",
-        ),
-        (
-            CLOUD + "[bouc_wen]\ngamma = 1.0\n",
-            "[bouc_wen] yield_displacement is missing: D_y of",
-        ),
+        (CLOUD.replace("period = 0.5", ""), "[[structures]] no. 1, [structures.frame] period is missing: the first"),
+        (CLOUD.replace("period = 0.5", "period = -1"), "[[structures]] no. 1, 'one': [frame]: period must be a"),
+        (CLOUD + "[bouc_wen]\ngamma = 1.0\n", "[bouc_wen] yield_displacement is missing: D_y of"),
         ("study = ", "is not a valid TOML file"),
     ],
 )
@@ -253,7 +227,4 @@ def test_elements_of_a_study(tmp_path):
     (tmp_path / "wrong.toml").write_text(CLOUD + fuse.replace("2e5", "-2e5"), "utf-8")
     with pytest.raises(rf.InputError) as caught:
         load_study(tmp_path / "wrong.toml").plan()
-    assert str(caught.value) == (
-        "[[structures]] no. 1, 'one': [[elements]] no. 1: yield_force must be a positive, finite number in N, but "
-        "-200000.0 was given."
-    )
+    assert str(caught.value).startswith("[[structures]] no. 1, 'one': [[elements]] no. 1: yield_force must be a")

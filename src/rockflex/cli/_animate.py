@@ -1,13 +1,14 @@
 """``rockflex animate``: one structure under one ground motion, by several models side by side, as GIF or MP4."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from rockflex._errors import InputError
+from rockflex.cli import _console as console
 from rockflex.cli import _options as options
-from rockflex.cli._console import print_remark, print_warning_messages
 from rockflex.study.progress import progress_bar
 
 EPILOG = """[bold]Examples[/bold]
@@ -20,7 +21,7 @@ rockflex animate structure.toml el-centro-1940 --model 2DOF-S --speed 0.5 --star
 
 rockflex animate structure.toml --model 2DOF-C --initial-rotation 0.05 --free-vibration 10 --out released.gif"""
 
-PICTURE = "Picture"
+_picture = partial(options.option, rich_help_panel="Picture")
 FLAGS = {
     "speed": "--speed",
     "frames_per_second": "--fps",
@@ -45,57 +46,34 @@ def animate(
     ] = None,
     structure: options.StructureFile = None,
     motion: Annotated[
-        list[str] | None,
-        typer.Option("--motion", "-m", metavar="MOTION", help="The ground motion.", show_default=False),
+        list[str] | None, options.option("--motion -m", "MOTION", "The ground motion.", show_default=False)
     ] = None,
     model: options.Models = None,
-    scale: Annotated[float, typer.Option("--scale", metavar="FACTOR", help="Factor on the acceleration.")] = 1.0,
+    scale: Annotated[float, options.option("--scale", "FACTOR", "Factor on the acceleration.")] = 1.0,
     free_vibration: options.FreeVibration = "0",
     work_limit: options.WorkLimit = None,
     out: Annotated[
-        Path | None,
-        typer.Option("--out", "-o", metavar="FILE.gif|.mp4", help="The file to write; its suffix tells the format."),
+        Path | None, options.option("--out -o", "FILE.gif|.mp4", "The file to write; its suffix tells the format.")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace the file if it exists.")] = False,
-    speed: Annotated[
-        float,
-        typer.Option(
-            "--speed", metavar="X", help="Seconds of the response per second of the animation.", rich_help_panel=PICTURE
-        ),
-    ] = 1.0,
-    frames_per_second: Annotated[
-        float, typer.Option("--fps", metavar="N", help="Frames per second.", rich_help_panel=PICTURE)
-    ] = 25.0,
+    speed: Annotated[float, _picture("--speed", "X", "Seconds of the response per second of the animation.")] = 1.0,
+    frames_per_second: Annotated[float, _picture("--fps", "N", "Frames per second.")] = 25.0,
     amplification: Annotated[
         float | None,
-        typer.Option(
-            "--amplification",
-            metavar="X",
-            help="Factor on what moves in the picture. Default: large enough to be seen.",
-            rich_help_panel=PICTURE,
-        ),
+        _picture("--amplification", "X", "Factor on what moves in the picture. Default: large enough to be seen."),
     ] = None,
-    start: Annotated[
-        float | None,
-        typer.Option("--start", metavar="S", help="Time at which it begins.", rich_help_panel=PICTURE),
-    ] = None,
-    stop: Annotated[
-        float | None,
-        typer.Option("--stop", metavar="S", help="Time at which it ends.", rich_help_panel=PICTURE),
-    ] = None,
+    start: Annotated[float | None, _picture("--start", "S", "Time at which it begins.")] = None,
+    stop: Annotated[float | None, _picture("--stop", "S", "Time at which it ends.")] = None,
     panels: Annotated[
         str | None,
-        typer.Option(
+        _picture(
             "--panels",
-            metavar="NAME,...",
-            help="Histories, separated by commas: rotation, top_displacement, total_top_displacement, base_moment, "
+            "NAME,...",
+            "Histories, separated by commas: rotation, top_displacement, total_top_displacement, base_moment, "
             "base_shear, horizontal_reaction, slip, edge_uplift.",
-            rich_help_panel=PICTURE,
         ),
     ] = None,
-    width: Annotated[
-        int, typer.Option("--width", metavar="PX", help="Width in pixels.", rich_help_panel=PICTURE)
-    ] = 960,
+    width: Annotated[int, _picture("--width", "PX", "Width in pixels.")] = 960,
     units: options.Units = None,
     dt: options.Dt = None,
     vertical: options.Vertical = None,
@@ -119,7 +97,7 @@ def animate(
         raise InputError(f"The file {target} exists. Give another one by --out, or --force to replace it.")
     asked = RunArguments(
         arguments=arguments or [], structure=structure, motion=motion, model=model, scale=[repr(scale)],
-        free_vibration=free_vibration, work_limit=work_limit, units=units, dt=dt, vertical=vertical,
+        free_vibration=free_vibration, work_limit=work_limit, units=units, dt=dt, vertical=vertical
     )  # fmt: skip
     prepared = prepare_batch(context, asked, histories=1)
     loaded, batch = prepared.loaded, prepared.batch
@@ -137,10 +115,10 @@ def animate(
             responses, target, [response.model for response in responses], structure=loaded.built, speed=speed,
             frames_per_second=frames_per_second, amplification=amplification, start=start, stop=stop,
             panels=None if panels is None else [name.strip() for name in panels.split(",")], title=title, width=width,
-            progress=lambda done, total: show(done, total, ""),
+            progress=lambda done, total: show(done, total, "")
         )  # fmt: skip
-    print_remark(f"Written to {target}")
-    print_warning_messages(loaded.warnings)
+    console.print_remark(f"Written to {target}")
+    console.print_warnings(loaded.warnings)
     print_run_warnings(runs)
     if print_failed_runs(runs):
         raise typer.Exit(1)

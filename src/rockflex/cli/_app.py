@@ -9,8 +9,8 @@ from typer.core import TyperGroup
 
 from rockflex import __version__
 from rockflex._errors import InputError, SolverError
-from rockflex.cli import _animate, _modes, _motion, _reproduce, _run, _select, _study, _survey
-from rockflex.cli._console import print_error, print_remark, printing_warnings_as_remarks
+from rockflex.cli import _animate, _modes, _motion, _reproduce, _run, _select, _study
+from rockflex.cli import _console as console
 from rockflex.cli._options import FrameCommand, RunCommand
 from rockflex.kinds import KINDS
 
@@ -24,8 +24,7 @@ rockflex serve --port 9000 --open"""
 def serve(
     port: Annotated[int, typer.Option("--port", "-p", help="TCP port.")] = 8080,
     host: Annotated[
-        str,
-        typer.Option(help="Address to listen on. The default accepts only this machine."),
+        str, typer.Option(help="Address to listen on. The default accepts only this machine.")
     ] = "127.0.0.1",
     name: Annotated[
         list[str] | None,
@@ -38,8 +37,8 @@ def serve(
     from rockflex.web._hosts import is_loopback_host, page_address
 
     if not is_loopback_host(host):
-        print_remark(f"Everyone who can reach {host} can use the page: it has no passwords.")
-    print_remark(f"{page_address(host, port)} (stop with Ctrl-C)")
+        console.print_remark(f"Everyone who can reach {host} can use the page: it has no passwords.")
+    console.print_remark(f"{page_address(host, port)} (stop with Ctrl-C)")
     with suppress(KeyboardInterrupt):  # the usual way to stop it
         start(port, host, names=name or (), open_browser=open_browser)
 
@@ -72,13 +71,13 @@ class RockflexCommands(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         """Run the command."""
         try:
-            with printing_warnings_as_remarks():
+            with console.printing_warnings_as_remarks():
                 return super().invoke(ctx)
         except (InputError, SolverError) as error:
-            print_error(str(error))
+            console.print_error(str(error))
             raise typer.Exit(2 if isinstance(error, InputError) else 1) from error
         except KeyboardInterrupt as stop:
-            print_remark("Stopped; nothing was written.")
+            console.print_remark("Stopped; nothing was written.")
             raise typer.Exit(130) from stop
 
 
@@ -96,7 +95,7 @@ app.command("run", cls=RunCommand, epilog=_run.EPILOG, no_args_is_help=True)(_ru
 app.command("animate", cls=RunCommand, epilog=_animate.EPILOG, no_args_is_help=True)(_animate.animate)
 app.command("modes", cls=FrameCommand, epilog=_modes.EPILOG, no_args_is_help=True)(_modes.modes)
 app.command("motion", epilog=_motion.EPILOG)(_motion.motion)
-app.command("survey", epilog=_survey.EPILOG, no_args_is_help=True)(_survey.survey)
+app.command("survey", epilog=_motion.SURVEY_EPILOG, no_args_is_help=True)(_motion.survey)
 app.command("select", epilog=_select.EPILOG, no_args_is_help=True)(_select.select)
 for kind in KINDS.values():
     app.command(kind.command, epilog=_study.study_command_epilog(kind.command), no_args_is_help=True)(
@@ -116,8 +115,7 @@ def _print_version(asked: bool) -> None:
 @app.callback()
 def rockflex(
     _: Annotated[
-        bool,
-        typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit."),
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
     ] = False,
 ) -> None:
     """Seismic response of flexible structures whose base may uplift and rock: exact, and fast."""

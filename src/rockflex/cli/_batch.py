@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import product
 from pathlib import Path
 from time import perf_counter
@@ -11,8 +12,8 @@ from typing import Any
 import typer
 
 from rockflex._errors import SolverError
-from rockflex._schema import BoucWenKeys, FrameFlags, GroundKeys, ImpactKeys, InitialStateKeys, SpringBedKeys
-from rockflex.cli._console import console_progress_bar, print_remark
+from rockflex._schema import BoucWenKeys, FrameFlags, InitialStateKeys
+from rockflex.cli import _console as console
 from rockflex.cli._find_motions import FoundMotion, find_motions, quiet_ground_motion
 from rockflex.cli._options import flag_values, naming_flags_in_errors
 from rockflex.cli._run_options import (
@@ -26,7 +27,7 @@ from rockflex.cli._structures import LoadedStructure, load_structure, split_stru
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion, OnError
-from rockflex.response import PEAKS, Response, friction_coefficient, warnings_of
+from rockflex.response import PEAKS, Response, friction_coefficient
 from rockflex.solve import WorkLimitError
 from rockflex.study import (
     PreparedCase,
@@ -36,7 +37,7 @@ from rockflex.study import (
     parse_scale_range,
     yielding_model_labels,
 )
-from rockflex.study.parallel import map_runs
+from rockflex.study.parallel import map_runs_in_order
 
 MAX_TIMED_RUNS = 64  # runs; more are not timed one by one
 
@@ -77,23 +78,32 @@ class RunBatch:
 
 @dataclass(frozen=True)
 class BatchRun:
-    """One run: its motion, scale and model, its peaks by name, and its outcome."""
+    """One run: its motion, scale and model, and its response, or the error for which it has none."""
 
     motion: str
     scale: float
     model: str
-    status: str | None
-    error: str | None
-    peaks: dict[str, Any] = field(default_factory=dict[str, Any])
+    response: Response | None = None
+    """With its history only if the batch has histories."""
+    error: str | None = None
+    refused: bool = False
+    """Whether it was not started, because it would exceed the work limit."""
     run_time: float | None = None
     """Seconds; None where runs were shared among threads."""
-    response: Response | None = None
     friction: dict[str, float | None] = field(default_factory=dict[str, float | None])
     """Required friction and the time at which sliding would start, by name; empty unless requested."""
     elements: dict[str, list[float]] = field(default_factory=dict[str, list[float]])
     """Peaks of each element between base and ground, and its energy of a run with a history, by name."""
-    refused: bool = False
-    """Whether it was not started, because it would exceed the work limit."""
+
+    @cached_property
+    def peaks(self) -> dict[str, Any]:
+        """Every scalar of the response by name; None if there is none."""
+        return {name: getattr(self.response, name, None) for name in COLUMNS}
+
+    @property
+    def status(self) -> str | None:
+        """Status of the response."""
+        return None if self.response is None else self.response.status
 
     def row(self) -> dict[str, Any]:
         """Return everything but the run time and the history, in the columns of `simulate_many`.
@@ -107,9 +117,7 @@ class BatchRun:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Demands of the run that the ground or its tendons cannot meet; with a history also energies in imbalance."""
-        if self.response is not None:
-            return self.response.warnings
-        return () if self.error is not None else warnings_of(self.model, self.peaks)
+        return () if self.response is None else self.response.warnings
 
 
 COLUMNS = tuple(name for name in PEAKS if name not in ("model", "motion", "status"))
@@ -129,24 +137,19 @@ def run_batch(batch: RunBatch) -> list[BatchRun]:
     """
     cases = {model: batch.case(model) for model in batch.models}
     many = batch.size > MAX_TIMED_RUNS
-
-    def run(task: tuple[int, tuple[GroundMotion, float, str]]) -> tuple[int, BatchRun]:
-        place, (motion, scale, model) = task
-        return place, _run_one_of_batch(batch, cases[model], motion, scale, timed=not many)
-
-    tasks = enumerate(product(batch.motions, batch.scales, batch.models))
-    done: list[tuple[int, BatchRun]] = []
-    with console_progress_bar("Simulating", batch.size) if many else nullcontext() as advance:
-        for item in map_runs(run, tasks, batch.workers if many else batch.workers or 1):
-            done.append(item)
-            if advance is not None:
-                advance(1)
-    runs = [found for _, found in sorted(done, key=lambda item: item[0])]
+    tasks = product(batch.motions, batch.scales, batch.models)
+    with console.step_bar("Simulating", batch.size) if many else nullcontext() as advance:
+        runs = map_runs_in_order(
+            lambda task: _run_one_of_batch(batch, cases[task[2]], task[0], task[1], timed=not many),
+            tasks,
+            batch.workers if many else batch.workers or 1,
+            lambda _: None if advance is None else advance(1),
+        )
     failed = [found for found in runs if found.error is not None]
     if len(failed) == len(runs):
         first = failed[0]
-        if first.error is not None and all(found.refused for found in runs):
-            raise WorkLimitError(first.error)
+        if all(found.refused for found in runs):
+            raise WorkLimitError(str(first.error))
         raise SolverError(
             f"None of the {len(runs)} runs could be solved; {first.model} under {first.motion}: {first.error}"
         )
@@ -156,41 +159,24 @@ def run_batch(batch: RunBatch) -> list[BatchRun]:
 def _run_one_of_batch(
     batch: RunBatch, case: PreparedCase, motion: GroundMotion, scale: float, *, timed: bool
 ) -> BatchRun:
-    model = case.model.label
+    made = BatchRun(motion.name, scale, case.model.label)
     start = perf_counter()
     try:
         response = case.run(motion, scale)
     except (SolverError, WorkLimitError) as error:
-        lost: dict[str, float | None] = {} if batch.friction is None else dict.fromkeys(SLIDING, None)
-        refused = isinstance(error, WorkLimitError)
-        return BatchRun(
-            motion.name, scale, model, None, str(error), dict.fromkeys(COLUMNS), friction=lost, refused=refused
-        )
+        lost: dict[str, float | None] = {} if batch.friction is None else dict.fromkeys(SLIDING)
+        return replace(made, error=str(error), refused=isinstance(error, WorkLimitError), friction=lost)
     elapsed = perf_counter() - start if timed else None
-    peaks = {name: getattr(response, name) for name in COLUMNS}
-    kept = response if batch.history else None
-    friction, elements = _required_friction_of_run(batch, response), _element_peaks_of_run(batch, response)
-    return BatchRun(motion.name, scale, model, response.status, None, peaks, elapsed, kept, friction, elements)
-
-
-def _element_peaks_of_run(batch: RunBatch, response: Response) -> dict[str, list[float]]:
-    """Return the peaks of the elements, and the energy that each dissipated if the history is known."""
-    if not batch.properties.elements:
-        return {}
-    names = OF_ELEMENTS if response.history is None else (*OF_ELEMENTS, "element_energy")
-    return {name: getattr(response, name).tolist() for name in names}
-
-
-def _required_friction_of_run(batch: RunBatch, response: Response) -> dict[str, float | None]:
-    """Return the friction of one run, if requested."""
-    if batch.friction is None:
-        return {}
-    values = (
-        response.required_friction,
-        response.required_friction_excluding_impacts(),
-        response.sliding_time(batch.friction),
-    )
-    return dict(zip(SLIDING, values, strict=True))
+    friction: dict[str, float | None] = {}
+    if batch.friction is not None:
+        values = (response.required_friction, response.required_friction_excluding_impacts())
+        friction = dict(zip(SLIDING, (*values, response.sliding_time(batch.friction)), strict=True))
+    elements: dict[str, list[float]] = {}
+    if batch.properties.elements:
+        names = OF_ELEMENTS if response.history is None else (*OF_ELEMENTS, "element_energy")
+        elements = {name: getattr(response, name).tolist() for name in names}
+    kept = response if batch.history else replace(response, history=None)
+    return replace(made, response=kept, run_time=elapsed, friction=friction, elements=elements)
 
 
 FLAGS = {"free_vibration": "--free-vibration", "scales": "--scale", "mu": "--friction"}
@@ -228,28 +214,20 @@ def prepare_batch(context: typer.Context, arguments: RunArguments, *, histories:
     """Return the runs that the arguments and the generated flags of a command ask for.
 
     Histories are kept of up to `histories` motions, each scale counted.
-
-    Raises
-    ------
-    InputError
-        If an argument, a file or a record cannot be used.
     """
     file, names = split_structure_file_argument(arguments.structure, arguments.arguments)
     loaded = load_structure(file, flag_values(context, FrameFlags))
-    law, bouc_wen, initial = (flag_values(context, table) for table in (ImpactKeys, BoucWenKeys, InitialStateKeys))
-    ground = flag_values(context, GroundKeys) | flag_values(context, SpringBedKeys)
-    options, ground_values = make_run_options(
-        file, loaded.run_options, law, bouc_wen, initial, ground, loaded.properties
-    )
-    models = choose_run_models(arguments.model, loaded.properties, options, by_flag=bool(bouc_wen))
+    options, ground_values = make_run_options(context, loaded)
+    by_flag = bool(flag_values(context, BoucWenKeys))
+    models = choose_run_models(arguments.model, loaded.properties, options, by_flag=by_flag)
     if options.bouc_wen is not None and not yielding_model_labels(models):
-        print_remark(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was given")
+        console.print_remark(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was given")
     names += arguments.motion or []
     with naming_flags_in_errors(FLAGS):
         free = number_or_word(arguments.free_vibration)
         free_vibration_time(free)
         mu = None if arguments.friction is None else friction_coefficient(arguments.friction)
-        if names or arguments.vertical or not initial:
+        if names or arguments.vertical or not flag_values(context, InitialStateKeys):
             found = find_motions(names, arguments.units, arguments.dt, arguments.on_error, arguments.vertical)
         else:
             found, free = quiet_ground_motion(free)

@@ -11,7 +11,6 @@ from rockflex.study.progress import progress_bar, progress_counter
 
 if TYPE_CHECKING:
     from rich.console import Console
-    from rich.progress import Progress, TaskID
     from rich.table import Table
 
 
@@ -31,7 +30,7 @@ def print_remark(message: str) -> None:
     Console(stderr=True).print(message, markup=False, highlight=False, soft_wrap=True)
 
 
-def print_warning_messages(messages: Iterable[str]) -> None:
+def print_warnings(messages: Iterable[str]) -> None:
     """Print warnings to stderr."""
     for message in messages:
         print_remark(f"Warning: {message}")
@@ -57,11 +56,15 @@ def printing_warnings_as_remarks() -> Generator[None]:
         yield
 
 
-def stdout_console() -> "Console":
-    """Return the console of stdout."""
+def print_line(text: str = "", style: str | None = None, *, wrap: bool = False) -> None:
+    """Print text to stdout; long lines are broken at the width of the terminal only if `wrap` is set."""
+    _stdout().print(text, style=style, markup=False, soft_wrap=not wrap)
+
+
+def _stdout(width: int | None = None) -> "Console":
     from rich.console import Console
 
-    return Console(highlight=False)
+    return Console(width=width, highlight=False)
 
 
 class StyledCell(str):
@@ -76,7 +79,7 @@ class StyledCell(str):
         return cell
 
 
-def console_table(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1) -> "Table":
+def table(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1) -> "Table":
     """Return a table with `n_left` columns of words, aligned to the left, followed by columns of numbers."""
     from rich import box
     from rich.table import Table
@@ -94,77 +97,35 @@ def console_table(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left
 
 
 @contextmanager
-def console_progress_bar(title: str, total: int) -> Generator[Callable[[int], None]]:
+def step_bar(title: str, total: int) -> Generator[Callable[[int], None]]:
     """Show a bar on stderr, or lines if it is no terminal; the yielded function advances it by a number of steps."""
     with progress_bar(title, transient=True) as show:
         yield progress_counter(lambda done, total: show(done, total, ""), total)
 
 
-@contextmanager
-def console_waiting(title: str) -> Generator[None]:
-    """Show on stderr that something takes time, if it is a terminal."""
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield
-        return
-    from rich.progress import Progress
-
-    with Progress(console=console, transient=True) as bar:
-        bar.add_task(title, total=None)
-        yield
-
-
-@contextmanager
-def console_steps(title: str) -> Generator[Callable[[str], None]]:
-    """Show the present step and its time on stderr, if it is a terminal; the yielded function starts a step."""
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield lambda _: None
-        return
-    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-
-    look = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
-    with Progress(*look, console=console, transient=True) as bar:
-        tasks: list[TaskID] = []
-
-        def start(name: str) -> None:
-            _end_last_step(bar, tasks)
-            tasks.append(bar.add_task(f"{title} {name}", total=1))
-
-        yield start
-        _end_last_step(bar, tasks)
-
-
-def _end_last_step(bar: "Progress", tasks: "list[TaskID]") -> None:
-    """Mark the last step as done."""
-    if tasks:
-        bar.update(tasks[-1], completed=1)
-
-
-def table_fits_console(console: "Console", table: "Table") -> bool:
+def table_fits(table: "Table") -> bool:
     """Tell whether a table fits the width of the terminal."""
-    return _console_table_width(console, table) <= console.width
+    console = _stdout()
+    return _table_width(console, table) <= console.width
 
 
-def print_console_table(console: "Console", table: "Table") -> None:
+def print_table(table: "Table") -> None:
     """Print a table in full, even where it is wider than the terminal."""
-    from rich.console import Console
-
-    width = _console_table_width(console, table)
-    if width > console.width:
-        console = Console(width=width, highlight=False)
-    console.print(table)
+    console = _stdout()
+    width = _table_width(console, table)
+    (_stdout(width) if width > console.width else console).print(table)
 
 
-def _console_table_width(console: "Console", table: "Table") -> int:
+def print_rows(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 1) -> None:
+    """Print a table of rows, as `table` makes it."""
+    print_table(table(headings, rows, n_left))
+
+
+def _table_width(console: "Console", table: "Table") -> int:
     return console.measure(table, options=console.options.update(width=100_000)).maximum
 
 
-def number_for_console(value: float | None, digits: int = 4) -> str:
+def number(value: float | None, digits: int = 4) -> str:
     """Write a number with `digits` significant digits, with an exponent only if it is very large or small."""
     if value is None or math.isnan(value):
         return "-"

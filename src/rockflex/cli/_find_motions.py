@@ -88,13 +88,6 @@ def find_motions(
         As in `read_suite`, for the files.
     vertical
         "pair", as in `read_suite`, or the file of the vertical component of the only motion.
-
-    Raises
-    ------
-    InputError
-        If there is no name, one is unknown, a file cannot be read and `on_error` is "raise", no file holds a horizontal
-        component, two different motions have the same name, or units, dt, `on_error` or "pair" are given without a
-        file, or one vertical file for several motions.
     """
     if not names:
         raise InputError(
@@ -145,13 +138,7 @@ def _with_vertical_component(found: list[FoundMotion], file: str, units: str | N
 
 
 def quiet_ground_motion(free: float | Literal["settle"]) -> tuple[list[FoundMotion], float | Literal["settle"]]:
-    """Return ground at rest for a free vibration, and the free vibration that follows it.
-
-    Raises
-    ------
-    InputError
-        If the free vibration has no length.
-    """
+    """Return ground at rest for a free vibration, and the free vibration that follows it."""
     if free == 0.0:
         raise InputError(
             "A free vibration from --initial-rotation needs a ground motion or a length. "

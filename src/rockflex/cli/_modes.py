@@ -1,5 +1,6 @@
 """``rockflex modes``: modes and rocking parameters of a structure."""
 
+import math
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -7,17 +8,10 @@ import typer
 from rockflex._errors import InputError
 from rockflex._number_format import moment_unit
 from rockflex._schema import FrameFlags
+from rockflex.cli import _console as console
 from rockflex.cli import _options as options
-from rockflex.cli._console import (
-    console_table,
-    number_for_console,
-    print_console_table,
-    print_remark,
-    print_warning_messages,
-    stdout_console,
-)
+from rockflex.cli import _output as output
 from rockflex.cli._options import flag_values
-from rockflex.cli._output import check_output_folder, document_to_json, staged_output_folder, versions_in_results
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -71,7 +65,7 @@ def modes(
         str | None, typer.Argument(metavar="STRUCTURE.toml", help="The structure file.", show_default=False)
     ] = None,
     structure: options.StructureFile = None,
-    n_modes: Annotated[int | None, typer.Option("--modes", metavar="N", help="Show only the first N modes.")] = None,
+    n_modes: Annotated[int | None, options.option("--modes", "N", "Show only the first N modes.")] = None,
     adequacy: Annotated[
         bool,
         typer.Option(
@@ -90,8 +84,9 @@ def modes(
         load_structure,
         split_structure_file_argument,
     )
+    from rockflex.modal import adequacy as adequacy_of
 
-    check_output_folder(out, force=force)
+    output.check_folder(out, force=force)
     path, rest = split_structure_file_argument(structure, [] if file is None else [file])
     if rest:
         raise InputError(f"{file} is not a structure file: a name that ends in .toml is expected.")
@@ -103,7 +98,7 @@ def modes(
     lifted = _uplifted_mode_rows(properties)
     rocking = describe_rocking_properties(properties)
     document: dict[str, Any] = {
-        "versions": versions_in_results(),
+        "versions": output.versions(),
         "structure": loaded.describe(),
         "modes": rows,
         "uplifted": lifted,
@@ -111,24 +106,22 @@ def modes(
         "units": UNITS | ELEMENT_UNITS,
         "warnings": list(loaded.warnings),
     }
-    need = _adequacy_of_loaded(loaded) if adequacy else None
+    need = adequacy_of(loaded.properties, base_mass=loaded.base_mass) if adequacy else None
     if need is not None:
         document["adequacy"] = _describe_adequacy(need)
     if out is not None:
         _write_modes(out, document, loaded, properties.n_modes, force=force)
     if json:
-        typer.echo(document_to_json(document))
+        typer.echo(output.to_json(document))
     else:
         print_modes(loaded, rows, lifted, properties)
         if need is not None:
             _print_adequacy(need)
-    print_warning_messages(document["warnings"])
+    console.print_warnings(document["warnings"])
 
 
 def _fixed_base_mode_rows(loaded: "LoadedStructure", properties: "RockingProperties") -> list[dict[str, Any]]:
     """One row per mode, in SI units; the share refers to the mass above the base if known, else to the total mass."""
-    import math
-
     return _mode_rows_of_columns(
         mode=range(1, properties.n_modes + 1),
         period=2.0 * math.pi / properties.omega,
@@ -143,8 +136,6 @@ def _fixed_base_mode_rows(loaded: "LoadedStructure", properties: "RockingPropert
 
 def _uplifted_mode_rows(properties: "RockingProperties") -> list[dict[str, Any]]:
     """One row per vibration about a pivot, or about both where they differ, with the same modes, in SI units."""
-    import math
-
     from rockflex.modal import uplifted_modes
 
     rows: list[dict[str, Any]] = []
@@ -166,12 +157,6 @@ def _mode_rows_of_columns(**columns: "Iterable[Any]") -> list[dict[str, Any]]:
     return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
-def _adequacy_of_loaded(loaded: "LoadedStructure") -> "Adequacy":
-    from rockflex.modal import adequacy
-
-    return adequacy(loaded.properties, base_mass=loaded.base_mass)
-
-
 def _describe_adequacy(need: "Adequacy") -> dict[str, Any]:
     """Return the result for a document; each row refers to the first k modes."""
     from dataclasses import asdict
@@ -184,8 +169,6 @@ def _describe_adequacy(need: "Adequacy") -> dict[str, Any]:
 
 
 def _print_adequacy(need: "Adequacy") -> None:
-
-    console = stdout_console()
     mass = "m*_n/Σm" if need.base_known else "m*_n/m_tot"
     headings = ("modes", "m*_n h*_n/L_0^r", "left out [%]", mass, "left out [%]", "ω*_1 error [%]", "ω*_2 error [%]")
     columns = (
@@ -195,11 +178,11 @@ def _print_adequacy(need: "Adequacy") -> None:
         100.0 * need.base_shear_left,
         *(100.0 * need.frequency_error).T,
     )
-    rows = [[str(k + 1), *(number_for_console(float(column[k]), 3) for column in columns)] for k in range(need.n_modes)]
-    console.print("\nNumber of modes needed", markup=False)
-    print_console_table(console, console_table(headings, rows))
-    console.print()
-    console.print(need.reason, markup=False)
+    rows = [[str(k + 1), *(console.number(float(column[k]), 3) for column in columns)] for k in range(need.n_modes)]
+    console.print_line("\nNumber of modes needed")
+    console.print_rows(headings, rows)
+    console.print_line()
+    console.print_line(need.reason, wrap=True)
 
 
 def _write_modes(
@@ -211,7 +194,7 @@ def _write_modes(
 
     built = loaded.built
     drawn = not isinstance(built, RockingProperties)
-    with staged_output_folder(folder, document, force=force) as stage:
+    with output.staged_folder(folder, document, force=force) as stage:
         # As in the printed tables: each mode on a fixed base, then the mode of the same number while uplifted.
         lifted = pd.DataFrame(document["uplifted"]).drop(columns="mode", errors="ignore").add_prefix("uplifted_")
         pd.DataFrame(document["modes"]).join(lifted).to_csv(stage / "modes.csv", index=False, lineterminator="\n")
@@ -219,7 +202,9 @@ def _write_modes(
             from rockflex.plot import plot_mode_shapes, save_figure
 
             save_figure(plot_mode_shapes(built.modal(), n_modes=n_modes), stage / "mode-shapes.png")
-    print_remark(f"Written to {folder}" + ("" if drawn else f"; no figure, because [{loaded.kind}] has no mode shapes"))
+    console.print_remark(
+        f"Written to {folder}" + ("" if drawn else f"; no figure, because [{loaded.kind}] has no mode shapes")
+    )
 
 
 Rows = list[dict[str, Any]]
@@ -227,118 +212,85 @@ Rows = list[dict[str, Any]]
 
 def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "RockingProperties") -> None:
     """Print the modes on a fixed base and while uplifted, and the rocking parameters, for each edge if they differ."""
-    console = stdout_console()
-    console.print(f"{loaded.title}\n", markup=False, soft_wrap=True)
+    console.print_line(f"{loaded.title}\n")
     share = "m*_n/m_tot" if loaded.base_mass is None else "m*_n/Σm"
-    headings = ("mode", "T_n [s]", "ω_n [rad/s]", share, "h*_n [m]", "Γ_n φ_top", "ζ_n")
-    keys = ("period", "omega", "mass_share", "effective_height", "top_ordinate", "zeta")
     if rows:
-        print_console_table(console, console_table(headings, _mode_cells(rows, keys)))
-        headings, keys = ("mode", "T*_n [s]", "ω*_n [rad/s]", "ω*_n/ω_n", "ζ*_n"), ("period", "omega", "ratio", "zeta")
+        headings = ("mode", "T_n [s]", "ω_n [rad/s]", share, "h*_n [m]", "Γ_n φ_top", "ζ_n")
+        console.print_rows(headings, _mode_cells(rows, "period omega mass_share effective_height top_ordinate zeta"))
         for side in ("",) if p.symmetric else ("right", "left"):
             about = f" about the {side} edge" if side else ""
             note = "" if side == "left" else "; with fewer (--modes) ζ*_n differs"
-            console.print(f"\nWhile uplifted{about}, with these modes{note}", markup=False)
+            console.print_line(f"\nWhile uplifted{about}, with these modes{note}", wrap=True)
             kept = [row for row in lifted if row.get("side", "") == side]
-            print_console_table(console, console_table(headings, _mode_cells(kept, keys)))
-        console.print()
-    total = [(f"Sum of {share}", number_for_console(sum(float(row["mass_share"]) for row in rows)), "")] if rows else []
-    inertia = ("Moment of inertia about a pivot, I_θ", number_for_console(p.i_theta), "kg m²")
+            headings = ("mode", "T*_n [s]", "ω*_n [rad/s]", "ω*_n/ω_n", "ζ*_n")
+            console.print_rows(headings, _mode_cells(kept, "period omega ratio zeta"))
+        console.print_line()
+    total = sum(float(row["mass_share"]) for row in rows)
     values = (
-        *total,
-        *([inertia] if p.symmetric else []),
-        ("First moment of mass, L_0^r", number_for_console(p.l0r), "kg m"),
-        ("Total mass with the base, m_tot", number_for_console(p.m_tot), "kg"),
-        *([("Leaning mass", number_for_console(p.leaning_mass), "kg")] if p.leaning_mass else []),
-        *([("Share of the weight on the base", number_for_console(p.weight_share), "")] if p.leaning_mass else []),
-        ("Half width of the base, B", number_for_console(p.half_width), "m"),
-        *(
-            [("Masses to the right of its middle, e", number_for_console(p.eccentricity), "m")]
-            if p.eccentricity
-            else []
-        ),
-        *([("Initial force of the tendons, P", number_for_console(p.prestress / 1e3), "kN")] if p.tendons else []),
-        *(_parameters_of_both_pivots(p) if p.symmetric else []),
+        *_named_cells(rows, f"Sum of {share}", total, ""),
+        *_named_cells(p.symmetric, "Moment of inertia about a pivot, I_θ", p.i_theta, "kg m²"),
+        *_named_cells(True, "First moment of mass, L_0^r", p.l0r, "kg m"),
+        *_named_cells(True, "Total mass with the base, m_tot", p.m_tot, "kg"),
+        *_named_cells(p.leaning_mass, "Leaning mass", p.leaning_mass, "kg"),
+        *_named_cells(p.leaning_mass, "Share of the weight on the base", p.weight_share, ""),
+        *_named_cells(True, "Half width of the base, B", p.half_width, "m"),
+        *_named_cells(p.eccentricity, "Masses to the right of its middle, e", p.eccentricity, "m"),
+        *_named_cells(p.tendons, "Initial force of the tendons, P", p.prestress / 1e3, "kN"),
     )
-    print_console_table(console, console_table(("Rocking", "", ""), values))
+    of_pivots = _parameters_of_pivots(p)
+    # Where both pivots are alike, one column has the values of both.
+    console.print_rows(
+        ("Rocking", "", ""), (*values, *((name, right, unit) for name, right, _, unit in of_pivots if p.symmetric))
+    )
     if not p.symmetric:
-        console.print()
-        print_console_table(
-            console, console_table(("About the edge", "right", "left", ""), _parameters_of_each_pivot(p))
-        )
+        console.print_line()
+        console.print_rows(("About the edge", "right", "left", ""), of_pivots)
     if p.elements:
         from rockflex.cli._structures import elements_table
 
-        console.print("\nBetween base and ground, x to the right of the masses", markup=False)
-        print_console_table(console, elements_table(p.elements))
+        console.print_line("\nBetween base and ground, x to the right of the masses")
+        console.print_table(elements_table(p.elements))
 
 
-def _parameters_of_both_pivots(p: "RockingProperties") -> list[tuple[str, str, str]]:
-    """The parameters that are the same about both pivots."""
+def _named_cells(wanted: object, name: str, value: float, unit: str) -> list[tuple[str, str, str]]:
+    """Return the row of a value, if it is wanted."""
+    return [(name, console.number(value), unit)] if wanted else []
+
+
+def _parameters_of_pivots(p: "RockingProperties") -> list[tuple[str, str, str, str]]:
+    """Return the name, the values about the right and the left pivot, and the unit of what depends on the pivot."""
     size, unit = moment_unit(p.resisting_moment)
-    stiffness = ("Their stiffness while rocking", number_for_console(p.tendon_stiffness / size), f"{unit}/rad")
-    weight = "(m_tot g + P)" if p.tendons else "m_tot g"
-    return [
-        *([stiffness] if p.tendons else []),
-        (f"Resisting moment, M_r = {weight} B", number_for_console(p.resisting_moment / size), unit),
-        ("Static uplift at a_lift = M_r/L_0^r", number_for_console(p.uplift_acceleration), "m/s²"),
-        *((name, values[0], unit) for name, values, unit in _self_centring_rows(p, size, unit)),
-        (
-            f"Nominal limit, 0.7 atan({_slenderness_formula(p, 'B')})",
-            number_for_console(p.nominal_overturning_rotation),
-            "rad",
-        ),
-    ]
-
-
-def _parameters_of_each_pivot(p: "RockingProperties") -> list[tuple[str, str, str, str]]:
-    """The parameters that differ between the pivots."""
-    size, unit = moment_unit(p.resisting_moment)
-    sides = (p.pivot(1), p.pivot(-1))
-
-    def row(name: str, values: tuple[float, ...], unit: str) -> tuple[str, str, str, str]:
-        return (name, number_for_console(values[0]), number_for_console(values[1]), unit)
-
-    stiffness = tuple(each.tendon_stiffness / size for each in sides)
-    nominal = tuple(each.nominal_overturning_rotation for each in sides)
-    return [
-        row("Distance from the masses, b", tuple(each.arm for each in sides), "m"),
-        row("Moment of inertia, I_θ", tuple(each.i_theta for each in sides), "kg m²"),
-        *([row("Stiffness of the tendons", stiffness, f"{unit}/rad")] if p.tendons else []),
-        row("Resisting moment, M_r", tuple(each.resisting_moment / size for each in sides), unit),
-        row("Static uplift at a_lift", tuple(each.uplift_acceleration for each in sides), "m/s²"),
-        *((name, *values, unit) for name, values, unit in _self_centring_rows(p, size, unit)),
-        row(f"Nominal limit, 0.7 atan({_slenderness_formula(p, 'b')})", nominal, "rad"),
-    ]
-
-
-def _self_centring_rows(p: "RockingProperties", size: float, unit: str) -> list[tuple[str, tuple[str, str], str]]:
-    """Rows about the dissipators: the name, the values about the right and the left pivot, the unit."""
     right, left = p.pivot(1), p.pivot(-1)
-    if not right.dissipator_moment and not left.dissipator_moment:
-        return []
+    rows: list[tuple[str, str, str, str]] = []
 
-    def both(of: "Callable[[Pivot], str]") -> tuple[str, str]:
-        return of(right), of(left)
+    def row(name: str, of: "Callable[[Pivot], float | str]", unit: str) -> None:
+        first, second = (each if isinstance(each, str) else console.number(each) for each in (of(right), of(left)))
+        rows.append((name, first, second, unit))
 
-    def least(pivot: "Pivot") -> str:
-        return number_for_console(max(pivot.resisting_moment - pivot.dissipator_moment, 0.0) / size)
-
-    return [
-        (
-            "Moment of the dissipators, M_d",
-            both(lambda pivot: number_for_console(pivot.dissipator_moment / size)),
+    width = "B" if p.symmetric else "b"
+    slenderness = f"{width}/h*_1" if p.n_modes else f"{width} m_tot/L_0^r"
+    if not p.symmetric:
+        row("Distance from the masses, b", lambda pivot: pivot.arm, "m")
+        row("Moment of inertia, I_θ", lambda pivot: pivot.i_theta, "kg m²")
+    if p.tendons:
+        name = "Their stiffness while rocking" if p.symmetric else "Stiffness of the tendons"
+        row(name, lambda pivot: pivot.tendon_stiffness / size, f"{unit}/rad")
+    formula = f" = {'(m_tot g + P)' if p.tendons else 'm_tot g'} B" if p.symmetric else ""
+    row(f"Resisting moment, M_r{formula}", lambda pivot: pivot.resisting_moment / size, unit)
+    formula = " = M_r/L_0^r" if p.symmetric else ""
+    row(f"Static uplift at a_lift{formula}", lambda pivot: pivot.uplift_acceleration, "m/s²")
+    if right.dissipator_moment or left.dissipator_moment:
+        row("Moment of the dissipators, M_d", lambda pivot: pivot.dissipator_moment / size, unit)
+        row("Re-centring ratio, M_r/M_d", lambda pivot: pivot.recentring_ratio, "")
+        row(
+            "Least moment that lifts it after yielding, M_r - M_d",
+            lambda pivot: max(pivot.resisting_moment - pivot.dissipator_moment, 0.0) / size,
             unit,
-        ),
-        ("Re-centring ratio, M_r/M_d", both(lambda pivot: number_for_console(pivot.recentring_ratio)), ""),
-        ("Least moment that lifts it after yielding, M_r - M_d", both(least), unit),
-        ("Self-centring", both(lambda pivot: "yes" if pivot.self_centring else "no: it may stay open"), ""),
-    ]
+        )
+        row("Self-centring", lambda pivot: "yes" if pivot.self_centring else "no: it may stay open", "")
+    row(f"Nominal limit, 0.7 atan({slenderness})", lambda pivot: pivot.nominal_overturning_rotation, "rad")
+    return rows
 
 
-def _slenderness_formula(p: "RockingProperties", width: str) -> str:
-    return f"{width}/h*_1" if p.n_modes else f"{width} m_tot/L_0^r"
-
-
-def _mode_cells(rows: Rows, keys: tuple[str, ...]) -> list[list[str]]:
-    return [[str(row["mode"]), *(number_for_console(float(row[key])) for key in keys)] for row in rows]
+def _mode_cells(rows: Rows, keys: str) -> list[list[str]]:
+    return [[str(row["mode"]), *(console.number(float(row[key])) for key in keys.split())] for row in rows]

@@ -1,35 +1,21 @@
-"""``rockflex motion``: the contents and measures of records and suites."""
+"""``rockflex motion``: contents and measures of records and suites; ``rockflex survey``: the records in a folder."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rockflex._errors import InputError
 from rockflex._shown import number_with_noun
+from rockflex.cli import _console as console
 from rockflex.cli import _options as options
-from rockflex.cli._console import (
-    console_table,
-    number_for_console,
-    print_console_table,
-    print_remark,
-    stdout_console,
-    table_fits_console,
-)
-from rockflex.cli._output import (
-    check_output_folder,
-    document_to_json,
-    file_stems,
-    staged_output_folder,
-    versions_in_results,
-)
+from rockflex.cli import _output as output
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    from rich.table import Table
-
     from rockflex.cli._find_motions import FoundMotion
+    from rockflex.motion import RecordSurvey, SurveyEntry
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -59,11 +45,9 @@ def motion(
     ] = None,
     period: Annotated[
         list[float] | None,
-        typer.Option(
-            "--period", metavar="S", help="Period of Sa in s; may be repeated. Default: 1.", show_default=False
-        ),
+        options.option("--period", "S", "Period of Sa in s; may be repeated. Default: 1.", show_default=False),
     ] = None,
-    damping: Annotated[float, typer.Option("--damping", metavar="ZETA", help="Damping ratio of Sa.")] = 0.05,
+    damping: Annotated[float, options.option("--damping", "ZETA", "Damping ratio of Sa.")] = 0.05,
     json: options.Json = False,
     out: options.Out = None,
     figures: options.Figures = 4,
@@ -76,13 +60,13 @@ def motion(
     """Print the data and the intensity measures of ground motions; without a name, list the embedded suites."""
     from rockflex.cli._find_motions import embedded_suite_facts, find_motions
 
-    check_output_folder(out, force=force)
+    output.check_folder(out, force=force)
     # With a folder or a unit, motions are expected, and an empty list of names is an error.
     about_files = units is not None or dt is not None or vertical is not None or on_error != "raise"
     if not names and out is None and period is None and not about_files:
         suites = embedded_suite_facts()
         if json:
-            typer.echo(document_to_json({"versions": versions_in_results(), "suites": suites}))
+            typer.echo(output.to_json({"versions": output.versions(), "suites": suites}))
         else:
             _print_embedded_suites(suites)
         return
@@ -90,7 +74,7 @@ def motion(
     periods = list(dict.fromkeys(period or [1.0]))
     rows = [{**item.describe(), **_measures_of_motion(item, periods, damping)} for item in found]
     document: dict[str, Any] = {
-        "versions": versions_in_results(),
+        "versions": output.versions(),
         "options": {"periods": periods, "damping_ratio": damping},
         "units": _units_of_measures(),
         "motions": rows,
@@ -98,7 +82,7 @@ def motion(
     if out is not None:
         _write_motion_measures(out, document, found, figures, force=force)
     if json:
-        typer.echo(document_to_json(document))
+        typer.echo(output.to_json(document))
     else:
         _print_motion_measures(rows, periods, damping)
 
@@ -141,19 +125,16 @@ def _measures_of_motion(item: "FoundMotion", periods: Sequence[float], damping: 
 
 
 def _print_embedded_suites(suites: Sequence[dict[str, Any]]) -> None:
-
-    console = stdout_console()
     spans = [" ... ".join(dict.fromkeys((row["first"], row["last"]))) for row in suites]
     rows = [[row["suite"], span, str(row["motions"])] for row, span in zip(suites, spans, strict=True)]
-    print_console_table(console, console_table(("suite", "records", "motions"), rows, 2))
-    console.print("\nDetails: rockflex motion SUITE, or SUITE/RECORD", markup=False, soft_wrap=True)
+    console.print_rows(("suite", "records", "motions"), rows, 2)
+    console.print_line("\nDetails: rockflex motion SUITE, or SUITE/RECORD")
 
 
 def _print_motion_measures(rows: Sequence[dict[str, Any]], periods: Sequence[float], damping: float) -> None:
     from rockflex._constants import GRAVITY
     from rockflex.motion import record_measures
 
-    console = stdout_console()
     chosen = [(measure, measure.unit == "m/s²") for measure in record_measures()]
     records: list[list[str]] = []
     measures: list[list[str]] = []
@@ -161,29 +142,27 @@ def _print_motion_measures(rows: Sequence[dict[str, Any]], periods: Sequence[flo
         info = row["metadata"]
         facts = [None, None, None] if info is None else [info.magnitude, info.distance_km, info.vs30]
         words = ["-", "-"] if info is None else [info.event or "-", str(info.year or "-")]
-        samples = [f"{row['dt']:g}", str(row["npts"]), number_for_console(row["duration"])]
+        samples = [f"{row['dt']:g}", str(row["npts"]), console.number(row["duration"])]
         records.append([row["name"], *words, *("-" if fact is None else f"{fact:g}" for fact in facts), *samples])
-        spectral = [number_for_console(row[f"sa_{period:g}"] / GRAVITY) for period in periods]
-        own = [number_for_console(row[measure.name] / (GRAVITY if in_g else 1.0)) for measure, in_g in chosen]
+        spectral = [console.number(row[f"sa_{period:g}"] / GRAVITY) for period in periods]
+        own = [console.number(row[measure.name] / (GRAVITY if in_g else 1.0)) for measure, in_g in chosen]
         measures.append([row["name"], *own, *spectral])
     head = ("name", "event", "year", "M", "R [km]", "Vs30 [m/s]", "dt [s]", "npts", "length [s]")
-    table = console_table(head, records, 2)
-    if not table_fits_console(console, table):
-        table = console_table(head, [[name, fill(event, 12), *rest] for name, event, *rest in records], 2)
-    print_console_table(console, table)
-    console.print()
+    table = console.table(head, records, 2)
+    if not console.table_fits(table):
+        table = console.table(head, [[name, fill(event, 12), *rest] for name, event, *rest in records], 2)
+    console.print_table(table)
+    console.print_line()
     heads = [f"{measure.head} [g]" if in_g else measure.with_unit(measure.head) for measure, in_g in chosen]
     spectral = (f"Sa({period:g} s) [g]" for period in periods)
-    print_console_table(
-        console, console_table(("name", *(head.translate(PLAIN) for head in heads), *spectral), measures)
-    )
+    console.print_rows(("name", *(head.translate(PLAIN) for head in heads), *spectral), measures)
     if any("pva" in row for row in rows):
-        console.print("\nVertical component", markup=False)
-        print_console_table(console, _vertical_measures_table(rows, periods))
-    console.print(f"\nSa: pseudo-acceleration with {damping:g} damping; g = {GRAVITY} m/s²", markup=False)
+        console.print_line("\nVertical component")
+        _print_vertical_measures(rows, periods)
+    console.print_line(f"\nSa: pseudo-acceleration with {damping:g} damping; g = {GRAVITY} m/s²")
 
 
-def _vertical_measures_table(rows: Sequence[dict[str, Any]], periods: Sequence[float]) -> "Table":
+def _print_vertical_measures(rows: Sequence[dict[str, Any]], periods: Sequence[float]) -> None:
     from rockflex._constants import GRAVITY
 
     cells: list[list[str]] = []
@@ -191,20 +170,20 @@ def _vertical_measures_table(rows: Sequence[dict[str, Any]], periods: Sequence[f
         keys = [("pva", GRAVITY), ("pva_pga", 1.0)]
         for period in periods:
             keys += [(f"sa_vertical_{period:g}", GRAVITY), (f"v_h_{period:g}", 1.0)]
-        cells.append([row["name"], *(number_for_console(row[key] / unit) if key in row else "-" for key, unit in keys)])
+        cells.append([row["name"], *(console.number(row[key] / unit) if key in row else "-" for key, unit in keys)])
     spectral = [head for period in periods for head in (f"Sa,v({period:g} s) [g]", f"V/H({period:g} s)")]
-    return console_table(("name", "PVA [g]", "PVA/PGA", *spectral), cells)
+    console.print_rows(("name", "PVA [g]", "PVA/PGA", *spectral), cells)
 
 
 def _write_motion_measures(
-    folder: "Path", document: dict[str, Any], found: Sequence["FoundMotion"], figures: int, *, force: bool
+    folder: Path, document: dict[str, Any], found: Sequence["FoundMotion"], figures: int, *, force: bool
 ) -> None:
     from dataclasses import asdict
 
     import pandas as pd
 
     few = len(found) <= figures
-    with staged_output_folder(folder, document, force=force) as stage:
+    with output.staged_folder(folder, document, force=force) as stage:
         rows = [
             {**row, "metadata": None} | (asdict(row["metadata"]) if row["metadata"] else {})
             for row in document["motions"]
@@ -214,7 +193,9 @@ def _write_motion_measures(
         if few:
             from rockflex.plot import plot_motion, save_figure
 
-            for stem, item in zip(file_stems(f"motion-{item.motion.name}" for item in found), found, strict=True):
+            for stem, item in zip(
+                output.file_stems(f"motion-{item.motion.name}" for item in found), found, strict=True
+            ):
                 series = {
                     name: getattr(item.motion, name) for name in ("time", "acceleration", "velocity", "displacement")
                 }
@@ -222,7 +203,105 @@ def _write_motion_measures(
                     series["vertical"] = item.motion.vertical
                 pd.DataFrame(series).to_csv(stage / f"{stem}.csv", index=False, lineterminator="\n")
                 save_figure(plot_motion(item.motion), stage / f"{stem}.png")
-    print_remark(
+    console.print_remark(
         f"Written to {folder}"
         + ("" if few else f"; series and figures only of up to {number_with_noun(figures, 'motion')}, by --figures")
+    )
+
+
+SURVEY_EPILOG = """[bold]Examples[/bold]
+
+rockflex survey records
+
+rockflex survey records --vertical pair --json
+
+rockflex survey *.AT2 flatfile.csv"""
+
+MAX_NAMED_FILES = 6  # files that share a reason and are named; of more, the number is told
+
+
+def survey(
+    paths: Annotated[
+        list[Path], typer.Argument(metavar="FOLDER|FILES", help="A folder of records, or files.", show_default=False)
+    ],
+    json: options.Json = False,
+    units: options.Units = None,
+    dt: options.Dt = None,
+    vertical: Annotated[
+        str | None,
+        options.option(
+            "--vertical",
+            "pair",
+            "pair: take the vertical component of each station too.",
+            rich_help_panel=options.RECORD_FILES,
+        ),
+    ] = None,
+) -> None:
+    """Say of each record file what it holds, whether it is taken, and why not."""
+    from rockflex.motion import survey_records
+
+    folders = [path for path in paths if path.is_dir()]
+    if folders and len(paths) > 1:
+        raise InputError(
+            f"One folder or several files are expected, but {folders[0]} is a folder among {len(paths)} paths. Survey "
+            "one folder at a time."
+        )
+    single = len(paths) == 1 and not paths[0].is_file()
+    found = survey_records(paths[0] if single else paths, units, dt, vertical, None)  # pyright: ignore[reportArgumentType]
+    if json:
+        stations = [
+            {
+                "name": each.name,
+                "horizontal": [motion.name for motion in each.horizontal],
+                "vertical": None if each.vertical is None else each.vertical.name,
+            }
+            for each in found.stations
+        ]
+        document: dict[str, Any] = {
+            "versions": output.versions(),
+            "units": {"dt": "s", "pga": "m/s²", "stated_pga": "m/s²", "distance_km": "km", "vs30": "m/s"},
+            "entries": found.entries,
+            "stations": stations,
+        }
+        typer.echo(output.to_json(document))
+    else:
+        _print_record_survey(found)
+
+
+def _print_record_survey(found: "RecordSurvey") -> None:
+    from rockflex._constants import GRAVITY
+
+    def cells(entry: "SurveyEntry") -> list[str]:
+        words = [entry.file, entry.format, entry.station, entry.component]
+        facts = [entry.magnitude, entry.distance_km, entry.vs30]
+        samples = ["-" if value is None else f"{value:g}" for value in (entry.dt, entry.n_samples)]
+        peak = "-" if entry.pga is None else console.number(entry.pga / GRAVITY)
+        return [
+            *(word or "-" for word in words),
+            "yes" if entry.taken else "no",
+            *samples,
+            peak,
+            *("-" if fact is None else f"{fact:g}" for fact in facts),
+        ]
+
+    head = ("file", "format", "station", "component", "taken", "dt [s]", "npts", "PGA [g]", "M", "R [km]", "Vs30 [m/s]")
+    console.print_rows(head, map(cells, found.entries), 5)
+    taken, left = len(found.taken), len(found.left_out)
+    console.print_line(f"\n{taken} taken, {left} left out; {_station_count_text(found)}")
+    for title, entries in (("Left out", found.left_out), ("Taken, but", [each for each in found.taken if each.reason])):
+        if entries:
+            console.print_line(f"\n{title}:")
+        for reason in dict.fromkeys(entry.reason for entry in entries):
+            names = list(dict.fromkeys(entry.file for entry in entries if entry.reason == reason))
+            more = f" and {len(names) - MAX_NAMED_FILES} more" if len(names) > MAX_NAMED_FILES else ""
+            console.print_line(f"  {', '.join(names[:MAX_NAMED_FILES])}{more}: {reason}")
+
+
+def _station_count_text(found: "RecordSurvey") -> str:
+    pairs = [len(each.horizontal) == 2 for each in found.stations]
+    upright = [each.vertical is not None for each in found.stations]
+    both = sum(pair and vertical for pair, vertical in zip(pairs, upright, strict=True))
+    return (
+        f"{number_with_noun(len(pairs), 'recording')}: {sum(pairs)} with a horizontal pair, {sum(upright)} with a "
+        f"vertical component, {both} with both"
     )

@@ -132,11 +132,15 @@ def _option_of_schema_key(table: type, name: str, key: SchemaKey, panel: str) ->
     )
 
 
+def option(flags: str, metavar: str, words: str, **more: Any) -> Any:
+    """Return an option of typer: its flags, separated by blanks, its placeholder, and its help."""
+    return typer.Option(*flags.split(), metavar=metavar, help=words, **more)
+
+
 RECORD_FILES = "Record files"
 
 StructureFile = Annotated[
-    Path | None,
-    typer.Option("--structure", "-s", metavar="FILE.toml", help="The structure file, if it is not the first argument."),
+    Path | None, option("--structure -s", "FILE.toml", "The structure file, if it is not the first argument.")
 ]
 Arguments = Annotated[
     list[str] | None,
@@ -147,15 +151,14 @@ Arguments = Annotated[
     ),
 ]
 Motions = Annotated[
-    list[str] | None,
-    typer.Option("--motion", "-m", metavar="MOTION", help="A ground motion; may be repeated.", show_default=False),
+    list[str] | None, option("--motion -m", "MOTION", "A ground motion; may be repeated.", show_default=False)
 ]
 Models = Annotated[
     list[str] | None,
-    typer.Option(
+    option(
         "--model",
-        metavar="LABEL",
-        help="Labels, separated by commas. Simplified: 2DOF-S, 3DOF-S, ... MDOF-S; complete: 2DOF-C, 2DOF-C-SI, "
+        "LABEL",
+        "Labels, separated by commas. Simplified: 2DOF-S, 3DOF-S, ... MDOF-S; complete: 2DOF-C, 2DOF-C-SI, "
         "MDOF-C, 3DOF-C-SI, 3DOF-C-E, ...; without flexure: rigid, rigid-C; fixed base: fixed, 5DOF-fixed; one "
         "mode that yields: 2DOF-S-BW, 2DOF-C-BW, 1DOF-fixed-BW; with the mass of omitted modes in V_b and M_b: "
         "2DOF-S-R, 5DOF-fixed-R, ... Default: 2DOF-S,MDOF-S,fixed; with a hysteresis "
@@ -166,82 +169,70 @@ Models = Annotated[
 ]
 Scales = Annotated[
     list[str],
-    typer.Option(
-        "--scale",
-        metavar="FACTOR",
-        help="Factor on the acceleration, or smallest:largest:step such as 0.5:3:0.25; may be repeated.",
+    option(
+        "--scale", "FACTOR", "Factor on the acceleration, or smallest:largest:step such as 0.5:3:0.25; may be repeated."
     ),
 ]
 FreeVibration = Annotated[
-    str,
-    typer.Option(metavar="S|settle", help="Seconds after the record, or settle: until at rest or overturned."),
+    str, typer.Option(metavar="S|settle", help="Seconds after the record, or settle: until at rest or overturned.")
 ]
 Friction = Annotated[
     float | None,
-    typer.Option(
+    option(
         "--friction",
-        metavar="MU",
-        help="Print the friction that each run requires (Eqs. 20-22), and when sliding starts with this coefficient.",
+        "MU",
+        "Print the friction that each run requires (Eqs. 20-22), and when sliding starts with this coefficient.",
         rich_help_panel=ASSUMPTIONS,
     ),
 ]
 WorkLimit = Annotated[
     str | None,
-    typer.Option(
-        "--work-limit",
-        metavar="S|none",
-        help="Longest computing time of one run, in s of one core; none: no limit. Default: 30.",
+    option(
+        "--work-limit", "S|none", "Longest computing time of one run, in s of one core; none: no limit. Default: 30."
     ),
 ]
 Units = Annotated[
     str | None,
-    typer.Option(
+    option(
         "--units",
-        metavar="g|m/s2|cm/s2",
-        help="Unit of the acceleration, if a file has none; or what one count is, such as '2.4e-4 cm/s2'.",
+        "g|m/s2|cm/s2",
+        "Unit of the acceleration, if a file has none; or what one count is, such as '2.4e-4 cm/s2'.",
         rich_help_panel=RECORD_FILES,
     ),
 ]
 Dt = Annotated[
-    float | None,
-    typer.Option("--dt", metavar="S", help="Sampling step in s, if a file has none.", rich_help_panel=RECORD_FILES),
+    float | None, option("--dt", "S", "Sampling step in s, if a file has none.", rich_help_panel=RECORD_FILES)
 ]
 Vertical = Annotated[
     str | None,
-    typer.Option(
+    option(
         "--vertical",
-        metavar="FILE|pair",
-        help="The record of the vertical component, of one motion; or pair: find those of all record files given.",
+        "FILE|pair",
+        "The record of the vertical component, of one motion; or pair: find those of all record files given.",
         rich_help_panel=RECORD_FILES,
     ),
 ]
 OnError = Annotated[
     Literal["raise", "skip"],
-    typer.Option(
+    option(
         "--on-error",
-        metavar="raise|skip",
-        help="If files cannot be read: stop and list them all, or skip them.",
+        "raise|skip",
+        "If files cannot be read: stop and list them all, or skip them.",
         rich_help_panel=RECORD_FILES,
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print only one JSON document, in SI units.")]
-Out = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write tables and figures to a folder.")]
+Out = Annotated[Path | None, option("--out -o", "DIR", "Write tables and figures to a folder.")]
 Force = Annotated[bool, typer.Option("--force", help="Let --out replace earlier results in a folder.")]
 ForceBoth = Annotated[
     bool, typer.Option("--force", help="Let --out replace earlier results in a folder, and --report an earlier page.")
 ]
 Report = Annotated[
     Path | None,
-    typer.Option(
-        "--report",
-        metavar="FILE.html",
-        help="Write a report on one sheet of A4, of one motion at one scale.",
-        show_default=False,
+    option(
+        "--report", "FILE.html", "Write a report on one sheet of A4, of one motion at one scale.", show_default=False
     ),
 ]
 Figures = Annotated[
-    int,
-    typer.Option(
-        "--figures", metavar="N", min=0, help="Write a time series and a figure of each motion if there are at most N."
-    ),
+    int, option("--figures", "N", "Write a time series and a figure of each motion if there are at most N.", min=0)
 ]

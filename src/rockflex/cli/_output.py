@@ -16,19 +16,19 @@ from rockflex._versions import package_versions
 SUMMARY = "summary.json"
 
 
-def document_to_json(document: dict[str, Any], *, ascii_only: bool = True) -> str:
+def to_json(document: dict[str, Any], *, ascii_only: bool = True) -> str:
     """Return strictly valid JSON: NaN becomes null, and an infinity the string "inf" or "-inf"."""
     from rockflex._json import as_json_value
 
     return json.dumps(as_json_value(document), indent=2, ensure_ascii=ascii_only, allow_nan=False)
 
 
-def versions_in_results() -> dict[str, str]:
+def versions() -> dict[str, str]:
     """Return the versions of the packages that the results depend on."""
     return {"rockflex": __version__, **package_versions(("numpy", "scipy"))}
 
 
-def check_output_folder(folder: Path | None, *, force: bool) -> None:
+def check_folder(folder: Path | None, *, force: bool) -> None:
     """Raise an InputError if the folder must not be written to, or --force was given without a folder."""
     if folder is None:
         if force:
@@ -45,17 +45,12 @@ def check_output_folder(folder: Path | None, *, force: bool) -> None:
 
 
 @contextmanager
-def staged_output_folder(folder: Path, document: dict[str, Any], *, force: bool) -> Generator[Path, None, None]:
+def staged_folder(folder: Path, document: dict[str, Any], *, force: bool) -> Generator[Path, None, None]:
     """Yield a temporary folder; at the end its files move to `folder`, with `document` as summary.json.
 
     If anything fails before the end, `folder` is unchanged. Only earlier results there are removed or replaced.
-
-    Raises
-    ------
-    InputError
-        If the folder must not, or cannot, be written to.
     """
-    check_output_folder(folder, force=force)
+    check_folder(folder, force=force)
     home = folder if folder.is_dir() else folder.absolute().parent
     try:
         home.mkdir(parents=True, exist_ok=True)
@@ -64,7 +59,7 @@ def staged_output_folder(folder: Path, document: dict[str, Any], *, force: bool)
             stage.mkdir()
             yield stage
             names = sorted(file.name for file in stage.iterdir())
-            text = document_to_json({**document, "files": [*names, SUMMARY]}, ascii_only=False)
+            text = to_json({**document, "files": [*names, SUMMARY]}, ascii_only=False)
             (stage / SUMMARY).write_text(text + "\n", "utf-8", newline="\n")
             _move_output_files(stage, folder, [*names, SUMMARY])
     except OSError as error:

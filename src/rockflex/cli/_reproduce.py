@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from rockflex.cli import _console as console
 from rockflex.cli import _options as options
-from rockflex.cli._console import console_progress_bar, console_table, print_console_table, print_remark, stdout_console
-from rockflex.cli._output import check_output_folder, staged_output_folder, versions_in_results
+from rockflex.cli import _output as output
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,12 +41,7 @@ def reproduce(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(
-            "--out",
-            "-o",
-            metavar="DIR",
-            help="Write report.html, report.md, numbers.csv and the figures to this folder.",
-        ),
+        options.option("--out -o", "DIR", "Write report.html, report.md, numbers.csv and the figures to this folder."),
     ] = None,
     records: Annotated[
         Path | None,
@@ -82,14 +77,14 @@ def reproduce(
             typer.echo(f"{target:10}  {paper.target_title(target)}")
         return
 
-    check_output_folder(out, force=force)
+    output.check_folder(out, force=force)
     wanted = targets or list(paper.TARGETS)
     for target in wanted:
         paper.target_title(target)
     chosen = {name: value for name, value in (("seeds", seeds), ("seed", seed)) if value is not None}
     given = paper.PaperRecords(records, **chosen)
-    print_remark(given.description)
-    with console_progress_bar("Computing", len(set(wanted))) as advance:
+    console.print_remark(given.description)
+    with console.step_bar("Computing", len(set(wanted))) as advance:
         results = paper.reproduce_targets(wanted, given, lambda _: advance(1))
     if out is None:
         _print_reproduced_numbers(results)
@@ -97,7 +92,7 @@ def reproduce(
         _write_reproduction(results, given, out, force=force)
     _print_reproduction_counts(results)
     if out is not None:
-        print_remark(f"Written to {out}: open {out / 'report.html'}")
+        console.print_remark(f"Written to {out}: open {out / 'report.html'}")
 
 
 def _write_reproduction(results: "list[ReproducedResult]", records: "PaperRecords", out: Path, *, force: bool) -> None:
@@ -106,36 +101,30 @@ def _write_reproduction(results: "list[ReproducedResult]", records: "PaperRecord
 
     verdicts = {str(verdict): verdict.meaning for verdict in Verdict}
     kinds = {str(kind): kind.meaning for kind in RemarkKind}
-    document = PublicationReport(TITLE, SOURCE, records.description, versions_in_results(), verdicts, kinds, results)
+    document = PublicationReport(TITLE, SOURCE, records.description, output.versions(), verdicts, kinds, results)
     summary = {
-        "versions": versions_in_results(),
+        "versions": output.versions(),
         "records": records.description,
         "targets": [result.name for result in results],
         "numbers": document.counts,
         "checks": document.checks,
     }
     figures = sum(len(result.figures) for result in results)
-    with staged_output_folder(out, summary, force=force) as stage, console_progress_bar("Drawing", figures) as advance:
+    with output.staged_folder(out, summary, force=force) as stage, console.step_bar("Drawing", figures) as advance:
         write_publication_report(document, stage, lambda _: advance(1))
 
 
 def _print_reproduced_numbers(results: "Sequence[ReproducedResult]") -> None:
-
-    console = stdout_console()
     for result in results:
         typer.echo(f"{result.name}: {result.title}")
         rows = [
             (n.name, n.printed, n.ours_as_text, n.unit, n.difference_as_text, str(n.verdict)) for n in result.numbers
         ]
         if rows:
-            print_console_table(
-                console, console_table(("number", "paper", "rockflex", "unit", "difference", "verdict"), rows)
-            )
+            console.print_rows(("number", "paper", "rockflex", "unit", "difference", "verdict"), rows)
         checks = [(c.name, c.printed, c.ours_as_text, c.unit, "yes" if c.holds else "no") for c in result.checks]
         if checks:
-            print_console_table(
-                console, console_table(("check of ourselves", "paper", "rockflex", "unit", "holds"), checks)
-            )
+            console.print_rows(("check of ourselves", "paper", "rockflex", "unit", "holds"), checks)
         typer.echo()
 
 
@@ -144,4 +133,4 @@ def _print_reproduction_counts(results: "Sequence[ReproducedResult]") -> None:
 
     rows = [(r.name, *(str(r.count(verdict)) for verdict in Verdict)) for r in results]
     rows.append(("all", *(str(sum(r.count(verdict) for r in results)) for verdict in Verdict)))
-    print_console_table(stdout_console(), console_table(("target", *map(str, Verdict)), rows))
+    console.print_rows(("target", *map(str, Verdict)), rows)

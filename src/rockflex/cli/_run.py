@@ -4,9 +4,9 @@ from typing import Annotated, Any
 
 import typer
 
+from rockflex.cli import _console as console
 from rockflex.cli import _options as options
-from rockflex.cli._console import print_warning_messages
-from rockflex.cli._output import check_output_folder, document_to_json, versions_in_results
+from rockflex.cli import _output as output
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -46,8 +46,7 @@ def run(
     free_vibration: options.FreeVibration = "0",
     times: Annotated[bool, typer.Option("--times", help="Also print the times of the peaks.")] = False,
     workers: Annotated[
-        int | None,
-        typer.Option(min=1, metavar="N", help="Threads. Default: one per core; only one for up to 64 runs."),
+        int | None, typer.Option(min=1, metavar="N", help="Threads. Default: one per core; only one for up to 64 runs.")
     ] = None,
     work_limit: options.WorkLimit = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 if any run could not be solved.")] = False,
@@ -82,12 +81,12 @@ def run(
     )
     from rockflex.cli._structures import describe_rocking_properties
 
-    check_output_folder(out, force=force and (out is not None or report is None))
+    output.check_folder(out, force=force and (out is not None or report is None))
     page = None if report is None else checked_path_of_report(report, force=force)
     asked = RunArguments(
         arguments=arguments or [], structure=structure, motion=motion, model=model, scale=scale,
         free_vibration=free_vibration, work_limit=work_limit, workers=workers, friction=friction, units=units, dt=dt,
-        on_error=on_error, vertical=vertical,
+        on_error=on_error, vertical=vertical
     )  # fmt: skip
     drawn = 0 if out is None else figures
     prepared = prepare_batch(context, asked, histories=drawn if page is None else max(drawn, 1))
@@ -99,7 +98,7 @@ def run(
         runs = run_batch(batch)
     elapsed = perf_counter() - start
     document: dict[str, Any] = {
-        "versions": versions_in_results(),
+        "versions": output.versions(),
         "structure": loaded.describe(),
         "properties": describe_rocking_properties(batch.properties),
         "motions": [item.describe() for item in found],
@@ -112,10 +111,10 @@ def run(
     if out is not None:
         write_run_results(out, document, batch, runs, figures=figures, force=force)
     if json:
-        typer.echo(document_to_json(document))
+        typer.echo(output.to_json(document))
     else:
         print_run_peaks(loaded.title, batch, runs, elapsed, times=times)
-    print_warning_messages(document["warnings"])
+    console.print_warnings(document["warnings"])
     print_run_warnings(runs)
     failed = print_failed_runs(runs)
     if page is not None:

@@ -3,14 +3,15 @@
 import math
 from collections.abc import Sequence
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 import numpy as np
+import typer
 
 from rockflex._errors import InputError
 from rockflex._schema import BoucWenKeys, GroundKeys, ImpactKeys, InitialStateKeys, SpringBedKeys
-from rockflex.cli._options import flags_of_tables, naming_flags_in_errors
+from rockflex.cli._options import flag_values, flags_of_tables, naming_flags_in_errors
+from rockflex.cli._structures import LoadedStructure
 from rockflex.modal import Ground, RockingProperties
 from rockflex.models import BoucWen, Restitution, parse_model
 from rockflex.structure.file import parse_toml_table
@@ -28,42 +29,6 @@ _INERTIA = {"base_inertia", "mat_mass"}
 _FIELDS = {f"ground.{name}": (name, flag) for name, flag in flags_of_tables(GroundKeys).items()} | {
     f"ground.bed.{name}": (name, flag) for name, flag in flags_of_tables(SpringBedKeys).items()
 }
-
-
-def make_run_ground(
-    file: Path | None, in_file: dict[str, Any], flags: dict[str, Any], properties: RockingProperties
-) -> tuple[Ground | None, dict[str, Any]]:
-    """Combine the ground in a structure file with the ground given by flags, which take precedence.
-
-    Parameters
-    ----------
-    file, in_file
-        The structure file, and its table [ground]; empty without one.
-    flags
-        Values by flags, named as in `GroundKeys` and `SpringBedKeys`.
-    properties
-        The structure on the ground.
-
-    Returns
-    -------
-    Ground or None, dict
-        The ground, None if it is rigid and the base cannot slide, and its values as given.
-
-    Raises
-    ------
-    InputError
-        If the values contradict each other or one is out of range.
-    """
-    if not in_file and not flags:
-        return None, {}
-    table = parse_toml_table(GroundTable, _merged_ground_options(in_file, flags))
-    try:
-        with naming_flags_in_errors({key: flag for key, (name, flag) in _FIELDS.items() if name in flags}):
-            return table.under(properties), table.model_dump(exclude_none=True)
-    except InputError as error:
-        if flags:
-            raise
-        raise InputError(f"{file}, {error}") from error
 
 
 def lines_about_ground(ground: Ground, properties: RockingProperties) -> list[str]:
@@ -137,44 +102,37 @@ def lines_about_run_options(options: RunOptions, properties: RockingProperties) 
     return lines if ground is None else [*lines, *lines_about_ground(ground, properties)]
 
 
-def make_run_options(
-    file: Path | None,
-    in_file: dict[str, Any],
-    law: dict[str, Any],
-    bouc_wen: dict[str, Any],
-    initial: dict[str, Any],
-    ground: dict[str, Any],
-    properties: RockingProperties,
-) -> tuple[RunOptions, dict[str, Any]]:
+def make_run_options(context: typer.Context, loaded: LoadedStructure) -> tuple[RunOptions, dict[str, Any]]:
     """Combine the options in a structure file with those given by flags, which take precedence.
 
-    Parameters
-    ----------
-    file, in_file
-        The structure file, and its `impact`, `restitution`, `bouc_wen` and `ground` as far as it has them.
-    law, bouc_wen, initial, ground
-        Values by flags, named as in `ImpactKeys`, `BoucWenKeys`, `InitialStateKeys`, `GroundKeys` and `SpringBedKeys`.
-    properties
-        The structure, whose base the ground is under.
-
-    Returns
-    -------
-    RunOptions, dict
-        The options, without free vibration; and the values of the ground as they were given, empty for none.
-
-    Raises
-    ------
-    InputError
-        If they contradict each other, or a value is out of range.
+    Return the options, without free vibration, and the values of the ground as they were given, empty for none.
     """
-    below = {} if "impact" in law else {name: in_file[name] for name in flags_of_tables(ImpactKeys) if name in in_file}
+    law, initial = flag_values(context, ImpactKeys), flag_values(context, InitialStateKeys)
+    keys = () if "impact" in law else flags_of_tables(ImpactKeys)
+    below = {name: loaded.run_options[name] for name in keys if name in loaded.run_options}
     with naming_flags_in_errors(flags_of_tables(ImpactKeys)):
         chosen = parse_toml_table(RunOptionKeys, {**below, **law}).law()
     with naming_flags_in_errors(flags_of_tables(InitialStateKeys) | {"rotation": "--initial-rotation"}):
         start = InitialState(rotation=initial["initial_rotation"]) if initial else None
-    hysteresis = _bouc_wen_of_options(file, in_file.get("bouc_wen", {}), bouc_wen)
-    base, values = make_run_ground(file, in_file.get("ground", {}), ground, properties)
+    hysteresis = _bouc_wen_of_options(context, loaded)
+    base, values = _make_run_ground(context, loaded)
     return RunOptions(impact=chosen, bouc_wen=hysteresis, initial=start, ground=base), values
+
+
+def _make_run_ground(context: typer.Context, loaded: LoadedStructure) -> tuple[Ground | None, dict[str, Any]]:
+    """Return the ground, None if it is rigid and the base cannot slide, and its values as given."""
+    flags = flag_values(context, GroundKeys) | flag_values(context, SpringBedKeys)
+    in_file = loaded.run_options.get("ground", {})
+    if not in_file and not flags:
+        return None, {}
+    table = parse_toml_table(GroundTable, _merged_ground_options(in_file, flags))
+    try:
+        with naming_flags_in_errors({key: flag for key, (name, flag) in _FIELDS.items() if name in flags}):
+            return table.under(loaded.properties), table.model_dump(exclude_none=True)
+    except InputError as error:
+        if flags:
+            raise
+        raise InputError(f"{loaded.file}, {error}") from error
 
 
 def choose_run_models(
@@ -183,11 +141,6 @@ def choose_run_models(
     """Return the given labels, split at commas, or the usual ones, after checking that they suit the rest.
 
     `by_flag` tells that the hysteresis was given on the command line, where a model must use it.
-
-    Raises
-    ------
-    InputError
-        If a label is unknown, needs more modes than there are, or contradicts the options.
     """
     if given is None:
         usual = USUAL if properties.n_modes else RIGID
@@ -228,29 +181,23 @@ def number_or_word(text: str) -> Any:
 
 
 def parse_work_limit(given: str | None) -> float | None:
-    """Return the limit of computing time in s, None for no limit, or the usual limit if none is given.
-
-    Raises
-    ------
-    InputError
-        If the text is neither a positive number nor "none".
-    """
+    """Return the limit of computing time in s, None for no limit, or the usual limit if none is given."""
     with naming_flags_in_errors({"work_limit": "--work-limit"}):
         return WORK_LIMIT if given is None else checked_work_limit(number_or_word(given))
 
 
-def _bouc_wen_of_options(file: Path | None, in_file: dict[str, float], flags: dict[str, float]) -> BoucWen | None:
-    values = {**in_file, **flags}
+def _bouc_wen_of_options(context: typer.Context, loaded: LoadedStructure) -> BoucWen | None:
+    flags = flag_values(context, BoucWenKeys)
+    values = {**loaded.run_options.get("bouc_wen", {}), **flags}
     if not values:
         return None
     if "yield_displacement" not in values:
         raise InputError("The hysteresis needs its yield displacement. Give --yield-displacement DY in m.")
+    named = {name: flag for name, flag in flags_of_tables(BoucWenKeys).items() if name in flags}
     try:
-        with naming_flags_in_errors(
-            {name: flag for name, flag in flags_of_tables(BoucWenKeys).items() if name in flags}
-        ):
+        with naming_flags_in_errors(named):
             return BoucWen(**values)
     except InputError as error:
         if flags:
             raise
-        raise InputError(f"{file}, [bouc_wen]: {error}") from error
+        raise InputError(f"{loaded.file}, [bouc_wen]: {error}") from error

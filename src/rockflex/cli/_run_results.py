@@ -9,26 +9,19 @@ from typing import TYPE_CHECKING, Any
 
 from rockflex._errors import InputError
 from rockflex._number_format import moment_unit
+from rockflex._schema import schema_keys
 from rockflex._shown import number_with_noun, shortened
+from rockflex.cli import _console as console
+from rockflex.cli import _output as output
 from rockflex.cli._batch import SLIDING, BatchRun, RunBatch
-from rockflex.cli._console import (
-    StyledCell,
-    console_table,
-    number_for_console,
-    print_console_table,
-    print_remark,
-    stdout_console,
-    table_fits_console,
-)
-from rockflex.cli._output import file_stems, staged_output_folder
 from rockflex.cli._run_options import lines_about_run_options
 from rockflex.cli._structures import LoadedStructure, elements_table
 from rockflex.fragility import NOMINAL
-from rockflex.modal import Ground
 from rockflex.motion import MEASURES, GroundMotion
 from rockflex.report.run import MAX_RUNS, checked_report_path, write_report
 from rockflex.response import IMPACT_WINDOW, Response, history_columns
 from rockflex.study import ground_under_structure
+from rockflex.study.spec import GroundTable, SpringBedTable, SpringsTable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -60,55 +53,58 @@ Columns = list[tuple[str, list[str]]]
 
 def print_run_peaks(title: str, batch: RunBatch, runs: Sequence[BatchRun], elapsed: float, *, times: bool) -> None:
     """Print the peaks of every run, and their times if requested; by motion if the terminal is narrow."""
-    console = stdout_console()
     for line in (
         title,
         *lines_about_run_options(batch.options, batch.properties),
         *_vertical_component_names(batch.motions),
     ):
-        console.print(line, markup=False, soft_wrap=True)
-    peaks, ground, base = (
-        _peak_columns(runs),
-        _reaction_columns(runs),
-        _base_motion_columns(ground_under_structure(batch.properties, batch.options.ground), runs),
-    )
-    tables, elements = [(peaks + ground + base, 1)], batch.properties.elements
-    if not table_fits_console(console, _table_of_all_runs(batch, runs, *tables[0])):
-        tables = [(peaks, 1), (ground + base, 0)]
+        console.print_line(line)
+    elements, base = batch.properties.elements, _base_motion_columns(batch, runs)
+    peaks, ground = _peak_columns(runs), _columns_of_peaks(runs, REACTIONS) + base
+    tables = [(peaks + ground, 1)]
+    if not console.table_fits(_table_of_all_runs(batch, runs, *tables[0])):
+        tables = [(peaks, 1), (ground, 0)]
     if times:
-        tables.append((_peak_time_columns(runs), 0))
+        tables.append((_columns_of_peaks(runs, PEAK_TIMES, digits=5), 0))
     if batch.friction is not None:
         tables.append((_sliding_columns(runs), 0))
     if elements:
-        console.print("\nBetween base and ground", markup=False)
-        print_console_table(console, elements_table(elements))
+        console.print_line("\nBetween base and ground")
+        console.print_table(elements_table(elements))
         tables += [(columns, 0) for columns in _element_peak_columns(runs, len(elements))]
     for columns, n_words in tables:
-        flat = _table_of_all_runs(batch, runs, columns, n_words)
-        if table_fits_console(console, flat):
-            console.print()
-            print_console_table(console, flat)
-            continue
-        rows = zip(runs, _rows_of_cells(columns), strict=True)
-        for place, members in groupby(rows, key=lambda row: _motion_and_scale_cells(batch, row[0])):
-            console.print("\n" + " × ".join(place), markup=False, soft_wrap=True)
-            cells = [[run.model, *row] for run, row in members]
-            print_console_table(
-                console, console_table(["model", *(heading for heading, _ in columns)], cells, 1 + n_words)
-            )
-    console.print()
+        _print_columns(batch, runs, columns, n_words)
+    for line in _legend(batch, runs, base):
+        console.print_line(line)
+    each = "" if len(runs) == 1 else f", {console.number(1e3 * elapsed / len(runs), 3)} ms a run"
+    console.print_line(f"{number_with_noun(len(runs), 'run')} in {console.number(elapsed, 3)} s{each}")
+
+
+def _legend(batch: RunBatch, runs: Sequence[BatchRun], base: Columns) -> Iterator[str]:
+    """Yield lines below the tables about what they show."""
+    yield ""
     if any(run.peaks["nominal_overturning"] for run in runs):
-        console.print(PASSED, markup=False, soft_wrap=True)
-    console.print(LEGEND, markup=False, soft_wrap=True)
-    for name, said in OF_BASE.items():
-        if any(heading.startswith(name) for heading, _ in base):
-            console.print(said, markup=False, soft_wrap=True)
-    if elements:
-        console.print(OF_ELEMENTS, markup=False, soft_wrap=True)
+        yield PASSED
+    yield LEGEND
+    yield from (said for name, said in OF_BASE.items() if any(heading.startswith(name) for heading, _ in base))
+    if batch.properties.elements:
+        yield OF_ELEMENTS
     if batch.friction is not None:
-        console.print(FRICTION.format(window=IMPACT_WINDOW, mu=batch.friction), markup=False, soft_wrap=True)
-    each = "" if len(runs) == 1 else f", {number_for_console(1e3 * elapsed / len(runs), 3)} ms a run"
-    console.print(f"{number_with_noun(len(runs), 'run')} in {number_for_console(elapsed, 3)} s{each}", markup=False)
+        yield FRICTION.format(window=IMPACT_WINDOW, mu=batch.friction)
+
+
+def _print_columns(batch: RunBatch, runs: Sequence[BatchRun], columns: Columns, n_words: int) -> None:
+    """Print columns of all runs; a table for each motion and scale if they do not fit."""
+    flat = _table_of_all_runs(batch, runs, columns, n_words)
+    if console.table_fits(flat):
+        console.print_line()
+        console.print_table(flat)
+        return
+    rows = zip(runs, _rows_of_cells(columns), strict=True)
+    for place, members in groupby(rows, key=lambda row: _motion_and_scale_cells(batch, row[0])):
+        console.print_line("\n" + " × ".join(place))
+        cells = [[run.model, *row] for run, row in members]
+        console.print_rows(["model", *(heading for heading, _ in columns)], cells, 1 + n_words)
 
 
 def print_run_warnings(runs: Sequence[BatchRun]) -> None:
@@ -121,7 +117,7 @@ def print_failed_runs(runs: Sequence[BatchRun]) -> int:
     """List on stderr the runs that could not be solved, and return their number."""
     failed = [run for run in runs if run.error is not None]
     if failed:
-        print_remark(f"{len(failed)} of {len(runs)} runs could not be solved:")
+        console.print_remark(f"{len(failed)} of {len(runs)} runs could not be solved:")
     found = [f"  {run.model} under {run.motion} × {run.scale:g}: {run.error}" for run in failed]
     _print_first_lines(found, "  and {} more; --json and results.csv list them all")
     return len(failed)
@@ -130,56 +126,63 @@ def print_failed_runs(runs: Sequence[BatchRun]) -> int:
 def _print_first_lines(found: Sequence[str], rest: str) -> None:
     """Print the first of many lines on stderr, and how many more there are."""
     for line in found[:MAX_LISTED]:
-        print_remark(line)
+        console.print_remark(line)
     if len(found) > MAX_LISTED:
-        print_remark(rest.format(len(found) - MAX_LISTED))
+        console.print_remark(rest.format(len(found) - MAX_LISTED))
+
+
+# Heading, name of the peak, and the unit of the column in that of the peak.
+Peaks = Sequence[tuple[str, str, float]]
+REACTIONS: Peaks = (("ΣF_x [kN]", "max_horizontal_reaction", 1e3), ("N_min [kN]", "min_vertical_reaction", 1e3))
+SLIPS: Peaks = (("slip [mm]", "max_slip", 1e-3), ("x_end [mm]", "residual_slip", 1e-3))
+EDGES: Peaks = (("edge up [mm]", "max_edge_uplift", 1e-3), ("edge down [mm]", "max_edge_settlement", 1e-3))
+PEAK_TIMES: Peaks = (
+    ("t(θ_max) [s]", "time_of_max_rotation", 1.0),
+    ("t(u_top relative) [s]", "time_of_max_top_displacement", 1.0),
+    ("t(u_top total) [s]", "time_of_max_total_top_displacement", 1.0),
+    ("t(M_b) [s]", "time_of_max_base_moment", 1.0),
+    ("t(V_b) [s]", "time_of_max_base_shear", 1.0),
+    ("t(ΣF_x) [s]", "time_of_max_horizontal_reaction", 1.0),
+    ("t(N_min) [s]", "time_of_min_vertical_reaction", 1.0),
+    ("end [s]", "end_time", 1.0),
+)
+
+
+def _columns_of_peaks(runs: Sequence[BatchRun], peaks: Peaks, digits: int = 4) -> Columns:
+    def cell(value: float | None, size: float) -> str:
+        return console.number(None if value is None else value / size, digits)
+
+    return [(heading, [cell(run.peaks[name], size) for run in runs]) for heading, name, size in peaks]
 
 
 def _peak_columns(runs: Sequence[BatchRun]) -> Columns:
-    moments = [abs(run.peaks["max_base_moment"] or 0.0) for run in runs]
-    size, unit = moment_unit(max(moments))
+    size, unit = moment_unit(max(abs(run.peaks["max_base_moment"] or 0.0) for run in runs))
+    peaks: list[tuple[str, str, float]] = [
+        ("θ_max [rad]", "max_rotation", 1.0),
+        ("u_top relative [m]", "max_top_displacement", 1.0),
+        ("u_top total [m]", "max_total_top_displacement", 1.0),
+        (f"M_b [{unit}]", "max_base_moment", size),
+        ("V_b [kN]", "max_base_shear", 1e3),
+    ]
     columns: Columns = [
         ("status", [_run_status_text(run) for run in runs]),
-        ("θ_max [rad]", _cells_of_peak(runs, "max_rotation")),
-        ("u_top relative [m]", _cells_of_peak(runs, "max_top_displacement")),
-        ("u_top total [m]", _cells_of_peak(runs, "max_total_top_displacement")),
-        (f"M_b [{unit}]", _cells_of_peak(runs, "max_base_moment", size)),
-        ("V_b [kN]", _cells_of_peak(runs, "max_base_shear", 1e3)),
+        *_columns_of_peaks(runs, peaks),
         ("impacts", ["-" if run.error else str(run.peaks["n_impacts"]) for run in runs]),
     ]
     if any(run.peaks["max_tendon_force"] for run in runs):
-        columns.append(("T [kN]", _cells_of_peak(runs, "max_tendon_force", 1e3)))
-        columns.append(("T/F_y", _cells_of_peak(runs, "tendon_utilisation")))
+        columns += _columns_of_peaks(runs, [("T [kN]", "max_tendon_force", 1e3), ("T/F_y", "tendon_utilisation", 1.0)])
     if any(run.elements and run.peaks["residual_rotation"] for run in runs):
-        columns.append(("θ_end [rad]", _cells_of_peak(runs, "residual_rotation")))
-    if any(run.run_time is not None for run in runs):
-        columns.append(
-            ("time [ms]", [number_for_console(None if run.run_time is None else 1e3 * run.run_time, 3) for run in runs])
-        )
-    return columns
+        columns += _columns_of_peaks(runs, [("θ_end [rad]", "residual_rotation", 1.0)])
+    times = [None if run.run_time is None else 1e3 * run.run_time for run in runs]
+    return columns if set(times) == {None} else [*columns, ("time [ms]", [console.number(t, 3) for t in times])]
 
 
-def _reaction_columns(runs: Sequence[BatchRun]) -> Columns:
-    return [
-        ("ΣF_x [kN]", _cells_of_peak(runs, "max_horizontal_reaction", 1e3)),
-        ("N_min [kN]", _cells_of_peak(runs, "min_vertical_reaction", 1e3)),
-    ]
-
-
-def _base_motion_columns(ground: Ground | None, runs: Sequence[BatchRun]) -> Columns:
+def _base_motion_columns(batch: RunBatch, runs: Sequence[BatchRun]) -> Columns:
     """How far the base moves on a ground that lets it slide, or that gives."""
-    columns: Columns = []
-    if ground is not None and ground.slides:
-        columns += [
-            ("slip [mm]", _cells_of_peak(runs, "max_slip", 1e-3)),
-            ("x_end [mm]", _cells_of_peak(runs, "residual_slip", 1e-3)),
-        ]
-    if ground is not None and ground.springs is not None:
-        columns += [
-            ("edge up [mm]", _cells_of_peak(runs, "max_edge_uplift", 1e-3)),
-            ("edge down [mm]", _cells_of_peak(runs, "max_edge_settlement", 1e-3)),
-        ]
-    return columns
+    ground = ground_under_structure(batch.properties, batch.options.ground)
+    slips = SLIPS if ground is not None and ground.slides else ()
+    edges = EDGES if ground is not None and ground.springs is not None else ()
+    return _columns_of_peaks(runs, [*slips, *edges])
 
 
 def _vertical_component_names(motions: Sequence[GroundMotion]) -> list[str]:
@@ -194,27 +197,13 @@ def _record_source(motion: GroundMotion) -> str:
     return f"{source} with {motion.name}" if source else f"of {motion.name}"
 
 
-def _peak_time_columns(runs: Sequence[BatchRun]) -> Columns:
-    names = {
-        "max_rotation": "θ_max",
-        "max_top_displacement": "u_top relative",
-        "max_total_top_displacement": "u_top total",
-        "max_base_moment": "M_b",
-        "max_base_shear": "V_b",
-        "max_horizontal_reaction": "ΣF_x",
-        "min_vertical_reaction": "N_min",
-    }
-    columns = [(f"t({label}) [s]", _cells_of_peak(runs, f"time_of_{name}", digits=5)) for name, label in names.items()]
-    return [*columns, ("end [s]", _cells_of_peak(runs, "end_time", digits=5))]
-
-
 def _sliding_columns(runs: Sequence[BatchRun]) -> Columns:
     times = [run.friction["sliding_time"] for run in runs]
     moments = [
-        "-" if run.error is not None else "no" if time is None else number_for_console(time, 5)
+        "-" if run.error is not None else "no" if time is None else console.number(time, 5)
         for run, time in zip(runs, times, strict=True)
     ]
-    required = [[number_for_console(run.friction[name]) for run in runs] for name in SLIDING[:2]]
+    required = [[console.number(run.friction[name]) for run in runs] for name in SLIDING[:2]]
     return [("μ_req", required[0]), ("μ_req [no impacts]", required[1]), ("slides at [s]", moments)]
 
 
@@ -225,7 +214,7 @@ def _element_peak_columns(runs: Sequence[BatchRun], count: int) -> Iterator[Colu
             yield [
                 (
                     heading.format(k + 1),
-                    [number_for_console(run.elements[name][k] / 1e3 if run.elements else None) for run in runs],
+                    [console.number(run.elements[name][k] / 1e3 if run.elements else None) for run in runs],
                 )
                 for k in range(count)
             ]
@@ -247,17 +236,18 @@ def _table_of_all_runs(batch: RunBatch, runs: Sequence[BatchRun], columns: Colum
         [*_motion_and_scale_cells(batch, run), run.model, *row]
         for run, row in zip(runs, _rows_of_cells(columns), strict=True)
     ]
-    return console_table([*words, *(heading for heading, _ in columns)], rows, len(words) + n_words)
-
-
-def _cells_of_peak(runs: Sequence[BatchRun], name: str, size: float = 1.0, digits: int = 4) -> list[str]:
-    values = [run.peaks[name] for run in runs]
-    return [number_for_console(None if value is None else value / size, digits) for value in values]
+    return console.table([*words, *(heading for heading, _ in columns)], rows, len(words) + n_words)
 
 
 def _run_status_text(run: BatchRun) -> str:
     status = run.status or "failed"
-    return StyledCell(status.replace("_", " ") + (" †" if run.peaks["nominal_overturning"] else ""), STYLES[status])
+    return console.StyledCell(
+        status.replace("_", " ") + (" †" if run.peaks["nominal_overturning"] else ""), STYLES[status]
+    )
+
+
+def _units_of_keys(place: str, table: type) -> dict[str, str]:
+    return {f"{place}.{name}": key.unit for name, _, key in schema_keys(table) if key.unit}
 
 
 UNITS = {
@@ -289,37 +279,24 @@ UNITS = {
     "impact.shortest_excursion": "s",
     "bouc_wen.yield_displacement": "m",
     "initial_rotation": "rad",
-    "ground.base_inertia": "kg m²",
-    "ground.mat_mass": "kg",
-    "ground.springs.positions": "m",
-    "ground.springs.stiffness": "N/m",
-    "ground.springs.damping": "N s/m",
-    "ground.bed.breadth": "m",
-    "ground.bed.subgrade_modulus": "N/m³",
-    "ground.bed.shear_modulus": "N/m²",
-    "ground.bed.damping": "N s/m",
-    "ground.bed.end_zone": "m",
+    **_units_of_keys("ground", GroundTable),
+    **_units_of_keys("ground.springs", SpringsTable),
+    **_units_of_keys("ground.bed", SpringBedTable),
 }
 
 
 def write_run_results(
     folder: Path, document: dict[str, Any], batch: RunBatch, runs: Sequence[BatchRun], *, figures: int, force: bool
 ) -> None:
-    """Write results.csv, summary.json and, of up to `figures` motions, one CSV file and one figure for each motion.
-
-    Raises
-    ------
-    InputError
-        If the folder cannot be written to, or is not empty and `force` is not set.
-    """
+    """Write results.csv, summary.json and, of up to `figures` motions, one CSV file and one figure for each motion."""
     import pandas as pd
 
     histories = batch.history and len(batch.motions) * len(batch.scales) <= figures
-    with staged_output_folder(folder, document, force=force) as stage:
+    with output.staged_folder(folder, document, force=force) as stage:
         pd.DataFrame([run.row() for run in runs]).to_csv(stage / "results.csv", index=False, lineterminator="\n")
         if histories:
             _write_histories(stage, batch, runs)
-    print_remark(
+    console.print_remark(
         f"Written to {folder}" + ("" if histories else "; no histories and figures of more than --figures motions")
     )
 
@@ -332,7 +309,7 @@ def _write_histories(stage: Path, batch: RunBatch, runs: Sequence[BatchRun]) -> 
     groups = [(place, list(members)) for place, members in groupby(runs, key=lambda run: (run.motion, run.scale))]
     several = len({scale for (_, scale), _ in groups}) > 1
     names = [f"history-{motion}-x{scale:g}" if several else f"history-{motion}" for (motion, scale), _ in groups]
-    for stem, ((motion, scale), members) in zip(file_stems(names), groups, strict=True):
+    for stem, ((motion, scale), members) in zip(output.file_stems(names), groups, strict=True):
         responses = [run.response for run in members if run.response is not None]
         if not responses:
             continue
@@ -361,13 +338,7 @@ _COMMAND, _FAILURE = 400, 200  # letters
 
 
 def checked_path_of_report(path: Path, *, force: bool) -> Path:
-    """Return the path of a report, before anything is simulated.
-
-    Raises
-    ------
-    InputError
-        If it is no path of a page, or exists and `force` is not set.
-    """
+    """Return the path of a report, before anything is simulated."""
     page = checked_report_path("--report", path)
     if page.exists() and not force:
         raise InputError(f"--report {page} exists. Give another name, or --force to replace it.")
@@ -375,13 +346,7 @@ def checked_path_of_report(path: Path, *, force: bool) -> Path:
 
 
 def check_one_run_for_report(batch: RunBatch) -> None:
-    """Refuse more than one page holds, before anything is simulated.
-
-    Raises
-    ------
-    InputError
-        If there are several motions or scales, or too many models.
-    """
+    """Refuse more than one page holds, before anything is simulated."""
     motions, scales, models = len(batch.motions), len(batch.scales), len(batch.models)
     if motions * scales > 1:
         first = batch.motions[0].name
@@ -412,7 +377,7 @@ def write_report_of_run(page: Path, loaded: LoadedStructure, batch: RunBatch, ru
         friction=batch.friction,
         notes=[*failed[:1], *_typed_command()],
     )
-    print_remark(f"Written to {page}; any browser prints it on one sheet of A4")
+    console.print_remark(f"Written to {page}; any browser prints it on one sheet of A4")
 
 
 def _typed_command() -> list[str]:

@@ -1,6 +1,7 @@
 """``rockflex select``: records chosen and scaled for a target spectrum."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -8,42 +9,23 @@ import typer
 
 from rockflex._errors import InputError
 from rockflex._shown import number_with_noun, shown
+from rockflex.cli import _console as console
 from rockflex.cli import _options as options
-from rockflex.cli._console import console_table, number_for_console, print_console_table, print_remark, stdout_console
-from rockflex.cli._output import (
-    check_output_folder,
-    document_to_json,
-    file_stems,
-    staged_output_folder,
-    versions_in_results,
-)
+from rockflex.cli import _output as output
 
 if TYPE_CHECKING:
     from rockflex.motion import Combination, Selection, TargetSpectrum
 
 
 WORDS = {"yes": True, "no": False}
-Reader = Callable[[str, str], Any]
 
 
 def parse_target_spectrum(text: str, damping: float | None) -> "TargetSpectrum":
     """Return the target of ``ec8:ag=0.25g,ground=C``, ``ec8-2024:...``, ``asce7:sds=1g,sd1=0.6g,tl=8`` or of a file.
 
     `damping` is the damping ratio of a target from a file; None means 5 %.
-
-    Raises
-    ------
-    InputError
-        If a code or a key is unknown, a key is missing or repeated, a value is no number or has no unit, or the file
-        cannot be read.
     """
-    from rockflex.motion import (
-        asce7_site_spectrum,
-        asce7_spectrum,
-        ec8_second_spectrum,
-        ec8_spectrum,
-        read_target,
-    )
+    from rockflex.motion import asce7_site_spectrum, asce7_spectrum, ec8_second_spectrum, ec8_spectrum, read_target
 
     code, colon, rest = text.partition(":")
     if not colon or code not in ("ec8", "ec8-2024", "asce7"):
@@ -60,45 +42,20 @@ def parse_target_spectrum(text: str, damping: float | None) -> "TargetSpectrum":
         )
     items = _target_items(code, rest)
     if code == "ec8":
-        given = _read_target_items(code, items, {"ag": _target_acceleration}, {
-            "ground": _target_text, "type": _target_number, "importance": _target_number, "damping": _target_number,
-        })  # fmt: skip
-        return ec8_spectrum(**_renamed_target_arguments(given))
+        return ec8_spectrum(**_read_target_items(code, items, "ag", "ground type importance damping"))
     if code == "ec8-2024":
-        given = _read_target_items(code, items, {"s_alpha": _target_acceleration, "s_beta": _target_acceleration}, {
-            "site": _target_text, "f_alpha": _target_number, "f_beta": _target_number,
-            "topography": _target_number, "damping": _target_number,
-        })  # fmt: skip
+        given = _read_target_items(code, items, "s_alpha s_beta", "site f_alpha f_beta topography damping")
         factors = [given.pop(key, None) for key in ("f_alpha", "f_beta")]
         if (factors[0] is None) != (factors[1] is None):
             raise InputError(f"--target {code}:...: give both f_alpha and f_beta, or neither.")
-        amplification = None if factors[0] is None else tuple(factors)
-        return ec8_second_spectrum(**_renamed_target_arguments(given), amplification=amplification)
+        return ec8_second_spectrum(**given, amplification=None if factors[0] is None else tuple(factors))
     if "ss" in items or "s1" in items or "site" in items:
-        needed: dict[str, Reader] = {
-            "ss": _target_acceleration,
-            "s1": _target_acceleration,
-            "site": _target_text,
-            "tl": _target_number,
-        }
-        return asce7_site_spectrum(**_read_target_items(code, items, needed, {"mce": _target_yes_or_no}))
-    needed = {"sds": _target_acceleration, "sd1": _target_acceleration, "tl": _target_number}
-    return asce7_spectrum(**_read_target_items(code, items, needed, {"mce": _target_yes_or_no}))
-
-
-def _renamed_target_arguments(given: dict[str, Any]) -> dict[str, Any]:
-    names = {"type": "kind", "damping": "damping_ratio"}
-    return {names.get(key, key): value for key, value in given.items()}
+        return asce7_site_spectrum(**_read_target_items(code, items, "ss s1 site tl", "mce"))
+    return asce7_spectrum(**_read_target_items(code, items, "sds sd1 tl", "mce"))
 
 
 def parse_comma_separated_numbers(flag: str, text: str, least: int, most: int | None = None) -> list[float]:
-    """Return numbers separated by commas.
-
-    Raises
-    ------
-    InputError
-        If one is not a number, or there are too few or too many.
-    """
+    """Return numbers separated by commas."""
     values = [_target_number(flag, part.strip()) for part in text.split(",")]
     if len(values) < least or (most is not None and len(values) > most):
         count = f"{least}" if most == least else f"at least {least}"
@@ -119,18 +76,18 @@ def _target_items(code: str, rest: str) -> dict[str, str]:
     return items
 
 
-def _read_target_items(
-    code: str, items: dict[str, str], needed: dict[str, Reader], optional: dict[str, Reader]
-) -> dict[str, Any]:
-    readers = needed | optional
-    unknown, missing = [key for key in items if key not in readers], [key for key in needed if key not in items]
+def _read_target_items(code: str, items: dict[str, str], needed: str, optional: str) -> dict[str, Any]:
+    """Return the values of the items of a code by argument; blanks separate the keys that it needs and may have."""
+    known = [*needed.split(), *optional.split()]
+    unknown, missing = [key for key in items if key not in known], [key for key in needed.split() if key not in items]
     if unknown or missing:
         what = f"{shown(unknown[0])} is not known" if unknown else f"{missing[0]} is missing"
         raise InputError(
-            f"--target {code}:...: {what}. The keys are {', '.join(needed)}"
-            + (f", and {', '.join(optional)} if wanted." if optional else ".")
+            f"--target {code}:...: {what}. The keys are {', '.join(needed.split())}, and "
+            f"{', '.join(optional.split())} if wanted."
         )
-    return {key: readers[key](f"--target {code}: {key}", value) for key, value in items.items()}
+    values = ((key, READERS.get(key, _target_number)(f"--target {code}: {key}", text)) for key, text in items.items())
+    return {ARGUMENTS.get(key, key): value for key, value in values}
 
 
 def _target_acceleration(name: str, text: str) -> float:
@@ -152,15 +109,18 @@ def _target_number(name: str, text: str) -> float:
         raise InputError(f"{name} must be a number, but {shown(text)} was given.") from None
 
 
-def _target_text(name: str, text: str) -> str:
-    del name
-    return text
-
-
 def _target_yes_or_no(name: str, text: str) -> bool:
     if text not in WORDS:
         raise InputError(f"{name} must be yes or no, but {shown(text)} was given.")
     return WORDS[text]
+
+
+ARGUMENTS = {"type": "kind", "damping": "damping_ratio"}  # of the functions, where they are not the keys
+READERS: dict[str, Callable[[str, str], Any]] = {  # of the keys that are not plain numbers
+    **dict.fromkeys(("ag", "s_alpha", "s_beta", "ss", "s1", "sds", "sd1"), _target_acceleration),
+    **dict.fromkeys(("ground", "site"), lambda _, text: text),
+    "mce": _target_yes_or_no,
+}
 
 
 EPILOG = """[bold]Examples[/bold]
@@ -186,7 +146,7 @@ A file with the columns "period (s), sa (g)".
 
 Accelerations A are written with their unit, such as 0.25g or 2.45m/s2."""
 
-CHOICE = "Choice"
+_choice = partial(options.option, rich_help_panel="Choice")
 _MEASURES: "dict[str, Combination]" = {
     "component": "component",
     "geometric-mean": "geometric mean",
@@ -201,60 +161,39 @@ def select(
         typer.Argument(metavar="MOTION", help="Suites, records (suite/name), files or directories to choose from."),
     ],
     target: Annotated[
-        str,
-        typer.Option("--target", metavar="TARGET", help="ec8:KEY=VALUE,..., asce7:KEY=VALUE,... or a file; see below."),
+        str, options.option("--target", "TARGET", "ec8:KEY=VALUE,..., asce7:KEY=VALUE,... or a file; see below.")
     ],
-    count: Annotated[int, typer.Option("--count", "-n", metavar="N", help="Number of records; of pairs, if combined.")],
+    count: Annotated[int, options.option("--count -n", "N", "Number of records; of pairs, if combined.")],
     periods: Annotated[
-        str,
-        typer.Option("--periods", metavar="S,S", help="The ends of the range of periods, or three and more periods."),
+        str, options.option("--periods", "S,S", "The ends of the range of periods, or three and more periods.")
     ],
     measure: Annotated[
         Literal["component", "geometric-mean", "rotd50", "rotd100"],
         typer.Option(
             "--measure",
             help="The ordinate of a record: of each component, or of the two of a recording.",
-            rich_help_panel=CHOICE,
+            rich_help_panel="Choice",
         ),
     ] = "component",
-    limits: Annotated[
-        str, typer.Option("--limits", metavar="F,F", help="Smallest and largest factor.", rich_help_panel=CHOICE)
-    ] = "0.25,4",
-    per_event: Annotated[
-        int | None,
-        typer.Option("--per-event", metavar="N", help="Most records of one earthquake.", rich_help_panel=CHOICE),
-    ] = None,
-    per_station: Annotated[
-        int | None,
-        typer.Option("--per-station", metavar="N", help="Most records at one station.", rich_help_panel=CHOICE),
-    ] = None,
+    limits: Annotated[str, _choice("--limits", "F,F", "Smallest and largest factor.")] = "0.25,4",
+    per_event: Annotated[int | None, _choice("--per-event", "N", "Most records of one earthquake.")] = None,
+    per_station: Annotated[int | None, _choice("--per-station", "N", "Most records at one station.")] = None,
     record_weight: Annotated[
-        float,
-        typer.Option(
-            "--record-weight",
-            metavar="W",
-            help="0: only the misfit of the mean counts; 1: only those of the records.",
-            rich_help_panel=CHOICE,
-        ),
+        float, _choice("--record-weight", "W", "0: only the misfit of the mean counts; 1: only those of the records.")
     ] = 0.0,
     least: Annotated[
         float | None,
-        typer.Option(
-            "--least",
-            metavar="R",
-            help="Raise all factors together until the mean is at least R times the target, such as 0.9.",
-            rich_help_panel=CHOICE,
+        _choice(
+            "--least", "R", "Raise all factors together until the mean is at least R times the target, such as 0.9."
         ),
     ] = None,
     damping: Annotated[
-        float | None,
-        typer.Option("--damping", metavar="ZETA", help="Damping ratio of a target from a file. Default: 0.05."),
+        float | None, options.option("--damping", "ZETA", "Damping ratio of a target from a file. Default: 0.05.")
     ] = None,
     json: options.Json = False,
     out: options.Out = None,
     records: Annotated[
-        Path | None,
-        typer.Option("--records", metavar="DIR", help="Write the scaled records to a folder, as CSV files."),
+        Path | None, options.option("--records", "DIR", "Write the scaled records to a folder, as CSV files.")
     ] = None,
     force: options.Force = False,
     units: options.Units = None,
@@ -267,7 +206,7 @@ def select(
     from rockflex.motion import Suite
 
     if out is not None or records is None:
-        check_output_folder(out, force=force)
+        output.check_folder(out, force=force)
     if records is not None:
         _check_selected_records_folder(records, out, force=force)
     wanted = parse_target_spectrum(target, damping)
@@ -285,7 +224,7 @@ def select(
         least_ratio=least,
     )
     document: dict[str, Any] = {
-        "versions": versions_in_results(),
+        "versions": output.versions(),
         "options": {
             "measure": measure,
             "scale_limits": [low, high],
@@ -308,19 +247,18 @@ def select(
     if records is not None:
         _write_selected_records(records, document, chosen, force=force)
     if json:
-        typer.echo(document_to_json(document))
+        typer.echo(output.to_json(document))
     else:
         _print_selection(chosen)
 
 
 def _check_selected_records_folder(folder: Path, out: Path | None, *, force: bool) -> None:
-
     if out is not None and folder.absolute() == out.absolute():
         raise InputError(
             f"--records {folder} is the folder of --out, too. Give it one of its own: every CSV file in it is a record."
         )
     try:
-        check_output_folder(folder, force=force)
+        output.check_folder(folder, force=force)
     except InputError as error:
         raise InputError(str(error).replace("--out", "--records")) from error
 
@@ -334,8 +272,6 @@ def _selected_record_rows(chosen: "Selection") -> list[dict[str, Any]]:
 
 
 def _print_selection(chosen: "Selection") -> None:
-
-    console = stdout_console()
     rows = [
         [
             row["record"],
@@ -343,42 +279,40 @@ def _print_selection(chosen: "Selection") -> None:
             str(row["year"] or "-"),
             "-" if row["magnitude"] is None else f"{row['magnitude']:g}",
             "-" if row["distance_km"] is None else f"{row['distance_km']:g}",
-            number_for_console(row["factor"]),
-            number_for_console(row["misfit"], 3),
+            console.number(row["factor"]),
+            console.number(row["misfit"], 3),
             f"{row['least_ratio']:.2f} ... {row['largest_ratio']:.2f}",
         ]
         for row in _selected_record_rows(chosen)
     ]
-    print_console_table(
-        console, console_table(("record", "event", "year", "M", "R [km]", "factor", "misfit", "Sa/target"), rows, 2)
-    )
+    console.print_rows(("record", "event", "year", "M", "R [km]", "factor", "misfit", "Sa/target"), rows, 2)
     target = chosen.target
     lines = [
         f"\nTarget: {target.name}, damping {target.damping_ratio:g}, {chosen.periods[0]:g} to {chosen.periods[-1]:g} s",
-        f"Mean: misfit {number_for_console(chosen.misfit, 3)}, at least {chosen.least_ratio:.3f} of the target",
+        f"Mean: misfit {console.number(chosen.misfit, 3)}, at least {chosen.least_ratio:.3f} of the target",
     ]
     if len(chosen.names) > 1:
         spread = chosen.dispersion
         lines.append(f"Standard deviation of ln Sa: {spread.min():.2f} to {spread.max():.2f}")
     if target.periods[0] == 0.0:
         lines.append(f"At a period of zero the mean is {chosen.zero_period_ratio:.3f} of the target")
-    console.print("\n".join(lines), markup=False, soft_wrap=True)
+    console.print_line("\n".join(lines))
 
 
 def _write_selection(folder: Path, document: dict[str, Any], chosen: "Selection", *, force: bool) -> None:
     from rockflex.plot import plot_selection, save_figure
 
-    with staged_output_folder(folder, document, force=force) as stage:
+    with output.staged_folder(folder, document, force=force) as stage:
         chosen.table().to_csv(stage / "selection.csv", index=False, lineterminator="\n")
         chosen.spectra().to_csv(stage / "spectra.csv", index=False, lineterminator="\n")
         save_figure(plot_selection(chosen), stage / "selection.png")
-    print_remark(f"Written to {folder}")
+    console.print_remark(f"Written to {folder}")
 
 
 def _write_selected_records(folder: Path, document: dict[str, Any], chosen: "Selection", *, force: bool) -> None:
     from rockflex.motion import record_csv
 
-    with staged_output_folder(folder, document, force=force) as stage:
-        for stem, motion in zip(file_stems(motion.name for motion in chosen.suite), chosen.suite, strict=True):
+    with output.staged_folder(folder, document, force=force) as stage:
+        for stem, motion in zip(output.file_stems(motion.name for motion in chosen.suite), chosen.suite, strict=True):
             (stage / f"{stem}.csv").write_text(record_csv(motion), "utf-8", newline="\n")
-    print_remark(f"{number_with_noun(len(chosen.suite), 'scaled record')} written to {folder}")
+    console.print_remark(f"{number_with_noun(len(chosen.suite), 'scaled record')} written to {folder}")

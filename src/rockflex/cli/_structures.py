@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rockflex._errors import InputError
 from rockflex._schema import FrameFlags, FrameKeys
 from rockflex._shown import number_with_noun
-from rockflex.cli._console import console_table, number_for_console
+from rockflex.cli import _console as console
 from rockflex.cli._options import flags_of_tables, naming_flags_in_errors
 from rockflex.modal import (
     BaseElement,
@@ -69,7 +69,7 @@ def elements_table(elements: Sequence[BaseElement]) -> "Table":
     """Return the table of elements, without the columns that none of them needs."""
     rows = [(str(place), *_element_row(each)) for place, each in enumerate(elements, start=1)]
     kept = [k for k in range(len(_ELEMENT_HEADINGS)) if k < _WORDS or any(row[k] != "-" for row in rows)]
-    return console_table([_ELEMENT_HEADINGS[k] for k in kept], ([row[k] for k in kept] for row in rows), _WORDS)
+    return console.table([_ELEMENT_HEADINGS[k] for k in kept], ([row[k] for k in kept] for row in rows), _WORDS)
 
 
 def _element_row(element: BaseElement) -> tuple[str, ...]:
@@ -89,8 +89,8 @@ def _element_row(element: BaseElement) -> tuple[str, ...]:
         strength = element.force / 1e3
     only = ", tension only" if isinstance(element, YieldingDissipator) and element.tension_only else ""
     values = (stiffness, damping, prestress, strength, ratio, breaks)
-    place = element.where if element.attached else number_for_console(element.position)
-    return (_element_kind(element).replace("_", " ") + only, place, *map(number_for_console, values))
+    place = element.where if element.attached else console.number(element.position)
+    return (_element_kind(element).replace("_", " ") + only, place, *map(console.number, values))
 
 
 def _element_kind(element: BaseElement) -> str:
@@ -114,6 +114,7 @@ class LoadedStructure:
     built: Built
     run_options: dict[str, Any] = field(default_factory=dict[str, Any])
     """`impact`, `restitution`, `bouc_wen` and `ground`, as far as the file has them."""
+    file: Path | None = None
 
     @property
     def properties(self) -> RockingProperties:
@@ -158,13 +159,7 @@ class LoadedStructure:
 
 
 def split_structure_file_argument(option: Path | None, arguments: Sequence[str]) -> tuple[Path | None, list[str]]:
-    """Return the structure file, given by --structure or as the first argument, and the remaining arguments.
-
-    Raises
-    ------
-    InputError
-        If both were given.
-    """
+    """Return the structure file, given by --structure or as the first argument, and the remaining arguments."""
     if not arguments or not arguments[0].lower().endswith(".toml"):
         return option, list(arguments)
     if option is not None:
@@ -173,14 +168,7 @@ def split_structure_file_argument(option: Path | None, arguments: Sequence[str])
 
 
 def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
-    """Build a structure from a TOML file, or from flags named as in `FrameFlags`.
-
-    Raises
-    ------
-    InputError
-        If there is no structure or more than one, the file cannot be read, or a key or value in it is wrong; the
-        message names the file and the key.
-    """
+    """Build a structure from a TOML file, or from flags named as in `FrameFlags`."""
     if file is None:
         return _frame_from_flags(flags)
     if flags:
@@ -191,7 +179,7 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
     document = parse_toml_table(StructureFile, content, str(file))
     run_options = document.model_dump(include=set(RunOptionKeys.model_fields), exclude_unset=True)
     built = build_structure_in_file(file, document)
-    return LoadedStructure(document.name or file.stem, document.kind, document.describe(), built, run_options)
+    return LoadedStructure(document.name or file.stem, document.kind, document.describe(), built, run_options, file)
 
 
 def _study_in_place_of_structure(file: Path, name: object) -> InputError:

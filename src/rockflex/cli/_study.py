@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from functools import partial
 from numbers import Integral, Number
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
@@ -10,16 +11,9 @@ import typer
 
 from rockflex._errors import InputError, SolverError
 from rockflex._shown import number_with_noun, shown
+from rockflex.cli import _console as console
 from rockflex.cli import _options as options
-from rockflex.cli._console import (
-    console_table,
-    number_for_console,
-    print_console_table,
-    print_error,
-    print_remark,
-    stdout_console,
-)
-from rockflex.cli._output import check_output_folder, document_to_json, staged_output_folder, versions_in_results
+from rockflex.cli import _output as output
 from rockflex.kinds import KINDS, StudyFindings, StudyKind, study_kind_named
 from rockflex.study.progress import duration_text, progress_bar, row_rate_text
 
@@ -49,13 +43,11 @@ rockflex figures draws them."""
 
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study's file.", show_default=False)]
 Folder = Annotated[
-    Path | None,
-    typer.Option("--out", "-o", metavar="DIR", help="Store the study here, and resume it if it is there."),
+    Path | None, options.option("--out -o", "DIR", "Store the study here, and resume it if it is there.")
 ]
 DryRun = Annotated[bool, typer.Option("--dry-run", help="Count the runs and estimate the time; run nothing.")]
 Dask = Annotated[
-    str | None,
-    typer.Option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster, such as tcp://10.0.0.1:8786."),
+    str | None, options.option("--dask", "ADDRESS", "Scheduler of a Dask cluster, such as tcp://10.0.0.1:8786.")
 ]
 Workers = Annotated[int | None, typer.Option(min=1, metavar="N", help="Threads. Default: one a core.")]
 AnyVersion = Annotated[
@@ -63,10 +55,10 @@ AnyVersion = Annotated[
 ]
 Share = Annotated[
     str | None,
-    typer.Option(
+    options.option(
         "--share",
-        metavar="K/N",
-        help="Only store share K of N of the study, each in a folder of its own; report nothing. For job arrays.",
+        "K/N",
+        "Only store share K of N of the study, each in a folder of its own; report nothing. For job arrays.",
     ),
 ]
 Strict = Annotated[bool, typer.Option("--strict", help="Exit with 1 if a run or a fit failed.")]
@@ -88,27 +80,20 @@ def study_command(kind: StudyKind) -> Callable[..., None]:
         strict: Strict = False,
     ) -> None:
         study = _load_study_of_kind(kind, file, work_limit)
+        how = {"workers": workers, "dask": dask, "any_version": any_version}
         if share is not None:
             if out is None or dry_run or json or strict:
                 raise InputError("--share only stores runs: it needs --out, and no --dry-run, --json or --strict.")
-            _store_study_share(study, file, out, share, dask, workers, any_version=any_version)
+            _store_study_share(study, file, out, share, how)
             return
         if dry_run:
             _announce_study(study, file, workers, json=json)
             return
         from rockflex.kinds import run_study
 
-        table, seconds = _study_with_progress(
-            study,
-            file,
-            out,
-            lambda progress: run_study(
-                study, out, workers=workers, dask=dask, any_version=any_version, progress=progress
-            ),
-        )
-
+        table, seconds = _study_with_progress(study, file, out, partial(run_study, study, out, **how))
         if out is not None:
-            print_remark(f"Stored in {out}; rockflex figures {out} draws it")
+            console.print_remark(f"Stored in {out}; rockflex figures {out} draws it")
         failed, unfitted = print_study_summary(kind, study, table, seconds, json=json)
         if strict and (failed or unfitted):
             raise typer.Exit(1)
@@ -118,7 +103,7 @@ def study_command(kind: StudyKind) -> Callable[..., None]:
 
 
 def _load_study_of_kind(kind: StudyKind, file: Path, work_limit: str | None) -> "StudySpec":
-    from rockflex.kinds import KINDS, load_study
+    from rockflex.kinds import load_study
 
     study = load_study(file)
     if study.kind != kind.name:
@@ -147,7 +132,7 @@ def _announce_study(study: "StudySpec", file: Path, workers: int | None, *, json
         "estimated_time": seconds,
     }
     if json:
-        typer.echo(document_to_json(document))
+        typer.echo(output.to_json(document))
         return
     typer.echo(
         f"{file}: {at_most}{number_with_noun(plan.n_runs, 'run')} in {number_with_noun(plan.n_chunks, 'part')}, "
@@ -156,9 +141,7 @@ def _announce_study(study: "StudySpec", file: Path, workers: int | None, *, json
     )
 
 
-def _store_study_share(
-    study: "StudySpec", file: Path, out: Path, share: str, dask: str | None, workers: int | None, *, any_version: bool
-) -> None:
+def _store_study_share(study: "StudySpec", file: Path, out: Path, share: str, how: dict[str, Any]) -> None:
     """Store one share of a study."""
     from rockflex.kinds import fill_study
 
@@ -166,26 +149,15 @@ def _store_study_share(
     if not (stroke and place.isdecimal() and count.isdecimal()):
         raise InputError(f'--share must be K/N, such as 3/10, but "{share}" was given.')
     folder, _ = _study_with_progress(
-        study,
-        file,
-        out,
-        lambda progress: fill_study(
-            study,
-            out,
-            share=(int(place), int(count)),
-            workers=workers,
-            dask=dask,
-            any_version=any_version,
-            progress=progress,
-        ),
+        study, file, out, partial(fill_study, study, out, share=(int(place), int(count)), **how)
     )
-    print_remark(
+    console.print_remark(
         f"Share {share} is stored in {out}: {folder.n_chunks - len(folder.missing())} of {folder.n_chunks} parts"
     )
 
 
 def _study_with_progress(
-    study: "StudySpec", file: Path, out: Path | None, work: "Callable[[Callable[[Progress], None]], Result]"
+    study: "StudySpec", file: Path, out: Path | None, work: Callable[..., Result]
 ) -> tuple[Result, float]:
     """Return the result of `work` and the time that it took in s; a terminal shows a progress bar."""
     from time import perf_counter
@@ -199,17 +171,19 @@ def _study_with_progress(
 
             def progress(now: "Progress") -> None:
                 if not last and now.kept:
-                    print_remark(f"{now.kept} of {now.parts} parts are already in {out}")
+                    console.print_remark(f"{now.kept} of {now.parts} parts are already in {out}")
                 last[:] = [now]
                 show(now.done, now.parts, row_rate_text(now, perf_counter() - start))
 
-            result = work(progress)
+            result = work(progress=progress)
     except KeyboardInterrupt as stop:
         done = f"{last[0].done} of {last[0].parts} parts are stored in {out}" if last and out else "Nothing was stored"
-        print_remark(f"Stopped. {done}{'; the same command resumes it' if out else ', because no --out was given'}.")
+        console.print_remark(
+            f"Stopped. {done}{'; the same command resumes it' if out else ', because no --out was given'}."
+        )
         raise typer.Exit(130) from stop
     except ClusterError as error:
-        print_error(str(error))
+        console.print_error(str(error))
         raise typer.Exit(1) from error
     return result, perf_counter() - start
 
@@ -235,21 +209,21 @@ def print_study_summary(
     lifts = count_pivot_lifts(kind.runs(table))
     failed = int(table["error"].notna().sum())
     if json:
-        document = {"versions": versions_in_results(), "study": study.document(), "rows": len(table), "failed": failed}
+        document = {"versions": output.versions(), "study": study.document(), "rows": len(table), "failed": failed}
         document |= {"elapsed": seconds, "unfitted": found.unfitted}
-        typer.echo(document_to_json(document | {"pivot_lifts": [each._asdict() for each in lifts], **tables}))
+        typer.echo(output.to_json(document | {"pivot_lifts": [each._asdict() for each in lifts], **tables}))
     else:
         _print_summary_tables(tables)
         for text in (text for each in lifts for text in each.warnings):
             typer.echo(f"\n{text}")
         typer.echo(f"\n{number_with_noun(len(table), 'row')} in {duration_text(seconds)}")
     for remark in found.remarks:
-        print_remark(remark)
+        console.print_remark(remark)
     for reason in dict.fromkeys(found.unfitted):
-        print_remark(f"No fit: {reason}")
+        console.print_remark(f"No fit: {reason}")
     if failed:
         first = table.loc[table["error"].notna(), "error"].iloc[0]
-        print_remark(f"{number_with_noun(failed, 'row has', 'rows have')} an error, the first: {first}")
+        console.print_remark(f"{number_with_noun(failed, 'row has', 'rows have')} an error, the first: {first}")
     return failed, len(found.unfitted)
 
 
@@ -261,18 +235,11 @@ def _plain_summary_value(value: Any) -> Any:
 
 
 def _print_summary_tables(tables: Tables) -> None:
-    console = stdout_console()
     for place, (title, rows) in enumerate(tables.items()):
-        if not rows:
-            continue
-        console.print(("\n" if place else "") + title, style="bold", markup=False)
-        words = sum(isinstance(value, str) for value in rows[0].values())
-        print_console_table(
-            console,
-            console_table(
-                list(rows[0]), ([_summary_cell(value) for value in row.values()] for row in rows), n_left=words
-            ),
-        )
+        if rows:
+            console.print_line(("\n" if place else "") + title, style="bold", wrap=True)
+            words = sum(isinstance(value, str) for value in rows[0].values())
+            console.print_rows(list(rows[0]), ([_summary_cell(value) for value in row.values()] for row in rows), words)
 
 
 def _summary_cell(value: Any) -> str:
@@ -280,7 +247,7 @@ def _summary_cell(value: Any) -> str:
         return value
     if value is None:
         return "-"
-    return str(int(value)) if isinstance(value, Integral) else number_for_console(float(value))
+    return str(int(value)) if isinstance(value, Integral) else console.number(float(value))
 
 
 FIGURES_EPILOG = """[bold]Examples[/bold]
@@ -299,9 +266,7 @@ def figures(
     folder: Annotated[
         Path, typer.Argument(metavar="FOLDER", help="Folder of a study, finished or not.", show_default=False)
     ],
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="DIR", help="Where to. Default: FOLDER/figures.")
-    ] = None,
+    out: Annotated[Path | None, options.option("--out -o", "DIR", "Where to. Default: FOLDER/figures.")] = None,
     measure: Annotated[
         str | None,
         typer.Option(
@@ -309,7 +274,7 @@ def figures(
             help=f"Intensity measure of {', '.join(OTHERS)} or {LAST} studies, such as sa_t1_5. Default: pgv.",
         ),
     ] = None,
-    form: Annotated[str, typer.Option("--format", metavar="|".join(FORMATS), help="Format of the files.")] = "png",
+    form: Annotated[str, options.option("--format", "|".join(FORMATS), "Format of the files.")] = "png",
     force: options.Force = False,
 ) -> None:
     """Draw the results of a study: fragility curves, clouds, capacities, designs, or the agreement of models."""
@@ -318,7 +283,7 @@ def figures(
     from rockflex.study.folders import StudyFolder
 
     target = folder / "figures" if out is None else out
-    check_output_folder(target, force=force)
+    output.check_folder(target, force=force)
     study = StudyFolder.load(folder)
     kind = study_kind_named(study.spec.get("study"))
     if measure is not None and not kind.measured:
@@ -329,9 +294,9 @@ def figures(
     missing = len(study.missing())
     table = study.frame(partial=True)
     if missing:
-        print_remark(f"{missing} of {study.n_chunks} parts are missing: the figures show the others")
+        console.print_remark(f"{missing} of {study.n_chunks} parts are missing: the figures show the others")
     document: dict[str, Any] = {
-        "versions": versions_in_results(),
+        "versions": output.versions(),
         "study": study.spec,
         "parts": study.n_chunks,
         "missing_parts": missing,
@@ -339,8 +304,8 @@ def figures(
     from rockflex.plot import save_figure
 
     undrawn: list[str] = []
-    with staged_output_folder(target, document, force=force) as stage:
-        for stem, draw in kind.figures(study.spec, table, measure or "pgv", print_remark):
+    with output.staged_folder(target, document, force=force) as stage:
+        for stem, draw in kind.figures(study.spec, table, measure or "pgv", console.print_remark):
             try:
                 save_figure(draw(), stage / f"{stem}.{form}")
             except (InputError, SolverError) as error:
@@ -348,5 +313,5 @@ def figures(
         if not any(stage.iterdir()):
             raise InputError(f"No figure of {folder} can be drawn. {' '.join(undrawn)}")
     for reason in undrawn:
-        print_remark(f"No figure {reason}")
-    print_remark(f"Written to {target}")
+        console.print_remark(f"No figure {reason}")
+    console.print_remark(f"Written to {target}")

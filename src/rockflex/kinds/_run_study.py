@@ -18,7 +18,7 @@ from rockflex.structure.file import read_toml_file
 from rockflex.study import ChunkedPlan, StudySpec, map_chunks, tables_to_dataframe
 from rockflex.study.folders import LEVEL, PartMaker, StudyFolder, StudyPart
 from rockflex.study.parallel import NumberedChunks, core_count, map_chunks_on_dask
-from rockflex.study.progress import PartProgress, Progress, check_part_progress, reporting_part_progress
+from rockflex.study.progress import PartProgress, Progress, check_progress, reporting_part_progress
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -237,7 +237,7 @@ def _loaded_study(study: "StudySpec | str | Path") -> "StudySpec":
 def _plan_of_study(
     spec: "StudySpec", workers: SupportsIndex | None, dask: str | None, progress: PartProgress
 ) -> "ChunkedPlan":
-    check_part_progress(progress)
+    check_progress(progress, "one Progress")
     if workers is not None and dask is not None:
         raise InputError(
             f"workers is for this machine, but {shown(workers)} was given together with the cluster at {dask}."
@@ -322,10 +322,10 @@ def estimate_time(study: "StudySpec", workers: SupportsIndex | None = None) -> f
     threads = core_count() if workers is None else checked_whole_number("workers", workers, 1)
     sample = sorted({round(place * (plan.n_ready - 1) / max(MAX_SAMPLE - 1, 1)) for place in range(MAX_SAMPLE)})
     for unit in sample[:: max(len(sample) // 6, 1)]:  # fill the caches that the study fills once
-        plan.rows([unit])
+        plan.results([unit])
     start, tried = perf_counter(), 0
     for unit in sample:
-        plan.rows([unit])
+        plan.results([unit])
         tried += 1
         if perf_counter() - start > MAX_SAMPLE_TIME:
             break

@@ -255,7 +255,7 @@ def _report_population(_: Any, pairs: Runs, found: StudyFindings) -> None:
         ("Modal combination (Section 3.4), 90 % intervals", said.combination[["quantity", "estimate", *INTERVALS]]),
         ("Largest disagreements in rotation", said.outliers[OUTLIER]),
     ):
-        found.tables[title] = table.to_dict("records")  # pyright: ignore[reportArgumentType]
+        found.tables[title] = _records(table)
 
 
 def _figures_population(_: Document, pairs: Runs, __: str, ___: Remark) -> Figures:
@@ -368,47 +368,41 @@ def _report_search(study: Any, runs: Runs, found: StudyFindings) -> None:
     ]
     if best.best is None:
         return
-    chosen = {"best": best.best} | ({} if best.cautious is None else {"cautious": best.cautious})
     names = {"best": "the cheapest that meets all targets", "cautious": "the cheapest whose bands meet them too"}
     found.tables["Cheapest designs"] = [
-        {"which": names[word], **_searched_design_row(best.designs.iloc[place].to_dict(), [])}
-        for word, place in chosen.items()
+        {"which": said, **_searched_design_row(best.designs.iloc[getattr(best, name)].to_dict(), [])}
+        for name, said in names.items()
+        if getattr(best, name) is not None
     ]
-    found.tables[f"Limits of the cheapest design, governed by {best.governs}"] = [
-        {
-            "limit": row["limit"],
-            "governs": "yes" if row["limit"] == best.governs else "no",
-            "target": row["target"],
-            "value": row["value"],
-            "low": row["low"],
-            "high": row["high"],
-            "value/target": row["used"],
-            "cost without it": row["cost_without"],
-        }
-        for row in best.limits.to_dict("records")
-    ]
-    found.tables["Cheapest design in resamples of the recordings"] = [
-        {str(name): value for name, value in row.items()} for row in best.interval.to_dict("records")
-    ]
+    limits = best.limits.assign(governs=["yes" if each == best.governs else "no" for each in best.limits["limit"]])
+    limits = limits.rename(columns={"used": "value/target", "cost_without": "cost without it"})
+    columns = ["limit", "governs", "target", "value", "low", "high", "value/target", "cost without it"]
+    found.tables[f"Limits of the cheapest design, governed by {best.governs}"] = _records(limits[columns])
+    found.tables["Cheapest design in resamples of the recordings"] = _records(best.interval)
 
 
-def _searched_design_row(row: Mapping[Any, Any], labels: list[str]) -> dict[str, Any]:
+def _records(table: Runs) -> list[Row]:
+    return [{str(name): value for name, value in row.items()} for row in table.to_dict("records")]
+
+
+SEARCHED = {
+    "structure": "design",
+    "governs": "governs",
+    "meets": "meets",
+    "half_width": "B [m]",
+    "tendon_factor": "tendons",
+    "dissipator_factor": "dissipators",
+    "prestress": "ΣF_0 [N]",
+    "dissipator_force": "ΣF_y [N]",
+    "cost": "cost",
+}
+RESAMPLED = {"confidence": "meets in resamples", "chosen": "chosen in resamples", "n_failed": "failed"}
+
+
+def _searched_design_row(row: Mapping[Any, Any], labels: list[str]) -> Row:
     """Return the row of a design in the report, with the values of some requirements."""
-    return {
-        "design": row["structure"],
-        "governs": row["governs"],
-        "meets": "yes" if row["meets"] else "no",
-        "B [m]": row["half_width"],
-        "tendons": row["tendon_factor"],
-        "dissipators": row["dissipator_factor"],
-        "ΣF_0 [N]": row["prestress"],
-        "ΣF_y [N]": row["dissipator_force"],
-        "cost": row["cost"],
-        **{label: row[label] for label in labels},
-        "meets in resamples": row["confidence"],
-        "chosen in resamples": row["chosen"],
-        "failed": row["n_failed"],
-    }
+    names = SEARCHED | {label: label for label in labels} | RESAMPLED
+    return {said: row[name] for name, said in names.items()} | {"meets": "yes" if row["meets"] else "no"}
 
 
 def _figures_design(spec: Document, runs: Runs, _: str, __: Remark) -> Figures:
@@ -450,13 +444,7 @@ KINDS = Catalogue[StudyKind]((CLOUD, INCREMENTAL, STRIPES, POPULATION, MONTE_CAR
 
 
 def study_kind_named(name: object) -> StudyKind:
-    """Return the kind of a name.
-
-    Raises
-    ------
-    InputError
-        If there is no such kind.
-    """
+    """Return the kind of a name."""
     found = KINDS.get(name) if isinstance(name, str) else None
     if found is None:
         known = ", ".join(f'"{each}"' for each in KINDS)

@@ -38,13 +38,7 @@ class RockingStructure(Protocol):
 
 
 def rocking_properties_of(structure: RockingStructure | RockingProperties) -> RockingProperties:
-    """Return the properties of a structure, or the properties themselves if they are given.
-
-    Raises
-    ------
-    InputError
-        If the object is neither.
-    """
+    """Return the properties of a structure, or the properties themselves if they are given."""
     if isinstance(structure, RockingProperties):
         return structure
     if not is_structure_or_properties(structure):
@@ -66,13 +60,7 @@ def type_description(given: Any) -> str:
 
 
 def free_vibration_time(value: float | Literal["settle"]) -> float | None:
-    """Return the seconds of free vibration; None means until settled.
-
-    Raises
-    ------
-    InputError
-        If the value is negative, above 1e9 s, not finite, another word, or not a number.
-    """
+    """Return the seconds of free vibration; None means until settled."""
     if isinstance(value, str) and value == "settle":
         return None
     seconds = real_or_nan(value)
@@ -86,13 +74,7 @@ def free_vibration_time(value: float | Literal["settle"]) -> float | None:
 
 
 def checked_work_limit(value: float | Literal["none"] | None) -> float | None:
-    """Return the seconds of computing that one run may take; None means no limit, which files call "none".
-
-    Raises
-    ------
-    InputError
-        If the value is not positive, another word, or not a number.
-    """
+    """Return the seconds of computing that one run may take; None means no limit, which files call "none"."""
     if value is None or (isinstance(value, str) and value == "none"):
         return None
     seconds = real_or_nan(value)
@@ -128,13 +110,7 @@ def check_run_options(bouc_wen: BoucWen | None, impact: ImpactLaw | None, ground
 
 
 def ground_under_structure(properties: RockingProperties, ground: GroundChoice) -> Ground | None:
-    """Return the ground under a structure.
-
-    Raises
-    ------
-    InputError
-        If the function does not return a ground, or as that function.
-    """
+    """Return the ground under a structure."""
     if ground is None or isinstance(ground, Ground):
         return ground
     found = ground(properties)
@@ -227,13 +203,7 @@ Models: TypeAlias = str | Model | Iterable[str | Model]
 
 
 def checked_structures(given: Structures) -> tuple[list[RockingStructure | RockingProperties], list[str] | None]:
-    """Return the structures, and their names if they are given by name.
-
-    Raises
-    ------
-    InputError
-        If there is none, an item is not a structure, or a name is not text.
-    """
+    """Return the structures, and their names if they are given by name."""
     names, several = _named_entries("structures", given)
     return checked_sequence(
         "structures", several, is_structure_or_properties, "a structure such as a Frame, or RockingProperties"
@@ -241,13 +211,7 @@ def checked_structures(given: Structures) -> tuple[list[RockingStructure | Rocki
 
 
 def checked_motions(given: Motions) -> list[GroundMotion]:
-    """Return the motions; a name in the mapping replaces the name of the motion.
-
-    Raises
-    ------
-    InputError
-        If there is none, an item is not a motion, or a name is not text.
-    """
+    """Return the motions; a name in the mapping replaces the name of the motion."""
     names, several = _named_entries("motions", given)
     motions = checked_sequence("motions", several, lambda each: isinstance(each, GroundMotion), "a GroundMotion")
     if names is None:
@@ -256,13 +220,7 @@ def checked_motions(given: Motions) -> list[GroundMotion]:
 
 
 def checked_models(given: Models) -> list[Model]:
-    """Return the models of labels.
-
-    Raises
-    ------
-    InputError
-        If there is none, a label is unknown, or something is neither a label nor a `Model`.
-    """
+    """Return the models of labels."""
     wanted = 'a label such as "2DOF-S", or a Model'
     labels = checked_sequence("models", given, lambda each: isinstance(each, str | Model), wanted)
     return [parse_model(each) for each in labels]
@@ -293,11 +251,6 @@ def expand_scale_range(given: Any) -> Any:
     """Return the factors of a mapping with `smallest`, `largest` and `step` or `count`; anything else unchanged.
 
     Both ends are included, the largest one if a whole number of steps leads there.
-
-    Raises
-    ------
-    InputError
-        If a key is missing or unknown, a value is out of range, or there are more than a thousand factors.
     """
     if not isinstance(given, Mapping):
         return given
@@ -326,13 +279,7 @@ def expand_scale_range(given: Any) -> Any:
 
 
 def parse_scale_range(text: str) -> list[float]:
-    """Return the factors of a text: a number, or a range such as ``0.5:3.0:0.25`` of smallest, largest and step.
-
-    Raises
-    ------
-    InputError
-        If the text is neither.
-    """
+    """Return the factors of a text: a number, or a range such as ``0.5:3.0:0.25`` of smallest, largest and step."""
     numbers = [_number_in_text(part) for part in text.split(":")]
     if None in numbers or len(numbers) not in (1, 3):
         raise InputError(
@@ -343,13 +290,7 @@ def parse_scale_range(text: str) -> list[float]:
 
 
 def stepped_scale_factors(smallest: float, largest: float, step: float) -> list[float]:
-    """Return the factors from the smallest in steps up to the largest.
-
-    Raises
-    ------
-    InputError
-        If they do not rise, or are too many.
-    """
+    """Return the factors from the smallest in steps up to the largest."""
     if _is_rising_scale_range(smallest, largest) and 0.0 < step < math.inf:
         steps = (largest - smallest) / step + ROUNDING
         if 1.0 <= steps < MAX_FACTORS:

@@ -28,13 +28,7 @@ class DaskPlanPlugin(WorkerPlugin):
         self.lock = Lock()
 
     def load(self) -> Any:
-        """Return the plan, which is unpickled at the first call.
-
-        Raises
-        ------
-        InputError
-            If its modules cannot be imported here, or differ.
-        """
+        """Return the plan, which is unpickled at the first call."""
         with self.lock or Lock():
             if self.plan is None:
                 try:

@@ -175,13 +175,7 @@ class CombinedPeaks:
 
 
 def second_mode_peaks(properties: RockingProperties, motion: GroundMotion) -> SecondMode:
-    """Return the peaks of the second mode, as an oscillator on a fixed base.
-
-    Raises
-    ------
-    InputError
-        If the structure has only one mode.
-    """
+    """Return the peaks of the second mode, as an oscillator on a fixed base."""
     if properties.n_modes < 2:
         raise InputError(
             f"A modal combination needs two modes, but the structure has {properties.n_modes}. Give more modes."

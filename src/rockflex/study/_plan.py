@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar, SupportsIndex, TypeVar
 
 from rockflex._checks import checked_whole_number
 from rockflex.motion import Suite, check_horizontal_component
-from rockflex.study._result_tables import ArrowTable, Columns, Row, table_of_rows, tables_to_dataframe
+from rockflex.study._result_tables import ArrowTable, Columns, Table, arrow_table, tables_to_dataframe
 from rockflex.study._run_matrix import StudyMatrix, record_checksums
 from rockflex.study.parallel import map_runs
 from rockflex.study.progress import ProgressChoice, reporting_progress
@@ -48,17 +48,11 @@ class ChunkedPlan(ABC):
         """Columns of every chunk's table."""
 
     @abstractmethod
-    def rows(self, units: Sequence[int]) -> list[Row]:
-        """Compute the rows of some units, in their order."""
+    def results(self, units: Sequence[int]) -> Table:
+        """Compute some units, and return the columns of their rows, in their order."""
 
     def check_work(self) -> None:
-        """Refuse a study if every run exceeds its work limit; a plan whose runs are not known in advance refuses none.
-
-        Raises
-        ------
-        InputError
-            If no run is within its work limit.
-        """
+        """Refuse a study if every run exceeds its work limit; one whose runs are not known in advance, none."""
         return
 
     @property
@@ -91,35 +85,17 @@ class ChunkedPlan(ABC):
         return record_checksums(self.motions)
 
     def chunk(self, number: SupportsIndex) -> ArrowTable:
-        """Compute a chunk. The table is the same to the last bit, whenever and wherever it is computed.
-
-        Raises
-        ------
-        InputError
-            If there is no such chunk. A run that cannot be solved is a row with a message in `error`.
-        """
+        """Compute a chunk. The table is the same to the last bit, whenever and wherever it is computed."""
         units = self.units_of(checked_whole_number("number", number, 0, self.n_chunks - 1))
-        return table_of_rows(self.rows(units), self.columns)
+        return arrow_table(self.results(units), self.columns)
 
 
 def run_plan(
     plan: ChunkedPlan, workers: SupportsIndex | None = None, progress: ProgressChoice = None
 ) -> "pd.DataFrame":
-    """Compute all chunks of a plan, and return them as one table, in order.
+    """Compute all chunks of a plan on threads, and return them as one table, in order.
 
-    Parameters
-    ----------
-    plan
-        The plan that `.plan()` of a study returns.
-    workers
-        Number of threads; None for one a core.
-    progress
-        None, "bar", or a function of the number of units that are done, and of all.
-
-    Returns
-    -------
-    pandas.DataFrame
-        The rows of all chunks; see the study for its columns.
+    `progress` is None, "bar", or a function of the number of units that are done, and of all.
     """
     tables: list[ArrowTable] = []
     with reporting_progress(progress, plan.n_units, plan.units) as advance:
@@ -165,18 +141,12 @@ class CrossPlan(ChunkedPlan):
         """Columns of every chunk's table."""
         return self.matrix.columns
 
-    def rows(self, units: Sequence[int]) -> list[Row]:
+    def results(self, units: Sequence[int]) -> Table:
         """Simulate one run a unit."""
-        return self.matrix.run_all([self.run_of(unit) for unit in units])
+        return self.matrix.results([self.run_of(unit) for unit in units])
 
     def check_work(self) -> None:
-        """Refuse a study if every run exceeds its work limit.
-
-        Raises
-        ------
-        InputError
-            If no run is within its work limit.
-        """
+        """Refuse a study if every run exceeds its work limit."""
         self.matrix.check_work(map(self.run_of, range(self.n_units)))
 
     def run_of(self, unit: int) -> tuple[int, int, int, float]:

@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import accumulate
 from typing import Any, Literal, Self, cast
 
 import numpy as np
@@ -13,15 +14,7 @@ from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model, Quantities, RockingModel, parse_model
 from rockflex.motion import GroundMotion
-from rockflex.response import (
-    STATUSES,
-    Response,
-    Tracked,
-    columns_among,
-    columns_of,
-    respond,
-    tracked_quantities,
-)
+from rockflex.response import STATUSES, Response, Tracked, columns_among, columns_of, respond, tracked_quantities
 from rockflex.solve import Engine, Excitation, Solution, Solutions, Start, Task, gather, preparing, run_all
 from rockflex.study._arguments import (
     WORK_LIMIT,
@@ -38,26 +31,9 @@ from rockflex.study._arguments import (
 class PreparedCase:
     """A model tied to a structure, with the options of its runs. Its engine is built once, for any number of runs.
 
-    Attributes
-    ----------
-    model
-        The model, tied to its structure.
-    free_vibration
-        Seconds of free vibration; None means until settled.
-    initial
-        The state at t = 0; at rest if None.
-    work_limit
-        Limit of the work of a run in s; None for no limit.
-    history
-        Whether the history of the states is stored.
-    floors
-        Whether the peaks of the floors are tracked.
-    extra
-        Additional quantities whose peaks are tracked, by name.
-    tracked
-        All quantities whose peaks are tracked.
-    engine
-        The engine of the model, ready to run records.
+    `free_vibration` is in s, None until settled; `initial` is the state at t = 0, None for rest; `work_limit` is in s.
+    `history` tells whether the states are stored, and `floors` whether the peaks of the floors are tracked; `extra` are
+    further quantities whose peaks are, by name, and `tracked` all of them.
 
     Raises
     ------
@@ -134,20 +110,10 @@ def has_vertical_motion(motion: GroundMotion) -> bool:
 class RunOptions:
     """The options of a run.
 
-    Attributes
-    ----------
-    free_vibration
-        Seconds of free vibration after the record; None until settled.
-    impact
-        Impact law in place of each model's own, if not None.
-    bouc_wen
-        Hysteresis of the models whose label ends in -BW, or of every model if `all_yield`.
-    ground
-        The ground, or a function that returns the ground of each structure; None: rigid, without sliding.
-    initial
-        The state at t = 0; at rest if None.
-    work_limit
-        Limit of the work of a run in s; None for no limit.
+    `free_vibration` is in s, None until settled. `impact` stands in place of each model's own law. `bouc_wen` is the
+    hysteresis of the models whose label ends in -BW, or of every model if `all_yield`. `ground` is the ground, or a
+    function that returns that of each structure; None: rigid, without sliding. `initial` is the state at t = 0, None
+    for rest. `work_limit` is the limit of the work of a run in s; None for no limit.
     """
 
     free_vibration: float | None = 0.0
@@ -169,13 +135,7 @@ class RunOptions:
         initial: InitialState | None = None,
         work_limit: float | Literal["none"] | None = WORK_LIMIT,
     ) -> Self:
-        """Return the options that a function was called with.
-
-        Raises
-        ------
-        InputError
-            If one of them is out of range or of the wrong kind.
-        """
+        """Return the options that a function was called with."""
         if not isinstance(initial, InitialState | None):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise InputError(
                 f"initial must be an InitialState or None, but {shown(initial)} was given. "
@@ -192,26 +152,14 @@ class RunOptions:
         return replace(self, all_yield=not yielding_model_labels(models))
 
     def tied(self, model: Model, properties: RockingProperties) -> RockingModel:
-        """Return a model of a structure.
-
-        Raises
-        ------
-        InputError
-            If the structure cannot have the model, or the model these options.
-        """
+        """Return a model of a structure."""
         bouc_wen = self.bouc_wen if self.all_yield or model.yields else None
         return model.of(properties, self.impact, bouc_wen, ground_under_structure(properties, self.ground))
 
     def case(
         self, model: Model, properties: RockingProperties, *, history: bool = False, floors: bool = False
     ) -> PreparedCase:
-        """Return the runs of a model of a structure.
-
-        Raises
-        ------
-        InputError
-            As `tied`, or as `PreparedCase`.
-        """
+        """Return the runs of a model of a structure."""
         tied = self.tied(model, properties)
         return PreparedCase(tied, self.free_vibration, self.initial, self.work_limit, history=history, floors=floors)
 
@@ -228,19 +176,11 @@ Scaled = tuple[PreparedCase | InputError, GroundMotion, float]
 
 @dataclass(frozen=True, eq=False)
 class RunPeaks:
-    """Results of some runs.
+    """Results of some runs, by their places.
 
-    Attributes
-    ----------
-    count
-        Number of runs.
-    columns
-        The status, as a place in `rockflex.response.STATUSES`, and every scalar of the responses, each of shape
-        (count,); empty if all runs failed. The values of runs that failed mean nothing.
-    failures
-        Errors of the runs that failed, by index.
-    responses
-        Response of each run of a case with histories by index.
+    `columns` are the status, as a place in `rockflex.response.STATUSES`, and every scalar of the responses, each of
+    shape (count,); empty if all runs failed. The values of runs that failed mean nothing; their errors are the
+    `failures`. `responses` are those of the runs of cases with histories.
     """
 
     count: int
@@ -248,17 +188,39 @@ class RunPeaks:
     failures: Mapping[int, InputError | SolverError]
     responses: Mapping[int, Response]
 
-    def rows(self) -> list[dict[str, Any]]:
-        """Return the results of each run by name, or its `error`."""
-        names = tuple(self.columns)
-        values = zip(*(column.tolist() for column in self.columns.values()), strict=True)
-        rows = [dict(zip(names, row, strict=True)) for row in values] or [{} for _ in range(self.count)]
-        for place, row in enumerate(rows):
-            if place in self.failures:
-                rows[place] = {"error": str(self.failures[place])}
-            else:
-                row["status"] = STATUSES[row["status"]]
-        return rows
+    @property
+    def failed(self) -> NDArray[np.bool_]:
+        """Which runs failed, shape (count,)."""
+        return np.isin(np.arange(self.count), list(self.failures))
+
+    @property
+    def errors(self) -> list[str | None]:
+        """The message of each run that failed, None for the others."""
+        return [str(self.failures[place]) if place in self.failures else None for place in range(self.count)]
+
+    def lists(self) -> dict[str, list[Any]]:
+        """Return the results of all runs by name, None where a run failed, with the status in words and the errors."""
+        found = {name: values.tolist() for name, values in self.columns.items()}
+        found["status"] = [STATUSES[code] for code in found.get("status", ())] or [None] * self.count
+        for values in found.values():
+            for place in self.failures:
+                values[place] = None
+        return found | {"error": self.errors}
+
+    @classmethod
+    def joined(cls, parts: Iterable[Self]) -> Self:
+        """Return the results of several sets of runs, one after another."""
+        listed = list(parts)
+        starts = [0, *accumulate(part.count for part in listed)]
+        kinds = {name: values.dtype for part in listed for name, values in part.columns.items()}
+        columns = {
+            name: np.concatenate([part.columns.get(name, np.zeros(part.count, kind)) for part in listed])
+            for name, kind in kinds.items()
+        }
+        pairs = list(zip(starts, listed, strict=False))
+        failures = {start + place: error for start, part in pairs for place, error in part.failures.items()}
+        responses = {start + place: each for start, part in pairs for place, each in part.responses.items()}
+        return cls(starts[-1], columns, failures, responses)
 
 
 def solve_runs_together(runs: Sequence[PreparedRun]) -> Solutions:
@@ -266,11 +228,6 @@ def solve_runs_together(runs: Sequence[PreparedRun]) -> Solutions:
 
     The ground moves vertically in all runs, or in none. Only a single run can have a history. Runs that cannot be
     solved are among the failures.
-
-    Raises
-    ------
-    InputError
-        If the numbers of the model overflow.
     """
     case, motion, _ = runs[0]
     shaken = has_vertical_motion(motion)

@@ -43,13 +43,7 @@ def is_formula(given: object) -> bool:
 
 
 def names_in_formula(formula: str) -> set[str]:
-    """Return the names that a formula needs.
-
-    Raises
-    ------
-    InputError
-        If it is not a formula.
-    """
+    """Return the names that a formula needs."""
     called = {id(node.func) for node in ast.walk(_parsed_formula(formula)) if isinstance(node, ast.Call)}
     found = (
         node for node in ast.walk(_parsed_formula(formula)) if isinstance(node, ast.Name) and id(node) not in called
@@ -58,13 +52,7 @@ def names_in_formula(formula: str) -> set[str]:
 
 
 def formula_value(formula: str, values: Mapping[str, float]) -> float:
-    """Return the value of a formula, whose names are all in `values`; whole numbers stay whole.
-
-    Raises
-    ------
-    InputError
-        If it is not a formula, or has no value: a division by zero, for instance.
-    """
+    """Return the value of a formula, whose names are all in `values`; whole numbers stay whole."""
     try:
         value = _formula_node_value(_parsed_formula(formula), values)
         if isinstance(value, complex):
@@ -192,11 +180,6 @@ class RandomVariables:
 
     The draw of a variable depends only on the seed, the number of the structure, and its own name. So another variable,
     or another order of them, changes no other value.
-
-    Raises
-    ------
-    InputError
-        If a name or a value cannot be used, or formulas refer to unknown names or to each other.
     """
 
     def __init__(self, given: Mapping[str, Any], reserved: Mapping[str, str]) -> None:
@@ -212,13 +195,7 @@ class RandomVariables:
         self._formulas = [name for name in order if name in graph]
 
     def draw(self, seed: int, number: int) -> dict[str, float]:
-        """Return the values for the structure of a number, in the order in which the variables are given.
-
-        Raises
-        ------
-        InputError
-            If a formula has no value.
-        """
+        """Return the values for the structure of a number, in the order in which the variables are given."""
         found: dict[str, float] = {}
         for name, kind in self.kinds.items():
             if isinstance(kind, DistributionTable):

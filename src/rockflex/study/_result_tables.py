@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from rockflex._cases import runs_by_case
 from rockflex.modal import RockingProperties, Tendon
 from rockflex.response import NAMES, Response, complete_of, leaves_range
-from rockflex.study._prepared_case import RunPeaks
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,6 +21,7 @@ ArrowTable: TypeAlias = Any  # a pyarrow.Table: pyarrow has no type annotations
 # The type of a column, or for a column of names the names that its codes refer to.
 Columns = Mapping[str, type | Sequence[str]]
 Row = dict[str, Any]
+Table = Mapping[str, Sequence[Any] | NDArray[Any]]  # columns by name, of the same length
 
 TYPES = {float: "float64", int: "int64", bool: "bool", str: "string"}
 
@@ -31,69 +31,28 @@ def columns_of_kind(names: str, kind: type) -> dict[str, type]:
     return dict.fromkeys(names.split(), kind)
 
 
-def table_of_rows(rows: Sequence[Row], columns: Columns) -> ArrowTable:
-    """Return a table of rows; NaN and the columns that a row lacks are missing values."""
-    import pyarrow as pa
+def arrow_table(values: Table, columns: Columns, missing: "NDArray[np.bool_] | None" = None) -> ArrowTable:
+    """Return a table of these columns; NaN, None, columns without values and rows of `missing` are missing values.
 
-    return pa.table({name: _arrow_column([row.get(name) for row in rows], kind) for name, kind in columns.items()})
-
-
-def _arrow_column(values: list[Any], kind: type | Sequence[str]) -> Any:
-    import pyarrow as pa
-
-    if isinstance(kind, type):
-        return pa.array(values, TYPES[kind], from_pandas=True)
-    # All chunks list all names, so that their tables have one schema and can be joined directly.
-    return pa.DictionaryArray.from_arrays(pa.array(values, pa.int32()), pa.array(kind, pa.string()))
-
-
-class ResultColumns:
-    """Results of some runs, column by column, for a table in memory.
-
-    Parameters
-    ----------
-    peaks
-        The results of the runs.
-    columns
-        Columns of results; those without values stay missing. `error` is a text for each row that has none.
+    Values are lists or, with `missing`, arrays.
     """
+    import pyarrow as pa
 
-    def __init__(self, peaks: RunPeaks, columns: Columns) -> None:
-        self._columns, self.size = columns, peaks.count
-        kinds = {
-            name: kind if isinstance(kind, type) else np.int32 for name, kind in columns.items() if kind is not str
-        }
-        none = np.zeros(self.size)
-        self._values = {name: peaks.columns.get(name, none).astype(kind, copy=False) for name, kind in kinds.items()}
-        self._missing = np.full(self.size, not peaks.columns)
-        self._missing[list(peaks.failures)] = True
-        self._errors = [
-            None if place not in peaks.failures else str(peaks.failures[place]) for place in range(self.size)
-        ]
+    absent = [None] * len(next(iter(values.values()), ()))
 
-    @staticmethod
-    def joined(sheets: "Sequence[ResultColumns]") -> dict[str, Any]:
-        """Return the columns of all sheets, one after another, for a DataFrame as `tables_to_dataframe` gives it."""
-        import pandas as pd
+    def column(given: Any, kind: type | Sequence[str]) -> Any:
+        mask = missing if isinstance(given, np.ndarray) else None
+        if isinstance(kind, type):
+            return pa.array(given, TYPES[kind], mask=mask, from_pandas=True)
+        # All chunks list all names, so that their tables have one schema and can be joined directly.
+        return pa.DictionaryArray.from_arrays(pa.array(given, pa.int32(), mask=mask), pa.array(kind, pa.string()))
 
-        missing = np.concatenate([sheet._missing for sheet in sheets])
-        errors = [error for sheet in sheets for error in sheet._errors]
-        found = dict[str, Any]()
-        for name, kind in sheets[0]._columns.items():
-            if kind is str:
-                found[name] = pd.array(errors, dtype=pd.StringDtype())
-                continue
-            values: NDArray[Any] = np.concatenate([sheet._values[name] for sheet in sheets])
-            if kind is float:
-                found[name] = np.where(missing, np.nan, values)
-            elif kind is int:
-                found[name] = pd.arrays.IntegerArray(values, missing.copy())
-            elif kind is bool:
-                found[name] = pd.arrays.BooleanArray(values, missing.copy())
-            elif not isinstance(kind, type):
-                codes = np.where(missing, -1, values)
-                found[name] = pd.Categorical.from_codes(codes, dtype=pd.CategoricalDtype(list(kind)))
-        return found
+    return pa.table({name: column(values.get(name, absent), kind) for name, kind in columns.items()})
+
+
+def joined_tables(tables: Sequence[Mapping[str, list[Any]]]) -> dict[str, list[Any]]:
+    """Return the columns of tables, one after another."""
+    return {name: [value for each in tables for value in each[name]] for name in tables[0]}
 
 
 def tables_to_dataframe(*tables: ArrowTable) -> "pd.DataFrame":

@@ -31,19 +31,13 @@ from rockflex.study._arguments import (
     rocking_properties_of,
 )
 from rockflex.study._prepared_case import PreparedCase, RunOptions, Scaled, peaks_of_runs
-from rockflex.study._result_tables import Columns, Row, columns_of_kind, result_columns
+from rockflex.study._result_tables import Columns, Row, Table, columns_of_kind, result_columns
 
 Demands = Mapping[str, Callable[[Response], float]]
 
 
 def checked_demands(demands: Demands | None, taken: Collection[str]) -> Demands:
-    """Return demands whose names are free and whose values can be called.
-
-    Raises
-    ------
-    InputError
-        If they are no mapping from names to functions, or a name is that of another column.
-    """
+    """Return demands whose names are free and whose values can be called."""
     if demands is None:
         return {}
     if not isinstance(demands, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
@@ -71,12 +65,8 @@ def checked_demands(demands: Demands | None, taken: Collection[str]) -> Demands:
 def friction_and_demand_columns(response: Response, demands: Demands, *, friction: bool) -> Row:
     """Return the friction that a response with its history requires, if asked for, and the value of each demand.
 
-    A friction that cannot be found is a message in `error`.
-
-    Raises
-    ------
-    InputError
-        If a function returns anything but a real number; NaN is one.
+    A friction that cannot be found is a message in `error`; a demand that is no number is an `InputError`, but NaN is
+    one.
     """
     found: Row = {name: _demand_value(name, demand, response) for name, demand in demands.items()}
     return found | _required_friction_column(response) if friction else found
@@ -152,21 +142,8 @@ class RunMatrix:
     """Every structure with every model, and the runs of each under records at a scale.
 
     Engines are built when needed. A pickle holds none, so that it is small; they are rebuilt where it is loaded.
-
-    Parameters
-    ----------
-    structures
-        Structures, or their properties.
-    motions
-        The records.
-    models
-        Models that are run on every structure.
-    options
-        Options of all runs.
-    history
-        Whether the response of each run with its history is kept.
-    floors
-        Whether the peaks of the floors are tracked.
+    `history` tells whether the response of each run with its history is kept, `floors` whether the peaks of the floors
+    are tracked.
     """
 
     def __init__(
@@ -247,7 +224,7 @@ class StudyMatrix(RunMatrix):
                 'free_vibration="settle" cannot tell when a hysteretic spring is at rest. Give the free vibration in '
                 "seconds."
             )
-        self._facts = record_facts(motions)
+        self.facts = record_facts(motions)
         self._measures: dict[tuple[int, int], dict[str, float]] = {}
 
     def __getstate__(self) -> dict[str, Any]:
@@ -262,6 +239,13 @@ class StudyMatrix(RunMatrix):
         """Return the runs of the same records and models on another structure and ground than the only one."""
         other = self.with_structure(properties)
         other._measures, other.options = {}, replace(self.options, ground=ground)
+        return other
+
+    def without_structure(self, reason: InputError) -> "StudyMatrix":
+        """Return the runs of a structure that cannot be built: they all fail, and have no measures."""
+        other, none = copy(self), {measure.name: math.nan for measure in scalable_measures()}
+        other._cases = {(0, model): reason for model in range(len(self.models))}
+        other._measures = {(0, record): none for record in range(len(self.motions))}
         return other
 
     @property
@@ -287,40 +271,38 @@ class StudyMatrix(RunMatrix):
             self._measures[structure, record] = found
         return found
 
-    def head(self, structure: int, record: int, model: int, scale: float) -> Row:
-        """Return the columns of a run that need no simulation."""
-        return {"structure": structure, **self._facts[record], "model": model, "scale": scale}
+    def results(self, runs: Sequence[Run]) -> Table:
+        """Simulate runs, those of a structure with a model together, and return their columns.
 
-    def run(self, structure: int, record: int, model: int, scale: float) -> Row:
-        """Simulate one run and return its row; if it cannot be solved, the row has a message and no results."""
-        return self.run_all([(structure, record, model, scale)])[0]
-
-    def run_all(self, runs: Sequence[Run]) -> list[Row]:
-        """Simulate runs and return their rows, as `run` does; those of a structure with a model together."""
-        return rows_of_matrix_runs([(self, run) for run in runs])
+        A run that cannot be solved has a message in `error` and no results.
+        """
+        return results_of_matrix_runs([(self, run) for run in runs])
 
 
-def rows_of_matrix_runs(runs: Sequence[tuple[StudyMatrix, Run]], *, keep: bool = True) -> list[Row]:
-    """Simulate runs of some matrices, as `peaks_of_runs` does, and return their rows."""
-    peaks, rows = peaks_of_runs([each for matrix, run in runs for each in matrix.scaled([run])], keep=keep), list[Row]()
-    for place, ((matrix, (structure, record, model, scale)), found) in enumerate(zip(runs, peaks.rows(), strict=True)):
-        measures = measures_of_scaled_motion(matrix.measures(structure, record), scale)
-        row = matrix.head(structure, record, model, scale) | measures | found
+def results_of_matrix_runs(runs: Sequence[tuple[StudyMatrix, Run]], *, keep: bool = True) -> dict[str, list[Any]]:
+    """Simulate runs of matrices with the same records and options, as `peaks_of_runs` does; return their columns."""
+    if not runs:
+        return {}
+    peaks = peaks_of_runs([each for matrix, run in runs for each in matrix.scaled([run])], keep=keep)
+    structures, records, models, scales = (list(places) for places in zip(*(run for _, run in runs), strict=True))
+    facts, options = runs[0][0].facts, runs[0][0].options
+    measures = [measures_of_scaled_motion(matrix.measures(run[0], run[1]), run[3]) for matrix, run in runs]
+    found = {"structure": structures, "model": models, "scale": scales, **peaks.lists()}
+    found |= {name: [facts[record][name] for record in records] for name in facts[0]}
+    found |= {name: [each[name] for each in measures] for name in measures[0]}
+    for name in ("nominal_limit", "zeta_1", "required_friction", *options.demands):
+        found[name] = [None] * len(runs)
+    for place, (matrix, (structure, _, model, _)) in enumerate(runs):
         case = matrix.case(structure, model)
-        if "error" not in found and isinstance(case, PreparedCase):
-            row |= nominal_limit_columns(case.model.properties)
+        if place not in peaks.failures and isinstance(case, PreparedCase):
+            p = case.model.properties
+            found["nominal_limit"][place] = p.nominal_overturning_rotation
+            found["zeta_1"][place] = float(p.zeta[0]) if p.n_modes else math.nan
         if place in peaks.responses:
-            row |= friction_and_demand_columns(
-                peaks.responses[place], matrix.options.demands, friction=matrix.options.friction
-            )
-        rows.append(row)
-    return rows
-
-
-def nominal_limit_columns(properties: RockingProperties) -> Row:
-    """Return the rotation of nominal overturning in rad and the damping ratio of the first mode, NaN without one."""
-    damping = float(properties.zeta[0]) if properties.n_modes else math.nan
-    return {"nominal_limit": properties.nominal_overturning_rotation, "zeta_1": damping}
+            of_history = friction_and_demand_columns(peaks.responses[place], options.demands, friction=options.friction)
+            for name, value in of_history.items():
+                found[name][place] = value
+    return found
 
 
 def check_different_values(name: str, values: Sequence[str]) -> None:
@@ -407,14 +389,7 @@ def study_matrix(
     ground: GroundChoice = None,
     demands: Demands | None = None,
 ) -> StudyMatrix:
-    """Check the arguments of a study in Python and return its matrix; structures without names are "S1", "S2", ...
-
-    Raises
-    ------
-    InputError
-        If a label is unknown, a sequence is empty or holds something else, two motions have the same name, or an
-        option is out of range.
-    """
+    """Check the arguments of a study in Python and return its matrix; structures without names are "S1", "S2", ..."""
     checked_instance("friction", friction, bool)
     chosen = tuple(checked_models(models))
     options = StudyOptions.of(free_vibration, impact=impact, bouc_wen=bouc_wen, ground=ground, work_limit=work_limit)

@@ -1,5 +1,6 @@
 """Runs in Python: one structure, motion and model; or the cross product of many."""
 
+import math
 from collections import OrderedDict
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import replace
@@ -42,8 +43,8 @@ from rockflex.study._arguments import (
     rocking_properties_of,
     wants_history,
 )
-from rockflex.study._prepared_case import PreparedCase, RunOptions, peaks_of_runs
-from rockflex.study._result_tables import RESULTS, ResultColumns
+from rockflex.study._prepared_case import PreparedCase, RunOptions, RunPeaks, peaks_of_runs
+from rockflex.study._result_tables import RESULTS, arrow_table, tables_to_dataframe
 from rockflex.study._run_matrix import RunMatrix
 from rockflex.study.parallel import map_runs_in_order, worker_count
 from rockflex.study.progress import ProgressChoice, reporting_progress
@@ -61,25 +62,13 @@ _lock = Lock()
 
 
 def simulate_with_cached_case(
-    model: Model,
-    properties: RockingProperties,
-    options: RunOptions,
-    motion: GroundMotion,
-    *,
-    history: bool,
+    model: Model, properties: RockingProperties, options: RunOptions, motion: GroundMotion, *, history: bool
 ) -> Response:
     """Run a motion on a structure, with the case of an earlier run if everything but the motion is the same.
 
     The structure and the ground are the same only if they are the same objects, which cannot change; a user-defined
     impact law can. A case is kept only for the time step of its run, and not if its run failed, so that no run depends
     on those before it.
-
-    Raises
-    ------
-    InputError
-        If the model does not apply to the structure, its numbers overflow, or the run exceeds its work limit.
-    SolverError
-        If the run cannot be solved.
     """
     rest = (options.bouc_wen, options.free_vibration, options.work_limit, history, motion.dt)
     key = (id(properties), id(options.ground), id(options.initial), model, options.impact, *rest)
@@ -195,7 +184,7 @@ def simulate(
 RUNS_PER_TASK = 16, 256  # at least, to hide a task's cost; at most, in the share of a thread
 TASKS_PER_THREAD = 4  # so that the threads end together
 
-Part = tuple[int, int, int, RunMatrix]  # some runs of a structure: its index, the first, the last, and its matrix
+Part = tuple[RunMatrix, int, int]  # some runs of a structure: its matrix, the first and the last
 
 
 def simulate_many(
@@ -283,17 +272,16 @@ def simulate_many(
     shape = (len(everything), len(records), len(chosen), len(factors))
     matrix = RunMatrix(everything, records, chosen, options, history=history, floors=history)
     runs_of_one = [(0, *run) for run in product(range(len(records)), range(len(chosen)), factors)]
-    each = len(runs_of_one)
+    each, total = len(runs_of_one), math.prod(shape)
     least, most = RUNS_PER_TASK
-    per_task = min(most, max(least, len(everything) * each // (TASKS_PER_THREAD * worker_count(workers))))
-    responses = np.full(len(everything) * each if history else 0, None, dtype=object)
+    per_task = min(most, max(least, total // (TASKS_PER_THREAD * worker_count(workers))))
 
     def tasks() -> Iterator[list[Part]]:
         task, runs = list[Part](), 0
-        for index, structure in enumerate(everything):
+        for structure in everything:
             own = matrix.with_structure(structure)
             for first in range(0, each, per_task):
-                task.append((index, first, min(first + per_task, each), own))
+                task.append((own, first, min(first + per_task, each)))
                 runs += task[-1][2] - first
                 if runs >= per_task:
                     yield task
@@ -301,22 +289,18 @@ def simulate_many(
         if task:
             yield task
 
-    def work(task: list[Part]) -> tuple[ResultColumns, list[WorkLimitError]]:
-        runs = [run for _, first, last, own in task for run in own.scaled(runs_of_one[first:last])]
-        peaks = peaks_of_runs(runs, keep=each > per_task)  # other tasks may need the engines
-        places = [index * each + place for index, first, last, _ in task for place in range(first, last)]
-        for place, response in peaks.responses.items():
-            responses[places[place]] = response
-        refused = [error for error in peaks.failures.values() if isinstance(error, WorkLimitError)]
-        return ResultColumns(peaks, columns), refused
+    def work(task: list[Part]) -> RunPeaks:
+        runs = [run for own, first, last in task for run in own.scaled(runs_of_one[first:last])]
+        return peaks_of_runs(runs, keep=each > per_task)  # other tasks may need the engines
 
-    columns = {"status": STATUSES, "error": str, **RESULTS}
-    with reporting_progress(progress, len(everything) * each, "runs") as advance:
-        found = map_runs_in_order(work, tasks(), workers, lambda made: advance(made[0].size))
-    results = ResultColumns.joined([sheet for sheet, _ in found])
-    refused = [error for _, errors in found for error in errors]
-    if len(refused) == len(everything) * each:
+    with reporting_progress(progress, total, "runs") as advance:
+        found = RunPeaks.joined(map_runs_in_order(work, tasks(), workers, lambda made: advance(made.count)))
+    refused = [error for error in found.failures.values() if isinstance(error, WorkLimitError)]
+    if len(refused) == total:
         raise refused[0]
+    results = arrow_table(
+        {**found.columns, "error": found.errors}, {"status": STATUSES, "error": str, **RESULTS}, found.failed
+    )
 
     import pandas as pd
 
@@ -327,10 +311,12 @@ def simulate_many(
             "motion": _categorical_column(motion, [record.name for record in records]),
             "scale": np.asarray(factors)[scale],
             "model": _categorical_column(model, [each.label for each in chosen]),
-            **results,
+            **tables_to_dataframe(results),
         }
     )
-    return table.assign(response=responses) if responses.size else table
+    if history:
+        table["response"] = pd.Series([found.responses.get(place) for place in range(total)], dtype=object)
+    return table
 
 
 def _categorical_column(codes: NDArray[np.int32], names: list[str]) -> "pd.Categorical[Any]":

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal, NamedTuple, SupportsIndex
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, SupportsIndex
 
 from pydantic import Field, model_validator
 
@@ -16,7 +16,7 @@ from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import scalable_measure
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, Structures
 from rockflex.study._plan import CrossPlan, run_plan
-from rockflex.study._result_tables import Columns, Row
+from rockflex.study._result_tables import Columns, Row, Table, joined_tables
 from rockflex.study._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
 from rockflex.study.progress import ProgressChoice
 from rockflex.study.spec import FreeVibration, StructuresStudySpec
@@ -52,54 +52,43 @@ def max_bisections_below_scales(tolerance: float) -> int:
 
 @dataclass
 class ScaleLadder:
-    """Runs of one structure under one record at rising scales.
+    """What happens to one structure under one record at rising scales.
 
     Overturning is not monotone: a structure may overturn at a scale and survive a larger one. Therefore all scales
     of the grid are run; bisection then narrows the first and the last boundary.
 
-    Parameters
-    ----------
-    run
-        Returns the row of a scale; `overturned` is True, False, or None if the run could not be solved.
-    scales
-        The grid_scales, in rising order.
-    growth, tolerance
-        Ratio of neighbouring grid_scales, and relative width of the boundaries found.
+    `overturns` runs a scale, and returns None if the run could not be solved; `growth` is the ratio of neighbouring
+    scales of the grid, `tolerance` the relative width of the boundaries found.
     """
 
-    run: Callable[[float], Row]
-    scales: Sequence[float]
+    overturns: Callable[[float], bool | None]
     growth: float
     tolerance: float
-    rows: list[Row] = field(default_factory=list[Row])
+    outcomes: dict[float, bool | None] = field(default_factory=dict[float, bool | None])
+    """Whether it overturns at each scale, in rising order after the search."""
 
-    def run_all(self) -> list[Row]:
-        """Run the ladder and return its rows, sorted by scale, each with the summary of the whole ladder."""
-        for scale in self.scales:
+    def search(self, grid: Sequence[float]) -> None:
+        """Run the scales of the grid, and bisect."""
+        for scale in grid:
             self._try(scale)
         boundaries = self._boundaries()
         for stands, falls in dict.fromkeys((boundaries[0], boundaries[-1]) if boundaries else ()):
             self._bisect(stands, falls)
-        self.rows.sort(key=lambda row: row["scale"])
-        summary = self._summary()
-        return [row | summary for row in self.rows]
+        self.outcomes = dict(sorted(self.outcomes.items()))
 
     def _try(self, scale: float) -> bool | None:
-        row = self.run(scale)
-        self.rows.append(row)
-        return row["overturned"]
+        self.outcomes[scale] = self.overturns(scale)
+        return self.outcomes[scale]
 
     def _boundaries(self) -> list[tuple[float, float]]:
         """Return neighbouring scales of which the lower survives and the upper overturns; zero always survives."""
-        known = [(0.0, False), *((row["scale"], row["overturned"]) for row in self._known())]
+        known = [(0.0, False), *self._known.items()]
         return [(lower, upper) for (lower, fell), (upper, falls) in pairwise(known) if falls and not fell]
 
     def _bisect(self, stands: float, falls: float) -> None:
-        steps = (
-            max_bisections_between_scales(self.growth, self.tolerance)
-            if stands > 0.0
-            else max_bisections_below_scales(self.tolerance)
-        )
+        steps = max_bisections_below_scales(self.tolerance)
+        if stands > 0.0:
+            steps = max_bisections_between_scales(self.growth, self.tolerance)
         for _ in range(steps):
             if falls - stands <= self.tolerance * falls:
                 break
@@ -109,17 +98,19 @@ class ScaleLadder:
                 break
             stands, falls = (stands, middle) if fell else (middle, falls)
 
-    def _known(self) -> list[Row]:
-        return [row for row in self.rows if row["overturned"] is not None]
+    @property
+    def _known(self) -> dict[float, bool]:
+        return {scale: fell for scale, fell in self.outcomes.items() if fell is not None}
 
-    def _summary(self) -> Row:
-        known = self._known()
-        falls = [row["scale"] for row in known if row["overturned"]]
-        stands = [row["scale"] for row in known if not row["overturned"]]
+    def summary(self) -> Row:
+        """Return what the outcomes of all scales say, by the names of its columns."""
+        known = self._known
+        falls = [scale for scale, fell in known.items() if fell]
+        stands = [scale for scale, fell in known.items() if not fell]
         return {
             "first_overturning_scale": min(falls, default=None),
             "last_survival_scale": max(stands, default=None),
-            "resurrections": sum(lower["overturned"] and not upper["overturned"] for lower, upper in pairwise(known)),
+            "resurrections": sum(lower and not upper for lower, upper in pairwise(known.values())),
             "right_censored": not falls if known else None,
         }
 
@@ -207,21 +198,24 @@ class IncrementalPlan(CrossPlan):
         ladder = {"overturned": bool, "first_overturning_scale": float, "last_survival_scale": float}
         return base | ladder | {"resurrections": int, "right_censored": bool, "error": error}
 
-    def rows(self, units: Sequence[int]) -> list[Row]:
+    def results(self, units: Sequence[int]) -> Table:
         """Run one ladder a unit."""
-        return [row for unit in units for row in self._ladder(unit)]
+        return joined_tables([self._ladder(unit) for unit in units])
 
-    def _ladder(self, unit: int) -> list[Row]:
+    def _ladder(self, unit: int) -> dict[str, list[Any]]:
         structure, record, model, _ = self.run_of(unit)
-        state = LIMIT_STATES[self.limit]
+        state, runs = LIMIT_STATES[self.limit], dict[float, Any]()
 
-        def run(scale: float) -> Row:
-            row = self.matrix.run(structure, record, model, scale)
-            if "status" not in row:
-                return row | {"overturned": None}
-            return row | {"overturned": OVERTURNING.exceeded(row) or state.exceeded(row)}
+        def overturns(scale: float) -> bool | None:
+            runs[scale] = self.matrix.results([(structure, record, model, scale)])
+            row = {name: values[0] for name, values in runs[scale].items()}
+            return None if row["status"] is None else OVERTURNING.exceeded(row) or state.exceeded(row)
 
-        return ScaleLadder(run, self.scales, self.steps.growth, self.steps.tolerance).run_all()
+        ladder = ScaleLadder(overturns, self.steps.growth, self.steps.tolerance)
+        ladder.search(self.scales)
+        found = joined_tables([runs[scale] for scale in ladder.outcomes])
+        summary = {name: [value] * len(runs) for name, value in ladder.summary().items()}
+        return {**found, "overturned": list(ladder.outcomes.values()), **summary}
 
 
 def check_scale_ladder(smallest: float, largest: float, growth: float, tolerance: float) -> None:

@@ -23,8 +23,8 @@ from rockflex.study._random_variables import (
     names_in_formula,
     uniform_draws,
 )
-from rockflex.study._result_tables import RESULTS, Columns, Row, columns_of_kind
-from rockflex.study._run_matrix import StudyMatrix, rows_of_matrix_runs
+from rockflex.study._result_tables import RESULTS, Columns, Row, Table, columns_of_kind, joined_tables
+from rockflex.study._run_matrix import StudyMatrix, results_of_matrix_runs
 from rockflex.study.cloud import Factors
 from rockflex.study.spec import GroundTable, RunsStudySpec
 
@@ -51,21 +51,9 @@ class _GroundHolder(TomlTable):
 class RandomPopulation:
     """Structures that differ in the values of variables.
 
-    Parameters
-    ----------
-    variables
-        The variables.
-    structure
-        A structure as a file describes it, with formulas such as "= 0.3 * weight" in place of some numbers.
-    folder
-        Where relative paths of files of numbers start.
-    ground
-        The ground as a file describes it, with formulas in place of some numbers; None for rigid ground.
-
-    Raises
-    ------
-    InputError
-        If a formula cannot be read, or refers to unknown names.
+    `structure` is a structure as a file describes it, with formulas such as "= 0.3 * weight" in place of some numbers,
+    and `ground` the ground in the same way, None for rigid ground. Relative paths of files of numbers start in
+    `folder`. An `InputError` tells of a formula that cannot be read, or refers to unknown names.
     """
 
     def __init__(
@@ -93,25 +81,13 @@ class RandomPopulation:
             check_formula_names_known(label, needed, variables.kinds | (FACTS if held else {}))
 
     def entry(self, values: Mapping[str, float]) -> StructureEntry:
-        """Return the structure without tendons and elements for values of the variables.
-
-        Raises
-        ------
-        InputError
-            If a formula has no value, or a key is unknown, missing, or of the wrong kind.
-        """
+        """Return the structure without tendons and elements for values of the variables."""
         return _checked_random_structure(
             {key: value for key, value in self._structure.items() if key not in ELEMENT_KEYS}, values
         )
 
     def build(self, values: Mapping[str, float]) -> RockingProperties:
-        """Return the structure for values of the variables.
-
-        Raises
-        ------
-        InputError
-            As `entry`, or if a value is out of range or values contradict each other.
-        """
+        """Return the structure for values of the variables."""
         free = rocking_properties_of(self.entry(values).build(self._folder))
         if not any(self._structure.get(key) for key in ELEMENT_KEYS):
             return free
@@ -120,13 +96,7 @@ class RandomPopulation:
         )
 
     def ground_under(self, properties: RockingProperties, values: Mapping[str, float]) -> Ground | None:
-        """Return the ground under a structure for values of the variables.
-
-        Raises
-        ------
-        InputError
-            If a formula has no value, a key is unknown, missing, or of the wrong kind, or a value is out of range.
-        """
+        """Return the ground under a structure for values of the variables."""
         if self._ground is None:
             return None
         content = _structure_entry_with_values(
@@ -368,28 +338,28 @@ class MonteCarloPlan(ChunkedPlan):
         order = np.argsort(uniform_draws(self.seed, number, "", len(self.motions)), kind="stable")
         return sorted(order[: self._per_structure].tolist())
 
-    def rows(self, units: Sequence[int]) -> list[Row]:
+    def results(self, units: Sequence[int]) -> Table:
         """Draw a structure a unit, and simulate it; some at a time, which are prepared together."""
         parts = (units[first : first + STRUCTURES_PER_BATCH] for first in range(0, len(units), STRUCTURES_PER_BATCH))
-        return [row for part in parts for row in self._rows(part)]
+        return joined_tables([self._results(part) for part in parts])
 
-    def _rows(self, units: Sequence[int]) -> Iterator[Row]:
-        drawn = [(unit, *self._drawn(unit)) for unit in units]
-        runs = [(matrix, run) for unit, _, matrix in drawn if matrix is not None for run in self._runs(unit)]
-        found = iter(rows_of_matrix_runs(runs, keep=False))
-        for unit, row, matrix in drawn:
-            for run in self._runs(unit):
-                yield (self.matrix.head(*run) if matrix is None else next(found)) | row
+    def _results(self, units: Sequence[int]) -> dict[str, list[Any]]:
+        drawn = {unit: self._drawn(unit) for unit in units}
+        runs = [(unit, drawn[unit][1], run) for unit in units for run in self._runs(unit)]
+        found = results_of_matrix_runs([(matrix, run) for _, matrix, run in runs], keep=False)
+        for name in ("number", *self.population.variables.kinds, *FACTS, *OF_STRUCTURE.split()):
+            found[name] = [drawn[unit][0].get(name) for unit, *_ in runs]
+        return found
 
-    def _drawn(self, unit: int) -> tuple[Row, StudyMatrix | None]:
-        """Return what describes a structure, and the matrix for its runs, or the error and none."""
+    def _drawn(self, unit: int) -> tuple[Row, StudyMatrix]:
+        """Return what describes a structure, and the matrix for its runs, which fail if it cannot be built."""
         row: Row = {"number": unit}
         try:
             row |= self.population.variables.draw(self.seed, unit)
             properties = self.population.build(row)
             ground = self.population.ground_under(properties, row)
         except InputError as error:
-            return row | {"error": str(error)}, None
+            return row, self.matrix.without_structure(error)
         row |= random_structure_facts(properties)
         row |= {"resisting_moment": properties.resisting_moment, "recentring_ratio": properties.recentring_ratio}
         return row, self.matrix.on_ground(properties, ground)

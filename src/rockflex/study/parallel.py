@@ -27,13 +27,7 @@ def core_count() -> int:
 
 
 def worker_count(workers: SupportsIndex | None) -> int:
-    """Return the number of workers; None means one per core.
-
-    Raises
-    ------
-    InputError
-        If `workers` is neither None nor a whole number of at least 1.
-    """
+    """Return the number of workers; None means one per core."""
     return core_count() if workers is None else checked_whole_number("workers", workers, 1)
 
 

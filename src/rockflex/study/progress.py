@@ -111,12 +111,7 @@ def _notebook_progress_bar(title: str) -> Generator[Show]:
 
 
 def _progress_bar_columns(**how: Any) -> "RichProgress":
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        TextColumn,
-        TimeElapsedColumn,
-    )
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as RichProgress
 
     look = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[remark]}"))
@@ -152,11 +147,6 @@ def reporting_progress(progress: ProgressChoice, total: int, units: str) -> Gene
     """Tell the progress of `total` units; the yielded function takes how many more of them are done.
 
     A function is called in the thread of the caller, first with ``(0, total)``. What it raises goes through.
-
-    Raises
-    ------
-    InputError
-        If `progress` is neither None nor "bar" nor a function.
     """
     check_progress(progress, "(done, total)")
     if progress is None:
@@ -205,21 +195,10 @@ class Progress:
 PartProgress = Literal["bar"] | Callable[[Progress], object] | None
 
 
-def check_part_progress(progress: PartProgress) -> None:
-    """Raise an InputError unless `progress` is None, "bar" or a function."""
-    check_progress(progress, "one Progress")
-
-
 @contextmanager
 def reporting_part_progress(progress: PartProgress) -> Generator[Callable[[Progress], object]]:
-    """Yield a function that tells the progress of a study.
-
-    Raises
-    ------
-    InputError
-        If `progress` is neither None nor "bar" nor a function.
-    """
-    check_part_progress(progress)
+    """Yield a function that tells the progress of a study."""
+    check_progress(progress, "one Progress")
     if progress is None:
         yield lambda _: None
     elif isinstance(progress, str):

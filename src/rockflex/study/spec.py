@@ -120,13 +120,7 @@ class SpringsTable(TomlTable):
     heave_damping_ratio: Annotated[float | None, _DAMPING_RATIO] = None
 
     def under(self, properties: RockingProperties) -> Springs:
-        """Return the springs under a structure.
-
-        Raises
-        ------
-        InputError
-            If a value is out of range, or damping is given twice.
-        """
+        """Return the springs under a structure."""
         edges = [side * properties.half_width - properties.eccentricity for side in (-1, 1)]
         springs = Springs(
             edges if self.positions is None else self.positions,
@@ -151,13 +145,7 @@ class SpringBedTable(SpringBedKeys, TomlTable):
     ] = None
 
     def under(self, properties: RockingProperties) -> Springs:
-        """Return the bed under a structure.
-
-        Raises
-        ------
-        InputError
-            If a value is out of range, or the values contradict each other.
-        """
+        """Return the bed under a structure."""
         where: dict[str, Any] = {"n": self.n, "damping": self.damping or 0.0, "eccentricity": properties.eccentricity}
         zones = {"end_zone": self.end_zone, "end_ratio": self.end_ratio}
         ends: dict[str, Any] = {name: value for name, value in zones.items() if value is not None}
@@ -185,14 +173,7 @@ class GroundTable(GroundKeys, TomlTable):
     bed: Annotated[SpringBedTable | None, SchemaKey("a table", form=PLAIN)] = None
 
     def under(self, properties: RockingProperties) -> Ground:
-        """Return the ground under a structure.
-
-        Raises
-        ------
-        InputError
-            If a value is out of range, or the values contradict each other. The message begins with the table, and the
-            field with "ground".
-        """
+        """Return the ground under a structure."""
         if self.springs is not None and self.bed is not None:
             raise InputError(
                 "The ground has springs and a bed. Give one of the two tables.", place="[ground]", field="ground.bed"
@@ -268,13 +249,7 @@ class RunOptionKeys(ImpactKeys, TomlTable):
         return given
 
     def law(self) -> ImpactLaw | None:
-        """Return the impact law; None for the model's own.
-
-        Raises
-        ------
-        InputError
-            If a coefficient of restitution is missing, out of range, or given to another law.
-        """
+        """Return the impact law; None for the model's own."""
         if self.impact == "restitution" and self.restitution is None:
             raise InputError(
                 'The impact law "restitution" needs its coefficient. Give restitution, a number from 0 to 1.',
@@ -297,13 +272,7 @@ class RunOptionKeys(ImpactKeys, TomlTable):
         return self.impact
 
     def hysteresis(self) -> BoucWen | None:
-        """Return the hysteresis; None if nothing yields.
-
-        Raises
-        ------
-        InputError
-            If a value is out of range.
-        """
+        """Return the hysteresis; None if nothing yields."""
         return None if self.bouc_wen is None else BoucWen(**self.bouc_wen.model_dump())
 
     def ground_rule(self) -> Callable[[RockingProperties], Ground] | None:
@@ -317,13 +286,7 @@ def impact_law_name(law: ImpactLaw) -> str:
 
 
 def impact_law_document(law: ImpactLaw) -> dict[str, Any]:
-    """Return the class of a law, the names of what it keeps and loses, and its values, as plain JSON.
-
-    Raises
-    ------
-    InputError
-        If a value is not a number, text, array, or a list, tuple or dictionary of them.
-    """
+    """Return the class of a law, the names of what it keeps and loses, and its values, as plain JSON."""
     kind = type(law)
     state = cast("Any", law).__getstate__()
     parts = state if isinstance(state, tuple) else (state,)  # a class with slots gives two dictionaries
@@ -332,13 +295,7 @@ def impact_law_document(law: ImpactLaw) -> dict[str, Any]:
 
 
 def impact_law_checksum(law: ImpactLaw) -> dict[str, str]:
-    """Return the SHA-256 of the module that defines the class of a law; an empty dictionary for laws of rockflex.
-
-    Raises
-    ------
-    InputError
-        If the class is not defined in a file.
-    """
+    """Return the SHA-256 of the module that defines the class of a law; an empty dictionary for laws of rockflex."""
     kind = type(law)
     if kind.__module__.partition(".")[0] == __name__.partition(".")[0]:
         return {}
@@ -472,16 +429,10 @@ class RunsStudySpec(RunOptionKeys, StudySpec):
         return {} if self.impact is None or isinstance(self.impact, str) else impact_law_checksum(self.impact)
 
     def study_options(self, *, friction: bool = False) -> StudyOptions:
-        """Return the options that all runs share.
-
-        Raises
-        ------
-        InputError
-            If they contradict each other.
-        """
+        """Return the options that all runs share."""
         options = StudyOptions.of(
             self.free_vibration, impact=self.law(), bouc_wen=self.hysteresis(), ground=self.ground_rule(),
-            work_limit=self.work_limit,
+            work_limit=self.work_limit
         )  # fmt: skip
         return replace(options, models=tuple(map(parse_model, self.models)), friction=friction)
 
@@ -492,13 +443,7 @@ class StructuresStudySpec(RunsStudySpec):
     structures: list[StructureEntry] = Field(min_length=1, description="one or more tables [[structures]]")
 
     def checksums(self) -> dict[str, str]:
-        """Return the SHA-256 of the numbers in each file that a structure names, and of a user-defined impact law.
-
-        Raises
-        ------
-        InputError
-            If that law is not defined in a file.
-        """
+        """Return the SHA-256 of the numbers in each file that a structure names, and of a user-defined impact law."""
         files = {
             f"structures[{place}].{key}": value
             for place, entry in enumerate(self.structures)
@@ -507,13 +452,7 @@ class StructuresStudySpec(RunsStudySpec):
         return files | super().checksums()
 
     def matrix(self, *, friction: bool = False) -> StudyMatrix:
-        """Build the structures and load the records.
-
-        Raises
-        ------
-        InputError
-            If a structure or a record is not available, or the options contradict each other.
-        """
+        """Build the structures and load the records."""
         names = [entry.name or f"S{place}" for place, entry in enumerate(self.structures, start=1)]
         check_different_values("the names of the structures", names)
         properties: dict[str, RockingProperties] = {}

@@ -13,7 +13,7 @@ from rockflex.fragility import NOMINAL, OVERTURNING, TENDON_YIELD, UPLIFT, Limit
 from rockflex.motion import scalable_measure
 from rockflex.study._arguments import checked_positive_numbers
 from rockflex.study._plan import CrossPlan
-from rockflex.study._result_tables import Columns, Row
+from rockflex.study._result_tables import Columns, Table
 from rockflex.study._run_matrix import StudyMatrix
 from rockflex.study.spec import StructuresStudySpec
 
@@ -86,10 +86,9 @@ class StripePlan(CrossPlan):
         """Columns of every chunk's table."""
         return {"level": float, **super().columns}
 
-    def rows(self, units: Sequence[int]) -> list[Row]:
+    def results(self, units: Sequence[int]) -> Table:
         """Simulate one run a unit."""
-        levels = [self.levels[unit % len(self.levels)] for unit in units]
-        return [row | {"level": level} for row, level in zip(super().rows(units), levels, strict=True)]
+        return {**super().results(units), "level": [self.levels[unit % len(self.levels)] for unit in units]}
 
 
 def stripe_counts(runs: "pd.DataFrame", limit: StripeLimit = "overturning") -> "pd.DataFrame":
@@ -135,13 +134,7 @@ def stripe_counts(runs: "pd.DataFrame", limit: StripeLimit = "overturning") -> "
 
 
 def stripe_limit_state(limit: StripeLimit) -> LimitState:
-    """Return the limit state that `stripe_counts` counts.
-
-    Raises
-    ------
-    InputError
-        If the limit is another word, or not positive.
-    """
+    """Return the limit state that `stripe_counts` counts."""
     if isinstance(limit, LimitState):
         return limit
     if not isinstance(limit, str):

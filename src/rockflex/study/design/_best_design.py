@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING, Any, SupportsIndex
+from typing import TYPE_CHECKING, SupportsIndex
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.study.design._design_search import MarginSurface
 from rockflex.study.design._designs import VARIABLES
-from rockflex.study.design._exceedance_fit import check_confidence, check_hazard_damping
+from rockflex.study.design._exceedance_fit import check_confidence, check_hazard_damping, check_table
 from rockflex.study.design._requirements import (
     DesignCost,
     Requirement,
@@ -141,17 +141,13 @@ def best_design(
 
     wanted, times = checked_requirements(requirements), checked_whole_number("n_resamples", n_resamples, MIN_RESAMPLES)
     check_confidence(confidence)
-    lacking = [name for name in (*FACTS, "structure", "round", "group") if name not in runs]
-    if lacking or not len(runs):
-        lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
-        raise InputError(f"The table {lacks}. Give what search_design returned.")
+    check_table(runs, (*FACTS, "structure", "round", "group"), "search_design")
     for each in wanted:
         check_hazard_damping(each.hazard, runs, each.measure)
     groups = [rows for _, rows in runs.groupby("structure", observed=True, sort=False)]
     values = requirement_values(groups, wanted)
-    drawn = np.stack(
-        [_resampled_requirement_values(rows, wanted, times, seed) for rows in groups], axis=1
-    )  # (resamples, designs, requirements)
+    drawn = np.array([[each.resampled(rows, times, seed) for each in wanted] for rows in groups])
+    drawn = drawn.transpose(2, 0, 1)  # (resamples, designs, requirements)
     table = pd.DataFrame([rows.iloc[0][["structure", "round", *FACTS]] for rows in groups]).infer_objects()
     table = table.reset_index(drop=True).assign(structure=[str(rows["structure"].iloc[0]) for rows in groups])
     costs = np.asarray(cost.of(*(table[name].to_numpy(float) for name in QUANTITIES[:3])), dtype=float)
@@ -184,10 +180,6 @@ def best_design(
     )
 
 
-def _resampled_requirement_values(rows: "pd.DataFrame", wanted: list[Requirement], n: int, seed: int) -> Array:
-    return np.column_stack([each.resampled(rows, n, seed) for each in wanted])
-
-
 def _requirements_met(values: Array, wanted: list[Requirement]) -> Bools:
     """Whether all targets are met, for values whose last axis is that of the requirements; NaN meets none."""
     return np.all(values <= np.array([each.target for each in wanted]), axis=-1)
@@ -202,25 +194,19 @@ def _requirement_limits_table(
 ) -> "pd.DataFrame":
     import pandas as pd
 
-    rows: list[dict[str, Any]] = []
-    for place, each in enumerate(wanted):
-        if best is None:
-            continue
+    found = {"limit": [each.label for each in wanted], "target": [each.target for each in wanted]}
+    if best is None:
+        return pd.DataFrame(found | dict.fromkeys(("value", "low", "high", "used", "cost_without"), np.nan)).iloc[:0]
+    row = table.iloc[best]
+    for name, suffix in (("value", ""), ("low", ", low"), ("high", ", high")):
+        found[name] = [row[f"{each.label}{suffix}"] for each in wanted]
+    found["used"] = [row[each.label] / each.target for each in wanted]
+    found["cost_without"] = []
+    for place in range(len(wanted)):
         others = [other for other in range(len(wanted)) if other != place]
         free = _requirements_met(values[:, others], [wanted[other] for other in others])
-        row = table.iloc[best]
-        rows.append(
-            {
-                "limit": each.label,
-                "target": each.target,
-                "value": row[each.label],
-                "low": row[f"{each.label}, low"],
-                "high": row[f"{each.label}, high"],
-                "used": row[each.label] / each.target,
-                "cost_without": float(np.where(free, costs, np.inf).min()),
-            }
-        )
-    return pd.DataFrame(rows, columns=["limit", "target", "value", "low", "high", "used", "cost_without"])
+        found["cost_without"].append(float(np.where(free, costs, np.inf).min()))
+    return pd.DataFrame(found)
 
 
 def _variable_intervals_table(
@@ -228,17 +214,10 @@ def _variable_intervals_table(
 ) -> "pd.DataFrame":
     import pandas as pd
 
-    places = [place for place in choices if place is not None]
-    rows: list[dict[str, Any]] = []
-    for name in QUANTITIES:
-        column = table[name].to_numpy(float)
-        ends = [np.nan, np.nan]
-        if places:
-            ends = np.quantile(column[places], (0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence)).tolist()
-        rows.append(
-            {"quantity": name, "best": np.nan if best is None else column[best], "low": ends[0], "high": ends[1]}
-        )
-    return pd.DataFrame(rows)
+    chosen = table[[*QUANTITIES]].iloc[[place for place in choices if place is not None]]
+    ends = chosen.quantile([0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence]).to_numpy(float)
+    of_best = np.full(len(QUANTITIES), np.nan) if best is None else table[[*QUANTITIES]].iloc[best].to_numpy(float)
+    return pd.DataFrame({"quantity": QUANTITIES, "best": of_best, "low": ends[0], "high": ends[1]})
 
 
 def _best_design_notes(table: "pd.DataFrame", best: int | None, choices: list[int | None], values: Array) -> list[str]:
@@ -272,15 +251,8 @@ MAX_PARTS_OF_STEP = 16  # parts of a step between two values given
 class InterpolatedMargins:
     """Margins of a search as functions of its variables.
 
-    Attributes
-    ----------
-    surface : Surface
-    given : dict
-        The values that the search was given, of each variable that it varies.
-    fixed : dict
-        The value of each other variable.
-    forces : dict
-        Force in N for a factor of 1, of the tendons and of the dissipators.
+    `given` are the values that the search was given of each variable that it varies, `fixed` is the value of each other
+    one, and `forces` the force in N for a factor of 1, of the tendons and of the dissipators.
     """
 
     surface: MarginSurface
@@ -290,13 +262,7 @@ class InterpolatedMargins:
 
     @classmethod
     def of(cls, found: BestDesign) -> "InterpolatedMargins":
-        """Interpolate between the designs of a search.
-
-        Raises
-        ------
-        InputError
-            If too few designs have probabilities of all limits.
-        """
+        """Interpolate between the designs of a search."""
         table = found.designs
         first = table[table["round"] == 0]
         given = {name: np.unique(first[name].to_numpy(float)) for name in VARIABLES}

@@ -1,6 +1,6 @@
 """The search for the cheapest design: the values given, then a few designs for each refinement."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from copy import copy
 from itertools import accumulate, pairwise, product
 from typing import TYPE_CHECKING, Any, Literal, Self, SupportsIndex
@@ -10,15 +10,14 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array
 from rockflex._checks import checked_instance
-from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Motions, RockingStructure, checked_scale_factors
 from rockflex.study._plan import ChunkedPlan, run_plan
-from rockflex.study._result_tables import Columns, Row
-from rockflex.study._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
-from rockflex.study.design._designs import VARIABLES, DesignSearch, Point, total_dissipator_force
+from rockflex.study._result_tables import Columns, Table
+from rockflex.study._run_matrix import Run, StudyMatrix, check_base_can_lift, study_matrix
+from rockflex.study.design._designs import VARIABLES, DesignSearch, Point, facts_of_design, total_dissipator_force
 from rockflex.study.design._exceedance_fit import check_hazard_damping, design_limit_state, first_damping_column
 from rockflex.study.design._requirements import (
     DesignCost,
@@ -47,17 +46,8 @@ class MarginSurface:
     The smoothing of each spline is the one with the smallest error where each design is left out in turn (Wahba 1990,
     Spline Models for Observational Data, Chapter 4).
 
-    Parameters
-    ----------
-    steps : ndarray, shape (n, d)
-        Coordinates of the designs in the variables that are varied.
-    margins : ndarray, shape (n, m)
-        Their margins; designs without a margin are left out.
-
-    Raises
-    ------
-    InputError
-        If too few designs have margins.
+    `steps`, shape (n, d), are the coordinates of the designs in the variables that are varied; `margins` has the shape
+    (n, m). Designs without a margin are left out; an `InputError` says if too few are left.
     """
 
     def __init__(self, steps: Array, margins: Array) -> None:
@@ -257,41 +247,30 @@ class DesignSearchPlan(ChunkedPlan):
         found = dict(self._empty.columns) | {"structure": names}
         return {"structure": found.pop("structure"), "round": int, **dict.fromkeys(FACTS, float), **found}
 
-    def rows(self, units: Sequence[int]) -> list[Row]:
+    def results(self, units: Sequence[int]) -> Table:
         """Simulate all runs of a design a unit; none if the round has no such design."""
-        return [row for unit in units for row in self._runs_of(unit)]
+        first = self._first_unit(self.round)
+        designs = [unit - first for unit in units if 0 <= unit - first < len(self.points)]
+        found = self._matrix.results(self._runs_of(designs))
+        facts = {place: {"structure": first + place, "round": self.round, **self._facts_of(place)} for place in designs}
+        names = ("structure", "round", *FACTS) if designs else ()
+        return {**found, **{name: [facts[each][name] for each in found["structure"]] for name in names}}
 
-    def _runs_of(self, unit: int) -> Iterator[Row]:
-        place = unit - self._first_unit(self.round)
-        if not 0 <= place < len(self.points):
-            return
-        facts = {"structure": unit, "round": self.round} | self._facts_of(place)
-        runs = [(place, record, 0, scale) for record, scale in product(range(len(self.motions)), self.scales)]
-        for row in self._matrix.run_all(runs):
-            yield row | facts
+    def _runs_of(self, designs: Iterable[int]) -> list[Run]:
+        return [
+            (place, record, 0, scale)
+            for place, record, scale in product(designs, range(len(self.motions)), self.scales)
+        ]
 
     def _facts_of(self, place: int) -> dict[str, Any]:
         p = self._matrix.structures[place]
-        height = float(p.effective_height[0]) if p.n_modes else p.l0r / p.m_tot
-        return {
-            **dict(zip(VARIABLES, map(float, self.search.at(self.points[place])[0]), strict=True)),
-            "aspect_ratio": height / p.half_width,
-            "prestress": p.prestress,
-            "dissipator_force": total_dissipator_force(p),
-            "prestress_ratio": p.prestress / (p.m_tot * GRAVITY),
-            "resisting_moment": p.resisting_moment,
-        }
+        variables = dict(zip(VARIABLES, map(float, self.search.at(self.points[place])[0]), strict=True))
+        forces = {"prestress": p.prestress, "dissipator_force": total_dissipator_force(p)}
+        return facts_of_design(p) | variables | forces
 
     def check_work(self) -> None:
-        """Refuse a search if every run of its first round exceeds its work limit.
-
-        Raises
-        ------
-        InputError
-            If no run is within its work limit.
-        """
-        places = range(len(self.points)), range(len(self.motions)), self.scales
-        self._matrix.check_work((place, record, 0, scale) for place, record, scale in product(*places))
+        """Refuse a search if every run of its first round exceeds its work limit."""
+        self._matrix.check_work(self._runs_of(range(len(self.points))))
 
 
 def search_design(

@@ -16,7 +16,7 @@ from rockflex.models import BoucWen, ImpactLaw
 from rockflex.structure.file import StructureEntry, TomlTable
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, RockingStructure, type_description
 from rockflex.study._plan import run_plan
-from rockflex.study._result_tables import Columns, Row
+from rockflex.study._result_tables import Columns, Row, Table
 from rockflex.study._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
 from rockflex.study.cloud import CloudPlan, Factors
 from rockflex.study.design._design_search import DesignSearchPlan
@@ -29,6 +29,7 @@ from rockflex.study.design._designs import (
     checked_design_factors,
     checked_half_widths,
     designs_of_structure,
+    facts_of_design,
 )
 from rockflex.study.design._exceedance_fit import (
     check_design_limit,
@@ -48,17 +49,7 @@ if TYPE_CHECKING:
 def design_tables_by_limit(
     runs: "pd.DataFrame", spec: Mapping[str, Any], confidence: float | None = 0.9
 ) -> "Iterator[tuple[float | str, pd.DataFrame]]":
-    """Yield each limit of a study with its `design_table`.
-
-    Parameters
-    ----------
-    runs
-        The table of the study.
-    spec
-        The study as returned by its `document()`.
-    confidence
-        As in `design_table`.
-    """
+    """Yield each limit of a study, from its `document()`, with its `design_table`."""
     for limit, at, _, hazard in stored_design_limits(spec):
         yield limit, design_table(runs, limit, measure=spec["measure"], at=at, hazard=hazard, confidence=confidence)
 
@@ -77,13 +68,7 @@ def stored_design_limits(
 
 
 def stored_design_search(spec: Mapping[str, Any]) -> tuple[list[Requirement], DesignCost]:
-    """Return the requirements and the unit costs of a study with a search, from its document.
-
-    Raises
-    ------
-    InputError
-        If two limits are the same at the same level.
-    """
+    """Return the requirements and the unit costs of a study with a search, from its document."""
     found = [
         Requirement(limit, target, at, hazard, spec["measure"])  # pyright: ignore[reportArgumentType]
         for limit, at, target, hazard in stored_design_limits(spec)
@@ -276,6 +261,9 @@ class DesignStudy(StructuresStudySpec):
         return DesignPlan(matrix, designs, self.scales, self.runs_per_chunk)
 
 
+ORDER = ("half_width", "aspect_ratio", "tendon", "prestress_ratio", "stiffness_ratio", "resisting_moment")
+
+
 class DesignPlan(CloudPlan):
     """The cross product of designs, records, models and scales, cut into chunks."""
 
@@ -290,15 +278,9 @@ class DesignPlan(CloudPlan):
 
     def _facts_of(self, design: BaseDesign) -> Row:
         p = design.properties
-        height = float(p.effective_height[0]) if p.n_modes else p.l0r / p.m_tot
-        return {
-            "half_width": p.half_width,
-            "aspect_ratio": height / p.half_width,
-            "tendon": self._tendons.index(design.tendon),
-            "prestress_ratio": p.prestress / (p.m_tot * GRAVITY),
-            "stiffness_ratio": p.tendon_stiffness / (p.l0r * GRAVITY),
-            "resisting_moment": p.resisting_moment,
-        }
+        found: Row = {**facts_of_design(p), "tendon": self._tendons.index(design.tendon)}
+        found["stiffness_ratio"] = p.tendon_stiffness / (p.l0r * GRAVITY)
+        return {name: found[name] for name in ORDER}
 
     @property
     def columns(self) -> Columns:
@@ -306,9 +288,10 @@ class DesignPlan(CloudPlan):
         facts = {name: self._tendons if name == "tendon" else float for name in self._facts[0]}
         return {"structure": self.matrix.names, **facts, **self.matrix.columns}
 
-    def rows(self, units: Sequence[int]) -> list[Row]:
+    def results(self, units: Sequence[int]) -> Table:
         """Simulate one run a unit."""
-        return [row | self._facts[row["structure"]] for row in super().rows(units)]
+        found = super().results(units)
+        return {**found, **{name: [self._facts[each][name] for each in found["structure"]] for name in self._facts[0]}}
 
 
 def run_design(

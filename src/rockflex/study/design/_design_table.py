@@ -8,7 +8,6 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex._checks import checked_positive
-from rockflex._errors import InputError
 from rockflex.fragility import HazardCurve
 from rockflex.study.design._exceedance_fit import (
     ShakingLevel,
@@ -16,6 +15,7 @@ from rockflex.study.design._exceedance_fit import (
     check_design_limit,
     check_hazard_damping,
     check_measure_of_record_alone,
+    check_table,
     design_row,
 )
 
@@ -88,10 +88,7 @@ def design_table(
     [1.0, 0.999]
     """
     check_measure_of_record_alone(measure)
-    lacking = [name for name in ("structure", "model", *FACTS, *RESULTS, measure) if name not in runs]
-    if lacking or not len(runs):
-        lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
-        raise InputError(f"The table {lacks}. Give what run_design returned.")
+    check_table(runs, ("structure", "model", *FACTS, *RESULTS, measure), "run_design")
     level = ShakingLevel.of(at, hazard)
     check_hazard_damping(hazard, runs, measure)
     if confidence is not None:
@@ -154,10 +151,7 @@ def smallest_width(table: "pd.DataFrame", target: float) -> "pd.DataFrame":
     import pandas as pd
 
     value = "rate" if "rate" in table else "probability"
-    lacking = [name for name in (*NEEDED, value) if name not in table]
-    if lacking or not len(table):
-        lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
-        raise InputError(f"The table {lacks}. Give what design_table returned.")
+    check_table(table, (*NEEDED, value), "design_table")
     wanted = checked_positive("target", target, "1/year" if value == "rate" else "probability")
     rows: list[dict[str, Any]] = []
     for (model, tendon), group in table.groupby(["model", "tendon"], observed=True, sort=False):

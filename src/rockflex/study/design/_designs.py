@@ -104,12 +104,6 @@ def designs_of_structure(
     """The structure on every base with every tendon, tendons outermost, the narrowest base first.
 
     Without levels the structure keeps its own tendons, with their forces in N and stiffnesses in N/m.
-
-    Raises
-    ------
-    InputError
-        If a half width is not positive or occurs twice, levels share a name or are added to the structure's own
-        tendons, a tendon would be outside a base, or a base would have no mass left.
     """
     widths = checked_half_widths(half_widths)
     per_width = checked_positive("base_mass_per_width", base_mass_per_width, "kg/m", zero=True)
@@ -136,6 +130,17 @@ def designs_of_structure(
     return found
 
 
+def facts_of_design(p: RockingProperties) -> dict[str, float]:
+    """What describes the base and the tendons of a design, by the names of columns."""
+    height = float(p.effective_height[0]) if p.n_modes else p.l0r / p.m_tot
+    return {
+        "half_width": p.half_width,
+        "aspect_ratio": height / p.half_width,
+        "prestress_ratio": p.prestress / (p.m_tot * GRAVITY),
+        "resisting_moment": p.resisting_moment,
+    }
+
+
 def structure_on_base_width(properties: RockingProperties, half_width: float, per_width: float) -> RockingProperties:
     """The structure on another base, which gains `per_width` in kg for each metre of its width 2 B.
 
@@ -150,15 +155,7 @@ def structure_on_base_width(properties: RockingProperties, half_width: float, pe
 
 
 def checked_half_widths(given: Any) -> list[float]:
-    """Half widths in m, rising: a sequence, or a mapping with `smallest`, `largest` and `count`, both ends included.
-
-    Raises
-    ------
-    InputError
-        If one is not positive, or occurs twice.
-    """
-    import numpy as np
-
+    """Half widths in m, rising: a sequence, or a mapping with `smallest`, `largest` and `count`, both ends included."""
     if isinstance(given, dict):
         smallest, largest, count = (real_or_nan(given.get(key)) for key in RANGE)
         sound = 0.0 < smallest < largest < np.inf and 2.0 <= count <= MAX_BASES and count == int(count)
@@ -379,13 +376,7 @@ def total_dissipator_force(properties: RockingProperties) -> float:
 
 
 def checked_design_factors(name: str, given: Any) -> tuple[float, ...]:
-    """Factors, rising: a sequence, or a mapping with `smallest`, `largest` and `count`, both ends included.
-
-    Raises
-    ------
-    InputError
-        If one is negative or not finite, or occurs twice.
-    """
+    """Factors, rising: a sequence, or a mapping with `smallest`, `largest` and `count`, both ends included."""
     if isinstance(given, dict):
         smallest, largest, count = (real_or_nan(given.get(key)) for key in RANGE)
         if set(given) != set(RANGE) or not (0.0 <= smallest < largest < np.inf and count in range(2, 1001)):

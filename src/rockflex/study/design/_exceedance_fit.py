@@ -1,6 +1,7 @@
 """Limits of a design, the fit of its probability or annual rate, and the confidence band."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -57,11 +58,6 @@ def design_limit_state(limit: float | str, nominal: float) -> LimitState:
 
     A rotation in rad; a multiple of the nominal one; the name of a limit state; or a result with its bound, such as
     ``"max_base_moment > 5e6"``, which an overturned run exceeds too.
-
-    Raises
-    ------
-    InputError
-        If it is none of these, or a rotation is not from 1e-4 rad to below π/2.
     """
     words = limit.split() if isinstance(limit, str) else []
     if words == [OVERTURNING.name]:
@@ -113,6 +109,14 @@ def _limit_rotation(limit: float | str, nominal: float, words: list[str]) -> flo
     return rotation
 
 
+def check_table(table: "pd.DataFrame", names: Iterable[str], origin: str) -> None:
+    """Raise an InputError unless a table has rows and these columns; it is what the function `origin` returns."""
+    lacking = [name for name in names if name not in table]
+    if lacking or not len(table):
+        lacks = f"lacks {', '.join(lacking)}" if lacking else "has no rows"
+        raise InputError(f"The table {lacks}. Give what {origin} returned.")
+
+
 def check_confidence(confidence: float) -> None:
     """Raise an InputError unless a confidence is in [0, 1)."""
     checked_in_range("confidence", confidence, 0.0, 1.0, hint="A 90 % band is 0.9.")
@@ -151,13 +155,7 @@ class ShakingLevel:
 
     @classmethod
     def of(cls, at: float | None, hazard: HazardCurve | None) -> "ShakingLevel":
-        """Check the arguments, and choose the nodes.
-
-        Raises
-        ------
-        InputError
-            If both or neither were given, or the level is not positive.
-        """
+        """Check the arguments, and choose the nodes."""
         if (at is None) == (hazard is None):
             raise InputError("Give either at, a level of the measure, or hazard, a HazardCurve in it.")
         if hazard is None:
@@ -178,8 +176,11 @@ class DesignRuns(NamedTuple):
     damping: float | None
 
     @classmethod
-    def of(cls, solved: "pd.DataFrame", limit: float | str, measure: str) -> "DesignRuns":
-        """Take the runs from the rows of a table that have a status, at least one."""
+    def of(cls, runs: "pd.DataFrame", limit: float | str, measure: str) -> "DesignRuns | None":
+        """Take the runs from the rows of a table that have a status; None if there are none."""
+        solved = runs[runs["status"].notna()]
+        if not len(solved):
+            return None
         state = design_limit_state(limit, float(solved["nominal_limit"].iloc[0]))
         rotation = solved["max_rotation"].to_numpy(dtype=float)
         exceeded, fallen = (
@@ -249,35 +250,25 @@ def design_row(
     group: "pd.DataFrame", limit: float | str, measure: str, level: ShakingLevel, confidence: float | None
 ) -> dict[str, Any]:
     """Columns of `design_table` for all runs of one design and model."""
-    solved = group[group["status"].notna()]
-    found: dict[str, Any]
-    if len(solved):
-        runs = DesignRuns.of(solved, limit, measure)
+    solved, runs = group[group["status"].notna()], DesignRuns.of(group, limit, measure)
+    found: dict[str, Any] = {"limit": math.nan, "state": "", **_empty_exceedance_columns(level)}
+    found |= {"note": "No run was solved: see the column error."}
+    if runs is not None:
         bound = runs.state.threshold if is_rotation_limit_state(runs.state) else math.nan
         found = {"limit": bound, "state": runs.state.label, **_exceedance_columns(runs, level, confidence)}
-        counts = int(runs.exceeded.sum()), int(runs.fallen.sum())
-    else:
-        found = {
-            "limit": math.nan,
-            "state": "",
-            **_empty_exceedance_columns(level),
-            "note": "No run was solved: see the column error.",
-        }
-        counts = 0, 0
     return found | {
         "median_base_moment": solved["max_base_moment"].median(),
         "median_tendon_utilisation": solved["tendon_utilisation"].median(),
         "n_runs": len(solved),
-        "n_exceeding": counts[0],
-        "n_overturned": counts[1],
+        "n_exceeding": 0 if runs is None else int(runs.exceeded.sum()),
+        "n_overturned": 0 if runs is None else int(runs.fallen.sum()),
         "n_failed": len(group) - len(solved),
     }
 
 
 def _empty_exceedance_columns(level: ShakingLevel) -> dict[str, Any]:
-    names = ("probability", "low", "high", "overturning") if level.hazard is None else (
-        "rate", "low", "high", "overturning", "beyond",
-    )  # fmt: skip
+    own = ("probability", "low", "high", "overturning")
+    names = own if level.hazard is None else ("rate", *own[1:], "beyond")
     return dict.fromkeys(names, math.nan)
 
 

@@ -140,20 +140,17 @@ class Requirement:
 
     def value(self, runs: "pd.DataFrame") -> float:
         """Probability or annual rate of the runs of one design; NaN if it cannot be fitted."""
-        solved = runs[runs["status"].notna()]
-        if not len(solved):
-            return np.nan
+        some = DesignRuns.of(runs, self.limit, self.measure)
         try:
-            return self.level.exceedance(DesignRuns.of(solved, self.limit, self.measure).fitted().curve)[0]
+            return np.nan if some is None else self.level.exceedance(some.fitted().curve)[0]
         except (InputError, SolverError):
             return np.nan
 
     def band(self, runs: "pd.DataFrame", confidence: float) -> tuple[float, float]:
         """Confidence limits of the value, as in `design_table`; NaN where there are none."""
-        solved = runs[runs["status"].notna()]
-        if not len(solved):
+        some = DesignRuns.of(runs, self.limit, self.measure)
+        if some is None:
             return np.nan, np.nan
-        some = DesignRuns.of(solved, self.limit, self.measure)
         try:
             return some.fitted(banded=True).band(self.level, confidence, len(set(some.groups)))[:2]
         except (InputError, SolverError):
@@ -161,10 +158,8 @@ class Requirement:
 
     def resampled(self, runs: "pd.DataFrame", n: int, seed: int) -> Array:
         """The same for `n` resamples of the recordings, shape (n,)."""
-        solved = runs[runs["status"].notna()]
-        if not len(solved):
-            return np.full(n, np.nan)
-        return DesignRuns.of(solved, self.limit, self.measure).resampled(self.level, n, seed)
+        some = DesignRuns.of(runs, self.limit, self.measure)
+        return np.full(n, np.nan) if some is None else some.resampled(self.level, n, seed)
 
     def margin(self, values: Any) -> Array:
         """How far values are above the target, within ±5: probits of probabilities, logarithms of rates.
@@ -182,13 +177,7 @@ class Requirement:
 
 
 def checked_requirements(given: Sequence[Requirement]) -> list[Requirement]:
-    """Return requirements as a list.
-
-    Raises
-    ------
-    InputError
-        If there are none, something else is among them, or two are alike.
-    """
+    """Return requirements as a list."""
     listed = list(given)
     for place, each in enumerate(listed):
         if not isinstance(each, Requirement):  # pyright: ignore[reportUnnecessaryIsInstance]

@@ -18,7 +18,7 @@ from rockflex._errors import InputError
 from rockflex._files import checked_file_path, remove_temporary_files, write_file_atomically
 from rockflex._html import html_table
 from rockflex._shown import few_texts_shown, number_with_noun, shortened, shown
-from rockflex.study.folders._lock import LOCK, FolderLock, lock_holder
+from rockflex.study.folders._lock import LOCK, check_folder_locked, lock_holder, locked_folder
 from rockflex.study.folders._manifest import MANIFEST, SPEC, StudyManifest, listed_differences
 from rockflex.study.folders._parts import (
     PARTS,
@@ -26,15 +26,14 @@ from rockflex.study.folders._parts import (
     PartError,
     PartMaker,
     StudyPart,
-    part_schema_at,
-    part_schema_of_content,
-    read_part_table,
-    verified_part_content,
+    part_at,
+    part_of_content,
 )
 
 if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
+    from filelock import SoftFileLock
 
 
 FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
@@ -111,7 +110,8 @@ MAX_KEYS = 10  # of the specification
 def study_folder_facts(folder: Path, manifest: StudyManifest) -> dict[str, str]:
     """Return what there is to say about a study, by its heading."""
     parts = list(_parts_in_folder(folder, manifest.n_chunks))
-    found = {"study": _study_title(manifest.spec), "state": _study_state_text(folder, len(parts), manifest.n_chunks)}
+    title = ", ".join(str(manifest.spec[key]) for key in ("study", "name") if manifest.spec.get(key))
+    found = {"study": title or "without a name", "state": _study_state_text(folder, len(parts), manifest.n_chunks)}
     found["started"] = _instant_text(datetime.fromisoformat(manifest.created))
     if parts:
         seconds = max(when for _, _, when in parts)
@@ -133,10 +133,6 @@ def _parts_in_folder(folder: Path, count: int) -> Iterator[tuple[Path, int, floa
         except OSError:  # gone since it was listed
             continue
         yield path, state.st_size, state.st_mtime
-
-
-def _study_title(spec: Mapping[str, Any]) -> str:
-    return ", ".join(str(spec[key]) for key in ("study", "name") if spec.get(key)) or "without a name"
 
 
 def _study_state_text(folder: Path, done: int, total: int) -> str:
@@ -187,25 +183,18 @@ def _specification_items(spec: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     for key, value in spec.items():
         if value is None or value == [] or key in ("study", "name"):
             continue
-        if isinstance(value, list):
-            yield key, _specification_text(value)
-        elif isinstance(value, Mapping):
+        if isinstance(value, Mapping):
             yield key, "; ".join(f"{name}: {_specification_text(each)}" for name, each in value.items())
         else:
-            yield key, str(value)
+            yield key, _specification_text(value)
 
 
 def _specification_text(value: Any) -> str:
-    """Write a value; of several also how many they are."""
+    """Write a value; of several the first and the last few, by name where they have one, and how many they are."""
     if not isinstance(value, list):
         return str(value)
-    values = cast("list[Any]", value)
-    return f"{len(values)}: {_specified_names(values)}" if len(values) > 2 else _specified_names(values)
-
-
-def _specified_names(values: Sequence[Any]) -> str:
-    """Write the first and the last few of some values, by name where they have one."""
-    return few_texts_shown([str(each.get("name", "a table") if isinstance(each, Mapping) else each) for each in values])
+    names = [str(each.get("name", "a table") if isinstance(each, Mapping) else each) for each in value]
+    return f"{len(names)}: {few_texts_shown(names)}" if len(names) > 2 else few_texts_shown(names)
 
 
 @dataclass(frozen=True, repr=False)
@@ -234,7 +223,7 @@ class StudyFolder:
 
     path: Path
     manifest: StudyManifest
-    lock: FolderLock | None = None
+    lock: "SoftFileLock | None" = None
     _known: "dict[int, pa.Schema]" = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __repr__(self) -> str:
@@ -286,7 +275,7 @@ class StudyFolder:
             if not (folder / MANIFEST).exists():
                 refuse_foreign_files(folder, {PARTS, LOCK, SPEC})
             (folder / PARTS).mkdir(parents=True, exist_ok=True)
-            lock = FolderLock.acquire(folder / LOCK)
+            lock = locked_folder(folder / LOCK)
             try:
                 remove_temporary_files(folder, "*.json")
                 remove_temporary_files(folder / PARTS, "part-*.parquet")
@@ -342,7 +331,7 @@ class StudyFolder:
             path = self._part(number)
             try:
                 if path.exists():
-                    verified_part_content(path, self.manifest.study, number)
+                    part_at(path, self.manifest.study, number)
             except (PartError, OSError) as error:
                 found.append(DamagedPart(number, path, str(error)))
         return found
@@ -393,9 +382,9 @@ class StudyFolder:
             raise InputError(
                 f"{self.path} was opened for reading. To write, open it by StudyFolder.open with its specification."
             )
-        self.lock.check()
+        check_folder_locked(self.lock)
         try:
-            schema = part_schema_of_content(part.content, self.manifest.study, place)
+            schema = part_of_content(part.content, self.manifest.study, place).schema_arrow
         except PartError as error:
             raise InputError(
                 f"Chunk {place} cannot be stored in {self.path}: {error}. Make it by the maker of this folder."
@@ -428,7 +417,7 @@ class StudyFolder:
             path = self._part(number)
             try:
                 if path.exists():
-                    tables[number] = read_part_table(path, self.manifest.study, number)
+                    tables[number] = part_at(path, self.manifest.study, number).read()
             except (PartError, OSError) as error:
                 raise InputError(
                     f"{path} is damaged: {error}. Run the study again in this folder, which computes this part anew "
@@ -486,7 +475,7 @@ class StudyFolder:
             path = self._part(other)
             try:
                 if other != number and path.exists():
-                    self._known[other] = part_schema_at(path, self.manifest.study, other)
+                    self._known[other] = part_at(path, self.manifest.study, other).schema_arrow
                     break
             except (PartError, OSError):
                 continue

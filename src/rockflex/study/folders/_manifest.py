@@ -23,11 +23,6 @@ def plain_json_value(name: str, value: object, depth: int = 0) -> Any:
     """Return `value` as dicts, lists, strings, numbers, booleans and None, as JSON would give it back.
 
     Infinities and NaN are allowed, as in Python's JSON.
-
-    Raises
-    ------
-    InputError
-        If it holds any other value, or is nested too deep; the message has the dotted path.
     """
     if depth > MAX_DEPTH:
         raise InputError(
@@ -110,20 +105,10 @@ MAX_PARTS = 100_000  # every part is a file, whose number has five digits
 class StudyManifest:
     """Identity and origin of a study.
 
-    Parameters
-    ----------
-    spec
-        The study's specification, as plain JSON; stored in a separate file.
-    study
-        Digest of the specification, the number of chunks and the checksums; every part records it.
-    n_chunks
-        Number of parts of the complete study.
-    versions
-        Version of each library that the numbers depend on; those that end in " commit" only say where code came from.
-    checksums
-        Checksum of each record, matrix from a file and other file that the study depends on, by name.
-    created
-        Date and time, UTC, ISO 8601.
+    `spec` is its specification as plain JSON, stored in a file of its own; `study` the digest of the specification, the
+    number of chunks and the checksums, which every part records. `versions` are those of the libraries that the numbers
+    depend on; those that end in " commit" only say where code came from. `checksums` are of each record, matrix from a
+    file and other file that the study depends on, by name; `created` is the date and time, UTC, ISO 8601.
     """
 
     spec: dict[str, Any]
@@ -135,11 +120,7 @@ class StudyManifest:
 
     @classmethod
     def of(
-        cls,
-        spec: Mapping[str, Any],
-        n_chunks: SupportsIndex,
-        versions: Mapping[str, str],
-        checksums: Mapping[str, str],
+        cls, spec: Mapping[str, Any], n_chunks: SupportsIndex, versions: Mapping[str, str], checksums: Mapping[str, str]
     ) -> Self:
         for name, given in (("spec", spec), ("versions", versions), ("checksums", checksums)):
             if not isinstance(given, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
@@ -160,13 +141,7 @@ class StudyManifest:
 
     @classmethod
     def read(cls, folder: Path) -> Self:
-        """Read what `write` wrote.
-
-        Raises
-        ------
-        InputError
-            If a file is missing, damaged, changed by hand or of another format.
-        """
+        """Read what `write` wrote."""
         path = folder / MANIFEST
         for file in (path, folder / SPEC):
             check_regular_file(file)

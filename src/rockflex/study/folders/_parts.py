@@ -13,6 +13,7 @@ from rockflex._files import irregular_file_kind
 
 if TYPE_CHECKING:
     import pyarrow as pa
+    from pyarrow import parquet
 
 
 PARTS = "parts"  # the folder of the files
@@ -75,26 +76,22 @@ def encode_part(table: "pa.Table", study: str, number: int, versions: Mapping[st
     return _part_with_checksum(content, b"%08x" % crc32(content))
 
 
-def verified_part_content(path: Path, study: str, number: int) -> bytes:
-    """Return the content of the part's file.
+def part_at(path: Path, study: str, number: int) -> "parquet.ParquetFile":
+    """Return the part in a file; raises the same errors as `part_of_content`."""
+    kind = irregular_file_kind(path)
+    if kind:
+        raise PartError(f"it is {kind}")
+    return part_of_content(path.read_bytes(), study, number)
+
+
+def part_of_content(content: bytes, study: str, number: int) -> "parquet.ParquetFile":
+    """Return the part in the content of its file.
 
     Raises
     ------
     PartError
         If it is truncated, damaged, not a part, or a part of another study or chunk.
     """
-    content = _part_content(path)
-    part_schema_of_content(content, study, number)
-    return content
-
-
-def part_schema_at(path: Path, study: str, number: int) -> "pa.Schema":
-    """Return the columns of a part; raises the same errors as `verified_part_content`."""
-    return part_schema_of_content(_part_content(path), study, number)
-
-
-def part_schema_of_content(content: bytes, study: str, number: int) -> "pa.Schema":
-    """Return the columns of a part's file; raises the same errors as `verified_part_content`."""
     from pyarrow import BufferReader, parquet
 
     if content[:4] != b"PAR1" or content[-4:] != b"PAR1" or len(content) < 12:
@@ -111,21 +108,7 @@ def part_schema_of_content(content: bytes, study: str, number: int) -> "pa.Schem
         raise PartError("it belongs to another study")
     if origin.get(b"rockflex.chunk") != str(number).encode():
         raise PartError(f"it holds chunk {origin.get(b'rockflex.chunk', b'?').decode()}")
-    return file.schema_arrow
-
-
-def read_part_table(path: Path, study: str, number: int) -> "pa.Table":
-    """Return the table of a part; raises the same errors as `verified_part_content`."""
-    from pyarrow import BufferReader, parquet
-
-    return parquet.ParquetFile(BufferReader(verified_part_content(path, study, number))).read()
-
-
-def _part_content(path: Path) -> bytes:
-    kind = irregular_file_kind(path)
-    if kind:
-        raise PartError(f"it is {kind}")
-    return path.read_bytes()
+    return file
 
 
 def _part_with_checksum(content: bytes, checksum: bytes) -> bytes:

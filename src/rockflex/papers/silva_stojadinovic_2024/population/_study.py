@@ -227,11 +227,11 @@ class PopulationPlan(ChunkedPlan):
         found |= result_columns(suffix="_mdof") | result_columns(suffix="_2dof")
         return found | columns_of_kind(COMBINED, float) | {"error": str}
 
-    def rows(self, units: Sequence[int]) -> list[Row]:
+    def results(self, units: Sequence[int]) -> dict[str, list[Any]]:
         """Draw a structure a unit, and simulate it with both models; some at a time."""
-        return [
-            row for first in range(0, len(units), BATCH_SIZE) for row in self._rows(units[first : first + BATCH_SIZE])
-        ]
+        batches = (self._rows(units[first : first + BATCH_SIZE]) for first in range(0, len(units), BATCH_SIZE))
+        rows = [row for batch in batches for row in batch]
+        return {name: [row.get(name) for row in rows] for name in self.columns}
 
     def _rows(self, units: Sequence[int]) -> list[Row]:
         """Do each step for all structures before the next one, so that its code stays in the processor's cache."""
