@@ -4,7 +4,7 @@ import numpy as np
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.plot._style import BLACK, RED
+from rockflex.plot._figures import BLACK, RED
 
 SUITE = rf.load_suite("fema-p695-far-field")
 FRAMES = {

@@ -5,7 +5,7 @@ import rockflex as rf
 from drawing import drawn, notes
 from drawn_studies import legend, lines
 from rockflex.papers.silva_stojadinovic_2024.population import population_statistics
-from rockflex.plot._style import BLUE
+from rockflex.plot._figures import BLUE
 
 
 def test_population_bars_count_the_pairs(pairs):

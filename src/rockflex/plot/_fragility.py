@@ -31,6 +31,8 @@ from rockflex.fragility import (
     recordings_of_runs,
     rocked_runs,
 )
+from rockflex.plot import _figures as figures
+from rockflex.plot._figures import BLACK, BLUE, GRAY, RED, SHADE, SMALL, LineStyle, Size
 from rockflex.plot._study_tables import (
     check_table_columns,
     label_log_axis_plainly,
@@ -39,23 +41,6 @@ from rockflex.plot._study_tables import (
     model_lines_and_symbols,
     names_in_column,
     structure_panels,
-)
-from rockflex.plot._style import (
-    BLACK,
-    BLUE,
-    GRAY,
-    RED,
-    SHADE,
-    SMALL,
-    LineStyle,
-    Size,
-    add_legend_above,
-    is_narrow_figure,
-    label_panel,
-    literal_text,
-    new_figure,
-    scaled_font_size,
-    with_figure_style,
 )
 
 if TYPE_CHECKING:
@@ -140,7 +125,7 @@ def plot_fragility(
     limit = _outcome_axis_limit(fits, runs, whole=overturning or groups > 0)
     ends = [fit.outcomes.measured[0] for fit in fits if fit.outcomes.measured is not None]
     lowest = min(ends, default=None)
-    with with_figure_style(size=size):
+    with figures.styled(size=size):
         digits, exponent = f"{fits[0].outcomes.threshold:.3e}".split("e")
         times = "" if float(digits) == 1.0 else rf"{float(digits):g}\times"
         limit_text = rf"{times}10^{{{int(exponent)}}}\ \mathrm{{rad}}"
@@ -173,7 +158,7 @@ def plot_fragility(
             handles.append(Line2D([], [], color=GRAY, linewidth=0.6, label="overturning"))
         if lowest is not None:
             handles.append(Patch(color=SHADE, linewidth=0.0, label="no runs"))
-        add_legend_above(figure, handles)
+        figures.add_legend_above(figure, handles)
     return figure
 
 
@@ -302,7 +287,7 @@ def plot_stripes(
     styles = model_lines_and_symbols(names_in_column(runs["model"]))
     names = names_in_column(runs["structure"])
     end = 1.1 * float(counts["level"].max())
-    with with_figure_style(size=size):
+    with figures.styled(size=size):
         event = stripe_limit_state(limit).symbol
         y = f"$P({event})$" if ">" in event else f"P({event})"
         figure, panels = structure_panels(names, 3, 2.1, measure_axis_name(measure), y)
@@ -327,10 +312,10 @@ def plot_stripes(
             for place, (text, color) in enumerate(reversed(notes)):
                 axes.text(
                     0.97, 0.04 + 0.075 * place, text, transform=axes.transAxes, ha="right",
-                    fontsize=scaled_font_size(6.5), color=color,
+                    fontsize=figures.scaled_font_size(6.5), color=color,
                 )  # fmt: skip
         panels[0].set(xlim=(0.0, end), ylim=(-0.03, 1.03))
-        add_legend_above(figure, model_legend_handles(styles))
+        figures.add_legend_above(figure, model_legend_handles(styles))
     return figure
 
 
@@ -408,19 +393,19 @@ def plot_ida(
         raise InputError(
             f"{len(groups)} structures and models are too many for one figure; {_MAX_ROWS} fit. Plot fewer at a time."
         )
-    with with_figure_style(size=size):
-        across = 1 if is_narrow_figure() else 2
-        figure = new_figure(6.3, 0.9 + 2.1 * len(groups) * 2 // across)
+    with figures.styled(size=size):
+        across = 1 if figures.is_narrow() else 2
+        figure = figures.new(6.3, 0.9 + 2.1 * len(groups) * 2 // across)
         grid = figure.subplots(2 * len(groups) // across, across, sharex=True, squeeze=False).reshape(-1, 2)
         for row, (structure, model) in enumerate(groups):
             left, right = grid[row]
             found = _record_capacities(runs_of_case(capacities, structure, model))
             failed = _draw_ida_curves(left, runs_of_case(runs, structure, model), measure)
             _draw_ida_capacities(right, found, confidence, failed)
-            left.set(title=literal_text(f"{structure}, {model}"), ylabel=r"$θ_{\mathrm{max}}$ [rad]")
+            left.set(title=figures.literal(f"{structure}, {model}"), ylabel=r"$θ_{\mathrm{max}}$ [rad]")
             right.set_ylabel("P(overturning)")
-            label_panel(left, chr(ord("A") + 2 * row))
-            label_panel(right, chr(ord("B") + 2 * row))
+            figures.label_panel(left, chr(ord("A") + 2 * row))
+            figures.label_panel(right, chr(ord("B") + 2 * row))
         grid[0, 0].set_xlim(0.0, _ida_axis_limit(runs, capacities, measure))
         for axes in grid[-1, -across:]:
             axes.set_xlabel(measure_axis_name(measure))
@@ -434,7 +419,7 @@ def plot_ida(
             Line2D([], [], color=BLACK, linewidth=0.9, label="observed"),
             Line2D([], [], color=RED, linestyle="--", label="lognormal"),
         ]  # fmt: skip
-        add_legend_above(figure, handles, columnspacing=1.2, handlelength=1.6)
+        figures.add_legend_above(figure, handles, columnspacing=1.2, handlelength=1.6)
     return figure
 
 
@@ -588,7 +573,7 @@ def plot_clouds(
     styles = model_lines_and_symbols(names_in_column(cloud.model for cloud in clouds))
     names = names_in_column(cloud.structure for cloud in clouds)
     rocked, fallen = pd.concat([cloud.rocked for cloud in clouds]), pd.concat([cloud.fallen for cloud in clouds])
-    with with_figure_style(size=size):
+    with figures.styled(size=size):
         figure, panels = structure_panels(names, 2, 2.45, measure_axis_name(measure), _QUANTITIES[quantity])
         panels[0].set(xscale="log", yscale="log")
         for axes in panels:
@@ -605,7 +590,7 @@ def plot_clouds(
         handles = model_legend_handles(styles)
         if len(fallen):
             handles.append(Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.0, label="overturned"))
-        add_legend_above(figure, handles)
+        figures.add_legend_above(figure, handles)
     return figure
 
 
@@ -685,6 +670,6 @@ def _write_cloud_numbers(axes: Axes, rows: list[tuple[str, str]]) -> None:
     for place, (text, color) in enumerate(reversed([(header, BLACK), *rows])):
         axes.text(
             0.985, 0.025 + _ROW * place, text.ljust(width), transform=axes.transAxes, color=color,
-            fontsize=scaled_font_size(_TINY), ha="right", family="DejaVu Sans Mono",
+            fontsize=figures.scaled_font_size(_TINY), ha="right", family="DejaVu Sans Mono",
             bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.6, "pad": 0.5},
         )  # fmt: skip

@@ -28,6 +28,8 @@ from rockflex.modal import (
     ViscousDamper,
     YieldingDissipator,
 )
+from rockflex.plot import _figures as figures
+from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SKY, SMALL, Size
 from rockflex.plot._history import (
     ResponseCurve,
     add_response_legend,
@@ -38,24 +40,6 @@ from rockflex.plot._history import (
     response_figure_title,
     rotation_axis_limit,
     shade_uplifts,
-)
-from rockflex.plot._style import (
-    BLACK,
-    BLUE,
-    GRAY,
-    GREEN,
-    ORANGE,
-    PURPLE,
-    RED,
-    SKY,
-    SMALL,
-    Size,
-    add_legend_above,
-    is_narrow_figure,
-    label_panel,
-    literal_text,
-    new_figure,
-    with_figure_style,
 )
 from rockflex.response import (
     MomentRotation,
@@ -240,11 +224,11 @@ def plot_loops(
     drawn = [] if loops.edges is None else [_draw_edge_loops]
     drawn += [partial(_draw_element_loop, place=place) for place in range(len(loops.elements))]
     count = len(drawn)
-    with with_figure_style(size=size):
-        narrow = is_narrow_figure()
+    with figures.styled(size=size):
+        narrow = figures.is_narrow()
         rows = count if narrow else max(math.ceil(count / _PER_ROW), 1)
         beside = 0 if narrow else math.ceil(count / rows)
-        figure = new_figure(4.2 + 2.2 * beside, max(3.6, (3.3 if narrow else 0.7) + 2.3 * rows))
+        figure = figures.new(4.2 + 2.2 * beside, max(3.6, (3.3 if narrow else 0.7) + 2.3 * rows))
         figure.get_layout_engine().set(w_pad=0.07)  # pyright: ignore
         if narrow:
             grid = figure.add_gridspec(1 + rows, 1, height_ratios=(1.4, *[1.0] * rows))
@@ -256,8 +240,8 @@ def plot_loops(
         for place, draw in enumerate(drawn):
             row, column = (1 + place, 0) if narrow else (place // beside, 1 + place % beside)
             draw(figure.add_subplot(grid[row, column]), loops)
-        heading = literal_text(title) if title is not None else loops.title
-        add_legend_above(figure, base.get_lines(), title=heading, handlelength=2.0)
+        heading = figures.literal(title) if title is not None else loops.title
+        figures.add_legend_above(figure, base.get_lines(), title=heading, handlelength=2.0)
     return figure
 
 
@@ -340,8 +324,8 @@ def plot_hysteresis(
     ('$u_{\\mathrm{top}}$, relative [m]', '$V_b$ [kN]')
     """
     curves = response_curves(responses, labels)
-    with with_figure_style(size=size):
-        figure = new_figure(4.2, 3.6)
+    with figures.styled(size=size):
+        figure = figures.new(4.2, 3.6)
         lines = _draw_hysteresis(figure.subplots(), curves)
         add_response_legend(figure, curves, lines, [curve.label for curve in curves], title)
     return figure
@@ -393,9 +377,9 @@ def plot_yielding(
     (3, '$u_{\\mathrm{top}}$, relative [m]')
     """
     curves = response_curves(responses, labels)
-    with with_figure_style(size=size):
-        tall, narrow = max(1.45, 0.155 * (len(curves) + 2)), is_narrow_figure()
-        figure = new_figure(8.6, 2.0 * tall + 2.6 * narrow + 0.9)
+    with figures.styled(size=size):
+        tall, narrow = max(1.45, 0.155 * (len(curves) + 2)), figures.is_narrow()
+        figure = figures.new(8.6, 2.0 * tall + 2.6 * narrow + 0.9)
         if narrow:
             grid = figure.add_gridspec(3, 1, height_ratios=(tall, tall, 2.6))
         else:
@@ -410,7 +394,7 @@ def plot_yielding(
         histories[1].set(xlabel="time [s]", xlim=(0.0, max(float(curve.history.time[-1]) for curve in curves)))
         loops = figure.add_subplot(grid[2, 0] if narrow else grid[:, 1])
         lines = _draw_hysteresis(loops, curves)
-        label_panel(loops, "C")
+        figures.label_panel(loops, "C")
         figure.align_ylabels(histories)
         add_response_legend(figure, curves, lines, [curve.label for curve in curves], title)
     return figure
@@ -486,10 +470,10 @@ def plot_moment_rotation(
     rotation = _LIMIT * (rotation_axis_limit(curves) or max(map(static_line_rotation, curves)))
     largest = max(largest_base_moment_on_axes(curve) for curve in curves)
     factor, unit = unit_with_prefix(largest, "N m")
-    with with_figure_style(size=size):
-        columns = 1 if is_narrow_figure() else min(len(curves), _RUNS_PER_ROW)
+    with figures.styled(size=size):
+        columns = 1 if figures.is_narrow() else min(len(curves), _RUNS_PER_ROW)
         rows = math.ceil(len(curves) / columns)
-        figure = new_figure(2.2 + 1.8 * columns, 0.6 + 2.6 * rows)
+        figure = figures.new(2.2 + 1.8 * columns, 0.6 + 2.6 * rows)
         grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
         panels: list[Axes] = list(grid.flat)
         panels[0].set(xlim=(-rotation, rotation), ylim=(-_LIMIT * largest / factor, _LIMIT * largest / factor))
@@ -505,7 +489,7 @@ def plot_moment_rotation(
         figure.supxlabel("θ [rad]", fontsize="medium")
         figure.supylabel(f"$M_b$ [{unit}]", fontsize="medium")
         kinds = {line.get_label(): line for axes in panels for line in axes.get_lines()[1:]}
-        add_legend_above(figure, list(kinds.values()), max_columns=1, handlelength=3.0)
+        figures.add_legend_above(figure, list(kinds.values()), max_columns=1, handlelength=3.0)
     return figure
 
 
@@ -608,15 +592,15 @@ def plot_moment_rotation_laws(
     line = is_moment_path_independent(p)
     if not line:
         zeros = [_rotation_of_zero_moment(*push) for push in pushes]
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, 5.6 if is_narrow_figure() else 3.1)
-        left, right = figure.subplots(*((2, 1) if is_narrow_figure() else (1, 2)), sharex=True, sharey=True)
+    with figures.styled(size=size):
+        figure = figures.new(6.3, 5.6 if figures.is_narrow() else 3.1)
+        left, right = figure.subplots(*((2, 1) if figures.is_narrow() else (1, 2)), sharex=True, sharey=True)
         for axes, mark, title in ((left, "A", "pinned beam on a spring"), (right, "B", "rocking base")):
             axes.axhline(0.0, color=GRAY, linewidth=0.8, label="_axis")
             axes.axvline(0.0, color=GRAY, linewidth=0.8, label="_axis")
             axes.set(title=title, xlabel="θ [rad]")
             axes.tick_params(labelleft=True)
-            label_panel(axes, mark)
+            figures.label_panel(axes, mark)
         left.set(
             ylabel=f"M [{unit}]",
             xlim=(-end, end),

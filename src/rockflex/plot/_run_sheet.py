@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
 from rockflex._number_format import unit_with_prefix
+from rockflex.plot import _figures as figures
 from rockflex.plot._history import (
     ResponseCurve,
     add_response_legend,
@@ -22,7 +23,6 @@ from rockflex.plot._history import (
     time_axis_limits,
 )
 from rockflex.plot._loops import largest_base_moment_on_axes, resisting_moment_line, static_line_rotation
-from rockflex.plot._style import BLACK, SMALL, new_figure, scaled_font_size, with_figure_style
 from rockflex.response import Response
 
 _MM = 1.0 / 25.4  # inches
@@ -50,8 +50,8 @@ def draw_run_sheet(
     lifting = [curve for curve in curves if curve.lifts]
     loops = [curve for curve in lifting if curve.history.model.properties.n_modes]
     quantities = panel_quantities(_run_sheet_panels(curves, height))
-    with with_figure_style():
-        figure = new_figure(width * _MM, height * _MM)
+    with figures.styled():
+        figure = figures.new(width * _MM, height * _MM)
         figure.get_layout_engine().set(h_pad=0.01, w_pad=0.02, hspace=0.02, wspace=0.02)  # pyright: ignore
         grid = figure.add_gridspec(len(quantities), 2 if loops else 1, width_ratios=(1.9, 1.0) if loops else None)
         panels: list[Axes] = []
@@ -61,7 +61,7 @@ def draw_run_sheet(
             handles, _ = draw_history_curves(axes, quantity, curves)
             _label_inside_panel(axes, mark)
             axes.set_ylabel(
-                _short_axis_label(axes.get_ylabel(), height / len(quantities)), fontsize=scaled_font_size(8.0)
+                _short_axis_label(axes.get_ylabel(), height / len(quantities)), fontsize=figures.scaled_font_size(8.0)
             )
             axes.tick_params(labelbottom=row == len(quantities) - 1)
             axes.locator_params(axis="y", nbins=5)
@@ -79,16 +79,16 @@ def draw_run_sheet(
 def draw_record_strip(time: Array, acceleration: Array, *, width: float, height: float) -> Figure:
     """Draw a ground acceleration in m/s² over the time in s, `width` by `height` mm."""
     largest = float(np.max(np.abs(acceleration))) or 1.0
-    with with_figure_style():
-        figure = new_figure(width * _MM, height * _MM)
+    with figures.styled():
+        figure = figures.new(width * _MM, height * _MM)
         figure.get_layout_engine().set(h_pad=0.01, w_pad=0.02)  # pyright: ignore
         axes = figure.add_subplot()
-        axes.plot(time, acceleration, color=BLACK, linewidth=0.5)
+        axes.plot(time, acceleration, color=figures.BLACK, linewidth=0.5)
         axes.set(xlim=(float(time[0]), float(time[-1])), ylim=(-_MARGIN * largest, _MARGIN * largest))
         axes.locator_params(axis="y", nbins=4)
-        axes.tick_params(labelsize=SMALL)
-        axes.set_xlabel("time [s]", fontsize=SMALL, labelpad=1.0)
-        axes.set_ylabel("$a_g$ [m/s²]", fontsize=SMALL, labelpad=1.0)
+        axes.tick_params(labelsize=figures.SMALL)
+        axes.set_xlabel("time [s]", fontsize=figures.SMALL, labelpad=1.0)
+        axes.set_ylabel("$a_g$ [m/s²]", fontsize=figures.SMALL, labelpad=1.0)
     return figure
 
 
@@ -138,7 +138,7 @@ def _draw_moment_rotation_loops(axes: Axes, curves: list[ResponseCurve], mark: s
     limit = _MARGIN * largest / factor
     axes.set(xlim=(-rotation, rotation), ylim=(-limit, limit), xlabel="θ [rad]", ylabel=f"$M_b$ [{unit}]")
     axes.locator_params(axis="x", nbins=4)
-    axes.set_title(f"$M_b$ over θ; blue: resisting moment\nof {curves[0].label}", fontsize=SMALL, loc="right")
+    axes.set_title(f"$M_b$ over θ; blue: resisting moment\nof {curves[0].label}", fontsize=figures.SMALL, loc="right")
     _label_inside_panel(axes, mark)
 
 

@@ -25,24 +25,9 @@ from rockflex.modal import (
     frequency_equation,
     uplifted_modes,
 )
+from rockflex.plot import _figures as figures
+from rockflex.plot._figures import BLUE, GRAY, RED, SHADE, SMALL, LineStyle, Size
 from rockflex.plot._study_tables import check_table_columns, label_log_axis_plainly, model_line_styles
-from rockflex.plot._style import (
-    BLUE,
-    GRAY,
-    RED,
-    SHADE,
-    SMALL,
-    LineStyle,
-    Size,
-    add_legend_above,
-    is_narrow_figure,
-    label_panel,
-    literal_text,
-    new_figure,
-    scaled_font_size,
-    with_figure_style,
-    write_notes_beside,
-)
 from rockflex.structure import TaperedTower
 from rockflex.study import RockingStructure, rocking_properties_of
 
@@ -112,10 +97,10 @@ def plot_mode_shapes(
     complete = np.allclose(modes.shapes @ modes.participation, 1.0, rtol=0.0, atol=1e-6)
     total = float(modes.effective_mass.sum()) if complete else None
     shown = modes if n_modes is None else modes.truncated(n_modes)
-    with with_figure_style(size=size):
-        per_row = min(shown.n_modes, _PER_NARROW_ROW if is_narrow_figure() else _PER_ROW)
+    with figures.styled(size=size):
+        per_row = min(shown.n_modes, _PER_NARROW_ROW if figures.is_narrow() else _PER_ROW)
         rows = math.ceil(shown.n_modes / per_row)
-        figure = new_figure(max(1.26 * per_row, 2.6), 3.4 * rows)
+        figure = figures.new(max(1.26 * per_row, 2.6), 3.4 * rows)
         grid = figure.subplots(rows, per_row, sharey=True, squeeze=False)
         panels: list[Axes] = list(grid.flat)
         for n, axes in enumerate(panels):
@@ -141,7 +126,7 @@ def _draw_mode_shape(axes: Axes, modes: ModalProperties, n: int, total: float | 
     axes.set_xlim(-1.25 * largest, 1.25 * largest)
     axes.set_xticks([-tick, 0.0, tick], [f"−{tick:g}", "0", f"{tick:g}"])
     axes.set_ylim(0.0, 1.04 * float(heights[-1]))
-    axes.set_title(_mode_description(modes, n, total), fontsize=scaled_font_size(8.0))
+    axes.set_title(_mode_description(modes, n, total), fontsize=figures.scaled_font_size(8.0))
 
 
 def _mode_description(modes: ModalProperties, n: int, total: float | None) -> str:
@@ -210,17 +195,17 @@ def plot_frequency_equation(
     end = None if highest is None else checked_positive("highest", highest, "ω/ω_1")
     models = {name: _truncated_models(each, n_modes, side) for name, each in named.items()}
     styles = model_line_styles(label for each in models.values() for label in each)
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, 0.5 + 2.4 * len(named))
+    with figures.styled(size=size):
+        figure = figures.new(6.3, 0.5 + 2.4 * len(named))
         panels: list[Axes] = list(figure.subplots(len(named), 1, squeeze=False).flat)
         for axes, (name, each), mark in zip(panels, models.items(), ascii_uppercase, strict=False):
             _draw_frequency_equation(axes, each, styles, end, side)
-            axes.set_title(literal_text(name))
-            label_panel(axes, mark)
+            axes.set_title(figures.literal(name))
+            figures.label_panel(axes, mark)
         panels[-1].set_xlabel(r"$ω/ω_1$")
         handles = [Line2D([], [], **style.look, linewidth=style.width, label=label) for label, style in styles.items()]
         handles.append(Line2D([], [], color=GRAY, linestyle=":", linewidth=0.9, label=r"$ω_n/ω_1$, fixed base"))
-        add_legend_above(figure, handles, handlelength=2.8)
+        figures.add_legend_above(figure, handles, handlelength=2.8)
     return figure
 
 
@@ -271,7 +256,7 @@ def _draw_frequency_equation(
         notes += [(label, style.color), *((f"   {root:.3f}", style.color) for root in roots[:_NAMED_ROOTS])]
     limit = float(np.percentile(np.concatenate(ordinates), _SHARE))
     axes.set(ylim=(-limit, limit), xlim=(0.0, end), ylabel=r"frequency equation / $I_θ\,ω_1^2$")
-    write_notes_beside(axes, notes, 10.5)
+    figures.write_notes_beside(axes, notes, 10.5)
 
 
 def _frequencies_between_poles(poles: Array, end: float) -> Array:
@@ -336,9 +321,9 @@ def plot_frequency_ratios(
     _check_frequency_ratios(named, bounds, shown)
     styles = model_line_styles(str(model) for table in named.values() for model in table["model"])
     dashes = dict(zip(named, _DASHES, strict=False))
-    with with_figure_style(size=size):
-        rows = len(shown) if is_narrow_figure() else 1
-        figure = new_figure(0.6 + 2.95 * len(shown) + 0.5 * (len(shown) == 1), 0.9 + 2.6 * rows)
+    with figures.styled(size=size):
+        rows = len(shown) if figures.is_narrow() else 1
+        figure = figures.new(0.6 + 2.95 * len(shown) + 0.5 * (len(shown) == 1), 0.9 + 2.6 * rows)
         panels: list[Axes] = list(figure.subplots(rows, len(shown) // rows, squeeze=False).flat)
         for axes, mode, mark_of_panel in zip(panels, shown, ascii_uppercase, strict=False):
             top = max(_draw_frequency_ratios(axes, table, mode, styles, dashes[name]) for name, table in named.items())
@@ -354,15 +339,15 @@ def plot_frequency_ratios(
                 axes.axvline(mark, color=GRAY, linewidth=1.2, zorder=1.5, label="_mark")
             axes.set_xscale("log")
             axes.margins(x=0.0)
-            if is_narrow_figure():
+            if figures.is_narrow():
                 label_log_axis_plainly(axes.xaxis)
             axes.set(
                 ylim=(1.0 - (_MARGIN - 1.0) * (top - 1.0), 1.0 + _MARGIN * (top - 1.0) + 1e-6), xlabel=r"$h^*_1/B$"
             )
             axes.set_ylabel(rf"$ω^*_{{{mode}}}/ω_{{{mode}}}$")
-            label_panel(axes, mark_of_panel)
+            figures.label_panel(axes, mark_of_panel)
         handles = _frequency_ratio_handles(styles, dashes, bool(bounds), mark)
-        add_legend_above(figure, handles, max_columns=3)
+        figures.add_legend_above(figure, handles, max_columns=3)
     return figure
 
 
@@ -388,7 +373,7 @@ def _frequency_ratio_handles(
     handles = [Line2D([], [], color=style.color, linewidth=style.width, label=model) for model, style in styles.items()]
     if list(dashes) != [""]:
         grays = {name: LineStyle("#606060", dash) for name, dash in dashes.items()}
-        handles += [Line2D([], [], **gray.look, label=literal_text(name)) for name, gray in grays.items()]
+        handles += [Line2D([], [], **gray.look, label=figures.literal(name)) for name, gray in grays.items()]
     if bounded:
         handles.append(Line2D([], [], color=BLUE, linewidth=0.8, label="pinned beam, no spring"))
     if mark is not None:
@@ -461,16 +446,16 @@ def plot_tower(tower: TaperedTower, section: float | None = None, *, size: Size 
     z = 0.5 * tower.height if section is None else checked_positive("section", section, "m")
     if z > tower.height:
         raise InputError(f"section must be at most the height of the tower, {tower.height:g} m, but {z:g} m was given.")
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, 7.2 if is_narrow_figure() else 4.6)
-        if is_narrow_figure():
+    with figures.styled(size=size):
+        figure = figures.new(6.3, 7.2 if figures.is_narrow() else 4.6)
+        if figures.is_narrow():
             left, right = figure.subplots(2, 1, height_ratios=(1.5, 1.0))
         else:
             left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
         _draw_tower_elevation(left, tower, z)
         _draw_tower_section(right, tower, z)
-        label_panel(left, "A")
-        label_panel(right, "B")
+        figures.label_panel(left, "A")
+        figures.label_panel(right, "B")
     return figure
 
 

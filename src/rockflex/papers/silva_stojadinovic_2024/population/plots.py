@@ -16,22 +16,9 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex.plot import _figures as figures
+from rockflex.plot._figures import BLUE, GRAY, GREEN, ORANGE, RED, SMALL, Size
 from rockflex.plot._study_tables import MARKERS, check_table_columns, measure_axis_name
-from rockflex.plot._style import (
-    BLUE,
-    GRAY,
-    GREEN,
-    ORANGE,
-    RED,
-    SMALL,
-    Size,
-    add_legend_above,
-    is_narrow_figure,
-    label_panel,
-    new_figure,
-    scaled_font_size,
-    with_figure_style,
-)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -156,21 +143,21 @@ def plot_population(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figur
     6
     """
     check_table_columns(pairs, ("behaviour", *_CHARACTERISTICS), "what run_population returned")
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, 5.6 if is_narrow_figure() else 4.3)
-        panels: list[Axes] = list(figure.subplots(*((3, 2) if is_narrow_figure() else (2, 3))).flat)
+    with figures.styled(size=size):
+        figure = figures.new(6.3, 5.6 if figures.is_narrow() else 4.3)
+        panels: list[Axes] = list(figure.subplots(*((3, 2) if figures.is_narrow() else (2, 3))).flat)
         for axes, (name, label), mark in zip(panels, _CHARACTERISTICS.items(), "ABCDEF", strict=True):
             _draw_population_bars(axes, name, pairs)
             axes.set_xlabel(label)
             axes.grid(visible=False, axis="x")
             axes.locator_params(axis="y", integer=True, nbins=6)
-            label_panel(axes, mark)
-        for axes in panels[:: 2 if is_narrow_figure() else 3]:
+            figures.label_panel(axes, mark)
+        for axes in panels[:: 2 if figures.is_narrow() else 3]:
             axes.set_ylabel("pairs")
         counts = {name: int((pairs["behaviour"] == name).sum()) for name in BEHAVIOURS}
         handles, _ = panels[0].get_legend_handles_labels()
         names = [f"{BEHAVIOURS[name]} ({count})" for name, count in counts.items()]
-        add_legend_above(figure, handles, names)
+        figures.add_legend_above(figure, handles, names)
     return figure
 
 
@@ -188,7 +175,7 @@ def _draw_population_bars(axes: Axes, name: str, pairs: "pd.DataFrame") -> None:
         )  # fmt: skip
         below += counts
     if _has_few_values(values) and name != "height":
-        most = _MAX_TICKS // 2 if is_narrow_figure() else _MAX_TICKS
+        most = _MAX_TICKS // 2 if figures.is_narrow() else _MAX_TICKS
         axes.set_xticks(centres[:: -(-centres.size // most)])
 
 
@@ -247,9 +234,9 @@ def plot_agreement(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figure
     markers = _markers_by_aspect_ratio(pairs)
     periods = pairs["period"].to_numpy(dtype=float)
     scale = Normalize(float(periods.min()), float(periods.max()))
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, 9.8 if is_narrow_figure() else 6.0)
-        if is_narrow_figure():
+    with figures.styled(size=size):
+        figure = figures.new(6.3, 9.8 if figures.is_narrow() else 6.0)
+        if figures.is_narrow():
             panels: list[Axes] = list(figure.subplots(4, 1, height_ratios=(1.0, 1.0, 1.0, 0.75)))
         else:
             panels = list(figure.subplots(2, 2).flat)
@@ -257,7 +244,7 @@ def plot_agreement(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figure
             rows = groups.resting if group == "no_uplift" else groups.rocking
             _draw_agreement(axes, rows, quantity, markers, scale)
             axes.set(xlabel=rf"${symbol}$, 2DOF-S [{unit}]", ylabel=rf"${symbol}$, MDOF-S [{unit}]", title=name)
-            label_panel(axes, mark)
+            figures.label_panel(axes, mark)
         _draw_agreement_legends(figure, panels[3], pairs, markers, scale, groups.left_out)
     return figure
 
@@ -391,12 +378,12 @@ def plot_modal_combination(pairs: "pd.DataFrame", *, size: Size | None = None) -
     groups = outcome_groups(pairs, tuple(sorted(needed)))
     rows = groups.rocking
     behaviours = rows["behaviour"].astype(str).to_numpy()
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, 9.8 if is_narrow_figure() else 6.4)
-        axes_of: list[Axes] = list(figure.subplots(*((4, 1) if is_narrow_figure() else (2, 2))).flat)
+    with figures.styled(size=size):
+        figure = figures.new(6.3, 9.8 if figures.is_narrow() else 6.4)
+        axes_of: list[Axes] = list(figure.subplots(*((4, 1) if figures.is_narrow() else (2, 2))).flat)
         for axes, panel, mark in zip(axes_of, _COMBINATION_PANELS, "ABCD", strict=True):
             _draw_combination(axes, panel, rows, behaviours)
-            label_panel(axes, mark)
+            figures.label_panel(axes, mark)
         handles = [
             Line2D([], [], color=color, marker=marker, linestyle="", markersize=3.5, label=BEHAVIOURS[behaviour])
             for behaviour, (marker, color) in _SYMBOLS.items()
@@ -406,7 +393,7 @@ def plot_modal_combination(pairs: "pd.DataFrame", *, size: Size | None = None) -
             Line2D([], [], color=BLUE, label="$y = c_1 x$"),
         ]
         title = f"{len(rows)} rocking pairs" + (f"; left out: {groups.left_out}" if groups.left_out else "")
-        add_legend_above(figure, handles, title=title, title_size=scaled_font_size(8.0))
+        figures.add_legend_above(figure, handles, title=title, title_size=figures.scaled_font_size(8.0))
     return figure
 
 

@@ -118,7 +118,7 @@ _DRAWN: ContextVar[list[Figure] | None] = ContextVar("drawn", default=None)
 
 
 @contextmanager
-def with_figure_style(theme: str = "light", size: Size | None = None) -> Generator[None, None, None]:
+def styled(theme: str = "light", size: Size | None = None) -> Generator[None, None, None]:
     """Apply the style while a figure is drawn; matplotlib's settings are global, so one thread at a time.
 
     Raises
@@ -180,7 +180,7 @@ def _figure_size_in_inches(size: Size | None) -> tuple[float, float | None] | No
     )
 
 
-def literal_text(text: str) -> str:
+def literal(text: str) -> str:
     """Escape names so that they are not read as mathematics."""
     return text.replace("$", r"\$")
 
@@ -201,13 +201,13 @@ class NotebookFigure(Figure):
 
     def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
         content = io.BytesIO()
-        with with_figure_style():
+        with styled():
             self.savefig(content, format="png", dpi=PIXEL_RATIO * NOTEBOOK_DPI)
         width, height = (round(NOTEBOOK_DPI * inches) for inches in self.get_size_inches())
         return content.getvalue(), {"width": width, "height": height}
 
 
-def new_figure(width: float, height: float) -> Figure:
+def new(width: float, height: float) -> Figure:
     """Empty figure, without a window or an entry in the global list of figures.
 
     Width and height in inches are those of a figure for which the caller has asked for no size.
@@ -223,7 +223,7 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
-def is_narrow_figure() -> bool:
+def is_narrow() -> bool:
     """Whether the caller has asked for a figure so narrow that panels must be stacked."""
     asked = _SIZE.get()
     return asked is not None and asked[0] < _NARROW
@@ -287,7 +287,7 @@ def add_legend_above(
 
 def add_legend_beside(figure: Figure, handles: Sequence[Artist]) -> None:
     """Add the legend of a figure to the right of its panels, or above them in a narrow one."""
-    if is_narrow_figure():
+    if is_narrow():
         add_legend_above(figure, handles)
     else:
         figure.legend(handles=handles, loc="outside right upper")
@@ -429,6 +429,6 @@ def figure_as_svg(figure: Figure) -> str:
 
 def _figure_file_content(figure: Figure, suffix: str) -> bytes:
     content = io.BytesIO()
-    with with_figure_style():
+    with styled():
         figure.savefig(content, format=suffix[1:], dpi=_DPI, metadata=_UNDATED[suffix])
     return content.getvalue()
