@@ -16,14 +16,8 @@ from rockflex._number_format import short_number, unit_with_prefix
 from rockflex._shown import shown
 from rockflex.fragility import OVERTURNED, OVERTURNING, nominal_rotation_symbol, rotation_limit_state
 from rockflex.plot import _figures as figures
+from rockflex.plot import _study_tables as tables
 from rockflex.plot._figures import BLACK, BLUE, GREEN, LINE_STYLES, ORANGE, RED, SMALL, LineStyle, Size
-from rockflex.plot._study_tables import (
-    MARKERS,
-    check_table_columns,
-    model_legend_handles,
-    names_in_column,
-    structure_panels,
-)
 from rockflex.study.design import BestDesign, InterpolatedMargins, requirement_margins, smallest_width, trade_off
 
 if TYPE_CHECKING:
@@ -88,14 +82,14 @@ def plot_design(
     ('half width $B$ [m]', 'P($θ_{\\mathrm{max}}>0.005\\ \\mathrm{rad}$)')
     """
     value = "rate" if "rate" in getattr(table, "columns", ()) else "probability"
-    check_table_columns(table, (*_NEEDED, value), "what design_table returned")
-    tendons, models = names_in_column(table["tendon"]), names_in_column(table["model"])
-    looks = list(zip(figures.recoloured_line_styles(_STYLES), MARKERS, strict=False))
+    tables.check_table_columns(table, (*_NEEDED, value), "what design_table returned")
+    tendons, models = tables.names_in_column(table["tendon"]), tables.names_in_column(table["model"])
+    looks = list(zip(figures.recoloured_line_styles(_STYLES), tables.MARKERS, strict=False))
     styles: dict[str, tuple[LineStyle, str]] = figures.assign_distinct(tendons, looks, "tendons")
     found = None if target is None else smallest_width(table, target)
     logarithms = value == "rate" if logarithmic is None else logarithmic
     with figures.styled(size=size):
-        figure, panels = structure_panels(models, 2, 2.9, "half width $B$ [m]", _design_value_name(table, value))
+        figure, panels = tables.structure_panels(models, 2, 2.9, "half width $B$ [m]", _design_value_name(table, value))
         for axes, model in zip(panels, models, strict=True):
             for tendon, (style, marker) in styles.items():
                 rows = _design_rows(table, model, tendon).sort_values("half_width")
@@ -106,7 +100,7 @@ def plot_design(
         _set_design_limits(panels[0], table, table[value].to_numpy(float), target, logarithmic=logarithms)
         for axes in panels:
             _draw_slenderness_axis(axes, table)
-        handles = model_legend_handles({figures.literal(tendon): style for tendon, style in styles.items()})
+        handles = tables.model_legend_handles({figures.literal(tendon): style for tendon, style in styles.items()})
         if target is not None:
             handles.append(
                 Line2D([], [], color=BLUE, linewidth=0.8, dashes=(5, 3), label=f"target {short_number(target)}")

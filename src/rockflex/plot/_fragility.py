@@ -1,6 +1,7 @@
 """Clouds of response over intensity, and fragility: of a cloud, of stripes, and of incremental dynamic analyses."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, SupportsIndex
 
 import numpy as np
@@ -9,7 +10,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from rockflex._arrays import Array, Bools
 from rockflex._cases import runs_by_case, runs_of_case
 from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError, SolverError
@@ -32,16 +32,8 @@ from rockflex.fragility import (
     rocked_runs,
 )
 from rockflex.plot import _figures as figures
+from rockflex.plot import _study_tables as tables
 from rockflex.plot._figures import BLACK, BLUE, GRAY, RED, SHADE, SMALL, LineStyle, Size
-from rockflex.plot._study_tables import (
-    check_table_columns,
-    label_log_axis_plainly,
-    measure_axis_name,
-    model_legend_handles,
-    model_lines_and_symbols,
-    names_in_column,
-    structure_panels,
-)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -120,8 +112,8 @@ def plot_fragility(
     """
     groups = checked_whole_number("bins", bins, 0)
     fits, runs = _fits_of_clouds(clouds, measure, groups)
-    styles = model_lines_and_symbols(names_in_column(fit.model for fit in fits))
-    names = names_in_column(fit.structure for fit in fits)
+    styles = tables.model_lines_and_symbols(tables.names_in_column(fit.model for fit in fits))
+    names = tables.names_in_column(fit.structure for fit in fits)
     limit = _outcome_axis_limit(fits, runs, whole=overturning or groups > 0)
     ends = [fit.outcomes.measured[0] for fit in fits if fit.outcomes.measured is not None]
     lowest = min(ends, default=None)
@@ -131,7 +123,7 @@ def plot_fragility(
         limit_text = rf"{times}10^{{{int(exponent)}}}\ \mathrm{{rad}}"
         event = rf"\mathrm{{uplift}},\ θ_{{\mathrm{{max}}}}>{limit_text}"
         y = "probability" if overturning else f"$P({event})$"
-        figure, panels = structure_panels(names, 3, 2.1, measure_axis_name(fits[0].measure), y)
+        figure, panels = tables.structure_panels(names, 3, 2.1, tables.measure_axis_name(fits[0].measure), y)
         for axes, name in zip(panels, names, strict=True):
             for fit in (fit for fit in fits if fit.structure == name):
                 style, marker = styles[fit.model]
@@ -151,7 +143,7 @@ def plot_fragility(
             if failed:
                 axes.text(0.97, 0.05, f"{failed} failed", transform=axes.transAxes, ha="right", fontsize=SMALL)
         panels[0].set(xlim=(0.0, limit), ylim=(-0.03, 1.03))
-        handles: list[Line2D | Patch] = [*model_legend_handles(styles, symbols=False)]
+        handles: list[Line2D | Patch] = [*tables.model_legend_handles(styles, symbols=False)]
         if groups:
             handles.append(Line2D([], [], color=GRAY, marker="o", linestyle="", markersize=3.0, label="observed"))
         if overturning:
@@ -176,7 +168,7 @@ def _fits_of_clouds(
     fits = [fit for fit in given if isinstance(fit, CloudFits)]
     if not fits or len(fits) < len(given):
         raise InputError("clouds must be the table of a cloud study, or at least one fit of it from fit_clouds.")
-    measures = names_in_column(fit.measure for fit in fits)
+    measures = tables.names_in_column(fit.measure for fit in fits)
     if len(measures) > 1 or (measure is not None and measures != [measure]):
         wanted = "one measure" if measure is None else repr(measure)
         raise InputError(
@@ -278,19 +270,19 @@ def plot_stripes(
     ('PGV [m/s]', 'P(overturning)')
     """
     needed = ("structure", "model", "level", "status", "max_rotation", "nominal_overturning")
-    check_table_columns(runs, needed, "the table of a stripe study")
+    tables.check_table_columns(runs, needed, "the table of a stripe study")
     from rockflex.study.stripes import stripe_counts, stripe_limit_state
 
     counts = stripe_counts(runs, limit)
     if not len(counts):
         raise InputError("No run was solved. See the column error of the table.")
-    styles = model_lines_and_symbols(names_in_column(runs["model"]))
-    names = names_in_column(runs["structure"])
+    styles = tables.model_lines_and_symbols(tables.names_in_column(runs["model"]))
+    names = tables.names_in_column(runs["structure"])
     end = 1.1 * float(counts["level"].max())
     with figures.styled(size=size):
         event = stripe_limit_state(limit).symbol
         y = f"$P({event})$" if ">" in event else f"P({event})"
-        figure, panels = structure_panels(names, 3, 2.1, measure_axis_name(measure), y)
+        figure, panels = tables.structure_panels(names, 3, 2.1, tables.measure_axis_name(measure), y)
         for axes, name in zip(panels, names, strict=True):
             notes: list[tuple[str, str]] = []
             for model, (style, marker) in styles.items():
@@ -305,7 +297,7 @@ def plot_stripes(
                 if fit is None:
                     notes.append(("no curve fits", style.color))
                 else:
-                    known = confidence if fit.covariance is not None else None
+                    known = None if fit.covariance is None else confidence
                     _draw_fragility_curve(axes, fit, end, known, style, label=model)
                     notes.append((f"median {fit.median:.3g}, β = {fit.beta:.2f}", style.color))
             axes.axvspan(0.0, float(counts["level"].min()), color=SHADE, linewidth=0.0, label="_no runs")
@@ -315,7 +307,7 @@ def plot_stripes(
                     fontsize=figures.scaled_font_size(6.5), color=color,
                 )  # fmt: skip
         panels[0].set(xlim=(0.0, end), ylim=(-0.03, 1.03))
-        figures.add_legend_above(figure, model_legend_handles(styles))
+        figures.add_legend_above(figure, tables.model_legend_handles(styles))
     return figure
 
 
@@ -328,15 +320,6 @@ def _fit_of_stripes(runs: "pd.DataFrame", limit: "StripeLimit") -> LognormalFrag
         return fit_stripes(solved["level"], exceeded, np.ones(len(solved)), recordings_of_runs(solved))
     except (InputError, SolverError):
         return None
-
-
-class _RecordCapacities(NamedTuple):
-    """Capacities of the records of one structure and model, which of them are only bounds, and the fitted curve."""
-
-    reached: Array
-    censored: Bools
-    resurrected: int
-    fit: LognormalFragility | None
 
 
 def plot_ida(
@@ -383,32 +366,30 @@ def plot_ida(
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('PGA [m/s²]', '$θ_{\\mathrm{max}}$ [rad]')
     """
-    check_table_columns(runs, (*_OF_INCREMENTAL, measure), "what run_incremental returned")
+    tables.check_table_columns(runs, (*_OF_INCREMENTAL, measure), "what run_incremental returned")
     from rockflex.study.incremental import incremental_capacities
 
     capacities = incremental_capacities(runs, measure)
-    groups = [(name, model) for name in names_in_column(runs["structure"]) for model in names_in_column(runs["model"])]
-    groups = [group for group in groups if len(runs_of_case(runs, *group))]
-    if len(groups) > _MAX_ROWS:
+    cases = list(runs_by_case(runs))
+    if len(cases) > _MAX_ROWS:
         raise InputError(
-            f"{len(groups)} structures and models are too many for one figure; {_MAX_ROWS} fit. Plot fewer at a time."
+            f"{len(cases)} structures and models are too many for one figure; {_MAX_ROWS} fit. Plot fewer at a time."
         )
     with figures.styled(size=size):
         across = 1 if figures.is_narrow() else 2
-        figure = figures.new(6.3, 0.9 + 2.1 * len(groups) * 2 // across)
-        grid = figure.subplots(2 * len(groups) // across, across, sharex=True, squeeze=False).reshape(-1, 2)
-        for row, (structure, model) in enumerate(groups):
+        figure = figures.new(6.3, 0.9 + 2.1 * len(cases) * 2 // across)
+        grid = figure.subplots(2 * len(cases) // across, across, sharex=True, squeeze=False).reshape(-1, 2)
+        for row, (structure, model, ladders) in enumerate(cases):
             left, right = grid[row]
-            found = _record_capacities(runs_of_case(capacities, structure, model))
-            failed = _draw_ida_curves(left, runs_of_case(runs, structure, model), measure)
-            _draw_ida_capacities(right, found, confidence, failed)
+            failed = _draw_ida_curves(left, ladders, measure)
+            _draw_ida_capacities(right, runs_of_case(capacities, structure, model), confidence, failed)
             left.set(title=figures.literal(f"{structure}, {model}"), ylabel=r"$θ_{\mathrm{max}}$ [rad]")
             right.set_ylabel("P(overturning)")
             figures.label_panel(left, chr(ord("A") + 2 * row))
             figures.label_panel(right, chr(ord("B") + 2 * row))
         grid[0, 0].set_xlim(0.0, _ida_axis_limit(runs, capacities, measure))
         for axes in grid[-1, -across:]:
-            axes.set_xlabel(measure_axis_name(measure))
+            axes.set_xlabel(tables.measure_axis_name(measure))
         handles = [
             Line2D([], [], color=GRAY, linewidth=0.7, label="record"),
             Line2D([], [], color=RED, marker="x", linestyle="", markersize=3.5, label="first overturning"),
@@ -421,16 +402,6 @@ def plot_ida(
         ]  # fmt: skip
         figures.add_legend_above(figure, handles, columnspacing=1.2, handlelength=1.6)
     return figure
-
-
-def _record_capacities(rows: "pd.DataFrame") -> _RecordCapacities:
-    known = rows[rows["capacity"].notna()]
-    values, censored = known["capacity"].to_numpy(dtype=float), known["censored"].to_numpy(dtype=bool)
-    try:
-        fit = fit_capacities(values, censored, known["group"])
-    except InputError:
-        fit = None
-    return _RecordCapacities(values, censored, int((known["resurrections"] > 0).sum()), fit)
 
 
 def _ida_axis_limit(runs: "pd.DataFrame", capacities: "pd.DataFrame", measure: str) -> float:
@@ -470,26 +441,28 @@ def _draw_ida_curves(axes: Axes, runs: "pd.DataFrame", measure: str) -> int:
     return int(runs["overturned"].isna().sum())
 
 
-def _draw_ida_capacities(axes: Axes, found: _RecordCapacities, confidence: float | None, failed: int) -> None:
+def _draw_ida_capacities(axes: Axes, rows: "pd.DataFrame", confidence: float | None, failed: int) -> None:
     """Draw steps of the observed fraction, the lognormal curve, and the numbers."""
     axes.set_ylim(-0.03, 1.03)
-    lines = [number_with_noun(found.reached.size, "record")]
-    if found.censored.any():
-        lines[0] += f", {int(found.censored.sum())} never overturned"
-    if (~found.censored).any():
+    rows = rows[rows["capacity"].notna()]
+    reached, censored = rows["capacity"].to_numpy(dtype=float), rows["censored"].to_numpy(dtype=bool)
+    lines = [number_with_noun(len(rows), "record")]
+    if censored.any():
+        lines[0] += f", {int(censored.sum())} never overturned"
+    if not censored.all():
         from scipy.stats import CensoredData, ecdf
 
         # Records that never overturned are censored.
-        sample = CensoredData(uncensored=found.reached[~found.censored], right=found.reached[found.censored])
-        estimate = ecdf(sample).cdf
+        estimate = ecdf(CensoredData(uncensored=reached[~censored], right=reached[censored])).cdf
         at, fraction = np.append(0.0, estimate.quantiles), np.append(0.0, estimate.probabilities)
         axes.step(at, fraction, where="post", color=BLACK, linewidth=0.9, label="_ecdf")
-    if found.fit is not None:
-        end = float(found.reached.max()) * 1.3
-        known = confidence if found.fit.covariance is not None else None
-        _draw_fragility_curve(axes, found.fit, end, known, LineStyle(RED, "--"), linewidth=1.1, label="_fit")
-        lines.append(f"median {short_number(found.fit.median)}, β = {found.fit.beta:.2f}")
-    lines.append(f"{found.resurrected} with resurrections")
+    with suppress(InputError):  # too few records
+        fit = fit_capacities(reached, censored, rows["group"])
+        end = float(reached.max()) * 1.3
+        known = None if fit.covariance is None else confidence
+        _draw_fragility_curve(axes, fit, end, known, LineStyle(RED, "--"), linewidth=1.1, label="_fit")
+        lines.append(f"median {short_number(fit.median)}, β = {fit.beta:.2f}")
+    lines.append(f"{int((rows['resurrections'] > 0).sum())} with resurrections")
     if failed:
         lines.append(f"{number_with_noun(failed, 'run')} failed")
     axes.text(
@@ -568,16 +541,18 @@ def plot_clouds(
         raise InputError(f"quantity must be one of {', '.join(_QUANTITIES)}, but {shown(quantity)} was given.")
     import pandas as pd
 
-    check_table_columns(runs, ("structure", "model", "status", measure), "what run_cloud returned")
+    tables.check_table_columns(runs, ("structure", "model", "status", measure), "what run_cloud returned")
     clouds = _plotted_clouds(runs, quantity, measure, threshold, nominal=nominal)
-    styles = model_lines_and_symbols(names_in_column(cloud.model for cloud in clouds))
-    names = names_in_column(cloud.structure for cloud in clouds)
+    styles = tables.model_lines_and_symbols(tables.names_in_column(cloud.model for cloud in clouds))
+    names = tables.names_in_column(cloud.structure for cloud in clouds)
     rocked, fallen = pd.concat([cloud.rocked for cloud in clouds]), pd.concat([cloud.fallen for cloud in clouds])
     with figures.styled(size=size):
-        figure, panels = structure_panels(names, 2, 2.45, measure_axis_name(measure), _QUANTITIES[quantity])
+        figure, panels = tables.structure_panels(
+            names, 2, 2.45, tables.measure_axis_name(measure), _QUANTITIES[quantity]
+        )
         panels[0].set(xscale="log", yscale="log")
         for axes in panels:
-            label_log_axis_plainly(axes.xaxis)
+            tables.label_log_axis_plainly(axes.xaxis)
         _set_cloud_limits(panels[0], rocked, pd.concat([rocked, fallen]), quantity, measure, len(styles))
         for axes, name in zip(panels, names, strict=True):
             rows: list[tuple[str, str]] = []
@@ -587,7 +562,7 @@ def plot_clouds(
                 _draw_cloud(axes, cloud, quantity, measure, style, marker, crosses)
                 rows.append((_cloud_numbers_text(cloud), style.color))
             _write_cloud_numbers(axes, rows)
-        handles = model_legend_handles(styles)
+        handles = tables.model_legend_handles(styles)
         if len(fallen):
             handles.append(Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.0, label="overturned"))
         figures.add_legend_above(figure, handles)

@@ -107,7 +107,7 @@ def rotation_axis_limit(curves: list[ResponseCurve]) -> float:
     return finished if standing else max(finished, *fallen, 0.0)
 
 
-def time_axis_limits(curves: list[ResponseCurve]) -> tuple[float, float]:
+def time_axis_limits(curves: Sequence[ResponseCurve]) -> tuple[float, float]:
     """First and last time of all curves in s."""
     times = [curve.history.time for curve in curves]
     return min(float(time[0]) for time in times), max(float(time[-1]) for time in times)
@@ -223,7 +223,7 @@ _QUANTITIES = {
 PANELS = tuple(_QUANTITIES)
 
 
-def default_history_panels(curves: list[ResponseCurve]) -> list[str]:
+def default_panels(curves: list[ResponseCurve]) -> list[str]:
     """All but ΣF_x; total displacement if the height of the top is known, slip and edges if a base slides or heaves."""
     known = all(curve.history.model.properties.top_height is not None for curve in curves)
     usual = [name for name in PANELS if name not in _OPTIONAL and (known or name != "total_top_displacement")]
@@ -260,18 +260,16 @@ def quantity_axis_scale(quantity: PanelQuantity, curves: list[ResponseCurve]) ->
     return factor, unit, _MARGIN * largest / factor if largest > 0.0 else 1e-3
 
 
-def draw_history_panel(axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve], mark: str) -> list[Artist]:
+def draw_panel(axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve], mark: str) -> list[Artist]:
     """Fill one panel over time and list the peaks beside it; return a line for each curve."""
-    lines, peaks = draw_history_curves(axes, quantity, curves)
+    lines, peaks = draw_curves(axes, quantity, curves)
     figures.label_panel(axes, mark)
     notes = [(text, curve.style.color) for text, curve in zip(peaks, curves, strict=True)]
     figures.write_notes_beside(axes, [("peaks", "#404040"), *notes], 10.0)
     return lines
 
 
-def draw_history_curves(
-    axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve]
-) -> tuple[list[Artist], list[str]]:
+def draw_curves(axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve]) -> tuple[list[Artist], list[str]]:
     """Fill one panel over time; return a line for each curve, and its peak in words."""
     factor, unit, limit = quantity_axis_scale(quantity, curves)
     low = -limit
@@ -297,15 +295,16 @@ def draw_history_curves(
     return lines, peaks
 
 
-def add_response_legend(
+def add_legend(
     figure: Figure,
     curves: list[ResponseCurve],
-    handles: Sequence[Artist],
-    names: Sequence[str],
+    lines: list[Artist],
+    uplifts: dict[str, Artist],
     title: str | None,
     **options: Any,
 ) -> None:
-    """Add the legend of responses above a figure, under its title."""
+    """Add the legend of responses above a figure under its title, from their lines and what `shade_uplifts` returned."""
+    handles, names = [*lines, *uplifts.values()], [*(curve.label for curve in curves), *uplifts]
     options |= {"title": response_figure_title(curves, title), "handlelength": 2.6, "columnspacing": 1.4}
     figures.add_legend_above(figure, handles, names, **options)
 
@@ -404,18 +403,17 @@ def plot_history(
     (2, 'time [s]')
     """
     curves = response_curves(responses, labels)
-    quantities = panel_quantities(default_history_panels(curves) if panels is None else panels)
+    quantities = panel_quantities(default_panels(curves) if panels is None else panels)
     handles: list[Artist] = []
     with figures.styled(size=size):
         figure = figures.new(6.3, len(quantities) * max(1.45, 0.155 * (len(curves) + 2)) + 0.8)
         grid: list[Axes] = list(figure.subplots(len(quantities), 1, sharex=True, squeeze=False).flat)
         for axes, quantity, mark in zip(grid, quantities, ascii_uppercase, strict=False):
-            handles = draw_history_panel(axes, quantity, curves, mark)
+            handles = draw_panel(axes, quantity, curves, mark)
         uplifts = shade_uplifts(grid, curves)
         grid[-1].set(xlabel="time [s]", xlim=time_axis_limits(curves))
         figure.align_ylabels()
-        names = [curve.label for curve in curves]
-        add_response_legend(figure, curves, [*handles, *uplifts.values()], [*names, *uplifts], title)
+        add_legend(figure, curves, handles, uplifts, title)
     return figure
 
 
@@ -511,7 +509,7 @@ def plot_spread(
     groups = [[response_curves(response)[0] for response in group] for group in varied]
     quantities = panel_quantities(panels)
     everything = [*curves, *(curve for group in groups for curve in group)]
-    times = np.linspace(0.0, max(float(curve.history.time[-1]) for curve in curves), _POINTS)
+    times = np.linspace(0.0, time_axis_limits(curves)[1], _POINTS)
     with figures.styled(size=size):
         shape = (len(quantities) * len(curves), 1) if figures.is_narrow() else (len(curves), len(quantities))
         figure = figures.new(0.8 + 3.2 * len(quantities), 0.9 + 1.35 * shape[0])
@@ -593,9 +591,7 @@ def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
     ledger, drawn = history.energy, curve.before_fall
     released = -min(float(ledger.element_strain[drawn].min()), 0.0)  # at t = 0, and given back later
     settled = -min(float(ledger.gravity[drawn].min()), 0.0)  # below the level of the unloaded springs
-    layers = [
-        (label, color, values[drawn]) for label, color, values in _energy_layers(curve.history, released, settled)
-    ]
+    layers = [(*words, values[drawn]) for *words, values in _energy_layers(history, released, settled)]
     layers = [layer for layer in layers if np.any(layer[2] != 0.0)]
     start = float(ledger.stored[0]) + released + settled
     supply = ledger.input[drawn] + start

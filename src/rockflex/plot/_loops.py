@@ -29,18 +29,9 @@ from rockflex.modal import (
     YieldingDissipator,
 )
 from rockflex.plot import _figures as figures
+from rockflex.plot import _history as histories
 from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SKY, SMALL, Size
-from rockflex.plot._history import (
-    ResponseCurve,
-    add_response_legend,
-    draw_history_panel,
-    panel_quantities,
-    quantity_axis_scale,
-    response_curves,
-    response_figure_title,
-    rotation_axis_limit,
-    shade_uplifts,
-)
+from rockflex.plot._history import ResponseCurve
 from rockflex.response import (
     MomentRotation,
     MomentRotationOnSprings,
@@ -115,24 +106,24 @@ def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> B
     InputError
         If `result` is neither, has no history, or is of a base that cannot lift.
     """
-    if isinstance(result, MomentRotation | MomentRotationOnSprings):
-        return BaseLoops(
-            "", result.elements, result.rotation, result.weight_moment, result.element_moment,
-            result.element_elongation, result.element_force, result.spring_moment, result.edge_uplift,
-        )  # fmt: skip
     given: Any = result
+    if hasattr(given, "weight_moment"):  # a quasi-static path
+        return BaseLoops(
+            "", given.elements, given.rotation, given.weight_moment, given.element_moment, given.element_elongation,
+            given.element_force, given.spring_moment, given.edge_uplift,
+        )  # fmt: skip
     if not hasattr(given, "history"):
         raise InputError(
             f"result must be a Response or a MomentRotation, but {type(given).__name__} was given. Give what simulate "
             "or moment_rotation returned."
         )
-    (curve,) = curves = response_curves(result)
+    (curve,) = curves = histories.response_curves(result)
     if not curve.lifts:
         raise InputError(
             "The base of this response cannot lift, so it has no loops. Give the response of a model that rocks, such "
             'as "2DOF-S".'
         )
-    return _loops_of_run(curve, response_figure_title(curves, None))
+    return _loops_of_run(curve, histories.response_figure_title(curves, None))
 
 
 def _loops_of_run(curve: ResponseCurve, title: str = "") -> BaseLoops:
@@ -323,11 +314,11 @@ def plot_hysteresis(
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('$u_{\\mathrm{top}}$, relative [m]', '$V_b$ [kN]')
     """
-    curves = response_curves(responses, labels)
+    curves = histories.response_curves(responses, labels)
     with figures.styled(size=size):
         figure = figures.new(4.2, 3.6)
         lines = _draw_hysteresis(figure.subplots(), curves)
-        add_response_legend(figure, curves, lines, [curve.label for curve in curves], title)
+        histories.add_legend(figure, curves, lines, {}, title)
     return figure
 
 
@@ -376,7 +367,7 @@ def plot_yielding(
     >>> len(figure.axes), figure.axes[-1].get_xlabel()
     (3, '$u_{\\mathrm{top}}$, relative [m]')
     """
-    curves = response_curves(responses, labels)
+    curves = histories.response_curves(responses, labels)
     with figures.styled(size=size):
         tall, narrow = max(1.45, 0.155 * (len(curves) + 2)), figures.is_narrow()
         figure = figures.new(8.6, 2.0 * tall + 2.6 * narrow + 0.9)
@@ -385,26 +376,26 @@ def plot_yielding(
         else:
             grid = figure.add_gridspec(2, 2, width_ratios=(1.55, 1.0))
         top = figure.add_subplot(grid[0, 0])
-        histories: list[Axes] = [top, figure.add_subplot(grid[1, 0], sharex=top)]
-        quantities = panel_quantities(("rotation", "top_displacement"))
-        for axes, quantity, mark in zip(histories, quantities, "AB", strict=True):
-            draw_history_panel(axes, quantity, curves, mark)
-        shade_uplifts(histories, curves)
+        panels: list[Axes] = [top, figure.add_subplot(grid[1, 0], sharex=top)]
+        quantities = histories.panel_quantities(("rotation", "top_displacement"))
+        for axes, quantity, mark in zip(panels, quantities, "AB", strict=True):
+            histories.draw_panel(axes, quantity, curves, mark)
+        histories.shade_uplifts(panels, curves)
         top.tick_params(labelbottom=False)
-        histories[1].set(xlabel="time [s]", xlim=(0.0, max(float(curve.history.time[-1]) for curve in curves)))
+        panels[1].set(xlabel="time [s]", xlim=(0.0, histories.time_axis_limits(curves)[1]))
         loops = figure.add_subplot(grid[2, 0] if narrow else grid[:, 1])
         lines = _draw_hysteresis(loops, curves)
         figures.label_panel(loops, "C")
-        figure.align_ylabels(histories)
-        add_response_legend(figure, curves, lines, [curve.label for curve in curves], title)
+        figure.align_ylabels(panels)
+        histories.add_legend(figure, curves, lines, {}, title)
     return figure
 
 
 def _draw_hysteresis(axes: Axes, curves: list[ResponseCurve]) -> list[Artist]:
     """Fill a panel with V_b over u_top; return a line for each curve."""
-    displacement, force = panel_quantities(("top_displacement", "base_shear"))
-    _, across, right = quantity_axis_scale(displacement, curves)
-    factor, unit, high = quantity_axis_scale(force, curves)
+    displacement, force = histories.panel_quantities(("top_displacement", "base_shear"))
+    _, across, right = histories.quantity_axis_scale(displacement, curves)
+    factor, unit, high = histories.quantity_axis_scale(force, curves)
     axes.set(xlim=(-right, right), ylim=(-high, high))
     axes.locator_params(axis="x", nbins=5)
     axes.set(xlabel=f"{displacement.symbol} [{across}]", ylabel=f"{force.symbol} [{unit}]")
@@ -461,13 +452,13 @@ def plot_moment_rotation(
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('', '')
     """
-    curves = [curve for curve in response_curves(responses, labels) if curve.lifts]
+    curves = [curve for curve in histories.response_curves(responses, labels) if curve.lifts]
     if not curves:
         raise InputError(
             "None of the responses has a base that can lift, so there is no moment over rotation to plot. "
             'Give at least one of a model that rocks, such as "2DOF-S".'
         )
-    rotation = _LIMIT * (rotation_axis_limit(curves) or max(map(static_line_rotation, curves)))
+    rotation = _LIMIT * (histories.rotation_axis_limit(curves) or max(map(static_line_rotation, curves)))
     largest = max(largest_base_moment_on_axes(curve) for curve in curves)
     factor, unit = unit_with_prefix(largest, "N m")
     with figures.styled(size=size):

@@ -8,7 +8,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import LogLocator, NullFormatter
 
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
@@ -18,7 +17,7 @@ from rockflex._shown import number_with_noun
 from rockflex.motion import MEASURES, GroundMotion, MeasureInput, Selection
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, LINE_STYLES, ORANGE, RED, SHADE, LineStyle, Size
-from rockflex.plot._study_tables import check_table_columns
+from rockflex.plot._study_tables import check_table_columns, label_log_axis_plainly
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -187,9 +186,7 @@ def plot_selection(selection: Selection[Any], *, size: Size | None = None) -> Fi
         upper.set(xscale="log", yscale="log", ylabel=f"{_NAMES[selection.measure]} [m/s²]")
         upper.set_xlim(float(periods[0]), float(periods[-1]))
         for axis in (upper.xaxis, upper.yaxis):
-            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-            axis.set_major_formatter("{x:g}")
-            axis.set_minor_formatter(NullFormatter())
+            label_log_axis_plainly(axis)
         handles, labels = upper.get_legend_handles_labels()
         title = f"ζ = {100.0 * target.damping_ratio:g} %, {low:.3g} to {high:.3g} s"
         figures.add_legend_above(figure, handles, labels, title=title, max_columns=2)

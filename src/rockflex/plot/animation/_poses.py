@@ -12,7 +12,7 @@ from rockflex._checks import checked_finite, checked_positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
-from rockflex.plot._history import ResponseCurve
+from rockflex.plot._history import ResponseCurve, time_axis_limits
 from rockflex.response import History
 from rockflex.structure import CantileverWithTipMass, Eccentric, FishBone, Frame, Leaning, LumpedStructure, Restrained
 
@@ -73,8 +73,7 @@ def frame_timing(
             f"given. Give 25, which is smooth{more}.",
             field="frames_per_second",
         )
-    first = min(float(curve.history.time[0]) for curve in curves)
-    last = max(float(curve.history.time[-1]) for curve in curves)
+    first, last = time_axis_limits(curves)
     begin = first if start is None else checked_finite("start", start, "s")
     end = last if stop is None else checked_finite("stop", stop, "s")
     if not first <= begin < end <= last:

@@ -1,6 +1,6 @@
 """The picture of an animation: still parts drawn once, structures and histories drawn frame by frame."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,14 +14,8 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array
 from rockflex.plot import _figures as figures
-from rockflex.plot._history import (
-    PanelQuantity,
-    ResponseCurve,
-    add_response_legend,
-    draw_history_curves,
-    quantity_axis_scale,
-    shade_uplifts,
-)
+from rockflex.plot import _history as histories
+from rockflex.plot._history import PanelQuantity, ResponseCurve
 from rockflex.plot.animation._poses import FrameTiming, StructurePoses
 
 Polyline = Sequence[tuple[float, float]]
@@ -389,12 +383,10 @@ class HistoryPanels:
         self, grid: list[Axes], quantities: Sequence[PanelQuantity], curves: list[ResponseCurve], timing: FrameTiming
     ) -> None:
         self._timing = timing
-        self.handles: list[Artist] = []
-        self.names = [curve.label for curve in curves]
+        self.lines: list[Artist] = []
         for axes, quantity in zip(grid, quantities, strict=True):
-            self.handles, _ = draw_history_curves(axes, quantity, curves)
-        uplifts = shade_uplifts(grid, curves)
-        self.handles, self.names = [*self.handles, *uplifts.values()], [*self.names, *uplifts]
+            self.lines, _ = histories.draw_curves(axes, quantity, curves)
+        self.uplifts = histories.shade_uplifts(grid, curves)
         grid[-1].set_xlabel("time [s]")
         self._end = float(timing.times[-1])
         grid[-1].set_xlim(float(timing.times[0]), self._end)
@@ -402,9 +394,13 @@ class HistoryPanels:
         self._cursors = [axes.axvline(0.0, color="black", linewidth=0.9, animated=True) for axes in grid]
         self._dots: list[tuple[Line2D, Array]] = []
         for axes, quantity in zip(grid, quantities, strict=True):
-            factor, _, _ = quantity_axis_scale(quantity, curves)
+            factor, _, _ = histories.quantity_axis_scale(quantity, curves)
             for curve in curves:
-                self._dots.append(_cursor_dot(axes, curve, _quantity_at_frames(quantity, curve, timing) / factor))
+                dot = _animated_line(
+                    axes, curve.style.color, 0.0, marker="o", markersize=4.5, markeredgecolor="white",
+                    markeredgewidth=0.6,
+                )  # fmt: skip
+                self._dots.append((dot, _quantity_at_frames(quantity, curve, timing) / factor))
 
     @property
     def moving(self) -> list[Artist]:
@@ -438,12 +434,6 @@ def _fading_rectangle(axes: Axes) -> Rectangle:
     return shape
 
 
-def _cursor_dot(axes: Axes, curve: ResponseCurve, values: Array) -> tuple[Line2D, Array]:
-    (dot,) = axes.plot([], [], "o", color=curve.style.color, markersize=4.5, markeredgecolor="white",
-                       markeredgewidth=0.6, animated=True)  # fmt: skip
-    return dot, values
-
-
 class AnimatedFigure:
     """The figure of an animation, with its still and its moving artists."""
 
@@ -453,16 +443,14 @@ class AnimatedFigure:
     ) -> None:  # fmt: skip
         with figures.styled():
             self._figure, axes, grid = _animation_layout(len(curves), len(quantities), width)
-            histories = HistoryPanels(grid, quantities, curves, timing)
-            add_response_legend(self._figure, curves, histories.handles, histories.names, title)
+            panels = HistoryPanels(grid, quantities, curves, timing)
+            histories.add_legend(self._figure, curves, panels.lines, panels.uplifts, title)
             self._canvas = FigureCanvasAgg(self._figure)
             self._figure.draw_without_rendering()  # so that the places are known
             self._figure.set_layout_engine("none")
             structures = StructurePanel(axes, curves, poses, timing, amplification)
-            self._parts = structures, histories
-            self._moving: list[tuple[Axes, Artist]] = [
-                (_axes_of_artist(each), each) for part in self._parts for each in part.moving
-            ]
+            self._parts = structures, panels
+            self._moving = [each for part in self._parts for each in part.moving]
             self._canvas.draw()
             self._still = self._canvas.copy_from_bbox(self._figure.bbox)
 
@@ -478,20 +466,9 @@ class AnimatedFigure:
             self._canvas.restore_region(self._still)
             for part in self._parts:
                 part.show(frame)
-            for axes, each in self._moving:
-                axes.draw_artist(each)
+            for each in self._moving:
+                each.axes.draw_artist(each)  # pyright: ignore[reportOptionalMemberAccess, reportAttributeAccessIssue]
             return np.asarray(self._canvas.buffer_rgba())[:, :, :3].copy()
-
-    def pictures(self, count: int) -> Generator[Picture]:
-        """Yield the first frames, one after the other."""
-        for frame in range(count):
-            yield self.picture(frame)
-
-
-def _axes_of_artist(artist: Artist) -> Axes:
-    axes = artist.axes
-    assert isinstance(axes, Axes)  # everything that moves was added to axes
-    return axes
 
 
 def _animation_layout(models: int, panels: int, width: int) -> tuple[Figure, Axes, list[Axes]]:
