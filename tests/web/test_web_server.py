@@ -488,7 +488,7 @@ def test_a_visitor_who_leaves_in_the_middle_leaves_no_traceback(client, caplog) 
 
 
 def test_a_body_that_does_not_arrive_is_given_up(client, monkeypatch) -> None:
-    monkeypatch.setattr("rockflex.web._requests.BODY_TIMEOUT", 0.2)
+    monkeypatch.setattr("rockflex.web._app.BODY_TIMEOUT", 0.2)
     host, port = client.url.removeprefix("http://").split(":")
     with socket.create_connection((host, int(port)), timeout=60) as connection:
         connection.sendall(BEGUN)
@@ -550,28 +550,6 @@ def test_the_page_is_served_on_loopback_and_stops_cleanly(how) -> None:
         _, said = process.communicate(timeout=HANG)
     assert f"http://127.0.0.1:{port} (stop with Ctrl-C)" in said
     assert "Traceback" not in said
-
-
-def test_half_a_request_shuts_nobody_out() -> None:
-    head = b"POST /api/state HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
-    halves = (b"", head, head + b"Content-Length: 50\r\n\r\n{", b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")
-    with served(*RUN) as (_, port), ExitStack() as held:
-        for i in range(620):
-            connection = held.enter_context(socket.create_connection(("127.0.0.1", port)))
-            connection.sendall(halves[i % len(halves)])
-        for _ in range(5):
-            assert b"rockflex" in page(port)
-
-
-def test_half_a_request_is_given_up() -> None:
-    program = "import rockflex.web._protection as c; c.REQUEST_TIMEOUT = 0.5\nfrom rockflex.cli import main; main()"
-    with served(sys.executable, "-c", program, "serve") as (_, port):
-        for half in (b"", b"GET / HT", b"GET / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\n"):
-            with socket.create_connection(("127.0.0.1", port), timeout=HANG) as connection:
-                connection.sendall(half)
-                while connection.recv(1 << 16):  # until it is closed
-                    pass
-        assert b"rockflex" in page(port)
 
 
 def test_a_file_that_is_read_for_ever_does_not_keep_the_server_from_stopping() -> None:

@@ -303,7 +303,7 @@ def add_legend(
     title: str | None,
     **options: Any,
 ) -> None:
-    """Add the legend of responses above a figure under its title, from their lines and what `shade_uplifts` returned."""
+    """Add the legend of responses above a figure, under its title; `uplifts` is what `shade_uplifts` returned."""
     handles, names = [*lines, *uplifts.values()], [*(curve.label for curve in curves), *uplifts]
     options |= {"title": response_figure_title(curves, title), "handlelength": 2.6, "columnspacing": 1.4}
     figures.add_legend_above(figure, handles, names, **options)

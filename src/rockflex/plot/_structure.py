@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from string import ascii_uppercase
-from typing import TYPE_CHECKING, Protocol, SupportsIndex
+from typing import TYPE_CHECKING, SupportsIndex
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -29,6 +29,7 @@ from rockflex.plot import _figures as figures
 from rockflex.plot._figures import BLUE, GRAY, RED, SHADE, SMALL, LineStyle, Size
 from rockflex.plot._study_tables import check_table_columns, label_log_axis_plainly, model_line_styles
 from rockflex.structure import TaperedTower
+from rockflex.structure._structure import Structure
 from rockflex.study import RockingStructure, rocking_properties_of
 
 if TYPE_CHECKING:
@@ -46,12 +47,8 @@ _DASHES: tuple[Dashes, ...] = ("-", (0, (5, 2)), (0, (1, 1)), (0, (6, 1, 1, 1)))
 _MARGIN = 1.06
 
 
-class _HasModes(Protocol):
-    def modal(self, n_modes: int | None = None) -> ModalProperties: ...
-
-
 def plot_mode_shapes(
-    structure_or_modal: _HasModes | ModalProperties, n_modes: int | None = None, *, size: Size | None = None
+    structure_or_modal: Structure | ModalProperties, n_modes: int | None = None, *, size: Size | None = None
 ) -> Figure:
     """Plot the mode shapes Γ_n φ_n over the height, one panel each.
 
