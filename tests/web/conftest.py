@@ -8,15 +8,20 @@ import threading
 import time
 import urllib.error
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from builders import make_frame
 
 pytest.importorskip("starlette", reason="the web page needs the packages of rockflex[web]")
 pytest.importorskip("uvicorn", reason="the web page needs the packages of rockflex[web]")
+
+
+MODELS = ("MDOF-S", "2DOF-S", "fixed")  # with which the page begins
 
 
 def pytest_configure(config):
@@ -60,6 +65,22 @@ class Client:
         )
         assert status == 200, body
         return headers["content-disposition"].split('"')[1], body
+
+    def program(self, what: str, state: dict[str, Any]) -> dict[str, Any]:
+        """What a downloaded program leaves."""
+        space: dict[str, Any] = {}
+        exec(compile(self.download(f"/api/download/{what}", state)[1], f"{what}.py", "exec"), space)
+        return space
+
+    def study(self, kind: str, state: dict[str, Any], seconds: float = 60.0) -> tuple[str, Any]:
+        """Run a study; return its token and what the page knows at its end."""
+        token = self.ask(f"/api/study/{kind}", state)["token"]
+        return token, self.wait(kind, token, state, seconds)
+
+    @staticmethod
+    def unpack(text: str) -> NDArray[np.float32]:
+        """The values of a curve."""
+        return np.frombuffer(base64.b64decode(text), "<f4")
 
     def make(self, what: str, state: dict[str, Any]) -> str:
         """Start to make a file, and return its token."""
@@ -176,10 +197,16 @@ class Visitor:
     def value(self, selector: str) -> float:
         return float(self.page.locator(selector).first.get_attribute("data-value"))
 
-    def shown(self, scale: float, models: list[str]) -> None:
+    def shown(self, scale: float = 1, models: Sequence[str] = MODELS) -> None:
         """Wait until the Response tab shows this."""
-        wanted = json.dumps([scale, models], separators=(",", ":"))
+        wanted = json.dumps([scale, list(models)], separators=(",", ":"))
         self.page.wait_for_function("w => document.querySelector('[data-shows]')?.dataset.shows === w", arg=wanted)
+
+    def respond(self, scale: float = 1, models: Sequence[str] = MODELS) -> Any:
+        """Open the Response tab, wait until it shows this, and return the page."""
+        self.tab("response")
+        self.shown(scale, models)
+        return self.page
 
     def peak(self, model: str, name: str) -> float:
         return self.value(f'#peaks tr[data-model="{model}"] [data-name="{name}"]')
@@ -217,7 +244,6 @@ def link() -> Any:
 @pytest.fixture(scope="session")
 def frame() -> Any:
     """The structure that the page begins with."""
-
     return make_frame()
 
 

@@ -150,8 +150,7 @@ def test_a_run_with_fuses_has_peaks_and_loops_in_step(visit, link, run) -> None:
 
 
 def test_a_structure_without_elements_shows_none_of_this(visitor) -> None:
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    visitor.respond()
     page = visitor.page
     assert page.locator("#elements").is_hidden()
     assert page.get_by_label("Element for the loop").is_hidden()
@@ -278,9 +277,7 @@ def test_springs_and_friction_are_chosen_and_bad_values_answered_beside_them(vis
 
 
 def test_an_impact_law_is_not_kept_on_springs_and_a_message_elsewhere_names_the_field(visitor) -> None:
-    page = visitor.page
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    page = visitor.respond()
     page.get_by_label("Impact law").select_option("complete")
     visitor.tab("structure")
     page.get_by_label("Ground", exact=True).select_option("winkler")
@@ -398,8 +395,7 @@ def test_a_base_that_slides_on_rigid_ground_has_no_springs(visit, link) -> None:
 
 
 def test_without_a_ground_nothing_of_it_is_shown(visitor) -> None:
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    visitor.respond()
     page = visitor.page
     assert page.get_by_label("Slip of the base over time").is_hidden()
     assert page.get_by_label("Rise of the edges over time").is_hidden()
@@ -429,8 +425,7 @@ def test_a_vertical_component_is_uploaded_beside_the_record(visitor, frame) -> N
     assert page.locator(".error:visible").count() == 0
     a, v = ([float(line.split(b",")[1]) for line in samples("x", size).splitlines()[1:]] for size in (3.0, 2.0))
     assert visitor.value('[data-measure="PVA"]') == max(map(abs, v))
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    visitor.respond()
     expected = rf.simulate(frame, rf.GroundMotion(a, 0.02, vertical=v), "2DOF-S", free_vibration=5.0)
     visitor.wait_for_peak("2DOF-S", "max_rotation", expected.max_rotation)
     assert visitor.peak("2DOF-S", "min_vertical_reaction") == expected.min_vertical_reaction

@@ -69,9 +69,7 @@ def test_a_change_asks_for_a_new_run_and_a_new_one_takes_the_place_of_the_old(vi
 
 
 def test_a_cloud_that_yields(visitor, frame) -> None:
-    page = visitor.page
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    page = visitor.respond()
     page.get_by_label("The superstructure yields").check()
     visitor.fill("bouc_wen.yield_displacement", "0.05")
     visitor.tab("fragility")

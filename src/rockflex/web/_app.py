@@ -122,7 +122,7 @@ class PageServer:
 
     async def upload(self, request: Request) -> Response:
         """A record from an uploaded file, or the vertical component of the record `under`; its name is in the query."""
-        body, query = await _uploaded_file_bytes(request), request.query_params
+        body, query = await uploaded_file_bytes(request), request.query_params
         name, units = query.get("name", "record"), query.get("units") or None
         dt, under = _sampling_step_in_query(query.get("dt", "")), query.get("under", "")
 
@@ -141,7 +141,7 @@ class PageServer:
         """Records from a folder."""
         async with self._folders_received:  # others wait with their files on their own machines
             query, most = request.query_params, limits.MAX_FOLDER_BYTES
-            body = await _uploaded_file_bytes(request, most + MAX_LIST_BYTES, most)
+            body = await uploaded_file_bytes(request, most + MAX_LIST_BYTES, most)
             units, dt = query.get("units") or None, _sampling_step_in_query(query.get("dt", ""), FIELD)
 
             def work() -> dict[str, Any]:
@@ -159,7 +159,7 @@ class PageServer:
 
     async def matrices(self, request: Request) -> Response:
         """Matrices from a file."""
-        body, query = await _uploaded_file_bytes(request), request.query_params
+        body, query = await uploaded_file_bytes(request), request.query_params
         name, part = query.get("name", "matrices"), query.get("part", "")
         return JSONResponse(await self.answer(lambda: read_uploaded_matrices(name, body, part)))
 
@@ -250,7 +250,7 @@ async def _state_and_content(request: Request) -> tuple[PageState, dict[str, Any
     return await anyio.to_thread.run_sync(_parse_request_body, body)
 
 
-async def _uploaded_file_bytes(
+async def uploaded_file_bytes(
     request: Request, most: int = limits.MAX_BODY_BYTES, said: int = limits.MAX_FILE_BYTES
 ) -> bytes:
     """Return the bytes of an uploaded file, of at most `most`; messages name the limit `said`."""
