@@ -90,12 +90,8 @@ def test_moment_rotation_without_uplift_shows_the_static_line_whole():
 
 
 def test_moment_rotation_needs_a_base_that_lifts(responses):
-    with pytest.raises(rf.InputError) as caught:
+    with pytest.raises(rf.InputError, match="None of the responses has a base that can lift"):
         plot_moment_rotation(responses["fixed"])
-    assert str(caught.value) == (
-        "None of the responses has a base that can lift, so there is no moment over rotation to plot. "
-        'Give at least one of a model that rocks, such as "2DOF-S".'
-    )
 
 
 # --- mode shapes ---------------------------------------------------------------------------------------------------
@@ -157,12 +153,8 @@ def test_a_mode_that_takes_no_part_has_no_height():
 
 
 def test_mode_shapes_refuse_what_has_no_modes():
-    with pytest.raises(rf.InputError) as caught:
+    with pytest.raises(rf.InputError, match=r"structure_or_modal must be .* RockingProperties was given"):
         plot_mode_shapes(FRAME.rocking())
-    assert str(caught.value) == (
-        "structure_or_modal must be a structure with modes, such as a Frame, or its ModalProperties, but "
-        "RockingProperties was given. Give the structure itself, or structure.modal()."
-    )
     with pytest.raises(rf.InputError, match="n_modes must be a whole number from 1 to 5, but 6 was given"):
         plot_mode_shapes(FRAME, 6)
 

@@ -118,6 +118,3 @@ def test_modal_combination_is_the_root_of_the_sum_of_squares(pairs):
             r2 = 1.0 - ((y - alone) ** 2).sum() / ((y - y.mean()) ** 2).sum()
             told.append(f"(2DOF-S alone: {r2:.2f})".replace("-0", "−0"))
         assert notes(axes)[0] == "\n".join([*told, f"$y$ = {c1:.2f} $x$"])
-
-
-# Incremental analysis and stripes

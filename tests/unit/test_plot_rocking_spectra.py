@@ -71,27 +71,14 @@ def test_a_range_without_end_fills_the_panel_and_one_table_needs_no_name():
 
 
 @pytest.mark.parametrize(
-    ("call", "message"),
+    ("call", "said"),
     [
-        (
-            lambda: plot_rocking_spectrum(pd.DataFrame({"period": [1.0]})),
-            "The table lacks slenderness, relative_rotation, overturned. Give what rocking_spectrum returned.",
-        ),
-        (
-            lambda: plot_overturning_spectrum(overturning([], [])),
-            "The table has no rows. Give what overturning_spectrum returned.",
-        ),
-        (
-            lambda: plot_overturning_spectrum({}),
-            "There is no table to plot. Give at least one from overturning_spectrum.",
-        ),
-        (
-            lambda: plot_overturning_spectrum({str(i): overturning([1.0], [1.0]) for i in range(17)}),
-            "17 tables are too many to distinguish in one figure, which can show 16. Plot fewer at a time.",
-        ),
+        (lambda: plot_rocking_spectrum(pd.DataFrame({"period": [1.0]})), "lacks slenderness, relative_rotation"),
+        (lambda: plot_overturning_spectrum(overturning([], [])), "has no rows"),
+        (lambda: plot_overturning_spectrum({}), "There is no table to plot"),
+        (lambda: plot_overturning_spectrum({str(i): overturning([1.0], [1.0]) for i in range(17)}), "17 tables"),
     ],
 )
-def test_what_cannot_be_drawn_is_named(call, message):
-    with pytest.raises(rf.InputError) as caught:
+def test_what_cannot_be_drawn_is_named(call, said):
+    with pytest.raises(rf.InputError, match=said):
         call()
-    assert str(caught.value) == message

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+import rockflex as rf
 from builders import make_frame
 
 pytest.importorskip("starlette", reason="the web page needs the packages of rockflex[web]")
@@ -250,9 +251,24 @@ def frame() -> Any:
 @pytest.fixture(scope="session")
 def el_centro() -> Any:
     """The record that the page begins with."""
-    import rockflex as rf
-
     return rf.load_suite("el-centro-1940")[0]
+
+
+@pytest.fixture(scope="session")
+def pier() -> rf.Restrained:
+    """The preset "Pier with fuses"."""
+    fuses = [rf.YieldingDissipator(2e8, 5e5, 0.02, position=x) for x in (-1.3, 1.3)]
+    tendon = rf.Tendon(2.5e6, 25e6, yield_force=6e6, post_yield_ratio=0.02)
+    from rockflex.web._forms import PRESETS
+
+    (given,) = (each["structure"] for each in PRESETS if each["structure"]["name"] == "Pier with fuses")
+    return rf.Restrained(rf.CantileverWithTipMass(**given["cantilever"]), [tendon, *fuses])
+
+
+@pytest.fixture(scope="session")
+def pier_run(pier: rf.Restrained, el_centro: rf.GroundMotion) -> rf.Response:
+    """The pier under El Centro times 2."""
+    return rf.simulate(pier, el_centro.scaled(2.0), "MDOF-S", free_vibration=5.0, output="history")
 
 
 @pytest.fixture

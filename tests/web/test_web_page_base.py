@@ -1,20 +1,20 @@
 """Elements and ground in a browser: their forms, drawings and charts."""
 
-import json
 import math
 
 import numpy as np
 import pytest
+from test_web_structure import PIER
 
 import rockflex as rf
 from builders import make_frame
+from rockflex._json import as_json_value
 from rockflex.structure.file import ELEMENTS
 from rockflex.study.spec import GroundTable
 from rockflex.web._forms import PRESETS
 
 pytestmark = pytest.mark.web
 
-PIER = next(each["structure"] for each in PRESETS if each["structure"]["name"] == "Pier with fuses")
 NAMES = ["1: Tendon at 0 m", "2: Yielding dissipator at −1.3 m", "3: Yielding dissipator at 1.3 m"]
 
 
@@ -91,16 +91,8 @@ def test_a_bad_value_is_answered_beside_it_even_in_a_closed_row(visitor, visit, 
     assert rows.first.get_attribute("open") is not None
 
 
-@pytest.fixture(scope="module")
-def run() -> rf.Response:
-    fuses = [rf.YieldingDissipator(2e8, 5e5, 0.02, position=x) for x in (-1.3, 1.3)]
-    tendon = rf.Tendon(2.5e6, 25e6, yield_force=6e6, post_yield_ratio=0.02)
-    pier = rf.Restrained(rf.CantileverWithTipMass(**PIER["cantilever"]), [tendon, *fuses])
-    motion = rf.load_suite("el-centro-1940")[0].scaled(2.0)
-    return rf.simulate(pier, motion, "MDOF-S", free_vibration=5.0, output="history")
-
-
-def test_a_run_with_fuses_has_peaks_and_loops_in_step(visit, link, run) -> None:
+def test_a_run_with_fuses_has_peaks_and_loops_in_step(visit, link, pier_run) -> None:
+    run = pier_run
     visitor = visit(link({"structure": PIER, "scale": 2.0, "models": ["MDOF-S", "2DOF-S", "fixed"], "tab": "response"}))
     page = visitor.page
     visitor.shown(2, ["MDOF-S", "2DOF-S", "fixed"])
@@ -149,13 +141,16 @@ def test_a_run_with_fuses_has_peaks_and_loops_in_step(visit, link, run) -> None:
     assert page.get_by_label("Model for the elements").input_value() == "MDOF-S"
 
 
-def test_a_structure_without_elements_shows_none_of_this(visitor) -> None:
-    visitor.respond()
-    page = visitor.page
+def test_without_elements_and_ground_nothing_of_them_is_shown(visitor) -> None:
+    page = visitor.respond()
     assert page.locator("#elements").is_hidden()
-    assert page.get_by_label("Element for the loop").is_hidden()
-    assert page.get_by_label("Force of an element over time").is_hidden()
-    assert page.locator('#peaks [data-name="residual_rotation"]').count() == 0
+    for label in (
+        *("Element for the loop", "Force of an element over time"),
+        *("Slip of the base over time", "Rise of the edges over time"),
+    ):
+        assert page.get_by_label(label).is_hidden()
+    for name in ("residual_rotation", "max_slip"):
+        assert page.locator(f'#peaks [data-name="{name}"]').count() == 0
     assert page.locator(".stage .legend").inner_text() == ""
 
 
@@ -187,7 +182,7 @@ def test_elements_are_drawn_where_they_are(visit, link) -> None:
 
 
 def test_a_link_with_tendons_of_an_earlier_version_opens(visit, link) -> None:
-    old = json.loads(json.dumps(PRESETS[0]["structure"]).replace("Infinity", '"inf"'))
+    old = as_json_value(PRESETS[0]["structure"])
     tendons = [{"position": 0.0, "initial_force": 5e5, "stiffness": 2e7, "yield_force": 9e5}]
     visitor = visit(link({"structure": old | {"tendons": tendons}, "models": ["2DOF-S"], "tab": "response"}))
     visitor.shown(1, ["2DOF-S"])
@@ -205,7 +200,7 @@ def test_a_link_with_tendons_of_an_earlier_version_opens(visit, link) -> None:
     visitor.wait_for_peak("2DOF-S", "max_rotation", expected.max_rotation)
 
 
-STRUCTURE = json.loads(json.dumps(PRESETS[0]["structure"]).replace("Infinity", '"inf"'))
+STRUCTURE = as_json_value(PRESETS[0]["structure"])
 BED = {"breadth": 3.0, "subgrade_modulus": 2e8, "heave_damping_ratio": 0.2}
 SOFT = {"friction": 0.15, "mat_mass": 4e4, "bed": BED}
 RECORD = {"source": "suite", "suite": "fema-p695-far-field", "name": "FF-2-a"}
@@ -392,14 +387,6 @@ def test_a_base_that_slides_on_rigid_ground_has_no_springs(visit, link) -> None:
     base = page.evaluate("t => rockflexStage.frame(0, t, 1).base", time)
     middle, slip = 0.5 * (base[0][0] + base[1][0]), run.slip[np.abs(run.slip).argmax()]
     assert middle == pytest.approx(slip, abs=2e-3)
-
-
-def test_without_a_ground_nothing_of_it_is_shown(visitor) -> None:
-    visitor.respond()
-    page = visitor.page
-    assert page.get_by_label("Slip of the base over time").is_hidden()
-    assert page.get_by_label("Rise of the edges over time").is_hidden()
-    assert page.locator('#peaks [data-name="max_slip"]').count() == 0
 
 
 def samples(name: str, amplitude: float, dt: float = 0.02) -> bytes:

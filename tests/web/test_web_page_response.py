@@ -1,6 +1,5 @@
 """The Response tab in a real Chromium, used as a person would."""
 
-import json
 import math
 
 import numpy as np
@@ -8,6 +7,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
+from rockflex._json import as_json_value
 from rockflex.web._forms import PRESETS
 
 pytestmark = pytest.mark.web
@@ -48,7 +48,7 @@ def test_response_numbers_and_animation(visitor, frame, el_centro) -> None:
 
 def chosen(number: int, **more) -> dict:
     """A state with one of the structures to begin with."""
-    structure = json.loads(json.dumps(PRESETS[number]["structure"]).replace("Infinity", '"inf"'))
+    structure = as_json_value(PRESETS[number]["structure"])
     return {"structure": structure, **more}
 
 
@@ -281,7 +281,7 @@ def test_without_a_hysteresis_nothing_yields_anywhere(visitor) -> None:
 
 
 def test_the_stage_turns_an_eccentric_base_about_its_edges(visit, link) -> None:
-    structure = json.loads(json.dumps(PRESETS[0]["structure"]).replace("Infinity", '"inf"')) | {"eccentricity": 0.3}
+    structure = as_json_value(PRESETS[0]["structure"]) | {"eccentricity": 0.3}
     visitor = visit(link({"structure": structure, "tab": "response", "models": ["2DOF-S"]}))
     visitor.shown(1, ["2DOF-S"])
     half_width = visitor.page.evaluate("rockflexStage.stage.view.half_width")

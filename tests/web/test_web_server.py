@@ -23,6 +23,7 @@ from typer.testing import CliRunner
 import rockflex as rf
 from builders import make_frame
 from rockflex._errors import InputError
+from rockflex._json import as_json_value
 from rockflex.cli import app
 from rockflex.web import make_app, serve
 from rockflex.web._forms import PRESETS
@@ -91,7 +92,7 @@ def test_what_is_assumed_is_simulated(client) -> None:
 
 @pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset["title"])
 def test_every_preset_answers_on_every_tab(client, preset) -> None:
-    state = client.state(structure=json.loads(json.dumps(preset["structure"]).replace("Infinity", '"inf"')))
+    state = client.state(structure=as_json_value(preset["structure"]))
     for path in ("/api/structure", "/api/record", "/api/response"):
         json.dumps(client.ask(path, state), allow_nan=False)
 

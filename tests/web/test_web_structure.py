@@ -87,20 +87,8 @@ def test_tendons_of_older_links_are_the_first_elements() -> None:
     assert "it must be a list of tables" in caught.value.errors["structure.elements"]
 
 
-@pytest.fixture(scope="module")
-def pier() -> rf.Restrained:
-    fuses = [rf.YieldingDissipator(2e8, 5e5, 0.02, position=x) for x in (-1.3, 1.3)]
-    tendon = rf.Tendon(2.5e6, 25e6, yield_force=6e6, post_yield_ratio=0.02)
-    return rf.Restrained(rf.CantileverWithTipMass(**PIER["cantilever"]), [tendon, *fuses])
-
-
-@pytest.fixture(scope="module")
-def run(pier) -> rf.Response:
-    motion = rf.load_suite("el-centro-1940")[0].scaled(2.0)
-    return rf.simulate(pier, motion, "MDOF-S", free_vibration=5.0, output="history")
-
-
-def test_the_numbers_of_elements_are_the_librarys(client, run) -> None:
+def test_the_numbers_of_elements_are_the_librarys(client, pier_run) -> None:
+    run = pier_run
     asked = client.state(structure=PIER, scale=2.0, models=["fixed", "MDOF-S"])
     answer = client.ask("/api/response", asked, focus="fixed", element=2)
     held = answer["held"]
@@ -155,7 +143,7 @@ def test_an_element_that_breaks_is_told(client) -> None:
     assert row["elongation"] > 5e-3
 
 
-def test_downloads_contain_the_elements(client, tmp_path, monkeypatch, run) -> None:
+def test_downloads_contain_the_elements(client, tmp_path, monkeypatch, pier_run) -> None:
     monkeypatch.chdir(tmp_path)
     elements = [*PIER["elements"], {"kind": "viscous_damper", "coefficient": 1e5}]
     elements += [{"kind": "friction_damper", "position": -0.5, "force": 1e4}, FUSE | {"rupture_elongation": 0.5}]
@@ -176,8 +164,8 @@ def test_downloads_contain_the_elements(client, tmp_path, monkeypatch, run) -> N
     assert space["structure"].elements == (rf.FrictionDamper(1.0),)
     _, content = client.download("/api/download/histories", client.state(structure=PIER, scale=2.0, models=["MDOF-S"]))
     table = pd.read_csv(io.BytesIO(content))
-    assert table["element_3_force (N)"].to_numpy() == pytest.approx(run.element_force[:, 2], rel=1e-8, abs=1e-3)
-    assert table["element_1_elongation (m)"].to_numpy() == pytest.approx(run.element_elongation[:, 0], rel=1e-8)
+    assert table["element_3_force (N)"].to_numpy() == pytest.approx(pier_run.element_force[:, 2], rel=1e-8, abs=1e-3)
+    assert table["element_1_elongation (m)"].to_numpy() == pytest.approx(pier_run.element_elongation[:, 0], rel=1e-8)
 
 
 def test_a_search_for_a_width_keeps_the_elements(client) -> None:

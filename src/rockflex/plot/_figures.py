@@ -119,13 +119,7 @@ _DRAWN: ContextVar[list[Figure] | None] = ContextVar("drawn", default=None)
 
 @contextmanager
 def styled(theme: str = "light", size: Size | None = None) -> Generator[None, None, None]:
-    """Apply the style while a figure is drawn; matplotlib's settings are global, so one thread at a time.
-
-    Raises
-    ------
-    InputError
-        If the size is neither a name nor a width and a height in inches.
-    """
+    """Apply the style while a figure is drawn; matplotlib's settings are global, so one thread at a time."""
     inches = _figure_size_in_inches(size)
     with _LOCK:
         usual = _FONT if inches is None or inches[0] >= _NARROW else _COLUMN_FONT
@@ -243,13 +237,7 @@ def recoloured_line_styles(styles: Iterable[LineStyle]) -> list[LineStyle]:
 
 
 def assign_distinct(names: Sequence[Any], among: Sequence[_T], what: str) -> dict[Any, _T]:
-    """Give each name one of some line styles or symbols; `what` says in the plural what the names are of.
-
-    Raises
-    ------
-    InputError
-        If there are too many names to distinguish.
-    """
+    """Give each name one of some line styles or symbols; `what` says in the plural what the names are of."""
     if len(names) > len(among):
         raise InputError(
             f"{len(names)} {what} are too many to distinguish in one figure, which can show {len(among)}. Plot fewer "

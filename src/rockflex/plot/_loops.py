@@ -99,13 +99,7 @@ class BaseLoops:
 
 
 def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> BaseLoops:
-    """Return the path of a base from a cyclic pushover, or from the history of a run.
-
-    Raises
-    ------
-    InputError
-        If `result` is neither, has no history, or is of a base that cannot lift.
-    """
+    """Return the path of a base from a cyclic pushover, or from the history of a run."""
     given: Any = result
     if hasattr(given, "weight_moment"):  # a quasi-static path
         return BaseLoops(

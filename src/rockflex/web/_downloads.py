@@ -33,11 +33,6 @@ def run_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, st
     """Return the name and the text of the report of the runs of a state.
 
     Energies and friction that would keep a visitor waiting are left out, and the page says so.
-
-    Raises
-    ------
-    Refusal
-        If a run cannot be made, or takes too long.
     """
     built, acting, found = simulate_state_models(state, uploads)
     motion = chosen_motion(state.record, uploads)
@@ -77,11 +72,6 @@ def animation_file(
     """Return the name and the content of a GIF of the models that are shown, at their true speed.
 
     `progress` is called with the number of frames drawn and that of all.
-
-    Raises
-    ------
-    Refusal
-        If a run cannot be made, or the animation would be too long.
     """
     from rockflex.plot import animate
     from rockflex.plot._figures import literal
@@ -129,11 +119,6 @@ def download_file(state: PageState, what: str, uploads: UploadedRecords) -> tupl
         ``"design-study"``, ``"design-python"``, ``"design-records"``.
     uploads
         Records of visitors.
-
-    Raises
-    ------
-    Refusal
-        If there is no such file, or the state cannot be simulated.
     """
     maker = _MAKERS.get(what) or _maker_of_study_file(what)
     if maker is None:
@@ -162,8 +147,7 @@ def _mode_shapes_figure_file(state: PageState, _: UploadedRecords) -> tuple[str,
 
     built = build_page_structure(state.structure)
     if built.modes is None:
-        message = "the shapes of the modes are not known, so there is no figure of them."
-        raise Refusal({"structure": message})
+        raise Refusal({"structure": "the shapes of the modes are not known, so there is no figure of them."})
     return "modes.svg", figure_as_svg(plot_mode_shapes(built.modes, min(built.modes.n_modes, 10)))
 
 
@@ -289,13 +273,7 @@ def _maker_of_study_file(what: str) -> Callable[[PageState, UploadedRecords], tu
 
 
 def study_file(page: StudyPage, job: StudyJob, state: PageState, what: str) -> tuple[str, str, bytes]:
-    """Return the name, the type and the content of the table or the figure of a study, from its runs so far.
-
-    Raises
-    ------
-    Refusal
-        If there are no runs yet, or nothing can be drawn.
-    """
+    """Return the name, the type and the content of the table or the figure of a study, from its runs so far."""
     if what == "table":
         return f"{page.table_name}.csv", "text/csv", page.table(job, state).to_csv(index=False).encode()
     from rockflex.plot import figure_as_svg

@@ -72,13 +72,7 @@ def _loaded_suite(name: str) -> Suite:
 
 
 def chosen_motion(choice: RecordChoice, uploads: UploadedRecords) -> GroundMotion:
-    """Return the chosen record, without the scale factor.
-
-    Raises
-    ------
-    Refusal
-        If there is none.
-    """
+    """Return the chosen record, without the scale factor."""
     if choice.source == "upload":
         return uploads.get(choice.upload)
     if choice.source == "folder":
@@ -93,13 +87,7 @@ def chosen_motion(choice: RecordChoice, uploads: UploadedRecords) -> GroundMotio
 
 
 def chosen_folder_motion(choice: RecordChoice, uploads: UploadedRecords) -> GroundMotion:
-    """Return the chosen record of the folder, with its vertical component if that is wanted and there.
-
-    Raises
-    ------
-    Refusal
-        If the server does not have the folder, or it has no such record.
-    """
+    """Return the chosen record of the folder, with its vertical component if that is wanted and there."""
     suite = uploads.folders.get(choice.folder).suite(vertical=choice.vertical)
     with errors_as_refusals("record.folder"):
         return suite[choice.given]
@@ -107,13 +95,7 @@ def chosen_folder_motion(choice: RecordChoice, uploads: UploadedRecords) -> Grou
 
 @lru_cache(maxsize=8)
 def suite_view(name: str) -> dict[str, Any]:
-    """Return the records of a suite with thumbnails and intensity measures.
-
-    Raises
-    ------
-    Refusal
-        If the suite is unknown.
-    """
+    """Return the records of a suite with thumbnails and intensity measures."""
     return as_json_value({"name": name, "records": [_record_thumbnail(motion) for motion in _loaded_suite(name)]})
 
 
@@ -135,13 +117,7 @@ def _record_thumbnail(motion: GroundMotion) -> dict[str, Any]:
 
 
 def record_view(state: PageState, uploads: UploadedRecords) -> dict[str, Any]:
-    """Return the history, the spectrum and the measures of the scaled record, with those that depend on the structure.
-
-    Raises
-    ------
-    Refusal
-        If there is no record.
-    """
+    """Return the history, the spectrum and the measures of the scaled record, some of which depend on the structure."""
     try:
         built = build_page_structure(state.structure)
     except Refusal:

@@ -54,12 +54,6 @@ def unpacked_record_files(body: bytes) -> list[SentRecordFile]:
     body
         A line of JSON, ``[{"name": "folder/a.AT2", "size": 120, "sent": true}, ...]``, and the contents in this order;
         a file that was too large to be sent has ``"sent": false`` and no content.
-
-    Raises
-    ------
-    Refusal
-        If the list does not fit the contents, there are too many or too large files, a name points out of the folder,
-        or an archive cannot be unpacked.
     """
     paths, found, work = list[str](), list[tuple[bytes | None, int]](), 0
     for path, content, size in _files_in_list(body):
@@ -149,13 +143,7 @@ def _unpacked_size(content: bytes | None) -> int:
 
 
 def _checked_folder_path(path: str) -> str:
-    """Return a path within the folder of a visitor.
-
-    Raises
-    ------
-    Refusal
-        If it points out of the folder.
-    """
+    """Return a path within the folder of a visitor."""
     parts = re.split(r"[/\\]", path)
     if ".." in parts or not parts[0] or re.match(r"[A-Za-z]:", path):
         raise _folder_refusal(
@@ -273,13 +261,7 @@ class RecordFolders:
         return token
 
     def get(self, token: str) -> RecordFolder:
-        """Return a set.
-
-        Raises
-        ------
-        Refusal
-            If it is not, or no longer, kept.
-        """
+        """Return a set."""
         found = self._folders.get(token)
         if found is None:
             raise Refusal({FIELD: FOLDER_LOST if token else NO_FOLDER}, 410)
@@ -287,13 +269,7 @@ class RecordFolders:
 
 
 def read_record_folder(files: Sequence[SentRecordFile], units: str | None, dt: float | None) -> RecordFolder:
-    """Read the files of a visitor, as `survey_records` does, without ObsPy.
-
-    Raises
-    ------
-    Refusal
-        If there is no record among them that can be used, or they have too many samples together.
-    """
+    """Read the files of a visitor, as `survey_records` does, without ObsPy."""
     large = [
         SurveyEntry(
             file=each.name,
@@ -338,8 +314,7 @@ def _folder_surveys(
             except InputError as error:
                 raise Refusal({FIELD: str(error).replace(folder, "the folder")}) from error
     except OSError as error:
-        message = "the server could not store the files temporarily. Try again."
-        raise Refusal({FIELD: message}, 503) from error
+        raise Refusal({FIELD: "the server could not store the files temporarily. Try again."}, 503) from error
 
 
 def _record_too_long_text(motion: GroundMotion) -> str:

@@ -25,13 +25,7 @@ MAX_SPRINGS_DRAWN = 9  # springs of a drawing, at most
 
 
 def ground_under_page_structure(table: GroundTable | None, p: RockingProperties) -> Ground | None:
-    """Return the ground under a structure, None if it is rigid and the base cannot slide.
-
-    Raises
-    ------
-    Refusal
-        If its values contradict each other, at the field at fault.
-    """
+    """Return the ground under a structure, None if it is rigid and the base cannot slide."""
     try:
         return None if table is None else table.under(p)
     except InputError as error:
@@ -115,13 +109,7 @@ class BuiltStructure:
 
 
 def build_page_structure(entry: StructureEntry) -> BuiltStructure:
-    """Build a structure, or return it from the cache.
-
-    Raises
-    ------
-    Refusal
-        If it cannot be built, with the message at the field at fault.
-    """
+    """Build a structure, or return it from the cache."""
     try:
         return _build_structure_from_json(json.dumps(entry.model_dump(exclude_none=True)))
     except InputError as error:
@@ -143,13 +131,7 @@ def _build_structure_from_json(text: str) -> BuiltStructure:
 
 
 def structure_view(entry: StructureEntry, table: GroundTable | None = None) -> dict[str, Any]:
-    """Return the outline, the parameters, the modes and the adequacy of a structure, and the ground under it.
-
-    Raises
-    ------
-    Refusal
-        If it cannot be built, the adequacy of its modes cannot be determined, or the ground contradicts itself.
-    """
+    """Return the outline, the parameters, the modes and the adequacy of a structure, and the ground under it."""
     built = build_page_structure(entry)
     p = built.properties
     with errors_as_refusals("structure"):

@@ -73,13 +73,7 @@ class StudyPage:
 def common_study_content(
     state: PageState, uploads: UploadedRecords, kind: Literal["cloud", "design"], labels: Sequence[str], name: str
 ) -> dict[str, Any]:
-    """Return the content that both kinds of study share; `name` is used for a structure without a name.
-
-    Raises
-    ------
-    Refusal
-        If the server does not have the records.
-    """
+    """Return the content that both kinds of study share; `name` is used for a structure without a name."""
     choice = state.cloud if kind == "cloud" else state.design
     return {
         "name": state.structure.name or name,
@@ -94,13 +88,7 @@ def common_study_content(
 
 
 def study_plan(study: CloudStudy | DesignStudy, path: str) -> CloudPlan:
-    """Return the runs of a study, divided into small chunks.
-
-    Raises
-    ------
-    Refusal
-        If they cannot be prepared, are too many for the page, or take too long.
-    """
+    """Return the runs of a study, divided into small chunks."""
     with errors_as_refusals(path):
         plan = cast("CloudPlan", study.plan())  # the page has no design study with a search
     plan.matrix = plan.matrix.limited(MAX_RUN_COST)
@@ -115,13 +103,7 @@ def runs_of_study_job(job: StudyJob) -> "pd.DataFrame | None":
 
 
 def some_runs_of_study_job(job: StudyJob) -> "pd.DataFrame":
-    """Return the table of the runs so far.
-
-    Raises
-    ------
-    Refusal
-        If there are none.
-    """
+    """Return the table of the runs so far."""
     runs = runs_of_study_job(job)
     if runs is None:
         raise Refusal("There are no runs yet.")
@@ -154,13 +136,7 @@ OBSERVED_BINS = 8  # groups of the observed fractions
 
 
 def cloud_study(state: PageState, uploads: UploadedRecords) -> CloudStudy:
-    """Return the study of a state, as `rockflex cloud` runs it; `uploads` are the records of visitors.
-
-    Raises
-    ------
-    Refusal
-        If the state does not describe a valid study.
-    """
+    """Return the study of a state, as `rockflex cloud` runs it; `uploads` are the records of visitors."""
     build_page_structure(state.structure)  # for its messages, which are shown next to the fields
     content = common_study_content(state, uploads, "cloud", state.cloud.models, "Cloud")
     with errors_as_refusals("cloud"):
@@ -280,13 +256,7 @@ def limit_for_fragility(choice: DesignChoice) -> float | str:
 
 
 def design_study(state: PageState, uploads: UploadedRecords) -> DesignStudy:
-    """Return the study of a state, as `rockflex design` runs it; `uploads` are the records of visitors.
-
-    Raises
-    ------
-    Refusal
-        If the state does not describe a valid study.
-    """
+    """Return the study of a state, as `rockflex design` runs it; `uploads` are the records of visitors."""
     choice = state.design
     present = build_page_structure(state.structure).properties
     if choice.widest <= choice.narrowest:

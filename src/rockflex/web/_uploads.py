@@ -45,13 +45,7 @@ class UploadedRecords:
         return key
 
     def get(self, key: str) -> GroundMotion:
-        """Return a record.
-
-        Raises
-        ------
-        Refusal
-            If it is not, or no longer, stored.
-        """
+        """Return a record."""
         motion = self._records.get(key)
         if motion is None:
             message = (
@@ -72,11 +66,6 @@ def read_uploaded_record(name: str, content: bytes, units: str | None, dt: float
         Its bytes.
     units, dt
         As in `read_motion`, or None.
-
-    Raises
-    ------
-    Refusal
-        If the file is too large, cannot be read, or contains a vertical component or a record that is too long.
     """
     named = _read_uploaded_motion(name, content, units, dt, "record.upload")
     if is_vertical_component(named):
@@ -92,13 +81,7 @@ def read_uploaded_record(name: str, content: bytes, units: str | None, dt: float
 def read_uploaded_vertical(
     name: str, content: bytes, units: str | None, dt: float | None, along: GroundMotion
 ) -> GroundMotion:
-    """Return a stored horizontal record with the vertical component in a file; parameters as in `read_uploaded_record`.
-
-    Raises
-    ------
-    Refusal
-        If the file cannot be read, contains a horizontal component, or has another step than the record.
-    """
+    """Return a stored horizontal record with the vertical component in a file, as `read_uploaded_record` reads it."""
     upwards = _read_uploaded_motion(name, content, units, dt, "record.vertical")
     with errors_as_refusals("record.vertical"):
         motion = along.with_vertical(upwards)
@@ -122,8 +105,7 @@ def _read_uploaded_motion(name: str, content: bytes, units: str | None, dt: floa
                     said = f"{said.partition(' Name one:')[0]} Choose a file with a single one."
                 raise Refusal({field: said}) from error
     except OSError as error:
-        message = "the server could not store the file temporarily. Try again."
-        raise Refusal({field: message}, 503) from error
+        raise Refusal({field: "the server could not store the file temporarily. Try again."}, 503) from error
     info = motion.metadata or RecordInfo()
     # The temporary file has another name.
     info = replace(info, direction=component_direction(Path(shown), info.component) or info.direction)
@@ -148,11 +130,6 @@ def read_uploaded_matrices(name: str, content: bytes, part: str) -> dict[str, An
     """Read matrices from a ``.npz`` with arrays mass, stiffness, heights and rotations, or one of them from a CSV file.
 
     Heights are one for each freedom, NaN for none; or rows of an index and a height, or with NaN, which become a table.
-
-    Raises
-    ------
-    Refusal
-        If the file is too large or cannot be read, or an array is.
     """
     shown = clean_upload_name(name)
     _check_upload_size(shown, content, "structure")
@@ -160,8 +137,7 @@ def read_uploaded_matrices(name: str, content: bytes, part: str) -> dict[str, An
         if shown.lower().endswith(".npz"):
             return _matrices_from_npz(shown, content)
         if part not in MATRICES:
-            message = f"say which of {', '.join(MATRICES)} the file {shown} holds."
-            raise Refusal({"structure": message})
+            raise Refusal({"structure": f"say which of {', '.join(MATRICES)} the file {shown} holds."})
         return {part: _matrix_as_numbers(shown, part, _matrix_from_text(content.decode("utf-8-sig")))}
     except Refusal:
         raise
@@ -210,13 +186,11 @@ def _matrix_as_numbers(name: str, part: str, array: Any) -> Any:
     values = np.asarray(array, dtype=np.float64)
     blank = np.isnan(values) & (part == "heights")
     if not (np.isfinite(values) | blank).all() or blank.all() or max(values.shape) > MAX_FREEDOMS:
-        message = f"{name}: {part} must hold finite numbers for up to {MAX_FREEDOMS} freedoms."
-        raise Refusal({"structure": message})
+        raise Refusal({"structure": f"{name}: {part} must hold finite numbers for up to {MAX_FREEDOMS} freedoms."})
     if part == "heights" and values.ndim == 2 and values.shape[1] == 2 and len(values) > 1:
         found = {str(_index_of_freedom(name, part, each)): height for each, height in values.tolist()}
         if len(found) < len(values):
-            message = f"{name}: {part} must hold each freedom once."
-            raise Refusal({"structure": message})
+            raise Refusal({"structure": f"{name}: {part} must hold each freedom once."})
         return found
     if values.ndim == 2 and 1 in values.shape and part != "stiffness":
         values = values.ravel()

@@ -57,13 +57,7 @@ def frame_timing(
     start: float | None,
     stop: float | None,
 ) -> FrameTiming:
-    """Return the frames of an animation in a file with some suffix; the arguments are those of `animate`.
-
-    Raises
-    ------
-    InputError
-        If one is out of range, or there would be too many frames.
-    """
+    """Return the frames of an animation in a file with some suffix; the arguments are those of `animate`."""
     ratio = checked_positive("speed", speed, "seconds of the response per second of the animation")
     low, high = RATES[suffix]
     rate = real_or_nan(frames_per_second)
@@ -135,11 +129,6 @@ def structure_outline(history: History, structure: Any | None, place: int) -> St
     """Return the outline of the structure of a response, number `place` of those given.
 
     Without the structure itself, floors are drawn where its properties have them, and otherwise a straight line.
-
-    Raises
-    ------
-    InputError
-        If the structure is none, or not that of the response.
     """
     p, modes = history.model.properties, None
     if not p.n_modes:
