@@ -111,7 +111,7 @@ def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> B
             f"result must be a Response or a MomentRotation, but {type(given).__name__} was given. Give what simulate "
             "or moment_rotation returned."
         )
-    (curve,) = curves = histories.response_curves(result)
+    (curve,) = curves = histories.response_curves(given)
     if not curve.lifts:
         raise InputError(
             "The base of this response cannot lift, so it has no loops. Give the response of a model that rocks, such "

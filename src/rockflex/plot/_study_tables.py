@@ -63,8 +63,12 @@ def model_lines_and_symbols(models: Sequence[str]) -> dict[str, tuple[LineStyle,
 def label_log_axis_plainly(axis: Axis) -> None:
     """Label a logarithmic axis of a few decades at 1, 2 and 5, without exponents."""
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: short_number(value)))
+    axis.set_major_formatter(FuncFormatter(_plain_tick_label))
     axis.set_minor_formatter(NullFormatter())
+
+
+def _plain_tick_label(value: float, _: object) -> str:
+    return short_number(value)
 
 
 def model_legend_handles(styles: dict[str, tuple[LineStyle, str]], *, symbols: bool = True) -> list[Line2D]:

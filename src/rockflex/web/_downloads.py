@@ -297,6 +297,6 @@ _MAKERS: dict[str, Callable[[PageState, UploadedRecords], tuple[str, str | bytes
     "selection": lambda state, uploads: ("selection.csv", _csv(_selection(state, uploads).table())),
     "selection-spectra": lambda state, uploads: ("spectra.csv", _csv(_selection(state, uploads).spectra())),
     "selection-figure": _selection_figure_file,
-    "selection-records": lambda *of: ("scaled-records.zip", records_as_zip(_selection(*of).suite)),
+    "selection-records": lambda state, given: ("scaled-records.zip", records_as_zip(_selection(state, given).suite)),
     "selection-python": lambda state, _: ("selection.py", selection_script(state.target)),
 }

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from contextlib import closing
 from importlib.util import find_spec
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -128,10 +128,10 @@ def write_video(target: Path, figure: AnimatedFigure, timing: FrameTiming, advan
 
     count, still = timing.times.size, round(0.01 * LAST_FRAME * timing.frames_per_second)
     with writing_atomically(target, ".mp4") as temporary:  # ffmpeg chooses the format by it
+        style: dict[str, Any] = {"quality": None, "fps": timing.frames_per_second}
         frames = write_frames(
             str(temporary), figure.size, pix_fmt_in="rgb24", pix_fmt_out="yuv420p", codec="libx264",
-            macro_block_size=1, quality=None, fps=timing.frames_per_second, output_params=_OPTIONS,
-            ffmpeg_log_level="error",
+            macro_block_size=1, output_params=_OPTIONS, ffmpeg_log_level="error", **style,
         )  # fmt: skip
         with closing(frames) as encoder:
             encoder.send(None)
