@@ -24,7 +24,6 @@ from rockflex.web import _app
 from rockflex.web._downloads import download_file
 from rockflex.web._earthquake import record_view
 from rockflex.web._folders import (
-    RecordFolders,
     SentRecordFile,
     flat_file_names,
     read_record_folder,
@@ -35,6 +34,7 @@ from rockflex.web._refusal import Refusal
 from rockflex.web._state import parse_page_state
 from rockflex.web._uploads import (
     MAX_RECORDS,
+    RecordFolders,
     UploadedRecords,
     clean_upload_name,
     read_uploaded_matrices,
@@ -521,7 +521,7 @@ def test_records_too_long_are_left_out_and_files_of_one_name_are_told_apart() ->
 
 
 def test_only_as_many_folders_are_kept_as_there_is_room_for(monkeypatch) -> None:
-    monkeypatch.setattr("rockflex.web._folders.MAX_CACHED_SAMPLES", 300)
+    monkeypatch.setattr("rockflex.web._uploads.MAX_CACHED_SAMPLES", 300)
     folders, tokens = RecordFolders(), []
     for size in (0.1, 0.2, 0.3):
         files = [SentRecordFile("a.AT2", at2(size).encode(), 1)]

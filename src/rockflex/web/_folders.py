@@ -1,6 +1,5 @@
-"""Folders of records that visitors send: unpacked, read, reported on, and kept in memory under a checksum."""
+"""Folders of records that visitors send: unpacked, read, and reported on."""
 
-import hashlib
 import io
 import re
 import warnings
@@ -16,9 +15,7 @@ from rockflex._errors import InputError, RecordWarning
 from rockflex._json import as_json_value
 from rockflex.motion import GroundMotion, RecordSurvey, Suite, SurveyEntry, record_csv, survey_without_obspy
 from rockflex.motion._record_info import unique_record_names
-from rockflex.web._cache import LatestValuesCache
 from rockflex.web._limits import (
-    MAX_CACHED_SAMPLES,
     MAX_FILE_BYTES,
     MAX_FOLDER_BYTES,
     MAX_FOLDER_FILES,
@@ -206,13 +203,6 @@ def records_as_zip(motions: Iterable[GroundMotion]) -> bytes:
     return packed.getvalue()
 
 
-FOLDER_LOST = (
-    "the server no longer has these records: it was restarted, or others gave newer ones. Give the folder again on "
-    "the Earthquake tab; a link does not contain it."
-)
-NO_FOLDER = "no records were given yet. Choose a folder on the Earthquake tab first."
-
-
 @dataclass(frozen=True, eq=False)
 class RecordFolder:
     """Records of a visitor, and the report of them on the page.
@@ -238,34 +228,6 @@ class RecordFolder:
     def suite(self, *, vertical: bool) -> Suite:
         """Return the motions, with their vertical components if `vertical`."""
         return self.both if vertical else self.along
-
-
-class RecordFolders:
-    """Sets of records by the checksum of their files; the latest ones of all visitors, as far as memory is set aside.
-
-    The checksum is known only to those who have the files or a link with it.
-    """
-
-    def __init__(self) -> None:
-        self._folders = LatestValuesCache[RecordFolder](lambda: MAX_CACHED_SAMPLES, lambda folder: folder.samples)
-
-    def add(self, folder: RecordFolder, files: Sequence[SentRecordFile], options: str) -> str:
-        """Keep a set, and return its checksum."""
-        digest = hashlib.sha256(options.encode())
-        for each in sorted(files, key=lambda file: file.name):
-            content = each.content or b""
-            digest.update(f"\0{each.name}\0{each.size}\0{len(content)}\0".encode())
-            digest.update(content)
-        token = digest.hexdigest()
-        self._folders.put(token, folder)
-        return token
-
-    def get(self, token: str) -> RecordFolder:
-        """Return a set."""
-        found = self._folders.get(token)
-        if found is None:
-            raise Refusal({FIELD: FOLDER_LOST if token else NO_FOLDER}, 410)
-        return found
 
 
 def read_record_folder(files: Sequence[SentRecordFile], units: str | None, dt: float | None) -> RecordFolder:

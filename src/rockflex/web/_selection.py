@@ -28,12 +28,11 @@ from rockflex.motion import (
 )
 from rockflex.solve import check_interruption
 from rockflex.study import Records
-from rockflex.web._cache import LatestValuesCache
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._limits import unclear_commas_text
 from rockflex.web._refusal import Refusal, errors_as_refusals
 from rockflex.web._state import PageState, TargetChoice
-from rockflex.web._uploads import UploadedRecords
+from rockflex.web._uploads import LatestValuesCache, UploadedRecords
 
 VISITOR_FOLDER = "given"  # stands for the visitor's folder among the names of suites
 SELECTED = "chosen"  # and this for the records chosen for the target spectrum
@@ -156,7 +155,7 @@ class LatestSelections:
     """The latest choices of records of all visitors, so that charts, files and studies do not repeat them."""
 
     def __init__(self) -> None:
-        self._selections = LatestValuesCache[Selected](lambda: MAX_SELECTIONS)
+        self._selections = LatestValuesCache[Selected](MAX_SELECTIONS)
 
     def of(self, state: PageState, uploads: UploadedRecords) -> Selected:
         """Return the records chosen for the target of a state, and remarks on the choice."""

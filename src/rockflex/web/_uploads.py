@@ -4,10 +4,13 @@ import hashlib
 import io
 import re
 import zipfile
+from collections import OrderedDict
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from threading import Lock
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -19,13 +22,82 @@ from rockflex.motion import (
     is_vertical_component,
     read_motion_without_obspy,
 )
-from rockflex.web._cache import LatestValuesCache
-from rockflex.web._folders import RecordFolders
-from rockflex.web._limits import MAX_FILE_BYTES, MAX_FREEDOMS, check_record_length
+from rockflex.web._folders import FIELD, RecordFolder, SentRecordFile
+from rockflex.web._limits import MAX_CACHED_SAMPLES, MAX_FILE_BYTES, MAX_FREEDOMS, check_record_length
 from rockflex.web._refusal import Refusal, errors_as_refusals
 
 MAX_RECORDS = 64  # in memory
 MATRICES = ("mass", "stiffness", "heights", "rotations")
+
+
+Cached = TypeVar("Cached")
+
+
+class LatestValuesCache(Generic[Cached]):
+    """The values last stored or read, by their keys, as many as fit; safe for threads.
+
+    Parameters
+    ----------
+    capacity
+        Largest sum of the sizes of all values; the last one stays even if it alone is larger.
+    size
+        Returns the size of a value.
+    """
+
+    def __init__(self, capacity: int, size: Callable[[Cached], int] = lambda _: 1) -> None:
+        self._values: OrderedDict[str, Cached] = OrderedDict()
+        self._lock, self._capacity, self._size = Lock(), capacity, size
+
+    def put(self, key: str, value: Cached) -> None:
+        """Store a value, and forget those that have not been used for the longest time."""
+        with self._lock:
+            self._values[key] = value
+            self._values.move_to_end(key)
+            while len(self._values) > 1 and sum(map(self._size, self._values.values())) > self._capacity:
+                self._values.popitem(last=False)
+
+    def get(self, key: str) -> Cached | None:
+        """Return a value; None if it is not, or no longer, stored."""
+        with self._lock:
+            value = self._values.get(key)
+            if value is not None:
+                self._values.move_to_end(key)
+        return value
+
+
+FOLDER_LOST = (
+    "the server no longer has these records: it was restarted, or others gave newer ones. Give the folder again on "
+    "the Earthquake tab; a link does not contain it."
+)
+NO_FOLDER = "no records were given yet. Choose a folder on the Earthquake tab first."
+
+
+class RecordFolders:
+    """Sets of records by the checksum of their files; the latest ones of all visitors, as far as memory is set aside.
+
+    The checksum is known only to those who have the files or a link with it.
+    """
+
+    def __init__(self) -> None:
+        self._folders = LatestValuesCache[RecordFolder](MAX_CACHED_SAMPLES, lambda folder: folder.samples)
+
+    def add(self, folder: RecordFolder, files: Sequence[SentRecordFile], options: str) -> str:
+        """Keep a set, and return its checksum."""
+        digest = hashlib.sha256(options.encode())
+        for each in sorted(files, key=lambda file: file.name):
+            content = each.content or b""
+            digest.update(f"\0{each.name}\0{each.size}\0{len(content)}\0".encode())
+            digest.update(content)
+        token = digest.hexdigest()
+        self._folders.put(token, folder)
+        return token
+
+    def get(self, token: str) -> RecordFolder:
+        """Return a set."""
+        found = self._folders.get(token)
+        if found is None:
+            raise Refusal({FIELD: FOLDER_LOST if token else NO_FOLDER}, 410)
+        return found
 
 
 class UploadedRecords:
@@ -35,7 +107,7 @@ class UploadedRecords:
     """
 
     def __init__(self) -> None:
-        self._records = LatestValuesCache[GroundMotion](lambda: MAX_RECORDS)
+        self._records = LatestValuesCache[GroundMotion](MAX_RECORDS)
         self.folders = RecordFolders()
 
     def add(self, motion: GroundMotion, content: bytes, options: str) -> str:
