@@ -27,7 +27,3 @@ def points(lines):
 
 def of(table, structure, model):
     return table[(table["structure"] == structure) & (table["model"] == model)]
-
-
-def legend(figure):
-    return [text.get_text() for text in figure.legends[0].get_texts()]

@@ -6,7 +6,7 @@ from matplotlib.colors import to_hex
 
 import rockflex as rf
 from builders import make_frame
-from drawing import drawn
+from drawing import drawn, legend
 from rockflex.plot import plot_energy, plot_mode_shapes, plot_moment_rotation
 
 FRAME = make_frame()
@@ -44,9 +44,7 @@ def test_moment_rotation_draws_the_loops_and_the_static_line(responses):
         assert axes.get_ylim()[1] * 1e6 > max(response.max_base_moment, RESISTANCE)
     assert figure.get_supylabel() == "$M_b$ [MN m]"
     assert figure.get_supxlabel() == "θ [rad]"
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
-        r"static, $\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$"
-    ]
+    assert legend(figure) == [r"static, $\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$"]
 
 
 def test_loops_of_a_rigid_structure_lie_on_a_share_of_the_static_line():
@@ -188,7 +186,7 @@ def test_energy_layers_stack_up_to_the_input(responses):
     assert axes.get_ylabel() == "energy [kJ]"
     assert axes.get_ylim()[1] > line.get_ydata().max()
     assert axes.get_title() == (f"MDOF-S under {RECORD.name}, closing error {response.energy.closing_error:.1e}")
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["input", *reversed(stack)]
+    assert legend(figure) == ["input", *reversed(stack)]
 
 
 def test_energy_leaves_out_what_stays_empty(responses):

@@ -9,8 +9,8 @@ from matplotlib.colors import to_hex
 from scipy.optimize import minimize
 
 import rockflex as rf
-from drawing import drawn, notes
-from drawn_studies import COLORS, FRAMES, MODELS, legend, lines, of, points
+from drawing import drawn, legend, notes
+from drawn_studies import COLORS, FRAMES, MODELS, lines, of, points
 from rockflex.fragility import fit_clouds, fit_stripes
 
 # Fig. 5

@@ -6,7 +6,7 @@ from matplotlib.colors import to_hex
 
 import rockflex as rf
 from builders import make_frame
-from drawing import drawn, notes, spans, uplift_intervals
+from drawing import drawn, legend, notes, spans, uplift_intervals
 from rockflex.plot import plot_hysteresis, plot_yielding
 
 WALL = rf.CantileverWithTipMass(
@@ -26,10 +26,6 @@ LAW = rf.BoucWen(0.035)
 @pytest.fixture(scope="module")
 def run():
     return rf.simulate(HELD, MOTION, "MDOF-S")
-
-
-def legend(figure):
-    return [text.get_text() for text in figure.legends[0].get_texts()]
 
 
 def test_a_pushover_is_drawn_with_its_parts():

@@ -2,8 +2,8 @@ import numpy as np
 from matplotlib.colors import to_hex
 
 import rockflex as rf
-from drawing import drawn, notes
-from drawn_studies import legend, lines
+from drawing import drawn, legend, notes
+from drawn_studies import lines
 from rockflex.papers.silva_stojadinovic_2024.population import population_statistics
 from rockflex.plot._figures import BLUE
 

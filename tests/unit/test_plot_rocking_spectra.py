@@ -3,7 +3,7 @@ import pandas as pd
 import pytest
 
 import rockflex as rf
-from drawing import drawn
+from drawing import drawn, legend
 from rockflex.plot import plot_overturning_spectrum, plot_rocking_spectrum
 
 
@@ -35,7 +35,7 @@ def test_a_curve_a_slenderness_broken_where_blocks_overturn(rocking):
     crosses = [line for line in axes.get_lines() if line.get_marker() == "x"]
     fallen = rocking[rocking["overturned"].astype(bool)]
     assert sum(len(line.get_xdata()) for line in crosses) == len(fallen)
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
+    assert legend(figure) == [
         "α = 0.15 rad",
         "α = 0.25 rad",
         "overturned",
@@ -57,7 +57,7 @@ def test_the_range_in_which_either_happens_is_hatched():
     assert axes.get_ylim()[1] > 7.2
     area = axes.collections[0].get_paths()[0].get_extents()
     assert (area.x0, area.x1, area.y1) == (2.0, 3.0, 7.2)
-    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    names = legend(figure)
     assert names == ["one sine", "other", "uplift", "either"]
 
 

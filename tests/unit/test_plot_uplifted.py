@@ -10,7 +10,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from drawing import drawn, notes
+from drawing import drawn, legend, notes
 
 FRAME = make_frame()
 OTHER = make_frame(stiffness_ratio=0.0)
@@ -25,10 +25,6 @@ def tables():
 
 def named(axes, label):
     return [line for line in axes.get_lines() if line.get_label() == label]
-
-
-def legend(figure):
-    return [text.get_text() for text in figure.legends[0].get_texts()]
 
 
 def test_a_curve_a_model_and_structure_in_a_panel_a_mode(tables):

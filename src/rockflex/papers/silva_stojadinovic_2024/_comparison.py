@@ -19,11 +19,16 @@ specimen is built is a `ConstructionCheck`, not a number; additional computation
 
 import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 import rockflex as rf
+from rockflex._arrays import Array
 from rockflex.report import ConstructionCheck, PublishedNumber
 from rockflex.report._document import decimal_text
 
@@ -191,8 +196,11 @@ class ResampledInterval(NamedTuple):
         return ResampledInterval(*(factor * value for value in self))
 
 
-def bootstrap_intervals(band: rf.BootstrapBand) -> list[ResampledInterval]:
-    """Return the interval of each value of a bootstrap."""
+def bootstrap_intervals(
+    fit: Callable[[Array, Array], Array], x: Array, y: Array, groups: NDArray[Any], size: int, n: int
+) -> list[ResampledInterval]:
+    """Return the interval of each of the `size` values of a fit, over `n` draws of whole groups."""
+    band = rf.bootstrap_band(fit, x, y, groups, at=np.arange(size), n=n, curve=lambda values, _: values)
     three = zip(band.estimate.tolist(), band.low.tolist(), band.high.tolist(), strict=True)
     return [ResampledInterval(*each) for each in three]
 

@@ -164,11 +164,11 @@ def differences_between_models(records: PaperRecords, quantity: str) -> dict[str
     """
     im, table, groups = _rocking_runs(records, quantity)
     names = list(_compared_cloud_fits(_fitted_cloud_quantiles(im, table)))
-    band = rf.bootstrap_band(
-        _fitted_cloud_quantiles, im, table, groups, at=np.arange(len(names)), n=CLOUD_RESAMPLES,
-        curve=lambda fits, _: np.array(list(_compared_cloud_fits(fits).values())),
-    )  # fmt: skip
-    return dict(zip(names, bootstrap_intervals(band), strict=True))
+
+    def fit(im: Array, table: Array) -> Array:
+        return np.array(list(_compared_cloud_fits(_fitted_cloud_quantiles(im, table)).values()))
+
+    return dict(zip(names, bootstrap_intervals(fit, im, table, groups, len(names), CLOUD_RESAMPLES), strict=True))
 
 
 def cases_of_differences(records: PaperRecords, quantity: str) -> "pd.DataFrame":
@@ -289,16 +289,7 @@ def _largest_probability_gaps(runs: "pd.DataFrame") -> list[ResampledInterval]:
         shear, flexure = gaps[SHEAR].max(), gaps[~SHEAR].max()
         return np.array([shear, flexure, flexure - shear])
 
-    band = rf.bootstrap_band(
-        fit,
-        pgv,
-        rows,
-        runs["group"].astype(str).to_numpy(),
-        at=np.arange(3),
-        n=CURVE_RESAMPLES,
-        curve=lambda found, _: found,
-    )
-    return bootstrap_intervals(band)
+    return bootstrap_intervals(fit, pgv, rows, runs["group"].astype(str).to_numpy(), 3, CURVE_RESAMPLES)
 
 
 def _rocking_probability_curve(pgv: Array, rocks: Bools, grid: Array) -> Array:
@@ -432,11 +423,8 @@ def friction_intervals(runs: "pd.DataFrame", model: str, sign: str) -> dict[str,
 
     # Infinite where the ground would have to pull; large enough for a median or a count.
     friction = np.minimum(mine[sign].to_numpy(dtype=float), 1e6)
-    band = rf.bootstrap_band(
-        fit, friction, codes, mine["group"].to_numpy(), at=np.arange(len(PAIRS) + 1), n=FRICTION_RESAMPLES,
-        curve=lambda values, _: values,
-    )  # fmt: skip
-    return dict(zip((*PAIRS, ABOVE), bootstrap_intervals(band), strict=True))
+    found = bootstrap_intervals(fit, friction, codes, mine["group"].to_numpy(), len(PAIRS) + 1, FRICTION_RESAMPLES)
+    return dict(zip((*PAIRS, ABOVE), found, strict=True))
 
 
 def _both_signs_of_friction(records: PaperRecords) -> Remark:
