@@ -212,11 +212,17 @@ class Visitor:
     def peak(self, model: str, name: str) -> float:
         return self.value(f'#peaks tr[data-model="{model}"] [data-name="{name}"]')
 
-    def wait_for(self, selector: str, value: float) -> None:
-        """Wait until an element holds a number, to its last bit."""
+    def wait_for(self, selector: str, value: float, rel: float = 0.0) -> None:
+        """Wait until an element holds a number, to its last bit, or to a relative difference."""
         self.page.wait_for_function(
-            "([s, v]) => Number(document.querySelector(s)?.dataset.value) === v", arg=[selector, value]
+            "([s, v, rel]) => { const x = Number(document.querySelector(s)?.dataset.value);"
+            " return x === v || Math.abs(x / v - 1) < rel; }",
+            arg=[selector, value, rel],
         )
+
+    def wait_for_results(self) -> None:
+        """Wait until the results are those of the form."""
+        self.page.wait_for_function("() => !document.querySelector('.results.stale')")
 
     def wait_for_peak(self, model: str, name: str, value: float) -> None:
         self.wait_for(f'#peaks tr[data-model="{model}"] [data-name="{name}"]', value)

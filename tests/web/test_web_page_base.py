@@ -80,7 +80,7 @@ def test_a_bad_value_is_answered_beside_it_even_in_a_closed_row(visitor, visit, 
         visitor.wait_for_error(f"{path}.{at}", said)
         assert page.locator(f'[data-path="{path}.{at}"] input').get_attribute("aria-invalid") == "true"
         visitor.fill(f"{path}.{field}", before)
-        page.wait_for_function("() => !document.querySelector('.results.stale')")
+        visitor.wait_for_results()
     assert page.locator(".error:visible").count() == 0
     page.get_by_role("button", name="Add an element").click()
     rows = page.locator("details[data-path]")
@@ -236,9 +236,7 @@ def test_springs_and_friction_are_chosen_and_bad_values_answered_beside_them(vis
     visitor.fill("ground.springs.positions", "-0.5 0 0.5")
 
     expected = p.m_tot * 9.81 / 1.2e9 * 1e3
-    page.wait_for_function(
-        "v => Math.abs(Number(document.querySelector('#springs dd').dataset.value) / v - 1) < 1e-12", arg=expected
-    )
+    visitor.wait_for("#springs dd", expected, 1e-12)
     visitor.fill("ground.springs.stiffness", "-1")
     visitor.wait_for_error("ground.springs.stiffness", "It must be from 1 to 1e+15, but -1 was given.")
     visitor.fill("ground.springs.stiffness", "4e8")
@@ -248,7 +246,7 @@ def test_springs_and_friction_are_chosen_and_bad_values_answered_beside_them(vis
     visitor.fill("ground.springs.positions", "0.1 0.5")
     visitor.wait_for_error("ground.springs.positions", "on both sides of the axis of the masses")
     visitor.fill("ground.springs.positions", "")
-    page.wait_for_function("() => !document.querySelector('.results.stale')")
+    visitor.wait_for_results()
     assert page.locator(".error:visible").count() == 0
     page.get_by_label("The base can slide").check()
     assert visitor.state()["ground"]["friction"] == 0.5
@@ -261,7 +259,7 @@ def test_springs_and_friction_are_chosen_and_bad_values_answered_beside_them(vis
         now = visitor.state()["ground"]
         assert sorted(now) == ["bed", "friction", "mat_mass"]
         assert sorted(now["bed"]) == keys
-        page.wait_for_function("() => !document.querySelector('.results.stale')")
+        visitor.wait_for_results()
         settled = visitor.value("#springs dd")
         assert 2.0 < settled < 12.0  # mm
     ground.select_option("")

@@ -186,7 +186,7 @@ def test_nonsense_in_any_field_is_answered_beside_it(visitor, preset, kind) -> N
             box.press("Tab")
         box.fill(good)
         box.press("Tab")
-    page.wait_for_function("() => !document.querySelector('.results.stale')")
+    visitor.wait_for_results()
     assert page.locator(".error:visible").all_inner_texts() == []
     assert "Traceback" not in page.content()
 

@@ -10,27 +10,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from rockflex import fragility
 from rockflex._cases import runs_by_case, runs_of_case
 from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError, SolverError
 from rockflex._number_format import short_number
 from rockflex._shown import number_with_noun, shown
-from rockflex.fragility import (
-    NOMINAL,
-    OVERTURNING,
-    ROCKED,
-    CloudFit,
-    CloudFits,
-    LogisticFit,
-    LognormalFragility,
-    fit_capacities,
-    fit_clouds,
-    fit_each_cloud,
-    fit_stripes,
-    observed_exceedance_fractions,
-    recordings_of_runs,
-    rocked_runs,
-)
 from rockflex.plot import _figures as figures
 from rockflex.plot import _study_tables as tables
 from rockflex.plot._figures import BLACK, BLUE, GRAY, RED, SHADE, SMALL, LineStyle, Size
@@ -58,7 +43,7 @@ _CROSSES = 0.038  # and of the crosses
 
 
 def plot_fragility(
-    clouds: "pd.DataFrame | Sequence[CloudFits]",
+    clouds: "pd.DataFrame | Sequence[fragility.CloudFits]",
     measure: str | None = None,
     *,
     confidence: float | None = None,
@@ -155,17 +140,17 @@ def plot_fragility(
 
 
 def _fits_of_clouds(
-    clouds: "pd.DataFrame | Sequence[CloudFits]", measure: str | None, groups: int
-) -> "tuple[list[CloudFits], pd.DataFrame | None]":
+    clouds: "pd.DataFrame | Sequence[fragility.CloudFits]", measure: str | None, groups: int
+) -> "tuple[list[fragility.CloudFits], pd.DataFrame | None]":
     """The fits, and the solved runs if they are known."""
     if hasattr(clouds, "columns"):
         runs: pd.DataFrame = clouds  # pyright: ignore[reportAssignmentType]
-        found = fit_clouds(runs, measure or "pgv")
+        found = fragility.fit_clouds(runs, measure or "pgv")
         if not found:
             raise InputError("The table has no rows. Give what run_cloud returned.")
         return found, runs[runs["status"].notna()]
     given: list[Any] = list(clouds)
-    fits = [fit for fit in given if isinstance(fit, CloudFits)]
+    fits = [fit for fit in given if isinstance(fit, fragility.CloudFits)]
     if not fits or len(fits) < len(given):
         raise InputError("clouds must be the table of a cloud study, or at least one fit of it from fit_clouds.")
     measures = tables.names_in_column(fit.measure for fit in fits)
@@ -179,14 +164,14 @@ def _fits_of_clouds(
     return fits, None
 
 
-def _outcome_axis_limit(fits: list[CloudFits], runs: "pd.DataFrame | None", *, whole: bool) -> float:
+def _outcome_axis_limit(fits: list[fragility.CloudFits], runs: "pd.DataFrame | None", *, whole: bool) -> float:
     """End of the axis: where the curves of rocking approach 1, or the strongest motion if overturning is shown."""
     ends: list[float] = []
     for fit in fits:
         rocks, falls = fit.outcomes.initiation, fit.outcomes.overturning
-        if isinstance(rocks, LogisticFit) and rocks.b1 > 0.0:
+        if isinstance(rocks, fragility.LogisticFit) and rocks.b1 > 0.0:
             ends.append(float(np.exp((_LOGIT_END - rocks.b0) / rocks.b1)))
-        if whole and isinstance(falls, LogisticFit) and falls.b1 > 0.0:
+        if whole and isinstance(falls, fragility.LogisticFit) and falls.b1 > 0.0:
             ends.append(2.0 * falls.median)
     if runs is None:
         return max(ends, default=1.0)
@@ -206,11 +191,11 @@ def _draw_fragility_curve(
 
 
 def _mark_observed_fractions(
-    axes: Axes, runs: "pd.DataFrame", fit: CloudFits, marker: str, color: str, groups: int
+    axes: Axes, runs: "pd.DataFrame", fit: fragility.CloudFits, marker: str, color: str, groups: int
 ) -> None:
     """Fraction of rocking runs in groups of neighbouring intensities, at their geometric mean."""
-    rocks = rocked_runs(runs, fit.outcomes.threshold).to_numpy(dtype=bool)
-    observed = observed_exceedance_fractions(runs[fit.measure].to_numpy(dtype=float), rocks, groups)
+    rocks = fragility.rocked_runs(runs, fit.outcomes.threshold).to_numpy(dtype=bool)
+    observed = fragility.observed_exceedance_fractions(runs[fit.measure].to_numpy(dtype=float), rocks, groups)
     axes.plot(
         *zip(*observed, strict=True), marker, color=color, markersize=3.0, markerfacecolor="none", markeredgewidth=0.7,
         label="_observed",
@@ -311,13 +296,15 @@ def plot_stripes(
     return figure
 
 
-def _fit_of_stripes(runs: "pd.DataFrame", limit: "StripeLimit") -> LognormalFragility | None:
+def _fit_of_stripes(runs: "pd.DataFrame", limit: "StripeLimit") -> fragility.LognormalFragility | None:
     from rockflex.study.stripes import stripe_limit_state
 
     solved = runs[runs["status"].notna()]
     exceeded = stripe_limit_state(limit).exceeded(solved).astype(bool)
     try:
-        return fit_stripes(solved["level"], exceeded, np.ones(len(solved)), recordings_of_runs(solved))
+        return fragility.fit_stripes(
+            solved["level"], exceeded, np.ones(len(solved)), fragility.recordings_of_runs(solved)
+        )
     except (InputError, SolverError):
         return None
 
@@ -457,7 +444,7 @@ def _draw_ida_capacities(axes: Axes, rows: "pd.DataFrame", confidence: float | N
         at, fraction = np.append(0.0, estimate.quantiles), np.append(0.0, estimate.probabilities)
         axes.step(at, fraction, where="post", color=BLACK, linewidth=0.9, label="_ecdf")
     with suppress(InputError):  # too few records
-        fit = fit_capacities(reached, censored, rows["group"])
+        fit = fragility.fit_capacities(reached, censored, rows["group"])
         end = float(reached.max()) * 1.3
         known = None if fit.covariance is None else confidence
         _draw_fragility_curve(axes, fit, end, known, LineStyle(RED, "--"), linewidth=1.1, label="_fit")
@@ -479,7 +466,7 @@ class _PlottedCloud(NamedTuple):
     rocked: "pd.DataFrame"
     fallen: "pd.DataFrame"
     n_failed: int
-    line: CloudFit | None
+    line: fragility.CloudFit | None
     fitted: bool
 
 
@@ -488,7 +475,7 @@ def plot_clouds(
     quantity: Literal["max_rotation", "max_top_displacement", "max_total_top_displacement"] = "max_rotation",
     measure: str = "pgv",
     *,
-    threshold: float = ROCKED,
+    threshold: float = fragility.ROCKED,
     nominal: bool = False,
     size: Size | None = None,
 ) -> Figure:
@@ -573,7 +560,7 @@ def _plotted_clouds(
     runs: "pd.DataFrame", quantity: str, measure: str, threshold: float, *, nominal: bool
 ) -> list[_PlottedCloud]:
     """Clouds of all structures and models, in the order of the table."""
-    fits, _ = fit_each_cloud(runs, measure, threshold=threshold, nominal=nominal)
+    fits, _ = fragility.fit_each_cloud(runs, measure, threshold=threshold, nominal=nominal)
     fit_of = {(fit.structure, fit.model): fit for fit in fits}
     everything = runs[runs["status"].notna()]
     if not len(everything):
@@ -587,8 +574,8 @@ def _plotted_clouds(
     clouds: list[_PlottedCloud] = []
     for structure, model, group in runs_by_case(runs):
         solved = group[group["status"].notna()]
-        fell = (NOMINAL if nominal else OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
-        rocks = ~fell & rocked_runs(solved, threshold).to_numpy(dtype=bool)
+        fell = (fragility.NOMINAL if nominal else fragility.OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
+        rocks = ~fell & fragility.rocked_runs(solved, threshold).to_numpy(dtype=bool)
         fit = fit_of.get((structure, model))
         line = fit and (fit.outcomes.rotation if quantity == "max_rotation" else getattr(fit, quantity[4:]))
         failed = len(group) - len(solved)

@@ -7,20 +7,11 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 
+from rockflex import fragility
 from rockflex._arrays import Array
 from rockflex._errors import InputError, SolverError
 from rockflex._json import as_json_value
 from rockflex._shown import number_with_noun
-from rockflex.fragility import (
-    NOMINAL,
-    OVERTURNING,
-    ROCKING,
-    CloudFits,
-    fit_each_cloud,
-    fit_outcomes,
-    observed_exceedance_fractions,
-    recordings_of_runs,
-)
 from rockflex.kinds import KINDS
 from rockflex.motion import MEASURES
 from rockflex.study import count_pivot_lifts, tables_to_dataframe, yielding_model_labels
@@ -166,7 +157,7 @@ def cloud_view(job: StudyJob, state: PageState) -> dict[str, Any]:
         view["notes"].append("All runs so far have the same intensity.")
         return as_json_value(view)
     grid = np.geomspace(im.min(), im.max(), CURVE_POINTS)
-    fits, reasons = fit_each_cloud(solved, choice.measure, nominal=choice.limit == NOMINAL.name)
+    fits, reasons = fragility.fit_each_cloud(solved, choice.measure, nominal=choice.limit == fragility.NOMINAL.name)
     view["notes"] += [f"{model}: {reason}" for (_, model), reason in reasons.items()]
     for fit in fits:
         part = solved[solved["model"].astype(str) == fit.model]
@@ -175,7 +166,7 @@ def cloud_view(job: StudyJob, state: PageState) -> dict[str, Any]:
 
 
 def _fragility_curve_view(
-    fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Array, notes: list[str]
+    fit: fragility.CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Array, notes: list[str]
 ) -> dict[str, Any]:
     im, rotation = (part[name].to_numpy(dtype=float) for name in (choice.measure, "max_rotation"))
     over = limit_state_of_choice(choice.limit, choice.rotation).exceeded(part).to_numpy(dtype=bool)
@@ -187,7 +178,7 @@ def _fragility_curve_view(
         "point_im": im,
         "point_rotation": np.minimum(rotation, 0.5 * math.pi),
         "point_over": over.astype(int),
-        "observed": observed_exceedance_fractions(im, over, OBSERVED_BINS),
+        "observed": fragility.observed_exceedance_fractions(im, over, OBSERVED_BINS),
         "median": None,
         "p": None,
         "low": None,
@@ -197,15 +188,17 @@ def _fragility_curve_view(
     if choice.limit == ROTATION:
         try:
             # On springs bases turn without uplift too, so a rotation is not one of rocking runs only.
-            fallen = OVERTURNING.exceeded(part).to_numpy(dtype=bool)
-            turned = fit_outcomes(im, rotation, fallen, recordings_of_runs(part)).curve(choice.rotation)
+            fallen = fragility.OVERTURNING.exceeded(part).to_numpy(dtype=bool)
+            turned = fragility.fit_outcomes(im, rotation, fallen, fragility.recordings_of_runs(part)).curve(
+                choice.rotation
+            )
             found["p"] = turned.probability(grid)
             found["median"] = _interpolated_fragility_median(grid, found["p"])
             found["low"], found["high"] = turned.band(grid, choice.confidence)
         except (InputError, SolverError) as error:
             notes.append(f"{fit.model}: {error}")
         return found
-    curve = fit.outcomes.initiation if choice.limit == ROCKING.name else fit.outcomes.overturning
+    curve = fit.outcomes.initiation if choice.limit == fragility.ROCKING.name else fit.outcomes.overturning
     low, high = curve.band(grid, choice.confidence)
     median = getattr(curve, "median", None)
     note = getattr(curve, "note", "")
@@ -232,7 +225,9 @@ def _cloud_figure(job: StudyJob, state: PageState) -> Any:
     from rockflex.plot import plot_fragility
 
     choice = state.cloud
-    fits, reasons = fit_each_cloud(some_runs_of_study_job(job), choice.measure, nominal=choice.limit == NOMINAL.name)
+    fits, reasons = fragility.fit_each_cloud(
+        some_runs_of_study_job(job), choice.measure, nominal=choice.limit == fragility.NOMINAL.name
+    )
     if not fits:
         reason = " ".join(f"{model}: {why}" for (_, model), why in reasons.items())
         raise Refusal(f"There is no curve to draw. {reason}")

@@ -197,7 +197,7 @@ class ResampledInterval(NamedTuple):
 
 
 def bootstrap_intervals(
-    fit: Callable[[Array, Array], Array], x: Array, y: Array, groups: NDArray[Any], size: int, n: int
+    fit: Callable[[Array, Array], Array], x: Array, y: NDArray[Any], groups: NDArray[Any], size: int, n: int
 ) -> list[ResampledInterval]:
     """Return the interval of each of the `size` values of a fit, over `n` draws of whole groups."""
     band = rf.bootstrap_band(fit, x, y, groups, at=np.arange(size), n=n, curve=lambda values, _: values)
