@@ -46,3 +46,8 @@ def uplift_intervals(response):
 def notes(axes):
     """What is written in and beside a panel."""
     return [text.get_text() for text in axes.texts]
+
+
+def legend(figure):
+    """The entries of the legend of a figure."""
+    return [text.get_text() for text in figure.legends[0].get_texts()]

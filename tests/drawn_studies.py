@@ -4,7 +4,7 @@ import numpy as np
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.plot._style import BLACK, RED
+from rockflex.plot._figures import BLACK, RED
 
 SUITE = rf.load_suite("fema-p695-far-field")
 FRAMES = {
@@ -27,7 +27,3 @@ def points(lines):
 
 def of(table, structure, model):
     return table[(table["structure"] == structure) & (table["model"] == model)]
-
-
-def legend(figure):
-    return [text.get_text() for text in figure.legends[0].get_texts()]

@@ -11,7 +11,6 @@ import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024._equivalents import _five_masses_of_s1, modes_of_tipped_cantilever
 
 G = 9.81
-RATIO = "base_mass_ratio must be a zero or positive, finite number in kg of base a kg above it"
 
 
 def lumped_column(tip, parts=400):
@@ -125,42 +124,20 @@ def test_masses_do_not_matter():
 
 
 @pytest.mark.parametrize(
-    ("make", "message"),
+    ("make", "said"),
     [
-        (
-            lambda: rf.equivalent_2hz_long_base(-0.1, 0.01),
-            f"{RATIO}, but -0.1 was given.",
-        ),
-        (
-            lambda: rf.equivalent_2hz_long_base(0.1, 2.0),
-            "damping_ratio must lie in [0, 1), but 2.0 was given. Give the fraction of critical damping: 2 % is 0.02.",
-        ),
-        (
-            lambda: rf.equivalent_2hz_long_base(0.1, 0.01, 6),
-            "n_modes must be a whole number from 1 to 5, but 6 was given.",
-        ),
-        (
-            lambda: rf.equivalent_s1(0.1, 0.01, 0.2, 0.0),
-            "effective_height must be a positive, finite number in m, but 0.0 was given.",
-        ),
-        (
-            lambda: rf.equivalent_s1(0.1, 0.01, -1.0, 0.5),
-            "width_ratio must be a positive, finite number in m of B a m of h*_1, but -1.0 was given.",
-        ),
-        (
-            lambda: rf.equivalent_s1(-1.0, 0.01, 0.2, 0.5),
-            f"{RATIO}, but -1.0 was given.",
-        ),
-        (
-            lambda: rf.equivalent_s1(0.1, 0.01, 0.2, 0.5, 1.0),
-            "spacing must lie in [1.25, 1.7), but 1.0 was given. Elsewhere no masses meet both ratios well.",
-        ),
+        (lambda: rf.equivalent_2hz_long_base(-0.1, 0.01), "base_mass_ratio must be a zero or positive"),
+        (lambda: rf.equivalent_2hz_long_base(0.1, 2.0), "damping_ratio must lie in"),
+        (lambda: rf.equivalent_2hz_long_base(0.1, 0.01, 6), "n_modes must be a whole number from 1 to 5, but 6"),
+        (lambda: rf.equivalent_s1(0.1, 0.01, 0.2, 0.0), "effective_height must be a positive"),
+        (lambda: rf.equivalent_s1(0.1, 0.01, -1.0, 0.5), "width_ratio must be a positive"),
+        (lambda: rf.equivalent_s1(-1.0, 0.01, 0.2, 0.5), "base_mass_ratio must be a zero or positive"),
+        (lambda: rf.equivalent_s1(0.1, 0.01, 0.2, 0.5, 1.0), "spacing must lie in"),
     ],
 )
-def test_what_makes_no_equivalent_is_named(make, message):
-    with pytest.raises(rf.InputError) as caught:
+def test_what_makes_no_equivalent_is_named(make, said):
+    with pytest.raises(rf.InputError, match=said):
         make()
-    assert str(caught.value) == message
 
 
 def test_the_block_is_homogeneous():

@@ -114,24 +114,17 @@ def test_gaps_and_single_designs():
 
 
 @pytest.mark.parametrize(
-    ("table", "message"),
+    ("table", "said"),
     [
-        (designs().drop(columns="low"), "The table lacks low. Give what design_table returned."),
-        (designs()[:0], "The table has no rows. Give what design_table returned."),
-        (
-            designs({f"T{i}": [0.1] * 4 for i in range(16)}),
-            "16 tendons are too many to distinguish in one figure, which can show 15. Plot fewer at a time.",
-        ),
-        (
-            designs().assign(limit=[0.01, 0.02] * 4),
-            "The designs have limits of several kinds. Plot the table of one limit.",
-        ),
+        (designs().drop(columns="low"), "The table lacks low"),
+        (designs()[:0], "has no rows. Give what design_table returned"),
+        (designs({f"T{i}": [0.1] * 4 for i in range(16)}), "16 tendons are too many"),
+        (designs().assign(limit=[0.01, 0.02] * 4), "limits of several kinds"),
     ],
 )
-def test_what_cannot_be_drawn(table, message):
-    with pytest.raises(rf.InputError) as caught:
+def test_what_cannot_be_drawn(table, said):
+    with pytest.raises(rf.InputError, match=said):
         rf.plot_design(table)
-    assert str(caught.value) == message
 
 
 # The command line

@@ -6,7 +6,7 @@ from matplotlib.colors import to_hex
 
 import rockflex as rf
 from builders import make_frame
-from drawing import drawn
+from drawing import drawn, legend
 from rockflex.plot import plot_energy, plot_mode_shapes, plot_moment_rotation
 
 FRAME = make_frame()
@@ -44,9 +44,7 @@ def test_moment_rotation_draws_the_loops_and_the_static_line(responses):
         assert axes.get_ylim()[1] * 1e6 > max(response.max_base_moment, RESISTANCE)
     assert figure.get_supylabel() == "$M_b$ [MN m]"
     assert figure.get_supxlabel() == "θ [rad]"
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
-        r"static, $\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$"
-    ]
+    assert legend(figure) == [r"static, $\pm(m_{tot}\,g\,B - L_0^r\,g\,|θ|)$"]
 
 
 def test_loops_of_a_rigid_structure_lie_on_a_share_of_the_static_line():
@@ -90,12 +88,8 @@ def test_moment_rotation_without_uplift_shows_the_static_line_whole():
 
 
 def test_moment_rotation_needs_a_base_that_lifts(responses):
-    with pytest.raises(rf.InputError) as caught:
+    with pytest.raises(rf.InputError, match="None of the responses has a base that can lift"):
         plot_moment_rotation(responses["fixed"])
-    assert str(caught.value) == (
-        "None of the responses has a base that can lift, so there is no moment over rotation to plot. "
-        'Give at least one of a model that rocks, such as "2DOF-S".'
-    )
 
 
 # --- mode shapes ---------------------------------------------------------------------------------------------------
@@ -157,12 +151,8 @@ def test_a_mode_that_takes_no_part_has_no_height():
 
 
 def test_mode_shapes_refuse_what_has_no_modes():
-    with pytest.raises(rf.InputError) as caught:
+    with pytest.raises(rf.InputError, match=r"structure_or_modal must be .* RockingProperties was given"):
         plot_mode_shapes(FRAME.rocking())
-    assert str(caught.value) == (
-        "structure_or_modal must be a structure with modes, such as a Frame, or its ModalProperties, but "
-        "RockingProperties was given. Give the structure itself, or structure.modal()."
-    )
     with pytest.raises(rf.InputError, match="n_modes must be a whole number from 1 to 5, but 6 was given"):
         plot_mode_shapes(FRAME, 6)
 
@@ -196,7 +186,7 @@ def test_energy_layers_stack_up_to_the_input(responses):
     assert axes.get_ylabel() == "energy [kJ]"
     assert axes.get_ylim()[1] > line.get_ydata().max()
     assert axes.get_title() == (f"MDOF-S under {RECORD.name}, closing error {response.energy.closing_error:.1e}")
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["input", *reversed(stack)]
+    assert legend(figure) == ["input", *reversed(stack)]
 
 
 def test_energy_leaves_out_what_stays_empty(responses):

@@ -1,5 +1,7 @@
 """Fragility: clouds, curves, and incremental dynamic analyses."""
 
+import re
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -7,8 +9,8 @@ from matplotlib.colors import to_hex
 from scipy.optimize import minimize
 
 import rockflex as rf
-from drawing import drawn, notes
-from drawn_studies import COLORS, FRAMES, MODELS, legend, lines, of, points
+from drawing import drawn, legend, notes
+from drawn_studies import COLORS, FRAMES, MODELS, lines, of, points
 from rockflex.fragility import fit_clouds, fit_stripes
 
 # Fig. 5
@@ -134,18 +136,6 @@ def test_a_cloud_without_a_fit_is_points_and_says_so(cloud):
     assert right / left == pytest.approx(4.0)  # wide enough for a label of 1, 2 or 5
 
 
-def test_clouds_that_cannot_be_drawn(cloud):
-    runs = of(cloud, "#1", "MDOF-S")
-    with pytest.raises(rf.InputError, match=r"^No run was solved\. See the column error of the table\.$"):
-        rf.plot_clouds(runs.assign(status=pd.NA))
-    with pytest.raises(rf.InputError) as refused:
-        rf.plot_clouds(runs.assign(pgv=0.0))
-    assert str(refused.value) == (
-        f"pgv must be positive, as its axis is logarithmic, but {len(runs)} of {len(runs)} values are not. Leave those "
-        "runs out: keep the rows with pgv > 0."
-    )
-
-
 def test_nominal_overturning_and_failed_runs_are_counted(cloud):
     runs = of(cloud, "#1", "2DOF-S").copy()
     rocking = runs.index[runs["status"] == "rocking"]
@@ -167,80 +157,43 @@ def renamed(table, column, count):
 
 
 @pytest.mark.parametrize(
-    ("call", "message"),
+    ("call", "said"),
     [
-        (
-            lambda cloud, *_: rf.plot_fragility([]),
-            "clouds must be the table of a cloud study, or at least one fit of it from fit_clouds.",
-        ),
-        (
-            lambda cloud, *_: rf.plot_fragility(cloud[:0]),
-            "The table has no rows. Give what run_cloud returned.",
-        ),
-        (
-            lambda cloud, *_: rf.plot_fragility(fit_clouds(cloud), "pga"),
-            "The fits are of pgv, but 'pga' is to be shown. Fit the clouds with that one.",
-        ),
+        (lambda cloud, *_: rf.plot_fragility([]), "or at least one fit of it from fit_clouds"),
+        (lambda cloud, *_: rf.plot_fragility(cloud[:0]), "has no rows. Give what run_cloud returned"),
+        (lambda cloud, *_: rf.plot_fragility(fit_clouds(cloud), "pga"), "of pgv, but 'pga' is to be shown"),
         (
             lambda cloud, *_: rf.plot_fragility([*fit_clouds(cloud), *fit_clouds(cloud, "pga")]),
-            "The fits are of pgv, pga, but one measure is to be shown. Fit the clouds with that one.",
+            "of pgv, pga, but one measure is to be shown",
         ),
-        (
-            lambda cloud, *_: rf.plot_fragility(fit_clouds(cloud), bins=4),
-            "bins counts runs, but only fits were given. Give the table of the study.",
-        ),
-        (
-            lambda cloud, *_: rf.plot_fragility(renamed(cloud, "structure", 13)),
-            "13 structures are too many for one figure; 12 fit. Plot fewer at a time.",
-        ),
-        (
-            lambda cloud, *_: rf.plot_clouds(cloud, "max_base_shear"),
-            "quantity must be one of max_rotation, max_top_displacement, max_total_top_displacement, but "
-            "'max_base_shear' was given.",
-        ),
-        (
-            lambda cloud, *_: rf.plot_clouds(cloud, measure="pgw"),
-            "The table lacks pgw. Give what run_cloud returned.",
-        ),
-        (
-            lambda cloud, pairs, _: rf.plot_population(pairs.drop(columns="pgv")),
-            "The table lacks pgv. Give what run_population returned.",
-        ),
-        (
-            lambda cloud, pairs, _: rf.plot_agreement(pairs.assign(status_mdof=None)),
-            "No pair was solved. See the column error of the table.",
-        ),
+        (lambda cloud, *_: rf.plot_fragility(fit_clouds(cloud), bins=4), "bins counts runs, but only fits were given"),
+        (lambda cloud, *_: rf.plot_fragility(renamed(cloud, "structure", 13)), "13 structures are too many"),
+        (lambda cloud, *_: rf.plot_clouds(cloud, "max_base_shear"), "quantity must be one of max_rotation, "),
+        (lambda cloud, *_: rf.plot_clouds(cloud, measure="pgw"), "The table lacks pgw"),
+        (lambda cloud, pairs, _: rf.plot_population(pairs.drop(columns="pgv")), "The table lacks pgv"),
+        (lambda cloud, pairs, _: rf.plot_agreement(pairs.assign(status_mdof=None)), "No pair was solved"),
         (
             lambda cloud, pairs, _: rf.plot_agreement(pairs.assign(aspect_ratio=np.arange(120.0))),
-            "120 aspect ratios were given, but there are 15 symbols. Plot some of them.",
+            "120 aspect ratios were given, but there are 15 symbols",
         ),
         (
             lambda cloud, pairs, _: rf.plot_modal_combination(pairs.drop(columns=["sd_2", "srss_base_shear"])),
             "The table lacks sd_2, srss_base_shear. Give what run_population returned.",
         ),
-        (
-            lambda cloud, pairs, _: rf.plot_ida(cloud),
-            "The table lacks overturned, resurrections, first_overturning_scale, last_survival_scale. "
-            "Give what run_incremental returned.",
-        ),
+        (lambda cloud, *_: rf.plot_ida(cloud), "lacks overturned, resurrections, first_overturning_scale"),
         (
             lambda cloud, pairs, ladders: rf.plot_ida(renamed(ladders, "structure", 7)),
-            "7 structures and models are too many for one figure; 6 fit. Plot fewer at a time.",
+            "7 structures and models are too many",
         ),
-        (
-            lambda cloud, *_: rf.plot_stripes(cloud),
-            "The table lacks level. Give the table of a stripe study.",
-        ),
-        (
-            lambda cloud, *_: rf.plot_stripes(cloud.assign(level=1.0, status=None)),
-            "No run was solved. See the column error of the table.",
-        ),
+        (lambda cloud, *_: rf.plot_stripes(cloud), "The table lacks level"),
+        (lambda cloud, *_: rf.plot_stripes(cloud.assign(level=1.0, status=None)), "No run was solved"),
+        (lambda cloud, *_: rf.plot_clouds(cloud.assign(status=pd.NA)), "No run was solved"),
+        (lambda cloud, *_: rf.plot_clouds(cloud.assign(pgv=0.0)), "keep the rows with pgv > 0"),
     ],
 )
-def test_what_cannot_be_drawn_is_named(cloud, pairs, ladders, call, message):
-    with pytest.raises(rf.InputError) as caught:
+def test_what_cannot_be_drawn_is_named(cloud, pairs, ladders, call, said):
+    with pytest.raises(rf.InputError, match=re.escape(said)):
         call(cloud, pairs, ladders)
-    assert str(caught.value) == message
 
 
 def test_ida_curves_break_where_runs_overturn(ladders):

@@ -2,6 +2,7 @@
 
 import io
 import math
+import re
 import subprocess
 import sys
 from itertools import pairwise
@@ -200,24 +201,15 @@ def test_black_is_for_the_model_with_the_most_modes(four):
 def test_what_cannot_be_drawn_is_named(four):
     peaks = rf.simulate(FRAME, RECORD, "2DOF-S", output="peaks")
     cases = [
-        (([],), 'There is no response to plot. Give at least one from simulate(..., output="history").'),
-        (
-            ([four[0], peaks],),
-            f"responses[1] (2DOF-S under '{RECORD.name}') keeps peaks only, but a plot needs the history. "
-            'Simulate it with output="history".',
-        ),
-        (
-            ([four[0], None],),
-            "responses[1] must be a Response, but NoneType was given. Give what simulate returned, or the column "
-            '"response" of simulate_many(..., output="history").',
-        ),
-        ((four, ["a"]), "labels must be a sequence of 4 strings, one per response, but 1 was given."),
-        ((four, "abcd"), "labels must be a sequence of 4 strings, one per response, but the string 'abcd' was given."),
+        (([],), "There is no response to plot"),
+        (([four[0], peaks],), f"responses[1] (2DOF-S under '{RECORD.name}') keeps peaks only"),
+        (([four[0], None],), "responses[1] must be a Response, but NoneType was given"),
+        ((four, ["a"]), "labels must be a sequence of 4 strings, one per response, but 1 was given"),
+        ((four, "abcd"), "but the string 'abcd' was given"),
     ]
-    for arguments, message in cases:
-        with pytest.raises(rf.InputError) as caught:
+    for arguments, said in cases:
+        with pytest.raises(rf.InputError, match=re.escape(said)):
             plot_history(*arguments)
-        assert str(caught.value) == message
 
 
 def test_the_settings_of_the_caller_stay_as_they_are(four):
@@ -273,12 +265,8 @@ def test_without_a_known_height_there_is_no_panel_of_the_total_displacement():
 
 @pytest.mark.parametrize("panels", [(), ("rotation", "rotation"), ("theta",)])
 def test_panels_that_are_none_are_named(four, panels):
-    with pytest.raises(rf.InputError) as caught:
+    with pytest.raises(rf.InputError, match=re.escape(f"each once, but {panels!r} was given")):
         plot_history(four, panels=panels)
-    assert str(caught.value) == (
-        "panels must be one or more of rotation, top_displacement, total_top_displacement, base_moment, base_shear, "
-        f"horizontal_reaction, slip, edge_uplift, each once, but {panels!r} was given."
-    )
 
 
 def test_complete_and_yielding_models_have_looks_of_their_own(four):
@@ -439,11 +427,9 @@ def test_what_falls_counts_no_more_and_stretches_nothing():
 
 
 def test_groups_must_fit(nominal, varied):
-    text = "varied must hold 2 groups, one per response, each of at least one response, but groups of {} were given."
     for groups, sizes in (([varied[0]], "[2]"), ([varied[0], []], "[2, 0]")):
-        with pytest.raises(rf.InputError) as caught:
+        with pytest.raises(rf.InputError, match=re.escape(f"but groups of {sizes} were given")):
             plot_spread(nominal, groups)
-        assert str(caught.value) == text.format(sizes)
     peaks = rf.simulate(rf.equivalent_2hz_long_base(0.0, 0.01), PULSE, "2DOF-S", output="peaks")
     with pytest.raises(rf.InputError, match="keeps peaks only"):
         plot_spread(nominal, [varied[0], [peaks]])

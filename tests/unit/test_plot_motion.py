@@ -81,12 +81,8 @@ def test_motion_may_be_quiet_and_nameless():
 
 
 def test_motion_refuses_what_is_none():
-    with pytest.raises(rf.InputError) as caught:
+    with pytest.raises(rf.InputError, match="motion must be a GroundMotion, but ndarray was given"):
         plot_motion(np.zeros(5))
-    assert str(caught.value) == (
-        "motion must be a GroundMotion, but ndarray was given. "
-        "Read one from a file, take one of a suite, or build it from its samples."
-    )
 
 
 @pytest.mark.parametrize(
@@ -156,15 +152,10 @@ def test_selection_of_pairs_names_the_measure(measure):
     named = rf.TargetSpectrum([0.01, 10.0], [5.0, 0.5], name="$my")
     chosen = SUITE[:6].select(named, 2, [0.3, 0.6, 1.0], measure=measure, scale_limits=(0.01, 100.0))
     figure = drawn(plot_selection(chosen))
-    label = figure.axes[0].get_ylabel()
-    assert (
-        label
-        == {"geometric mean": "geometric-mean $S_a$", "rotd50": "RotD50 $S_a$", "rotd100": "RotD100 $S_a$"}[measure]
-        + " [m/s²]"
-    )
+    names = {"geometric mean": "geometric-mean $S_a$", "rotd50": "RotD50 $S_a$", "rotd100": "RotD100 $S_a$"}
+    assert figure.axes[0].get_ylabel() == f"{names[measure]} [m/s²]"
 
 
 def test_selection_refuses_what_is_none():
-    with pytest.raises(rf.InputError) as caught:
+    with pytest.raises(rf.InputError, match="selection must be a Selection, but Suite was given"):
         plot_selection(SUITE)
-    assert str(caught.value) == "selection must be a Selection, but Suite was given. Make one: suite.select(...)."

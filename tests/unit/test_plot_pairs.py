@@ -2,10 +2,10 @@ import numpy as np
 from matplotlib.colors import to_hex
 
 import rockflex as rf
-from drawing import drawn, notes
-from drawn_studies import legend, lines
+from drawing import drawn, legend, notes
+from drawn_studies import lines
 from rockflex.papers.silva_stojadinovic_2024.population import population_statistics
-from rockflex.plot._style import BLUE
+from rockflex.plot._figures import BLUE
 
 
 def test_population_bars_count_the_pairs(pairs):
@@ -118,6 +118,3 @@ def test_modal_combination_is_the_root_of_the_sum_of_squares(pairs):
             r2 = 1.0 - ((y - alone) ** 2).sum() / ((y - y.mean()) ** 2).sum()
             told.append(f"(2DOF-S alone: {r2:.2f})".replace("-0", "−0"))
         assert notes(axes)[0] == "\n".join([*told, f"$y$ = {c1:.2f} $x$"])
-
-
-# Incremental analysis and stripes

@@ -1,6 +1,7 @@
 """Figures of uplifted frequencies, moment-rotation laws and towers: the artists carry the right numbers."""
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from drawing import drawn, notes
+from drawing import drawn, legend, notes
 
 FRAME = make_frame()
 OTHER = make_frame(stiffness_ratio=0.0)
@@ -24,10 +25,6 @@ def tables():
 
 def named(axes, label):
     return [line for line in axes.get_lines() if line.get_label() == label]
-
-
-def legend(figure):
-    return [text.get_text() for text in figure.legends[0].get_texts()]
 
 
 def test_a_curve_a_model_and_structure_in_a_panel_a_mode(tables):
@@ -209,71 +206,33 @@ def test_a_tower_by_its_measures():
     drawn(rf.plot_tower(replace(TOWER, wall=4.0), 200.0))
 
 
+RATIOS_OF_ONE = rf.frequency_ratios(FRAME, [1.0])
+BEAM = rf.pinned_beam("shear", n_modes=1)
+
+
 @pytest.mark.parametrize(
-    ("call", "message"),
+    ("call", "said"),
     [
-        (lambda: rf.plot_frequency_ratios({}), "0 tables were given, but one figure can show from 1 to 4."),
-        (
-            lambda: rf.plot_frequency_ratios(pd.DataFrame({"mode": [1]})),
-            "The table lacks model, aspect_ratio, ratio. Give what frequency_ratios returned.",
-        ),
-        (
-            lambda: rf.plot_frequency_ratios({"a": rf.frequency_ratios(FRAME, [1.0], 1)}),
-            "The table 'a' has no row of mode 2. Show modes that a model in it keeps.",
-        ),
-        (
-            lambda: rf.plot_frequency_ratios({"a": rf.frequency_ratios(FRAME, [1.0])}, {"b": rf.pinned_beam("shear")}),
-            "limits has the name 'b', which no table has: those have 'a'.",
-        ),
-        (
-            lambda: rf.plot_frequency_ratios(rf.frequency_ratios(FRAME, [1.0]), rf.pinned_beam("shear", n_modes=1)),
-            "The limit '' has 1 frequency ratios, but mode 2 is to be shown. Give pinned_beam(..., n_modes=2).",
-        ),
-        (
-            lambda: rf.plot_frequency_ratios(rf.frequency_ratios(FRAME, [1.0]), modes=()),
-            "modes is empty. Give at least one mode, counted from 1.",
-        ),
-        (
-            lambda: rf.plot_frequency_equation({}),
-            "There is nothing to plot. Give at least one structure, and one number of modes (None for all).",
-        ),
-        (
-            lambda: rf.plot_frequency_equation(3.0),
-            "structure must be a structure such as a Frame or a TaperedTower, or RockingProperties, but "
-            "float was given.",
-        ),
-        (
-            lambda: rf.plot_frequency_equation(FRAME, (6,)),
-            "n_modes must be a whole number from 1 to 5, but 6 was given.",
-        ),
-        (
-            lambda: rf.plot_frequency_equation(FRAME, highest=-1.0),
-            "highest must be a positive, finite number in ω/ω_1, but -1.0 was given.",
-        ),
-        (
-            lambda: rf.plot_frequency_equation(rf.rigid_block(0.2, 2.0)),
-            "A structure without modes has no frequency equation to plot. Give one with modes.",
-        ),
-        (
-            lambda: rf.plot_moment_rotation_laws(rf.Frame),
-            "structure must be a structure such as a Frame or a TaperedTower, or RockingProperties, but "
-            "the class Frame was given.",
-        ),
-        (
-            lambda: rf.plot_moment_rotation_laws(FRAME, spring=0.0),
-            "spring must be a positive, finite number in N m/rad, but 0.0 was given.",
-        ),
-        (lambda: rf.plot_tower(FRAME), "tower must be a TaperedTower, but Frame was given."),
-        (
-            lambda: rf.plot_tower(TOWER, 201.0),
-            "section must be at most the height of the tower, 200 m, but 201 m was given.",
-        ),
+        (lambda: rf.plot_frequency_ratios({}), "0 tables were given"),
+        (lambda: rf.plot_frequency_ratios(pd.DataFrame({"mode": [1]})), "lacks model, aspect_ratio, ratio"),
+        (lambda: rf.plot_frequency_ratios({"a": rf.frequency_ratios(FRAME, [1.0], 1)}), "'a' has no row of mode 2"),
+        (lambda: rf.plot_frequency_ratios({"a": RATIOS_OF_ONE}, {"b": BEAM}), "limits has the name 'b'"),
+        (lambda: rf.plot_frequency_ratios(RATIOS_OF_ONE, BEAM), "Give pinned_beam(..., n_modes=2)"),
+        (lambda: rf.plot_frequency_ratios(RATIOS_OF_ONE, modes=()), "modes is empty"),
+        (lambda: rf.plot_frequency_equation({}), "Give at least one structure"),
+        (lambda: rf.plot_frequency_equation(3.0), "structure must be a structure"),
+        (lambda: rf.plot_frequency_equation(FRAME, (6,)), "n_modes must be a whole number from 1 to 5, but 6"),
+        (lambda: rf.plot_frequency_equation(FRAME, highest=-1.0), "highest must be a positive"),
+        (lambda: rf.plot_frequency_equation(rf.rigid_block(0.2, 2.0)), "A structure without modes"),
+        (lambda: rf.plot_moment_rotation_laws(rf.Frame), "the class Frame was given"),
+        (lambda: rf.plot_moment_rotation_laws(FRAME, spring=0.0), "spring must be a positive"),
+        (lambda: rf.plot_tower(FRAME), "tower must be a TaperedTower, but Frame was given"),
+        (lambda: rf.plot_tower(TOWER, 201.0), "section must be at most the height of the tower, 200 m, but 201 m"),
     ],
 )
-def test_what_cannot_be_drawn_is_named(call, message):
-    with pytest.raises(rf.InputError) as caught:
+def test_what_cannot_be_drawn_is_named(call, said):
+    with pytest.raises(rf.InputError, match=re.escape(said)):
         call()
-    assert str(caught.value) == message
 
 
 def test_too_many_models_are_named():

@@ -15,29 +15,23 @@ from page import Page, check_page
 from rockflex import report
 from rockflex.papers import silva_stojadinovic_2024 as paper
 from rockflex.papers.silva_stojadinovic_2024 import RemarkKind, Verdict
-from rockflex.papers.silva_stojadinovic_2024._comparison import (
-    ResampledInterval,
-    compared_count,
-    compared_number,
-    compared_statement,
-    compared_statistic,
-    construction_check,
-)
+from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
+from rockflex.papers.silva_stojadinovic_2024._comparison import ResampledInterval
 from rockflex.report._publication_files import inline_svg
 
 MEANINGS = {str(verdict): verdict.meaning for verdict in Verdict}
 KINDS = {str(kind): kind.meaning for kind in RemarkKind}
 NUMBERS = (
-    compared_number("ω_1 <b>", "Table 3", "1.66", 1.6557, "rad/s"),
-    compared_number("a|b & c_*", "Section 1", "0.27", 0.16, note='says "so" & <more>'),
-    compared_statistic("R²", "Section 3.3", "0.99", ResampledInterval(0.983, 0.978, 0.988)),
-    compared_statement("friction", "Section 3.1", "higher than 2", float("inf"), "> 2", agreed=Verdict.EQUIVALENT),
-    compared_statistic("difference", "Section 3.2", "0.002", ResampledInterval(0.00093, 0.00064, 0.00329), "rad"),
-    compared_count("pairs that rock", "Section 3.3", "693", ResampledInterval(882.0, 867.0, 900.0)),
+    compare.number("ω_1 <b>", "Table 3", "1.66", 1.6557, "rad/s"),
+    compare.number("a|b & c_*", "Section 1", "0.27", 0.16, note='says "so" & <more>'),
+    compare.statistic("R²", "Section 3.3", "0.99", ResampledInterval(0.983, 0.978, 0.988)),
+    compare.statement("friction", "Section 3.1", "higher than 2", float("inf"), "> 2", agreed=Verdict.EQUIVALENT),
+    compare.statistic("difference", "Section 3.2", "0.002", ResampledInterval(0.00093, 0.00064, 0.00329), "rad"),
+    compare.count("pairs that rock", "Section 3.3", "693", ResampledInterval(882.0, 867.0, 900.0)),
 )
 CHECKS = (
-    construction_check("T_1 & <x>", "Section 3.1", "0.5", 0.5, unit="s"),
-    construction_check("M_r", "Table 2", "m_tot g B", 1.1, "< 1"),
+    compare.check("T_1 & <x>", "Section 3.1", "0.5", 0.5, unit="s"),
+    compare.check("M_r", "Table 2", "m_tot g B", 1.1, "< 1"),
 )
 computed = []
 ROOT = Path(rockflex.__file__).parent

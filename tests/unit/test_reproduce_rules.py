@@ -10,17 +10,8 @@ from hypothesis import strategies as st
 
 import rockflex as rf
 from rockflex.papers.silva_stojadinovic_2024 import RemarkKind, Verdict
-from rockflex.papers.silva_stojadinovic_2024._comparison import (
-    MAX_INTERVAL_WIDTH,
-    ResampledInterval,
-    compared_count,
-    compared_number,
-    compared_statement,
-    compared_statistic,
-    compared_tendency,
-    construction_check,
-    printed_range,
-)
+from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
+from rockflex.papers.silva_stojadinovic_2024._comparison import MAX_INTERVAL_WIDTH, ResampledInterval, printed_range
 from rockflex.papers.silva_stojadinovic_2024._inputs import TOWER
 from rockflex.papers.silva_stojadinovic_2024._section_3_2 import friction_intervals
 from rockflex.papers.silva_stojadinovic_2024._section_4 import RITZ, first_frequency_by_elements, ritz_modes_with_slices
@@ -91,22 +82,22 @@ def test_what_is_no_number_is_refused(printed):
 def test_every_number_reproduces_its_own_rounding_and_not_the_next(value, decimals):
     printed = f"{value:.{decimals}f}"
     step = 10.0**-decimals
-    assert compared_number("x", "y", printed, value).verdict is Verdict.REPRODUCED
+    assert compare.number("x", "y", printed, value).verdict is Verdict.REPRODUCED
     for off in (1.01, -1.01):
-        line = compared_number("x", "y", printed, float(printed) + off * step)
+        line = compare.number("x", "y", printed, float(printed) + off * step)
         assert line.verdict is Verdict.NOT
         assert line.difference == pytest.approx(off * step, rel=1e-6, abs=1e-10)
 
 
 def test_a_wrong_number_does_not_come_out_as_reproduced():
-    line = compared_number("ω_1", "Section 4.1.1", "1.678", 1.65568, "rad/s")
+    line = compare.number("ω_1", "Section 4.1.1", "1.678", 1.65568, "rad/s")
     assert line.verdict is Verdict.NOT
     assert str(line.verdict) == "does not reproduce"
     assert line.difference == pytest.approx(-0.02232)
     assert line.difference_as_text == "−0.02232 (−1.3 %)"
     assert line.ours_as_text == "1.65568"
-    assert compared_number("ω_1", "", "1.66", 1.65568).verdict is Verdict.REPRODUCED
-    assert compared_number("ω_1", "", "1.66", math.nan).verdict is Verdict.NOT
+    assert compare.number("ω_1", "", "1.66", 1.65568).verdict is Verdict.REPRODUCED
+    assert compare.number("ω_1", "", "1.66", math.nan).verdict is Verdict.NOT
 
 
 @pytest.mark.parametrize(
@@ -123,7 +114,7 @@ def test_a_wrong_number_does_not_come_out_as_reproduced():
     ],
 )
 def test_about_so_much_has_a_tolerance_that_the_line_states(printed, ours, verdict):
-    line = compared_number("ratio", "Section 4.2", printed, ours)
+    line = compare.number("ratio", "Section 4.2", printed, ours)
     assert line.verdict is verdict
     assert ("20 %" in line.criterion) == (printed != "2")
 
@@ -131,22 +122,22 @@ def test_about_so_much_has_a_tolerance_that_the_line_states(printed, ours, verdi
 @pytest.mark.parametrize(("printed", "low", "high"), [("306", 94.0, 124.0), ("306", 290.0, 320.0), ("2", 0.0, 5.0)])
 def test_a_count_of_outcomes_under_other_records_is_not_compared(printed, low, high):
     """Neither agreement nor difference is evidence, whatever the interval is."""
-    line = compared_count("pairs", "Section 3.3", printed, ResampledInterval(0.5 * (low + high), low, high))
+    line = compare.count("pairs", "Section 3.3", printed, ResampledInterval(0.5 * (low + high), low, high))
     assert line.verdict is Verdict.INCOMPARABLE
     assert line.difference == 0.5 * (low + high) - float(printed)
 
 
 def test_ground_of_a_value_that_agrees_and_of_one_that_does_not():
-    assert compared_number("B/h", "", "0.16", 0.16, agreed=Verdict.EQUIVALENT).verdict is Verdict.EQUIVALENT
-    assert compared_number("μ", "", "0.27", 0.16, agreed=Verdict.EQUIVALENT).verdict is Verdict.NOT
+    assert compare.number("B/h", "", "0.16", 0.16, agreed=Verdict.EQUIVALENT).verdict is Verdict.EQUIVALENT
+    assert compare.number("μ", "", "0.27", 0.16, agreed=Verdict.EQUIVALENT).verdict is Verdict.NOT
 
 
 def test_a_value_that_is_cut_off_says_so():
-    cut = compared_number("h*_3", "Table 3", "31.40", 31.4076, "m", truncated=True)
+    cut = compare.number("h*_3", "Table 3", "31.40", 31.4076, "m", truncated=True)
     assert (cut.verdict, cut.criterion) == (Verdict.REPRODUCED, "cut off, not rounded, to it")
-    rounded = compared_number("h*_1", "Table 3", "141.63", 141.6332, "m", truncated=True)
+    rounded = compare.number("h*_1", "Table 3", "141.63", 141.6332, "m", truncated=True)
     assert (rounded.verdict, rounded.criterion) == (Verdict.REPRODUCED, "must round to it")
-    assert compared_number("h*_2", "Table 3", "51.33", 51.3422, "m", truncated=True).verdict is Verdict.NOT
+    assert compare.number("h*_2", "Table 3", "51.33", 51.3422, "m", truncated=True).verdict is Verdict.NOT
 
 
 @pytest.mark.parametrize(
@@ -165,7 +156,7 @@ def test_a_value_that_is_cut_off_says_so():
     ],
 )
 def test_statistics_are_judged_by_their_interval_and_its_width(printed, low, high, verdict):
-    line = compared_statistic("x", "Section 3.3", printed, ResampledInterval(0.983, low, high))
+    line = compare.statistic("x", "Section 3.3", printed, ResampledInterval(0.983, low, high))
     assert line.verdict is verdict
     known = not math.isnan(low)
     assert line.criterion.startswith("90 % interval" if known else "too few runs for an interval")
@@ -178,9 +169,9 @@ def test_a_wider_interval_is_never_compatible_where_a_narrower_one_tells_nothing
     printed = f"{value:.2f}"
     inner = ResampledInterval(value, value - below * 0.25 * value, value + above * 0.25 * value)
     outer = ResampledInterval(value, inner.low - 0.5 * value, inner.high + 0.5 * value)
-    assert compared_statistic("x", "y", printed, outer).verdict is Verdict.UNDECIDED
+    assert compare.statistic("x", "y", printed, outer).verdict is Verdict.UNDECIDED
     narrow = inner.high - inner.low <= MAX_INTERVAL_WIDTH * float(printed)
-    assert (compared_statistic("x", "y", printed, inner).verdict is Verdict.COMPATIBLE) == narrow
+    assert (compare.statistic("x", "y", printed, inner).verdict is Verdict.COMPATIBLE) == narrow
 
 
 @pytest.mark.parametrize(
@@ -195,40 +186,40 @@ def test_a_wider_interval_is_never_compatible_where_a_narrower_one_tells_nothing
     ],
 )
 def test_a_tendency_must_hold_over_the_whole_interval(criterion, low, high, verdict):
-    line = compared_tendency("ratio", "Section 3.2", "more", ResampledInterval(1.2, low, high), criterion)
+    line = compare.tendency("ratio", "Section 3.2", "more", ResampledInterval(1.2, low, high), criterion)
     assert line.verdict is verdict
     assert line.criterion.startswith(f"{criterion} over the 90 % interval ")
     assert (line.difference, line.difference_as_text) == (None, "")
 
 
 def test_checks_hold_or_do_not_and_have_no_verdict():
-    built = construction_check("T_1", "Section 3.1", "0.5", 0.4999, unit="s", note="built so")
+    built = compare.check("T_1", "Section 3.1", "0.5", 0.4999, unit="s", note="built so")
     assert (built.holds, built.criterion, built.ours_as_text) == (True, "must round to it", "0.500")
-    assert not construction_check("T_1", "Section 3.1", "0.5", 0.56).holds
-    assert not construction_check("m*_1", "Table 2", "a formula", 1.1, "< 1").holds
-    assert construction_check("m*_1", "Table 2", "a formula", 0.9, "< 1").criterion == "< 1"
+    assert not compare.check("T_1", "Section 3.1", "0.5", 0.56).holds
+    assert not compare.check("m*_1", "Table 2", "a formula", 1.1, "< 1").holds
+    assert compare.check("m*_1", "Table 2", "a formula", 0.9, "< 1").criterion == "< 1"
     assert not hasattr(built, "verdict")
 
 
 def test_statements_pass_by_their_criterion_alone():
-    assert compared_statement("slope", "", "overestimates", 0.97, "< 1").verdict is Verdict.REPRODUCED
-    wrong = compared_statement("ratio", "", "underestimates", 1.09, "< 1", agreed=Verdict.EQUIVALENT)
+    assert compare.statement("slope", "", "overestimates", 0.97, "< 1").verdict is Verdict.REPRODUCED
+    wrong = compare.statement("ratio", "", "underestimates", 1.09, "< 1", agreed=Verdict.EQUIVALENT)
     assert wrong.verdict is Verdict.NOT
     assert (wrong.difference, wrong.difference_as_text) == (None, "")
-    assert compared_statement("friction", "", "higher than 2", math.inf, "> 2").ours_as_text == "∞"
-    assert compared_statement("bound", "", "below", 1.0009, "≤ 1").ours_as_text == "1.001"
+    assert compare.statement("friction", "", "higher than 2", math.inf, "> 2").ours_as_text == "∞"
+    assert compare.statement("bound", "", "below", 1.0009, "≤ 1").ours_as_text == "1.001"
 
 
 def test_texts():
-    assert compared_number("n", "", "306", 118.0).ours_as_text == "118"
-    assert compared_number("n", "", "306", 118.0).difference_as_text == "−188 (−61 %)"
-    assert compared_number("x", "", "0.5", 0.5 + 1e-16).difference_as_text == "0"
-    assert compared_number("x", "", "≤ 3.2", 3.1).difference_as_text == ""
-    assert compared_number("x", "", "< 5", 148.13).difference_as_text == "+143.13 (+2863 %)"
-    assert compared_number("x", "", "0.1", -1e-9).ours_as_text == "−1.0e−09"
-    assert compared_number("x", "", "1", math.nan).ours_as_text == "none"
-    assert compared_number("x", "", "1", -math.inf).ours_as_text == "−∞"
-    assert isinstance(compared_number("x", "", "1", np.float64(1.0)).ours, float)
+    assert compare.number("n", "", "306", 118.0).ours_as_text == "118"
+    assert compare.number("n", "", "306", 118.0).difference_as_text == "−188 (−61 %)"
+    assert compare.number("x", "", "0.5", 0.5 + 1e-16).difference_as_text == "0"
+    assert compare.number("x", "", "≤ 3.2", 3.1).difference_as_text == ""
+    assert compare.number("x", "", "< 5", 148.13).difference_as_text == "+143.13 (+2863 %)"
+    assert compare.number("x", "", "0.1", -1e-9).ours_as_text == "−1.0e−09"
+    assert compare.number("x", "", "1", math.nan).ours_as_text == "none"
+    assert compare.number("x", "", "1", -math.inf).ours_as_text == "−∞"
+    assert isinstance(compare.number("x", "", "1", np.float64(1.0)).ours, float)
     for kinds in (Verdict, RemarkKind):
         assert len({each.meaning for each in kinds}) == len(kinds)
 

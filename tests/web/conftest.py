@@ -8,15 +8,21 @@ import threading
 import time
 import urllib.error
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
+import rockflex as rf
 from builders import make_frame
 
 pytest.importorskip("starlette", reason="the web page needs the packages of rockflex[web]")
 pytest.importorskip("uvicorn", reason="the web page needs the packages of rockflex[web]")
+
+
+MODELS = ("MDOF-S", "2DOF-S", "fixed")  # with which the page begins
 
 
 def pytest_configure(config):
@@ -60,6 +66,22 @@ class Client:
         )
         assert status == 200, body
         return headers["content-disposition"].split('"')[1], body
+
+    def program(self, what: str, state: dict[str, Any]) -> dict[str, Any]:
+        """What a downloaded program leaves."""
+        space: dict[str, Any] = {}
+        exec(compile(self.download(f"/api/download/{what}", state)[1], f"{what}.py", "exec"), space)
+        return space
+
+    def study(self, kind: str, state: dict[str, Any], seconds: float = 60.0) -> tuple[str, Any]:
+        """Run a study; return its token and what the page knows at its end."""
+        token = self.ask(f"/api/study/{kind}", state)["token"]
+        return token, self.wait(kind, token, state, seconds)
+
+    @staticmethod
+    def unpack(text: str) -> NDArray[np.float32]:
+        """The values of a curve."""
+        return np.frombuffer(base64.b64decode(text), "<f4")
 
     def make(self, what: str, state: dict[str, Any]) -> str:
         """Start to make a file, and return its token."""
@@ -176,19 +198,31 @@ class Visitor:
     def value(self, selector: str) -> float:
         return float(self.page.locator(selector).first.get_attribute("data-value"))
 
-    def shown(self, scale: float, models: list[str]) -> None:
+    def shown(self, scale: float = 1, models: Sequence[str] = MODELS) -> None:
         """Wait until the Response tab shows this."""
-        wanted = json.dumps([scale, models], separators=(",", ":"))
+        wanted = json.dumps([scale, list(models)], separators=(",", ":"))
         self.page.wait_for_function("w => document.querySelector('[data-shows]')?.dataset.shows === w", arg=wanted)
+
+    def respond(self, scale: float = 1, models: Sequence[str] = MODELS) -> Any:
+        """Open the Response tab, wait until it shows this, and return the page."""
+        self.tab("response")
+        self.shown(scale, models)
+        return self.page
 
     def peak(self, model: str, name: str) -> float:
         return self.value(f'#peaks tr[data-model="{model}"] [data-name="{name}"]')
 
-    def wait_for(self, selector: str, value: float) -> None:
-        """Wait until an element holds a number, to its last bit."""
+    def wait_for(self, selector: str, value: float, rel: float = 0.0) -> None:
+        """Wait until an element holds a number, to its last bit, or to a relative difference."""
         self.page.wait_for_function(
-            "([s, v]) => Number(document.querySelector(s)?.dataset.value) === v", arg=[selector, value]
+            "([s, v, rel]) => { const x = Number(document.querySelector(s)?.dataset.value);"
+            " return x === v || Math.abs(x / v - 1) < rel; }",
+            arg=[selector, value, rel],
         )
+
+    def wait_for_results(self) -> None:
+        """Wait until the results are those of the form."""
+        self.page.wait_for_function("() => !document.querySelector('.results.stale')")
 
     def wait_for_peak(self, model: str, name: str, value: float) -> None:
         self.wait_for(f'#peaks tr[data-model="{model}"] [data-name="{name}"]', value)
@@ -217,16 +251,30 @@ def link() -> Any:
 @pytest.fixture(scope="session")
 def frame() -> Any:
     """The structure that the page begins with."""
-
     return make_frame()
 
 
 @pytest.fixture(scope="session")
 def el_centro() -> Any:
     """The record that the page begins with."""
-    import rockflex as rf
-
     return rf.load_suite("el-centro-1940")[0]
+
+
+@pytest.fixture(scope="session")
+def pier() -> rf.Restrained:
+    """The preset "Pier with fuses"."""
+    fuses = [rf.YieldingDissipator(2e8, 5e5, 0.02, position=x) for x in (-1.3, 1.3)]
+    tendon = rf.Tendon(2.5e6, 25e6, yield_force=6e6, post_yield_ratio=0.02)
+    from rockflex.web._forms import PRESETS
+
+    (given,) = (each["structure"] for each in PRESETS if each["structure"]["name"] == "Pier with fuses")
+    return rf.Restrained(rf.CantileverWithTipMass(**given["cantilever"]), [tendon, *fuses])
+
+
+@pytest.fixture(scope="session")
+def pier_run(pier: rf.Restrained, el_centro: rf.GroundMotion) -> rf.Response:
+    """The pier under El Centro times 2."""
+    return rf.simulate(pier, el_centro.scaled(2.0), "MDOF-S", free_vibration=5.0, output="history")
 
 
 @pytest.fixture

@@ -90,7 +90,7 @@ def test_a_tab_on_paper(visit, tab) -> None:
     page = visitor.page
     visitor.tab(tab)
     if tab == "response":
-        visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+        visitor.shown()
     if tab == "design":
         visitor.fill("design.widths", "3")
     if tab in ("fragility", "design"):
@@ -231,9 +231,7 @@ def test_the_page_answers_while_it_draws(client) -> None:
 @pytest.mark.web
 def test_the_button_saves_the_gif_and_says_that_it_works(visit, link) -> None:
     visitor = visit(link({"record": SHORT, "models": ["MDOF-S", "2DOF-S", "fixed"]}))
-    page = visitor.page
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    page = visitor.respond()
     button = page.get_by_role("button", name="Animation (GIF)")
     with page.expect_download(timeout=120_000) as got:
         button.click()
@@ -257,9 +255,7 @@ def test_the_button_saves_the_gif_and_says_that_it_works(visit, link) -> None:
 @pytest.mark.web
 def test_an_animation_can_be_cancelled_on_the_page(visit, link) -> None:
     visitor = visit(link(LONG))
-    page = visitor.page
-    visitor.tab("response")
-    visitor.shown(1, LONG["models"])
+    page = visitor.respond(1, LONG["models"])
     saved = []
     page.on("download", lambda each: saved.append(each))
     page.get_by_role("button", name="Animation (GIF)").click()
@@ -272,7 +268,6 @@ def test_an_animation_can_be_cancelled_on_the_page(visit, link) -> None:
 @pytest.mark.web
 def test_the_page_says_that_an_animation_would_be_too_long(visitor, monkeypatch) -> None:
     monkeypatch.setattr(_downloads, "FRAME_RATES", ((1.0, 25.0),))
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    visitor.respond()
     visitor.page.get_by_role("button", name="Animation (GIF)").click()
     visitor.wait_for_error("free_vibration", "The animation would last ")

@@ -1,20 +1,20 @@
 """Elements and ground in a browser: their forms, drawings and charts."""
 
-import json
 import math
 
 import numpy as np
 import pytest
+from test_web_structure import PIER
 
 import rockflex as rf
 from builders import make_frame
+from rockflex._json import as_json_value
 from rockflex.structure.file import ELEMENTS
 from rockflex.study.spec import GroundTable
 from rockflex.web._forms import PRESETS
 
 pytestmark = pytest.mark.web
 
-PIER = next(each["structure"] for each in PRESETS if each["structure"]["name"] == "Pier with fuses")
 NAMES = ["1: Tendon at 0 m", "2: Yielding dissipator at −1.3 m", "3: Yielding dissipator at 1.3 m"]
 
 
@@ -80,7 +80,7 @@ def test_a_bad_value_is_answered_beside_it_even_in_a_closed_row(visitor, visit, 
         visitor.wait_for_error(f"{path}.{at}", said)
         assert page.locator(f'[data-path="{path}.{at}"] input').get_attribute("aria-invalid") == "true"
         visitor.fill(f"{path}.{field}", before)
-        page.wait_for_function("() => !document.querySelector('.results.stale')")
+        visitor.wait_for_results()
     assert page.locator(".error:visible").count() == 0
     page.get_by_role("button", name="Add an element").click()
     rows = page.locator("details[data-path]")
@@ -91,16 +91,8 @@ def test_a_bad_value_is_answered_beside_it_even_in_a_closed_row(visitor, visit, 
     assert rows.first.get_attribute("open") is not None
 
 
-@pytest.fixture(scope="module")
-def run() -> rf.Response:
-    fuses = [rf.YieldingDissipator(2e8, 5e5, 0.02, position=x) for x in (-1.3, 1.3)]
-    tendon = rf.Tendon(2.5e6, 25e6, yield_force=6e6, post_yield_ratio=0.02)
-    pier = rf.Restrained(rf.CantileverWithTipMass(**PIER["cantilever"]), [tendon, *fuses])
-    motion = rf.load_suite("el-centro-1940")[0].scaled(2.0)
-    return rf.simulate(pier, motion, "MDOF-S", free_vibration=5.0, output="history")
-
-
-def test_a_run_with_fuses_has_peaks_and_loops_in_step(visit, link, run) -> None:
+def test_a_run_with_fuses_has_peaks_and_loops_in_step(visit, link, pier_run) -> None:
+    run = pier_run
     visitor = visit(link({"structure": PIER, "scale": 2.0, "models": ["MDOF-S", "2DOF-S", "fixed"], "tab": "response"}))
     page = visitor.page
     visitor.shown(2, ["MDOF-S", "2DOF-S", "fixed"])
@@ -149,14 +141,16 @@ def test_a_run_with_fuses_has_peaks_and_loops_in_step(visit, link, run) -> None:
     assert page.get_by_label("Model for the elements").input_value() == "MDOF-S"
 
 
-def test_a_structure_without_elements_shows_none_of_this(visitor) -> None:
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
-    page = visitor.page
+def test_without_elements_and_ground_nothing_of_them_is_shown(visitor) -> None:
+    page = visitor.respond()
     assert page.locator("#elements").is_hidden()
-    assert page.get_by_label("Element for the loop").is_hidden()
-    assert page.get_by_label("Force of an element over time").is_hidden()
-    assert page.locator('#peaks [data-name="residual_rotation"]').count() == 0
+    for label in (
+        *("Element for the loop", "Force of an element over time"),
+        *("Slip of the base over time", "Rise of the edges over time"),
+    ):
+        assert page.get_by_label(label).is_hidden()
+    for name in ("residual_rotation", "max_slip"):
+        assert page.locator(f'#peaks [data-name="{name}"]').count() == 0
     assert page.locator(".stage .legend").inner_text() == ""
 
 
@@ -188,7 +182,7 @@ def test_elements_are_drawn_where_they_are(visit, link) -> None:
 
 
 def test_a_link_with_tendons_of_an_earlier_version_opens(visit, link) -> None:
-    old = json.loads(json.dumps(PRESETS[0]["structure"]).replace("Infinity", '"inf"'))
+    old = as_json_value(PRESETS[0]["structure"])
     tendons = [{"position": 0.0, "initial_force": 5e5, "stiffness": 2e7, "yield_force": 9e5}]
     visitor = visit(link({"structure": old | {"tendons": tendons}, "models": ["2DOF-S"], "tab": "response"}))
     visitor.shown(1, ["2DOF-S"])
@@ -206,7 +200,7 @@ def test_a_link_with_tendons_of_an_earlier_version_opens(visit, link) -> None:
     visitor.wait_for_peak("2DOF-S", "max_rotation", expected.max_rotation)
 
 
-STRUCTURE = json.loads(json.dumps(PRESETS[0]["structure"]).replace("Infinity", '"inf"'))
+STRUCTURE = as_json_value(PRESETS[0]["structure"])
 BED = {"breadth": 3.0, "subgrade_modulus": 2e8, "heave_damping_ratio": 0.2}
 SOFT = {"friction": 0.15, "mat_mass": 4e4, "bed": BED}
 RECORD = {"source": "suite", "suite": "fema-p695-far-field", "name": "FF-2-a"}
@@ -242,9 +236,7 @@ def test_springs_and_friction_are_chosen_and_bad_values_answered_beside_them(vis
     visitor.fill("ground.springs.positions", "-0.5 0 0.5")
 
     expected = p.m_tot * 9.81 / 1.2e9 * 1e3
-    page.wait_for_function(
-        "v => Math.abs(Number(document.querySelector('#springs dd').dataset.value) / v - 1) < 1e-12", arg=expected
-    )
+    visitor.wait_for("#springs dd", expected, 1e-12)
     visitor.fill("ground.springs.stiffness", "-1")
     visitor.wait_for_error("ground.springs.stiffness", "It must be from 1 to 1e+15, but -1 was given.")
     visitor.fill("ground.springs.stiffness", "4e8")
@@ -254,7 +246,7 @@ def test_springs_and_friction_are_chosen_and_bad_values_answered_beside_them(vis
     visitor.fill("ground.springs.positions", "0.1 0.5")
     visitor.wait_for_error("ground.springs.positions", "on both sides of the axis of the masses")
     visitor.fill("ground.springs.positions", "")
-    page.wait_for_function("() => !document.querySelector('.results.stale')")
+    visitor.wait_for_results()
     assert page.locator(".error:visible").count() == 0
     page.get_by_label("The base can slide").check()
     assert visitor.state()["ground"]["friction"] == 0.5
@@ -267,7 +259,7 @@ def test_springs_and_friction_are_chosen_and_bad_values_answered_beside_them(vis
         now = visitor.state()["ground"]
         assert sorted(now) == ["bed", "friction", "mat_mass"]
         assert sorted(now["bed"]) == keys
-        page.wait_for_function("() => !document.querySelector('.results.stale')")
+        visitor.wait_for_results()
         settled = visitor.value("#springs dd")
         assert 2.0 < settled < 12.0  # mm
     ground.select_option("")
@@ -278,9 +270,7 @@ def test_springs_and_friction_are_chosen_and_bad_values_answered_beside_them(vis
 
 
 def test_an_impact_law_is_not_kept_on_springs_and_a_message_elsewhere_names_the_field(visitor) -> None:
-    page = visitor.page
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    page = visitor.respond()
     page.get_by_label("Impact law").select_option("complete")
     visitor.tab("structure")
     page.get_by_label("Ground", exact=True).select_option("winkler")
@@ -397,15 +387,6 @@ def test_a_base_that_slides_on_rigid_ground_has_no_springs(visit, link) -> None:
     assert middle == pytest.approx(slip, abs=2e-3)
 
 
-def test_without_a_ground_nothing_of_it_is_shown(visitor) -> None:
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
-    page = visitor.page
-    assert page.get_by_label("Slip of the base over time").is_hidden()
-    assert page.get_by_label("Rise of the edges over time").is_hidden()
-    assert page.locator('#peaks [data-name="max_slip"]').count() == 0
-
-
 def samples(name: str, amplitude: float, dt: float = 0.02) -> bytes:
     rows = "".join(f"{dt * i:.2f},{amplitude * math.sin(0.1 * i):.4f}\n" for i in range(400))
     return f"time (s),{name} (m/s2)\n{rows}".encode()
@@ -429,8 +410,7 @@ def test_a_vertical_component_is_uploaded_beside_the_record(visitor, frame) -> N
     assert page.locator(".error:visible").count() == 0
     a, v = ([float(line.split(b",")[1]) for line in samples("x", size).splitlines()[1:]] for size in (3.0, 2.0))
     assert visitor.value('[data-measure="PVA"]') == max(map(abs, v))
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    visitor.respond()
     expected = rf.simulate(frame, rf.GroundMotion(a, 0.02, vertical=v), "2DOF-S", free_vibration=5.0)
     visitor.wait_for_peak("2DOF-S", "max_rotation", expected.max_rotation)
     assert visitor.peak("2DOF-S", "min_vertical_reaction") == expected.min_vertical_reaction

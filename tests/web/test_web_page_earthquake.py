@@ -23,15 +23,11 @@ def test_earthquake_by_suite_pulse_and_scale(visitor, el_centro) -> None:
     page.get_by_label("Suite", exact=True).select_option("fema-p695-far-field")
     page.locator('[data-record="FF-12-a"]').click()
     motion = rf.load_suite("fema-p695-far-field")["FF-12-a"]
-    page.wait_for_function(
-        "p => Number(document.querySelector('[data-measure=PGA]').dataset.value) === p", arg=motion.pga
-    )
+    visitor.wait_for('[data-measure="PGA"]', motion.pga)
     assert page.locator(".thumbs button").count() == 44
     assert page.locator('[data-record="FF-12-a"]').get_attribute("aria-pressed") == "true"
     visitor.fill("scale", "2")
-    page.wait_for_function(
-        "p => Number(document.querySelector('[data-measure=PGA]').dataset.value) === p", arg=2 * motion.pga
-    )
+    visitor.wait_for('[data-measure="PGA"]', 2 * motion.pga)
     assert visitor.value('[data-measure="Arias"]') == pytest.approx(4 * motion.arias)
     page.get_by_label("Source").select_option("pulse")
     page.get_by_label("Shape").select_option("one_sine")
@@ -39,9 +35,7 @@ def test_earthquake_by_suite_pulse_and_scale(visitor, el_centro) -> None:
     slider.focus()
     slider.press("ArrowRight")
     pulse = rf.one_sine_pulse(2.0, visitor.page.evaluate("rockflexPage.state.record.pulse.period")).scaled(2.0)
-    page.wait_for_function(
-        "p => Number(document.querySelector('[data-measure=PGV]').dataset.value) === p", arg=pulse.pgv
-    )
+    visitor.wait_for('[data-measure="PGV"]', pulse.pgv)
     visitor.fill("record.pulse.period", "9999")
     visitor.wait_for_error("record.pulse.period", "It must be the period in s, from 0.05 to 20, but 9999 was given.")
 
@@ -54,8 +48,7 @@ def test_an_upload_a_bad_one_and_one_that_is_too_large(visitor, frame, link) -> 
     visitor.upload("File", "mine.csv", RECORD)
     page.wait_for_function("() => document.querySelector('#record-title').textContent === 'mine'")
     assert "400 samples" in page.locator("#uploaded").inner_text()
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    visitor.respond()
     samples = [float(line.split(b",")[1]) for line in RECORD.splitlines()[1:]]
     expected = rf.simulate(frame, rf.GroundMotion(samples, 0.02), "2DOF-S", free_vibration=5.0)
     assert visitor.peak("2DOF-S", "max_rotation") == pytest.approx(expected.max_rotation, rel=1e-9)
@@ -116,8 +109,7 @@ def test_a_folder_is_reported_and_a_record_of_it_is_simulated(visitor, folder, f
     page.get_by_label("With the vertical components").check()
     page.wait_for_selector('[data-measure="PVA"]')
     visitor.fill("scale", "3")
-    visitor.tab("response")
-    visitor.shown(3, ["MDOF-S", "2DOF-S", "fixed"])
+    visitor.respond(3)
     both = motion_of(folder, "RSN7_TEST090", "pair")
     run = rf.simulate(frame, both.scaled(3.0), "2DOF-S", free_vibration=5.0)
     visitor.wait_for_peak("2DOF-S", "max_rotation", run.max_rotation)
@@ -279,10 +271,7 @@ def open_target(visitor) -> None:
 
 
 def wait_for_fit(visitor, chosen) -> None:
-    visitor.page.wait_for_function(
-        "v => Math.abs(Number(document.querySelector('[data-fact=misfit]')?.dataset.value) / v - 1) < 1e-9",
-        arg=chosen.misfit,
-    )
+    visitor.wait_for("[data-fact=misfit]", chosen.misfit, 1e-9)
 
 
 def test_records_are_chosen_for_codes_and_tables(visitor) -> None:
@@ -359,10 +348,7 @@ def test_the_record_is_scaled_and_the_choice_survives_a_reload(visitor, el_centr
     page.reload()
     page.wait_for_selector("#chosen table")
     page.get_by_label("Task").select_option("")
-    page.wait_for_function(
-        "p => Math.abs(Number(document.querySelector('[data-measure=PGA]')?.dataset.value) / p - 1) < 1e-9",
-        arg=over.pga,
-    )
+    visitor.wait_for("[data-measure=PGA]", over.pga, 1e-9)
 
 
 def test_chosen_records_are_used_by_the_studies_and_saved(visitor) -> None:

@@ -101,7 +101,7 @@ def test_tabs_and_buttons_by_the_keyboard(visitor) -> None:
     page.wait_for_selector('#view[data-shown="response"]')
     assert page.evaluate("document.activeElement.dataset.tab") == "response"
     assert page.get_by_role("tabpanel", name="Response").is_visible()
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    visitor.shown()
     page.locator("#play").focus()
     page.keyboard.press("Enter")
     page.wait_for_function("() => rockflexStage.playing()")
@@ -128,7 +128,7 @@ def test_every_control_has_a_name_and_is_reached_by_tab(visitor, tab) -> None:
     if tab == "structure":
         page.get_by_role("button", name="Add an element").click()
     if tab == "response":
-        visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+        visitor.shown()
         page.get_by_label("The superstructure yields").check()
         visitor.shown(1, ["2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW"])
         page.get_by_label("Impact law").select_option("restitution")
@@ -268,8 +268,7 @@ def read(text: str) -> float:
 
 @pytest.fixture
 def shown(visitor):
-    visitor.tab("response")
-    visitor.shown(1, MODELS)
+    visitor.respond(1, MODELS)
     return visitor
 
 
@@ -371,8 +370,7 @@ def test_histories_of_the_ground_share_it_as_well(visitor) -> None:
 
 def test_on_a_phone_the_values_stay_within_their_chart(visit) -> None:
     visitor = visit(viewport={"width": 390, "height": 844}, has_touch=True)
-    visitor.tab("response")
-    visitor.shown(1, MODELS)
+    visitor.respond(1, MODELS)
     visitor.page.locator('[aria-label="Base moment over time"]').scroll_into_view_if_needed()
     point_at(visitor, "Base moment over time", 0.7)
     texts = visitor.page.evaluate(READOUTS)["base_moment"]

@@ -1,6 +1,5 @@
 """The Response tab in a real Chromium, used as a person would."""
 
-import json
 import math
 
 import numpy as np
@@ -8,6 +7,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
+from rockflex._json import as_json_value
 from rockflex.web._forms import PRESETS
 
 pytestmark = pytest.mark.web
@@ -19,9 +19,7 @@ PEAKS = (
 
 
 def test_response_numbers_and_animation(visitor, frame, el_centro) -> None:
-    page = visitor.page
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    page = visitor.respond()
     for model in ("MDOF-S", "2DOF-S", "fixed"):
         response = rf.simulate(frame, el_centro, model, free_vibration=5.0)
         for name in (*PEAKS, "n_impacts"):
@@ -50,15 +48,14 @@ def test_response_numbers_and_animation(visitor, frame, el_centro) -> None:
 
 def chosen(number: int, **more) -> dict:
     """A state with one of the structures to begin with."""
-    structure = json.loads(json.dumps(PRESETS[number]["structure"]).replace("Infinity", '"inf"'))
+    structure = as_json_value(PRESETS[number]["structure"])
     return {"structure": structure, **more}
 
 
 def test_the_deck_of_a_pier_moves_as_far_as_it_does(visit, link) -> None:
     """Relative to a base that turns, the deck moves a quarter of what it does; that is no reduction of anything."""
     visitor = visit(link(chosen(7, scale=3.0)))
-    visitor.tab("response")
-    visitor.shown(3, ["MDOF-S", "2DOF-S", "fixed"])
+    visitor.respond(3)
     pier = rf.CantileverWithTipMass(**PRESETS[7]["structure"]["cantilever"])
     motion = rf.load_suite("el-centro-1940")[0].scaled(3.0)
     response, fixed = (rf.simulate(pier, motion, model, free_vibration=5.0) for model in ("MDOF-S", "fixed"))
@@ -85,8 +82,7 @@ def test_the_deck_of_a_pier_moves_as_far_as_it_does(visit, link) -> None:
 def test_a_base_that_is_pulled_down_is_told(visit, link) -> None:
     record = {"source": "suite", "suite": "fema-p695-far-field", "name": "FF-1-a"}
     visitor = visit(link(chosen(3, scale=2.0, record=record, models=["MDOF-S", "2DOF-S", "2DOF-S-R"])))
-    visitor.tab("response")
-    visitor.shown(2, ["MDOF-S", "2DOF-S", "2DOF-S-R"])
+    visitor.respond(2, ["MDOF-S", "2DOF-S", "2DOF-S-R"])
     frame = make_frame(stiffness_ratio=0.0, period=0.5)
     motion = rf.load_suite("fema-p695-far-field")["FF-1-a"].scaled(2.0)
     response = rf.simulate(frame, motion, "MDOF-S", free_vibration=5.0)
@@ -107,8 +103,7 @@ def test_a_top_of_unknown_height_has_no_total_displacement(visit, link, client) 
     table = {name: np.asarray(getattr(p, name)).tolist() for name in names} | {"zeta": 0.02}
     state = client.state(structure={"name": "Bare", "properties": table}, models=["2DOF-S", "fixed"])
     visitor = visit(link(state))
-    visitor.tab("response")
-    visitor.shown(1, ["2DOF-S", "fixed"])
+    visitor.respond(1, ["2DOF-S", "fixed"])
     cell = visitor.page.locator('#peaks tr[data-model="2DOF-S"] [data-name="max_total_top_displacement"]')
     assert cell.inner_text() == "–"
     assert visitor.page.get_by_label("Plotted top displacement").is_hidden()
@@ -120,9 +115,7 @@ def test_a_top_of_unknown_height_has_no_total_displacement(visit, link, client) 
 
 
 def test_play_pause_scrub_and_speed(visitor, frame, el_centro) -> None:
-    page = visitor.page
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    page = visitor.respond()
     page.get_by_label("Speed", exact=True).select_option("1")
     page.get_by_role("button", name="Play").click()
     page.wait_for_function("() => rockflexStage.time() > 0.5")
@@ -152,16 +145,14 @@ def test_play_pause_scrub_and_speed(visitor, frame, el_centro) -> None:
 
 
 def test_a_slider_redraws(visitor) -> None:
-    page = visitor.page
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    page = visitor.respond()
     slider = page.get_by_role("slider", name="Scale factor")
     slider.focus()
     for _ in range(5):
         slider.press("ArrowRight")
     scale = visitor.state()["scale"]
     assert scale > 1.0
-    visitor.shown(scale, ["MDOF-S", "2DOF-S", "fixed"])
+    visitor.shown(scale)
     assert page.locator('[data-path="scale"] input[type="text"]').input_value() == f"{scale:g}"
     print(f"a change of the scale is drawn after {page.locator('[data-redrawn]').get_attribute('data-redrawn')} ms")
 
@@ -188,9 +179,7 @@ def test_models_and_overturning(visitor) -> None:
 
 
 def test_impact_laws(visitor, frame, el_centro) -> None:
-    page = visitor.page
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    page = visitor.respond()
     law, share = page.get_by_label("Impact law"), page.locator('[data-path="restitution"]')
 
     def impacts(law_: rf.ImpactLaw | None) -> rf.Response:
@@ -223,9 +212,7 @@ def test_impact_laws(visitor, frame, el_centro) -> None:
 
 
 def test_a_superstructure_that_yields(visitor, visit, frame, el_centro) -> None:
-    page = visitor.page
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    page = visitor.respond()
     tick, offered = page.get_by_label("The superstructure yields"), page.locator('[data-label$="-BW"]')
     suggested = page.evaluate("rockflexStage.view().suggested_yield")
     assert offered.count() == 0
@@ -267,9 +254,7 @@ def test_a_superstructure_that_yields(visitor, visit, frame, el_centro) -> None:
 
 
 def test_yielding_takes_its_share_of_the_energy(visitor) -> None:
-    page = visitor.page
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    page = visitor.respond()
     page.get_by_label("The superstructure yields").check()
     visitor.fill("bouc_wen.yield_displacement", "0.03")
     page.get_by_label("Model for the energy").select_option("2DOF-S-BW")
@@ -278,9 +263,7 @@ def test_yielding_takes_its_share_of_the_energy(visitor) -> None:
 
 
 def test_without_a_hysteresis_nothing_yields_anywhere(visitor) -> None:
-    page = visitor.page
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    page = visitor.respond()
     page.get_by_label("The superstructure yields").check()
     visitor.shown(1, ["2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW"])
     page.get_by_label("2DOF-S", exact=True).uncheck()
@@ -290,7 +273,7 @@ def test_without_a_hysteresis_nothing_yields_anywhere(visitor) -> None:
     page.get_by_label("MDOF-S", exact=True).uncheck()
     visitor.tab("response")
     page.get_by_label("The superstructure yields").uncheck()
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])  # those that the page begins with
+    visitor.shown()  # those that the page begins with
     assert visitor.state()["cloud"]["models"] == ["MDOF-S"]
     assert page.locator(".error:visible").count() == 0
     visitor.tab("fragility")
@@ -298,7 +281,7 @@ def test_without_a_hysteresis_nothing_yields_anywhere(visitor) -> None:
 
 
 def test_the_stage_turns_an_eccentric_base_about_its_edges(visit, link) -> None:
-    structure = json.loads(json.dumps(PRESETS[0]["structure"]).replace("Infinity", '"inf"')) | {"eccentricity": 0.3}
+    structure = as_json_value(PRESETS[0]["structure"]) | {"eccentricity": 0.3}
     visitor = visit(link({"structure": structure, "tab": "response", "models": ["2DOF-S"]}))
     visitor.shown(1, ["2DOF-S"])
     half_width = visitor.page.evaluate("rockflexStage.stage.view.half_width")
@@ -317,9 +300,7 @@ def test_the_stage_turns_an_eccentric_base_about_its_edges(visit, link) -> None:
 
 
 def test_stage_and_charts_by_the_keyboard(visitor, frame, el_centro) -> None:
-    page = visitor.page
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    page = visitor.respond()
     time = "rockflexStage.time()"
     page.locator(".stage canvas").focus()
     page.keyboard.press("Space")
@@ -359,9 +340,7 @@ def test_stage_and_charts_by_the_keyboard(visitor, frame, el_centro) -> None:
 
 
 def test_a_chart_is_zoomed_and_clicked(visitor) -> None:
-    page = visitor.page
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    page = visitor.respond()
     box = page.get_by_role("application", name="Base moment over time").bounding_box()
     middle, height = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     page.mouse.click(middle, height)

@@ -186,7 +186,7 @@ def test_nonsense_in_any_field_is_answered_beside_it(visitor, preset, kind) -> N
             box.press("Tab")
         box.fill(good)
         box.press("Tab")
-    page.wait_for_function("() => !document.querySelector('.results.stale')")
+    visitor.wait_for_results()
     assert page.locator(".error:visible").all_inner_texts() == []
     assert "Traceback" not in page.content()
 
@@ -233,8 +233,7 @@ def test_a_block_brings_the_models_that_it_can_have(visitor) -> None:
     page.get_by_label("Kind").select_option("block")
     state = visitor.state()
     assert (state["models"], state["cloud"]["models"], state["design"]["model"]) == (["rigid"], ["rigid"], "rigid")
-    visitor.tab("response")
-    visitor.shown(1, ["rigid"])
+    visitor.respond(1, ["rigid"])
     block = rf.rigid_block(**state["structure"]["block"])
     expected = rf.simulate(block, rf.load_suite("el-centro-1940")[0], "rigid", free_vibration=5.0)
     assert visitor.peak("rigid", "max_rotation") == expected.max_rotation

@@ -25,10 +25,7 @@ def test_fragility_runs_refits_and_cancels(visitor, frame) -> None:
     page.get_by_label("Intensity measure").select_option("sa_t1")
     page.get_by_label("Limit state").select_option("nominal")
     (fit,) = rf.fit_clouds(runs, "sa_t1", nominal=True)
-    page.wait_for_function(
-        "m => Math.abs(document.querySelector('#fits [data-name=median]').dataset.value / m - 1) < 1e-9",
-        arg=fit.outcomes.overturning.median,
-    )
+    visitor.wait_for("#fits [data-name=median]", fit.outcomes.overturning.median, 1e-9)
     page.get_by_label("Limit state").select_option("rotation")
     visitor.fill("cloud.rotation", "7")
     visitor.wait_for_error("cloud.rotation", "a rotation in rad, from 0.0001 to 1.5, but 7 was given")
@@ -69,9 +66,7 @@ def test_a_change_asks_for_a_new_run_and_a_new_one_takes_the_place_of_the_old(vi
 
 
 def test_a_cloud_that_yields(visitor, frame) -> None:
-    page = visitor.page
-    visitor.tab("response")
-    visitor.shown(1, ["MDOF-S", "2DOF-S", "fixed"])
+    page = visitor.respond()
     page.get_by_label("The superstructure yields").check()
     visitor.fill("bouc_wen.yield_displacement", "0.05")
     visitor.tab("fragility")

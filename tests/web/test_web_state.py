@@ -159,28 +159,19 @@ def test_lists_and_matrices_are_limited() -> None:
     assert found["structure.lumped.masses"] == "it holds 201 values, but the page takes 200 at most."
 
 
-def test_errors_of_building_stand_beside_the_field_that_they_name() -> None:
-    tower = PRESETS[6]["structure"]["tapered_tower"]
-    state = parse_page_state({"structure": {"tapered_tower": tower | {"wall": 50.0}}})
-    with pytest.raises(Refusal) as caught:
-        structure_view(state.structure)
-    (path,) = caught.value.errors
-    assert path == "structure.tapered_tower.wall"
-    held = PRESETS[8]["structure"] | {"tendons": [{"position": 1.6, "initial_force": 1.0, "stiffness": 1.0}]}
-    with pytest.raises(Refusal) as caught:
-        structure_view(parse_page_state({"structure": held}).structure)
-    assert "structure.elements.0.position" in caught.value.errors
-    with pytest.raises(Refusal) as caught:
-        structure_view(parse_page_state({"structure": FRAME | {"eccentricity": -1.1}}).structure)
-    assert caught.value.errors["structure.eccentricity"].startswith("eccentricity must be smaller than half_width, 1.0")
-
-
 LUMPED = {"stiffness": [[2.0, -1.0], [-1.0, 1.0]], "heights": [3.0, 6.0], "base_mass": 1.0, "half_width": 1.0}
+
+
+TOWER = PRESETS[6]["structure"]["tapered_tower"]
+OUTSIDE = {"position": 1.6, "initial_force": 1.0, "stiffness": 1.0}
 
 
 @pytest.mark.parametrize(
     ("structure", "path", "text"),
     [
+        ({"tapered_tower": TOWER | {"wall": 50.0}}, "structure.tapered_tower.wall", "wall "),
+        (PRESETS[8]["structure"] | {"tendons": [OUTSIDE]}, "structure.elements.0.position", "Elements must act within"),
+        (FRAME | {"eccentricity": -1.1}, "structure.eccentricity", "eccentricity must be smaller than half_width, 1.0"),
         # The message names stiffness and heights, too, and says mass where the field is masses.
         (
             {"lumped": LUMPED | {"masses": [0.0, 1.0], "damping_ratio": 0.0}},
@@ -374,9 +365,6 @@ def test_a_thinned_curve_keeps_its_extremes() -> None:
         assert values[kept].min() == values.min()
 
 
-STRUCTURE = {"structure": PRESETS[0]["structure"]}
-
-
 @pytest.fixture
 def added(monkeypatch):
     """A measure of the ground, and one of the base."""
@@ -391,20 +379,13 @@ def added(monkeypatch):
     monkeypatch.setitem(MEASURES, "lifts", dataclasses.replace(twice, name="lifts", unit="", words="", of_what="base"))
 
 
-def test_their_list(client) -> None:
+def test_the_usual_measures_are_listed_first(client) -> None:
     listed = json.loads(client.request("/api/about")[2])["measures"]
-    assert [(each["name"], each["title"], each["unit"]) for each in listed] == [
-        ("pgv", "PGV, peak ground velocity", "m/s"),
-        ("pga", "PGA, peak ground acceleration", "m/s²"),
-        ("pgd", "PGD, peak ground displacement", "m"),
-        ("sa_t1_5", "Sa(T₁, 5 %), spectral acceleration at 5 % damping, as in hazard curves", "m/s²"),
-        ("sa_t1", "Sa(T₁, ζ₁), spectral acceleration at the structure's damping", "m/s²"),
-        ("sd_t1", "Sd(T₁, ζ₁), spectral displacement at the structure's damping", "m"),
-        ("arias", "Arias intensity", "m/s"),
-        ("cav", "CAV, cumulative absolute velocity", "m/s"),
-        ("relative_pga", "PGA/(g tan α)", ""),
-        ("relative_pgv", "p PGV/(g tan α)", ""),
-    ]
+    names = ["pgv", "pga", "pgd", "sa_t1_5", "sa_t1", "sd_t1", "arias", "cav", "relative_pga", "relative_pgv"]
+    assert [each["name"] for each in listed] == names
+    assert {each["name"]: (each["title"], each["unit"]) for each in listed}["pgv"] == (
+        "PGV, peak ground velocity", "m/s",
+    )  # fmt: skip
     assert [each["name"] for each in listed if each["of_base"]] == ["relative_pga", "relative_pgv"]
 
 
@@ -419,7 +400,7 @@ def test_an_added_measure_is_offered_taken_and_told(client) -> None:
         "of_base": False,
     }
     assert (lifts["axis"], lifts["of_base"]) == ("2 PGA", True)
-    state = parse_page_state(STRUCTURE | {"cloud": {"measure": "lifts"}, "design": {"measure": "twice"}})
+    state = parse_page_state({"structure": FRAME} | {"cloud": {"measure": "lifts"}, "design": {"measure": "twice"}})
     assert (state.cloud.measure, state.design.measure) == ("lifts", "twice")
     told = client.ask("/api/record", client.state())["measures"]
     values = {each["help"]: each["value"] for each in told if each["unit"] == "m/s²"}
@@ -428,12 +409,18 @@ def test_an_added_measure_is_offered_taken_and_told(client) -> None:
 
 @pytest.mark.usefixtures("added")
 @pytest.mark.parametrize(
-    ("part", "name"), [("cloud", "pgx"), ("cloud", "d5_95"), ("design", "pgx"), ("design", "lifts")]
+    ("part", "key", "name"),
+    [
+        *(("cloud", "measure", name) for name in ("pgx", "d5_95")),
+        *(("design", "measure", name) for name in ("pgx", "lifts")),
+        *(("cloud", "limit", name) for name in ("uplift",)),
+        *(("design", "limit", name) for name in ("uplift", "rocking")),
+    ],
 )
-def test_another_is_refused(part, name) -> None:
-    with pytest.raises(Refusal) as caught:
-        parse_page_state(STRUCTURE | {part: {"measure": name}})
-    assert caught.value.errors == {f"{part}.measure": f"it must be an intensity measure, but {name!r} was given."}
+def test_another_measure_or_limit_is_refused(part, key, name) -> None:
+    wanted = {"measure": "an intensity measure", "limit": "a limit state"}[key]
+    said = errors({"structure": FRAME, part: {key: name}})
+    assert said == {f"{part}.{key}": f"it must be {wanted}, but {name!r} was given."}
 
 
 def test_the_limits_of_its_lists(client) -> None:
@@ -449,11 +436,3 @@ def test_the_limits_of_its_lists(client) -> None:
         "nominal": "the nominal limit 0.7 atan(B/h*₁)",
         "overturning": "overturning",
     }
-
-
-@pytest.mark.parametrize("path", ["cloud.uplift", "design.uplift", "design.rocking"])
-def test_another_limit_is_refused(path) -> None:
-    part, name = path.split(".")
-    with pytest.raises(Refusal) as caught:
-        parse_page_state(STRUCTURE | {part: {"limit": name}})
-    assert caught.value.errors == {f"{part}.limit": f"it must be a limit state, but {name!r} was given."}

@@ -87,26 +87,8 @@ def test_tendons_of_older_links_are_the_first_elements() -> None:
     assert "it must be a list of tables" in caught.value.errors["structure.elements"]
 
 
-@pytest.fixture(scope="module")
-def pier() -> rf.Restrained:
-    fuses = [rf.YieldingDissipator(2e8, 5e5, 0.02, position=x) for x in (-1.3, 1.3)]
-    tendon = rf.Tendon(2.5e6, 25e6, yield_force=6e6, post_yield_ratio=0.02)
-    return rf.Restrained(rf.CantileverWithTipMass(**PIER["cantilever"]), [tendon, *fuses])
-
-
-@pytest.fixture(scope="module")
-def run(pier) -> rf.Response:
-    motion = rf.load_suite("el-centro-1940")[0].scaled(2.0)
-    return rf.simulate(pier, motion, "MDOF-S", free_vibration=5.0, output="history")
-
-
-def unpack(text: str) -> np.ndarray:
-    import base64
-
-    return np.frombuffer(base64.b64decode(text), "<f4").astype(float)
-
-
-def test_the_numbers_of_elements_are_the_librarys(client, run) -> None:
+def test_the_numbers_of_elements_are_the_librarys(client, pier_run) -> None:
+    run = pier_run
     asked = client.state(structure=PIER, scale=2.0, models=["fixed", "MDOF-S"])
     answer = client.ask("/api/response", asked, focus="fixed", element=2)
     held = answer["held"]
@@ -121,14 +103,14 @@ def test_the_numbers_of_elements_are_the_librarys(client, run) -> None:
     assert not any(row["broken"] for row in held["rows"])
     fixed, lifting = answer["models"]
     assert fixed["element_force"] is None
-    drawn = [unpack(lifting[name]) for name in ("t", "element_elongation", "element_force")]
+    drawn = [client.unpack(lifting[name]) for name in ("t", "element_elongation", "element_force")]
     nodes = np.column_stack((run.time, run.element_elongation[:, 2], run.element_force[:, 2])).astype("<f4")
     assert {tuple(row) for row in np.column_stack(drawn)} <= {tuple(row) for row in nodes.astype(float)}
     assert np.abs(drawn[2]).max() == pytest.approx(run.max_element_force[2], rel=1e-6)
     assert lifting["peaks"]["residual_rotation"] == run.residual_rotation
     # What each element takes is a part of the balance of energies.
     energy = client.ask("/api/response", asked, focus="MDOF-S")["energy"]
-    assert unpack(energy["elements"])[-1] == pytest.approx(run.element_energy.sum(), rel=1e-6)
+    assert client.unpack(energy["elements"])[-1] == pytest.approx(run.element_energy.sum(), rel=1e-6)
 
 
 def test_self_centring_is_told(client, pier) -> None:
@@ -161,15 +143,13 @@ def test_an_element_that_breaks_is_told(client) -> None:
     assert row["elongation"] > 5e-3
 
 
-def test_downloads_contain_the_elements(client, tmp_path, monkeypatch, run) -> None:
+def test_downloads_contain_the_elements(client, tmp_path, monkeypatch, pier_run) -> None:
     monkeypatch.chdir(tmp_path)
     elements = [*PIER["elements"], {"kind": "viscous_damper", "coefficient": 1e5}]
     elements += [{"kind": "friction_damper", "position": -0.5, "force": 1e4}, FUSE | {"rupture_elongation": 0.5}]
     asked = client.state(structure=PIER | {"elements": elements}, models=["2DOF-S"])
     expected = StructureEntry.model_validate(PIER | {"elements": elements}).build()
-    _, lines = client.download("/api/download/python", asked)
-    space: dict = {}
-    exec(compile(lines, "response.py", "exec"), space)
+    space = client.program("python", asked)
     assert space["structure"].elements == expected.elements
     for what in ("structure", "study"):
         _, content = client.download(f"/api/download/{what}", asked)
@@ -180,13 +160,12 @@ def test_downloads_contain_the_elements(client, tmp_path, monkeypatch, run) -> N
         "block": {"slenderness": 0.2, "half_diagonal": 3.0},
         "elements": [{"kind": "friction_damper", "force": 1.0}],
     }
-    _, lines = client.download("/api/download/python", client.state(structure=block, models=["rigid"]))
-    exec(compile(lines, "response.py", "exec"), space)
+    space = client.program("python", client.state(structure=block, models=["rigid"]))
     assert space["structure"].elements == (rf.FrictionDamper(1.0),)
     _, content = client.download("/api/download/histories", client.state(structure=PIER, scale=2.0, models=["MDOF-S"]))
     table = pd.read_csv(io.BytesIO(content))
-    assert table["element_3_force (N)"].to_numpy() == pytest.approx(run.element_force[:, 2], rel=1e-8, abs=1e-3)
-    assert table["element_1_elongation (m)"].to_numpy() == pytest.approx(run.element_elongation[:, 0], rel=1e-8)
+    assert table["element_3_force (N)"].to_numpy() == pytest.approx(pier_run.element_force[:, 2], rel=1e-8, abs=1e-3)
+    assert table["element_1_elongation (m)"].to_numpy() == pytest.approx(pier_run.element_elongation[:, 0], rel=1e-8)
 
 
 def test_a_search_for_a_width_keeps_the_elements(client) -> None:

@@ -23,9 +23,7 @@ DESIGN = {"suites": ["fema-p695-near-field-pulse"], "scales": [1.0], "widths": 3
 
 @pytest.fixture(scope="module")
 def cloud(client):
-    state = client.state(cloud=CLOUD)
-    token = client.ask("/api/study/cloud", state)["token"]
-    answer = client.wait("cloud", token, state)
+    token, answer = client.study("cloud", client.state(cloud=CLOUD))
     assert answer["status"] == "done"
     return token
 
@@ -66,8 +64,7 @@ def test_files_of_a_cloud(client, cloud, tmp_path, monkeypatch, runs) -> None:
     name, study = client.download("/api/download/cloud-study", state)
     (tmp_path / name).write_bytes(study)
     assert rf.run_study(tmp_path / name)["max_rotation"].tolist() == runs["max_rotation"].tolist()
-    space: dict = {}
-    exec(client.download("/api/download/cloud-python", state)[1], space)
+    space = client.program("cloud-python", state)
     (fit,) = rf.fit_clouds(runs, "pgv")
     assert space["curves"]["2DOF-S"] == pytest.approx(fit.outcomes.initiation.probability(space["im"]))
 
@@ -84,8 +81,7 @@ def test_a_cloud_is_cancelled(client) -> None:
 def test_the_design_is_the_librarys(client, tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     state = client.state(design=DESIGN)
-    token = client.ask("/api/study/design", state)["token"]
-    answer = client.wait("design", token, state)
+    token, answer = client.study("design", state)
     assert answer["status"] == "done"
     widths = [float(f"{share * FRAME.rocking().half_width:.6g}") for share in (1.0, 2.0, 3.0)]
     levels = [TendonLevel(name="no tendon"), TendonLevel(0.2, 0.5, name="F₀ = 0.2 W")]
@@ -95,7 +91,7 @@ def test_the_design_is_the_librarys(client, tmp_path, monkeypatch) -> None:
     assert shown == pytest.approx(table["probability"].tolist())
     answers = smallest_width(table, 0.25)
     assert [each["outcome"] for each in answer["answers"]] == answers["outcome"].tolist()
-    exec(client.download("/api/download/design-python", state)[1], space := {})
+    space = client.program("design-python", state)
     assert space["answer"]["half_width"].tolist() == pytest.approx(answers["half_width"].tolist(), nan_ok=True)
     assert b"<svg" in client.download(f"/api/study/design/{token}/figure", state)[1]
     assert b"half_width" in client.download(f"/api/study/design/{token}/table", state)[1]
@@ -114,11 +110,9 @@ def test_studies_have_the_assumptions_of_the_response(client, tmp_path, monkeypa
         design=DESIGN | {"model": "2DOF-S-BW", "tendons": [0.0]},
     )
     for kind in ("cloud", "design"):
-        token = client.ask(f"/api/study/{kind}", state)["token"]
-        assert client.wait(kind, token, state, 120.0)["status"] == "done"
-        _, lines = client.download(f"/api/download/{kind}-python", state)
-        space: dict = {}
-        exec(compile(lines, "study.py", "exec"), space)
+        token, answer = client.study(kind, state, 120.0)
+        assert answer["status"] == "done"
+        space = client.program(f"{kind}-python", state)
         name, study = client.download(f"/api/download/{kind}-study", state)
         (tmp_path / name).write_bytes(study)
         again = rf.run_study(tmp_path / name)

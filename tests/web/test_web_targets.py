@@ -110,18 +110,16 @@ def test_files_of_the_choice(client, tmp_path, monkeypatch) -> None:
     assert [motion.pga for motion in read] == [motion.pga for motion in chosen.suite]
     monkeypatch.chdir(tmp_path)
     for choice, target in TARGETS:
-        program = client.download("/api/download/selection-python", client.state(target=choice | LONG))[1].decode()
-        space: dict = {}
-        exec(program, space)
+        space = client.program("selection-python", client.state(target=choice | LONG))
         assert space["chosen"].names == SUITE.select(target, 7, (0.2, 1.9)).names
 
 
 def test_chosen_records_are_a_suite_of_the_studies(client, frame, tmp_path) -> None:
     cloud = {"suites": ["chosen"], "models": ["2DOF-S"], "scales": [1.0]}
     state = client.state(target={"count": 4, "kind": "asce7"}, cloud=cloud)
-    _, token = client.post("/api/study/cloud", {"state": state})
-    assert client.wait("cloud", token["token"], state)["total"] == 4
-    table = client.download(f"/api/study/cloud/{token['token']}/table", state)[1]
+    token, answer = client.study("cloud", state)
+    assert answer["total"] == 4
+    table = client.download(f"/api/study/cloud/{token}/table", state)[1]
     chosen = SUITE.select(rf.asce7_spectrum(G, 0.6 * G, 8.0), 4, (0.2, 2.0))
     runs = rf.run_cloud(frame, chosen.suite, ["2DOF-S"], free_vibration="settle")
     assert pd.read_csv(io.BytesIO(table))["max_rotation"].tolist() == pytest.approx(
@@ -155,8 +153,7 @@ def test_records_of_a_folder_are_chosen(client, tmp_path, monkeypatch) -> None:
     assert f"# unpacked from {name}, which the page saves: Your records (ZIP)" in program
     monkeypatch.chdir(tmp_path)
     zipfile.ZipFile(io.BytesIO(packed)).extractall("your-records")
-    space: dict = {}
-    exec(program, space)
+    space = client.program("selection-python", state)
     assert [" + ".join(names) for names in space["chosen"].names] == [each["record"] for each in view["records"]]
     both = client.state(record=state["record"], target=target, cloud={"suites": ["given", "chosen"]})
     said = client.refused("/api/study/cloud", both)["cloud.suites"]

@@ -15,32 +15,9 @@ from rockflex._errors import InputError
 from rockflex._number_format import short_number, unit_with_prefix
 from rockflex._shown import shown
 from rockflex.fragility import OVERTURNED, OVERTURNING, nominal_rotation_symbol, rotation_limit_state
-from rockflex.plot._study_tables import (
-    MARKERS,
-    check_table_columns,
-    model_legend_handles,
-    names_in_column,
-    structure_panels,
-)
-from rockflex.plot._style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    LINE_STYLES,
-    ORANGE,
-    RED,
-    SMALL,
-    THEMES,
-    LineStyle,
-    Size,
-    add_legend_above,
-    assign_distinct,
-    is_narrow_figure,
-    literal_text,
-    new_figure,
-    recoloured_line_styles,
-    with_figure_style,
-)
+from rockflex.plot import _figures as figures
+from rockflex.plot import _study_tables as tables
+from rockflex.plot._figures import BLACK, BLUE, GREEN, LINE_STYLES, ORANGE, RED, SMALL, LineStyle, Size
 from rockflex.study.design import BestDesign, InterpolatedMargins, requirement_margins, smallest_width, trade_off
 
 if TYPE_CHECKING:
@@ -105,14 +82,14 @@ def plot_design(
     ('half width $B$ [m]', 'P($θ_{\\mathrm{max}}>0.005\\ \\mathrm{rad}$)')
     """
     value = "rate" if "rate" in getattr(table, "columns", ()) else "probability"
-    check_table_columns(table, (*_NEEDED, value), "what design_table returned")
-    tendons, models = names_in_column(table["tendon"]), names_in_column(table["model"])
-    looks = list(zip(recoloured_line_styles(_STYLES), MARKERS, strict=False))
-    styles: dict[str, tuple[LineStyle, str]] = assign_distinct(tendons, looks, "tendons")
+    tables.check_table_columns(table, (*_NEEDED, value), "what design_table returned")
+    tendons, models = tables.names_in_column(table["tendon"]), tables.names_in_column(table["model"])
+    looks = list(zip(figures.recoloured_line_styles(_STYLES), tables.MARKERS, strict=False))
+    styles: dict[str, tuple[LineStyle, str]] = figures.assign_distinct(tendons, looks, "tendons")
     found = None if target is None else smallest_width(table, target)
     logarithms = value == "rate" if logarithmic is None else logarithmic
-    with with_figure_style(size=size):
-        figure, panels = structure_panels(models, 2, 2.9, "half width $B$ [m]", _design_value_name(table, value))
+    with figures.styled(size=size):
+        figure, panels = tables.structure_panels(models, 2, 2.9, "half width $B$ [m]", _design_value_name(table, value))
         for axes, model in zip(panels, models, strict=True):
             for tendon, (style, marker) in styles.items():
                 rows = _design_rows(table, model, tendon).sort_values("half_width")
@@ -123,12 +100,12 @@ def plot_design(
         _set_design_limits(panels[0], table, table[value].to_numpy(float), target, logarithmic=logarithms)
         for axes in panels:
             _draw_slenderness_axis(axes, table)
-        handles = model_legend_handles({literal_text(tendon): style for tendon, style in styles.items()})
+        handles = tables.model_legend_handles({figures.literal(tendon): style for tendon, style in styles.items()})
         if target is not None:
             handles.append(
                 Line2D([], [], color=BLUE, linewidth=0.8, dashes=(5, 3), label=f"target {short_number(target)}")
             )
-        add_legend_above(figure, handles)
+        figures.add_legend_above(figure, handles)
     return figure
 
 
@@ -292,22 +269,22 @@ def plot_design_search(
     ['half width $B$ [m]', 'half width $B$ [m]']
     """
     checked_instance("found", found, BestDesign)
-    if not is_one_of(theme, THEMES):
+    if not is_one_of(theme, figures.THEMES):
         raise InputError(f'theme must be "light" or "dark", but {shown(theme)} was given.')
     between = InterpolatedMargins.of(found)
     varied = [*between.given]
     labels = [each.label for each in found.requirements]
-    styles = assign_distinct(labels, recoloured_line_styles(_SEARCH_STYLES), "requirements")
-    with with_figure_style(theme, size=size):
+    styles = figures.assign_distinct(labels, figures.recoloured_line_styles(_SEARCH_STYLES), "requirements")
+    with figures.styled(theme, size=size):
         count = min(len(varied), 2)
-        figure = new_figure(7.2 if count > 1 else 4.2, 0.9 + 3.0 * count if is_narrow_figure() else 3.9)
-        panels: list[Axes] = list(np.atleast_1d(figure.subplots(*((count, 1) if is_narrow_figure() else (1, count)))))
+        figure = figures.new(7.2 if count > 1 else 4.2, 0.9 + 3.0 * count if figures.is_narrow() else 3.9)
+        panels: list[Axes] = list(np.atleast_1d(figure.subplots(*((count, 1) if figures.is_narrow() else (1, count)))))
         _draw_design_costs(panels[0], found, varied[0], styles)
         if len(varied) > 1:
             _draw_design_plane(panels[1], found, between, (varied[-2], varied[-1]), styles)
         for axes in panels:
             axes.tick_params(colors=_design_text_color(), grid_color=mpl.rcParams["grid.color"])
-        handles = [Line2D([], [], **style.look, label=literal_text(label)) for label, style in styles.items()]
+        handles = [Line2D([], [], **style.look, label=figures.literal(label)) for label, style in styles.items()]
         for name, face in (("run, meets all targets", _design_text_color()), ("run, does not", "none")):
             handles.append(
                 Line2D(
@@ -315,7 +292,9 @@ def plot_design_search(
                     markerfacecolor=face, label=name,
                 )
             )  # fmt: skip
-        add_legend_above(figure, handles, title=_best_design_text(found), max_columns=1 if is_narrow_figure() else 2)
+        figures.add_legend_above(
+            figure, handles, title=_best_design_text(found), max_columns=1 if figures.is_narrow() else 2
+        )
     return figure
 
 
@@ -332,7 +311,7 @@ def _best_design_text(found: BestDesign) -> str:
         if best[column] > 0.0:
             divisor, unit = unit_with_prefix(float(best[column]), "N")
             words.append(f"{symbol} = {short_number(best[column] / divisor)} {unit}")
-    return f"Cheapest: {', '.join(words)}; {literal_text(found.governs)} governs"
+    return f"Cheapest: {', '.join(words)}; {figures.literal(found.governs)} governs"
 
 
 def _draw_design_costs(axes: Axes, found: BestDesign, variable: str, styles: dict[str, LineStyle]) -> None:

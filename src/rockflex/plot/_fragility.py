@@ -1,6 +1,7 @@
 """Clouds of response over intensity, and fragility: of a cloud, of stripes, and of incremental dynamic analyses."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, SupportsIndex
 
 import numpy as np
@@ -9,54 +10,15 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from rockflex._arrays import Array, Bools
+from rockflex import fragility
 from rockflex._cases import runs_by_case, runs_of_case
 from rockflex._checks import checked_whole_number
 from rockflex._errors import InputError, SolverError
 from rockflex._number_format import short_number
 from rockflex._shown import number_with_noun, shown
-from rockflex.fragility import (
-    NOMINAL,
-    OVERTURNING,
-    ROCKED,
-    CloudFit,
-    CloudFits,
-    LogisticFit,
-    LognormalFragility,
-    fit_capacities,
-    fit_clouds,
-    fit_each_cloud,
-    fit_stripes,
-    observed_exceedance_fractions,
-    recordings_of_runs,
-    rocked_runs,
-)
-from rockflex.plot._study_tables import (
-    check_table_columns,
-    label_log_axis_plainly,
-    measure_axis_name,
-    model_legend_handles,
-    model_lines_and_symbols,
-    names_in_column,
-    structure_panels,
-)
-from rockflex.plot._style import (
-    BLACK,
-    BLUE,
-    GRAY,
-    RED,
-    SHADE,
-    SMALL,
-    LineStyle,
-    Size,
-    add_legend_above,
-    is_narrow_figure,
-    label_panel,
-    literal_text,
-    new_figure,
-    scaled_font_size,
-    with_figure_style,
-)
+from rockflex.plot import _figures as figures
+from rockflex.plot import _study_tables as tables
+from rockflex.plot._figures import BLACK, BLUE, GRAY, RED, SHADE, SMALL, LineStyle, Size
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -81,7 +43,7 @@ _CROSSES = 0.038  # and of the crosses
 
 
 def plot_fragility(
-    clouds: "pd.DataFrame | Sequence[CloudFits]",
+    clouds: "pd.DataFrame | Sequence[fragility.CloudFits]",
     measure: str | None = None,
     *,
     confidence: float | None = None,
@@ -135,18 +97,18 @@ def plot_fragility(
     """
     groups = checked_whole_number("bins", bins, 0)
     fits, runs = _fits_of_clouds(clouds, measure, groups)
-    styles = model_lines_and_symbols(names_in_column(fit.model for fit in fits))
-    names = names_in_column(fit.structure for fit in fits)
+    styles = tables.model_lines_and_symbols(tables.names_in_column(fit.model for fit in fits))
+    names = tables.names_in_column(fit.structure for fit in fits)
     limit = _outcome_axis_limit(fits, runs, whole=overturning or groups > 0)
     ends = [fit.outcomes.measured[0] for fit in fits if fit.outcomes.measured is not None]
     lowest = min(ends, default=None)
-    with with_figure_style(size=size):
+    with figures.styled(size=size):
         digits, exponent = f"{fits[0].outcomes.threshold:.3e}".split("e")
         times = "" if float(digits) == 1.0 else rf"{float(digits):g}\times"
         limit_text = rf"{times}10^{{{int(exponent)}}}\ \mathrm{{rad}}"
         event = rf"\mathrm{{uplift}},\ θ_{{\mathrm{{max}}}}>{limit_text}"
         y = "probability" if overturning else f"$P({event})$"
-        figure, panels = structure_panels(names, 3, 2.1, measure_axis_name(fits[0].measure), y)
+        figure, panels = tables.structure_panels(names, 3, 2.1, tables.measure_axis_name(fits[0].measure), y)
         for axes, name in zip(panels, names, strict=True):
             for fit in (fit for fit in fits if fit.structure == name):
                 style, marker = styles[fit.model]
@@ -166,32 +128,32 @@ def plot_fragility(
             if failed:
                 axes.text(0.97, 0.05, f"{failed} failed", transform=axes.transAxes, ha="right", fontsize=SMALL)
         panels[0].set(xlim=(0.0, limit), ylim=(-0.03, 1.03))
-        handles: list[Line2D | Patch] = [*model_legend_handles(styles, symbols=False)]
+        handles: list[Line2D | Patch] = [*tables.model_legend_handles(styles, symbols=False)]
         if groups:
             handles.append(Line2D([], [], color=GRAY, marker="o", linestyle="", markersize=3.0, label="observed"))
         if overturning:
             handles.append(Line2D([], [], color=GRAY, linewidth=0.6, label="overturning"))
         if lowest is not None:
             handles.append(Patch(color=SHADE, linewidth=0.0, label="no runs"))
-        add_legend_above(figure, handles)
+        figures.add_legend_above(figure, handles)
     return figure
 
 
 def _fits_of_clouds(
-    clouds: "pd.DataFrame | Sequence[CloudFits]", measure: str | None, groups: int
-) -> "tuple[list[CloudFits], pd.DataFrame | None]":
+    clouds: "pd.DataFrame | Sequence[fragility.CloudFits]", measure: str | None, groups: int
+) -> "tuple[list[fragility.CloudFits], pd.DataFrame | None]":
     """The fits, and the solved runs if they are known."""
     if hasattr(clouds, "columns"):
         runs: pd.DataFrame = clouds  # pyright: ignore[reportAssignmentType]
-        found = fit_clouds(runs, measure or "pgv")
+        found = fragility.fit_clouds(runs, measure or "pgv")
         if not found:
             raise InputError("The table has no rows. Give what run_cloud returned.")
         return found, runs[runs["status"].notna()]
     given: list[Any] = list(clouds)
-    fits = [fit for fit in given if isinstance(fit, CloudFits)]
+    fits = [fit for fit in given if isinstance(fit, fragility.CloudFits)]
     if not fits or len(fits) < len(given):
         raise InputError("clouds must be the table of a cloud study, or at least one fit of it from fit_clouds.")
-    measures = names_in_column(fit.measure for fit in fits)
+    measures = tables.names_in_column(fit.measure for fit in fits)
     if len(measures) > 1 or (measure is not None and measures != [measure]):
         wanted = "one measure" if measure is None else repr(measure)
         raise InputError(
@@ -202,14 +164,14 @@ def _fits_of_clouds(
     return fits, None
 
 
-def _outcome_axis_limit(fits: list[CloudFits], runs: "pd.DataFrame | None", *, whole: bool) -> float:
+def _outcome_axis_limit(fits: list[fragility.CloudFits], runs: "pd.DataFrame | None", *, whole: bool) -> float:
     """End of the axis: where the curves of rocking approach 1, or the strongest motion if overturning is shown."""
     ends: list[float] = []
     for fit in fits:
         rocks, falls = fit.outcomes.initiation, fit.outcomes.overturning
-        if isinstance(rocks, LogisticFit) and rocks.b1 > 0.0:
+        if isinstance(rocks, fragility.LogisticFit) and rocks.b1 > 0.0:
             ends.append(float(np.exp((_LOGIT_END - rocks.b0) / rocks.b1)))
-        if whole and isinstance(falls, LogisticFit) and falls.b1 > 0.0:
+        if whole and isinstance(falls, fragility.LogisticFit) and falls.b1 > 0.0:
             ends.append(2.0 * falls.median)
     if runs is None:
         return max(ends, default=1.0)
@@ -229,11 +191,11 @@ def _draw_fragility_curve(
 
 
 def _mark_observed_fractions(
-    axes: Axes, runs: "pd.DataFrame", fit: CloudFits, marker: str, color: str, groups: int
+    axes: Axes, runs: "pd.DataFrame", fit: fragility.CloudFits, marker: str, color: str, groups: int
 ) -> None:
     """Fraction of rocking runs in groups of neighbouring intensities, at their geometric mean."""
-    rocks = rocked_runs(runs, fit.outcomes.threshold).to_numpy(dtype=bool)
-    observed = observed_exceedance_fractions(runs[fit.measure].to_numpy(dtype=float), rocks, groups)
+    rocks = fragility.rocked_runs(runs, fit.outcomes.threshold).to_numpy(dtype=bool)
+    observed = fragility.observed_exceedance_fractions(runs[fit.measure].to_numpy(dtype=float), rocks, groups)
     axes.plot(
         *zip(*observed, strict=True), marker, color=color, markersize=3.0, markerfacecolor="none", markeredgewidth=0.7,
         label="_observed",
@@ -293,19 +255,19 @@ def plot_stripes(
     ('PGV [m/s]', 'P(overturning)')
     """
     needed = ("structure", "model", "level", "status", "max_rotation", "nominal_overturning")
-    check_table_columns(runs, needed, "the table of a stripe study")
+    tables.check_table_columns(runs, needed, "the table of a stripe study")
     from rockflex.study.stripes import stripe_counts, stripe_limit_state
 
     counts = stripe_counts(runs, limit)
     if not len(counts):
         raise InputError("No run was solved. See the column error of the table.")
-    styles = model_lines_and_symbols(names_in_column(runs["model"]))
-    names = names_in_column(runs["structure"])
+    styles = tables.model_lines_and_symbols(tables.names_in_column(runs["model"]))
+    names = tables.names_in_column(runs["structure"])
     end = 1.1 * float(counts["level"].max())
-    with with_figure_style(size=size):
+    with figures.styled(size=size):
         event = stripe_limit_state(limit).symbol
         y = f"$P({event})$" if ">" in event else f"P({event})"
-        figure, panels = structure_panels(names, 3, 2.1, measure_axis_name(measure), y)
+        figure, panels = tables.structure_panels(names, 3, 2.1, tables.measure_axis_name(measure), y)
         for axes, name in zip(panels, names, strict=True):
             notes: list[tuple[str, str]] = []
             for model, (style, marker) in styles.items():
@@ -320,38 +282,31 @@ def plot_stripes(
                 if fit is None:
                     notes.append(("no curve fits", style.color))
                 else:
-                    known = confidence if fit.covariance is not None else None
+                    known = None if fit.covariance is None else confidence
                     _draw_fragility_curve(axes, fit, end, known, style, label=model)
                     notes.append((f"median {fit.median:.3g}, β = {fit.beta:.2f}", style.color))
             axes.axvspan(0.0, float(counts["level"].min()), color=SHADE, linewidth=0.0, label="_no runs")
             for place, (text, color) in enumerate(reversed(notes)):
                 axes.text(
                     0.97, 0.04 + 0.075 * place, text, transform=axes.transAxes, ha="right",
-                    fontsize=scaled_font_size(6.5), color=color,
+                    fontsize=figures.scaled_font_size(6.5), color=color,
                 )  # fmt: skip
         panels[0].set(xlim=(0.0, end), ylim=(-0.03, 1.03))
-        add_legend_above(figure, model_legend_handles(styles))
+        figures.add_legend_above(figure, tables.model_legend_handles(styles))
     return figure
 
 
-def _fit_of_stripes(runs: "pd.DataFrame", limit: "StripeLimit") -> LognormalFragility | None:
+def _fit_of_stripes(runs: "pd.DataFrame", limit: "StripeLimit") -> fragility.LognormalFragility | None:
     from rockflex.study.stripes import stripe_limit_state
 
     solved = runs[runs["status"].notna()]
     exceeded = stripe_limit_state(limit).exceeded(solved).astype(bool)
     try:
-        return fit_stripes(solved["level"], exceeded, np.ones(len(solved)), recordings_of_runs(solved))
+        return fragility.fit_stripes(
+            solved["level"], exceeded, np.ones(len(solved)), fragility.recordings_of_runs(solved)
+        )
     except (InputError, SolverError):
         return None
-
-
-class _RecordCapacities(NamedTuple):
-    """Capacities of the records of one structure and model, which of them are only bounds, and the fitted curve."""
-
-    reached: Array
-    censored: Bools
-    resurrected: int
-    fit: LognormalFragility | None
 
 
 def plot_ida(
@@ -398,32 +353,30 @@ def plot_ida(
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('PGA [m/s²]', '$θ_{\\mathrm{max}}$ [rad]')
     """
-    check_table_columns(runs, (*_OF_INCREMENTAL, measure), "what run_incremental returned")
+    tables.check_table_columns(runs, (*_OF_INCREMENTAL, measure), "what run_incremental returned")
     from rockflex.study.incremental import incremental_capacities
 
     capacities = incremental_capacities(runs, measure)
-    groups = [(name, model) for name in names_in_column(runs["structure"]) for model in names_in_column(runs["model"])]
-    groups = [group for group in groups if len(runs_of_case(runs, *group))]
-    if len(groups) > _MAX_ROWS:
+    cases = list(runs_by_case(runs))
+    if len(cases) > _MAX_ROWS:
         raise InputError(
-            f"{len(groups)} structures and models are too many for one figure; {_MAX_ROWS} fit. Plot fewer at a time."
+            f"{len(cases)} structures and models are too many for one figure; {_MAX_ROWS} fit. Plot fewer at a time."
         )
-    with with_figure_style(size=size):
-        across = 1 if is_narrow_figure() else 2
-        figure = new_figure(6.3, 0.9 + 2.1 * len(groups) * 2 // across)
-        grid = figure.subplots(2 * len(groups) // across, across, sharex=True, squeeze=False).reshape(-1, 2)
-        for row, (structure, model) in enumerate(groups):
+    with figures.styled(size=size):
+        across = 1 if figures.is_narrow() else 2
+        figure = figures.new(6.3, 0.9 + 2.1 * len(cases) * 2 // across)
+        grid = figure.subplots(2 * len(cases) // across, across, sharex=True, squeeze=False).reshape(-1, 2)
+        for row, (structure, model, ladders) in enumerate(cases):
             left, right = grid[row]
-            found = _record_capacities(runs_of_case(capacities, structure, model))
-            failed = _draw_ida_curves(left, runs_of_case(runs, structure, model), measure)
-            _draw_ida_capacities(right, found, confidence, failed)
-            left.set(title=literal_text(f"{structure}, {model}"), ylabel=r"$θ_{\mathrm{max}}$ [rad]")
+            failed = _draw_ida_curves(left, ladders, measure)
+            _draw_ida_capacities(right, runs_of_case(capacities, structure, model), confidence, failed)
+            left.set(title=figures.literal(f"{structure}, {model}"), ylabel=r"$θ_{\mathrm{max}}$ [rad]")
             right.set_ylabel("P(overturning)")
-            label_panel(left, chr(ord("A") + 2 * row))
-            label_panel(right, chr(ord("B") + 2 * row))
+            figures.label_panel(left, chr(ord("A") + 2 * row))
+            figures.label_panel(right, chr(ord("B") + 2 * row))
         grid[0, 0].set_xlim(0.0, _ida_axis_limit(runs, capacities, measure))
         for axes in grid[-1, -across:]:
-            axes.set_xlabel(measure_axis_name(measure))
+            axes.set_xlabel(tables.measure_axis_name(measure))
         handles = [
             Line2D([], [], color=GRAY, linewidth=0.7, label="record"),
             Line2D([], [], color=RED, marker="x", linestyle="", markersize=3.5, label="first overturning"),
@@ -434,18 +387,8 @@ def plot_ida(
             Line2D([], [], color=BLACK, linewidth=0.9, label="observed"),
             Line2D([], [], color=RED, linestyle="--", label="lognormal"),
         ]  # fmt: skip
-        add_legend_above(figure, handles, columnspacing=1.2, handlelength=1.6)
+        figures.add_legend_above(figure, handles, columnspacing=1.2, handlelength=1.6)
     return figure
-
-
-def _record_capacities(rows: "pd.DataFrame") -> _RecordCapacities:
-    known = rows[rows["capacity"].notna()]
-    values, censored = known["capacity"].to_numpy(dtype=float), known["censored"].to_numpy(dtype=bool)
-    try:
-        fit = fit_capacities(values, censored, known["group"])
-    except InputError:
-        fit = None
-    return _RecordCapacities(values, censored, int((known["resurrections"] > 0).sum()), fit)
 
 
 def _ida_axis_limit(runs: "pd.DataFrame", capacities: "pd.DataFrame", measure: str) -> float:
@@ -485,26 +428,28 @@ def _draw_ida_curves(axes: Axes, runs: "pd.DataFrame", measure: str) -> int:
     return int(runs["overturned"].isna().sum())
 
 
-def _draw_ida_capacities(axes: Axes, found: _RecordCapacities, confidence: float | None, failed: int) -> None:
+def _draw_ida_capacities(axes: Axes, rows: "pd.DataFrame", confidence: float | None, failed: int) -> None:
     """Draw steps of the observed fraction, the lognormal curve, and the numbers."""
     axes.set_ylim(-0.03, 1.03)
-    lines = [number_with_noun(found.reached.size, "record")]
-    if found.censored.any():
-        lines[0] += f", {int(found.censored.sum())} never overturned"
-    if (~found.censored).any():
+    rows = rows[rows["capacity"].notna()]
+    reached, censored = rows["capacity"].to_numpy(dtype=float), rows["censored"].to_numpy(dtype=bool)
+    lines = [number_with_noun(len(rows), "record")]
+    if censored.any():
+        lines[0] += f", {int(censored.sum())} never overturned"
+    if not censored.all():
         from scipy.stats import CensoredData, ecdf
 
         # Records that never overturned are censored.
-        sample = CensoredData(uncensored=found.reached[~found.censored], right=found.reached[found.censored])
-        estimate = ecdf(sample).cdf
+        estimate = ecdf(CensoredData(uncensored=reached[~censored], right=reached[censored])).cdf
         at, fraction = np.append(0.0, estimate.quantiles), np.append(0.0, estimate.probabilities)
         axes.step(at, fraction, where="post", color=BLACK, linewidth=0.9, label="_ecdf")
-    if found.fit is not None:
-        end = float(found.reached.max()) * 1.3
-        known = confidence if found.fit.covariance is not None else None
-        _draw_fragility_curve(axes, found.fit, end, known, LineStyle(RED, "--"), linewidth=1.1, label="_fit")
-        lines.append(f"median {short_number(found.fit.median)}, β = {found.fit.beta:.2f}")
-    lines.append(f"{found.resurrected} with resurrections")
+    with suppress(InputError):  # too few records
+        fit = fragility.fit_capacities(reached, censored, rows["group"])
+        end = float(reached.max()) * 1.3
+        known = None if fit.covariance is None else confidence
+        _draw_fragility_curve(axes, fit, end, known, LineStyle(RED, "--"), linewidth=1.1, label="_fit")
+        lines.append(f"median {short_number(fit.median)}, β = {fit.beta:.2f}")
+    lines.append(f"{int((rows['resurrections'] > 0).sum())} with resurrections")
     if failed:
         lines.append(f"{number_with_noun(failed, 'run')} failed")
     axes.text(
@@ -521,7 +466,7 @@ class _PlottedCloud(NamedTuple):
     rocked: "pd.DataFrame"
     fallen: "pd.DataFrame"
     n_failed: int
-    line: CloudFit | None
+    line: fragility.CloudFit | None
     fitted: bool
 
 
@@ -530,7 +475,7 @@ def plot_clouds(
     quantity: Literal["max_rotation", "max_top_displacement", "max_total_top_displacement"] = "max_rotation",
     measure: str = "pgv",
     *,
-    threshold: float = ROCKED,
+    threshold: float = fragility.ROCKED,
     nominal: bool = False,
     size: Size | None = None,
 ) -> Figure:
@@ -583,16 +528,18 @@ def plot_clouds(
         raise InputError(f"quantity must be one of {', '.join(_QUANTITIES)}, but {shown(quantity)} was given.")
     import pandas as pd
 
-    check_table_columns(runs, ("structure", "model", "status", measure), "what run_cloud returned")
+    tables.check_table_columns(runs, ("structure", "model", "status", measure), "what run_cloud returned")
     clouds = _plotted_clouds(runs, quantity, measure, threshold, nominal=nominal)
-    styles = model_lines_and_symbols(names_in_column(cloud.model for cloud in clouds))
-    names = names_in_column(cloud.structure for cloud in clouds)
+    styles = tables.model_lines_and_symbols(tables.names_in_column(cloud.model for cloud in clouds))
+    names = tables.names_in_column(cloud.structure for cloud in clouds)
     rocked, fallen = pd.concat([cloud.rocked for cloud in clouds]), pd.concat([cloud.fallen for cloud in clouds])
-    with with_figure_style(size=size):
-        figure, panels = structure_panels(names, 2, 2.45, measure_axis_name(measure), _QUANTITIES[quantity])
+    with figures.styled(size=size):
+        figure, panels = tables.structure_panels(
+            names, 2, 2.45, tables.measure_axis_name(measure), _QUANTITIES[quantity]
+        )
         panels[0].set(xscale="log", yscale="log")
         for axes in panels:
-            label_log_axis_plainly(axes.xaxis)
+            tables.label_log_axis_plainly(axes.xaxis)
         _set_cloud_limits(panels[0], rocked, pd.concat([rocked, fallen]), quantity, measure, len(styles))
         for axes, name in zip(panels, names, strict=True):
             rows: list[tuple[str, str]] = []
@@ -602,10 +549,10 @@ def plot_clouds(
                 _draw_cloud(axes, cloud, quantity, measure, style, marker, crosses)
                 rows.append((_cloud_numbers_text(cloud), style.color))
             _write_cloud_numbers(axes, rows)
-        handles = model_legend_handles(styles)
+        handles = tables.model_legend_handles(styles)
         if len(fallen):
             handles.append(Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.0, label="overturned"))
-        add_legend_above(figure, handles)
+        figures.add_legend_above(figure, handles)
     return figure
 
 
@@ -613,7 +560,7 @@ def _plotted_clouds(
     runs: "pd.DataFrame", quantity: str, measure: str, threshold: float, *, nominal: bool
 ) -> list[_PlottedCloud]:
     """Clouds of all structures and models, in the order of the table."""
-    fits, _ = fit_each_cloud(runs, measure, threshold=threshold, nominal=nominal)
+    fits, _ = fragility.fit_each_cloud(runs, measure, threshold=threshold, nominal=nominal)
     fit_of = {(fit.structure, fit.model): fit for fit in fits}
     everything = runs[runs["status"].notna()]
     if not len(everything):
@@ -627,8 +574,8 @@ def _plotted_clouds(
     clouds: list[_PlottedCloud] = []
     for structure, model, group in runs_by_case(runs):
         solved = group[group["status"].notna()]
-        fell = (NOMINAL if nominal else OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
-        rocks = ~fell & rocked_runs(solved, threshold).to_numpy(dtype=bool)
+        fell = (fragility.NOMINAL if nominal else fragility.OVERTURNING).exceeded(solved).to_numpy(dtype=bool)
+        rocks = ~fell & fragility.rocked_runs(solved, threshold).to_numpy(dtype=bool)
         fit = fit_of.get((structure, model))
         line = fit and (fit.outcomes.rotation if quantity == "max_rotation" else getattr(fit, quantity[4:]))
         failed = len(group) - len(solved)
@@ -685,6 +632,6 @@ def _write_cloud_numbers(axes: Axes, rows: list[tuple[str, str]]) -> None:
     for place, (text, color) in enumerate(reversed([(header, BLACK), *rows])):
         axes.text(
             0.985, 0.025 + _ROW * place, text.ljust(width), transform=axes.transAxes, color=color,
-            fontsize=scaled_font_size(_TINY), ha="right", family="DejaVu Sans Mono",
+            fontsize=figures.scaled_font_size(_TINY), ha="right", family="DejaVu Sans Mono",
             bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.6, "pad": 0.5},
         )  # fmt: skip

@@ -16,31 +16,8 @@ from rockflex._errors import InputError
 from rockflex._number_format import short_number, unit_with_prefix
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties, Springs, Tendon
-from rockflex.plot._style import (
-    BLACK,
-    BLUE,
-    GRAY,
-    GREEN,
-    LINE_STYLES,
-    ORANGE,
-    PURPLE,
-    RED,
-    SHADE,
-    SKY,
-    YELLOW,
-    LineStyle,
-    Size,
-    add_legend_above,
-    add_legend_beside,
-    is_narrow_figure,
-    label_panel,
-    literal_text,
-    new_figure,
-    recoloured_line_styles,
-    scaled_font_size,
-    with_figure_style,
-    write_notes_beside,
-)
+from rockflex.plot import _figures as figures
+from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SHADE, SKY, LineStyle, Size
 from rockflex.response import History, Response
 
 _MARGIN = 1.12
@@ -130,7 +107,7 @@ def rotation_axis_limit(curves: list[ResponseCurve]) -> float:
     return finished if standing else max(finished, *fallen, 0.0)
 
 
-def time_axis_limits(curves: list[ResponseCurve]) -> tuple[float, float]:
+def time_axis_limits(curves: Sequence[ResponseCurve]) -> tuple[float, float]:
     """First and last time of all curves in s."""
     times = [curve.history.time for curve in curves]
     return min(float(time[0]) for time in times), max(float(time[-1]) for time in times)
@@ -141,7 +118,7 @@ def response_figure_title(curves: list[ResponseCurve], title: str | None) -> str
     if title is not None:
         return title
     motions = {curve.response.motion for curve in curves}
-    return literal_text(motions.pop()) if len(motions) == 1 else ""
+    return figures.literal(motions.pop()) if len(motions) == 1 else ""
 
 
 def response_curves(
@@ -172,8 +149,8 @@ def _response_labels(responses: list[Response], labels: Sequence[str] | None) ->
     if labels is None:
         models = [response.model for response in responses]
         if len(set(models)) == len(models):
-            return [literal_text(model) for model in models]
-        return [literal_text(f"{response.model}, {response.motion}") for response in responses]
+            return [figures.literal(model) for model in models]
+        return [figures.literal(f"{response.model}, {response.motion}") for response in responses]
     if isinstance(labels, str) or len(labels) != len(responses):
         given = f"the string {shown(labels)}" if isinstance(labels, str) else f"{len(labels)}"
         raise InputError(
@@ -186,7 +163,7 @@ def _response_line_styles(histories: list[History]) -> list[LineStyle]:
     """Line styles of Silva & Stojadinović 2024, Fig. 15, for fixed base, most modes, one and two, and others."""
     max_modes = max((h.model.properties.n_modes for h in histories if h.model.lifts), default=0)
     wanted = [_usual_line_style(history, max_modes) for history in histories]
-    spare, styles = [style for style in LINE_STYLES if style not in wanted], list[LineStyle]()
+    spare, styles = [style for style in figures.LINE_STYLES if style not in wanted], list[LineStyle]()
     for own in wanted:
         if own is None or own in styles:
             if not spare:
@@ -195,7 +172,7 @@ def _response_line_styles(histories: list[History]) -> list[LineStyle]:
                 )
             own = spare.pop(0)
         styles.append(own)
-    return recoloured_line_styles(styles)
+    return figures.recoloured_line_styles(styles)
 
 
 def _usual_line_style(history: History, max_modes: int) -> LineStyle | None:
@@ -246,7 +223,7 @@ _QUANTITIES = {
 PANELS = tuple(_QUANTITIES)
 
 
-def default_history_panels(curves: list[ResponseCurve]) -> list[str]:
+def default_panels(curves: list[ResponseCurve]) -> list[str]:
     """All but ΣF_x; total displacement if the height of the top is known, slip and edges if a base slides or heaves."""
     known = all(curve.history.model.properties.top_height is not None for curve in curves)
     usual = [name for name in PANELS if name not in _OPTIONAL and (known or name != "total_top_displacement")]
@@ -283,18 +260,16 @@ def quantity_axis_scale(quantity: PanelQuantity, curves: list[ResponseCurve]) ->
     return factor, unit, _MARGIN * largest / factor if largest > 0.0 else 1e-3
 
 
-def draw_history_panel(axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve], mark: str) -> list[Artist]:
+def draw_panel(axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve], mark: str) -> list[Artist]:
     """Fill one panel over time and list the peaks beside it; return a line for each curve."""
-    lines, peaks = draw_history_curves(axes, quantity, curves)
-    label_panel(axes, mark)
+    lines, peaks = draw_curves(axes, quantity, curves)
+    figures.label_panel(axes, mark)
     notes = [(text, curve.style.color) for text, curve in zip(peaks, curves, strict=True)]
-    write_notes_beside(axes, [("peaks", "#404040"), *notes], 10.0)
+    figures.write_notes_beside(axes, [("peaks", "#404040"), *notes], 10.0)
     return lines
 
 
-def draw_history_curves(
-    axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve]
-) -> tuple[list[Artist], list[str]]:
+def draw_curves(axes: Axes, quantity: PanelQuantity, curves: list[ResponseCurve]) -> tuple[list[Artist], list[str]]:
     """Fill one panel over time; return a line for each curve, and its peak in words."""
     factor, unit, limit = quantity_axis_scale(quantity, curves)
     low = -limit
@@ -320,17 +295,18 @@ def draw_history_curves(
     return lines, peaks
 
 
-def add_response_legend(
+def add_legend(
     figure: Figure,
     curves: list[ResponseCurve],
-    handles: Sequence[Artist],
-    names: Sequence[str],
+    lines: list[Artist],
+    uplifts: dict[str, Artist],
     title: str | None,
     **options: Any,
 ) -> None:
-    """Add the legend of responses above a figure, under its title."""
+    """Add the legend of responses above a figure, under its title; `uplifts` is what `shade_uplifts` returned."""
+    handles, names = [*lines, *uplifts.values()], [*(curve.label for curve in curves), *uplifts]
     options |= {"title": response_figure_title(curves, title), "handlelength": 2.6, "columnspacing": 1.4}
-    add_legend_above(figure, handles, names, **options)
+    figures.add_legend_above(figure, handles, names, **options)
 
 
 def _mark_peak(axes: Axes, quantity: PanelQuantity, curve: ResponseCurve, factor: float) -> str:
@@ -427,18 +403,17 @@ def plot_history(
     (2, 'time [s]')
     """
     curves = response_curves(responses, labels)
-    quantities = panel_quantities(default_history_panels(curves) if panels is None else panels)
+    quantities = panel_quantities(default_panels(curves) if panels is None else panels)
     handles: list[Artist] = []
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, len(quantities) * max(1.45, 0.155 * (len(curves) + 2)) + 0.8)
+    with figures.styled(size=size):
+        figure = figures.new(6.3, len(quantities) * max(1.45, 0.155 * (len(curves) + 2)) + 0.8)
         grid: list[Axes] = list(figure.subplots(len(quantities), 1, sharex=True, squeeze=False).flat)
         for axes, quantity, mark in zip(grid, quantities, ascii_uppercase, strict=False):
-            handles = draw_history_panel(axes, quantity, curves, mark)
+            handles = draw_panel(axes, quantity, curves, mark)
         uplifts = shade_uplifts(grid, curves)
         grid[-1].set(xlabel="time [s]", xlim=time_axis_limits(curves))
         figure.align_ylabels()
-        names = [curve.label for curve in curves]
-        add_response_legend(figure, curves, [*handles, *uplifts.values()], [*names, *uplifts], title)
+        add_legend(figure, curves, handles, uplifts, title)
     return figure
 
 
@@ -534,10 +509,10 @@ def plot_spread(
     groups = [[response_curves(response)[0] for response in group] for group in varied]
     quantities = panel_quantities(panels)
     everything = [*curves, *(curve for group in groups for curve in group)]
-    times = np.linspace(0.0, max(float(curve.history.time[-1]) for curve in curves), _POINTS)
-    with with_figure_style(size=size):
-        shape = (len(quantities) * len(curves), 1) if is_narrow_figure() else (len(curves), len(quantities))
-        figure = new_figure(0.8 + 3.2 * len(quantities), 0.9 + 1.35 * shape[0])
+    times = np.linspace(0.0, time_axis_limits(curves)[1], _POINTS)
+    with figures.styled(size=size):
+        shape = (len(quantities) * len(curves), 1) if figures.is_narrow() else (len(curves), len(quantities))
+        figure = figures.new(0.8 + 3.2 * len(quantities), 0.9 + 1.35 * shape[0])
         # A narrow figure has one column: all panels of the first quantity, then of the next.
         grid = figure.subplots(*shape, sharex=True, squeeze=False).reshape(len(curves), -1, order="F")
         for column, quantity in enumerate(quantities):
@@ -550,13 +525,13 @@ def plot_spread(
                 values = quantity.of(curve.history)[drawn] / factor
                 axes.plot(curve.history.time[drawn], values, color=BLACK, linewidth=0.8, label=curve.label)
                 axes.set(ylim=(-limit, limit), xlim=(0.0, float(times[-1])), ylabel=f"{quantity.symbol} [{unit}]")
-                axes.set_title(curve.label, fontsize=scaled_font_size(8.0), loc="left", pad=3.0)
-            if column + 1 == len(quantities) or not is_narrow_figure():
+                axes.set_title(curve.label, fontsize=figures.scaled_font_size(8.0), loc="left", pad=3.0)
+            if column + 1 == len(quantities) or not figures.is_narrow():
                 grid[-1, column].set_xlabel("time [s]")
         figure.align_ylabels()
         handles = [grid[0, 0].get_lines()[0], Patch(facecolor=SHADE, edgecolor=GRAY, linewidth=0.4)]
         names = ["nominal", "from the least to the largest of what was varied"]
-        add_legend_above(figure, handles, names, title=response_figure_title(curves, title))
+        figures.add_legend_above(figure, handles, names, title=response_figure_title(curves, title))
     return figure
 
 
@@ -616,16 +591,14 @@ def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
     ledger, drawn = history.energy, curve.before_fall
     released = -min(float(ledger.element_strain[drawn].min()), 0.0)  # at t = 0, and given back later
     settled = -min(float(ledger.gravity[drawn].min()), 0.0)  # below the level of the unloaded springs
-    layers = [
-        (label, color, values[drawn]) for label, color, values in _energy_layers(curve.history, released, settled)
-    ]
+    layers = [(*words, values[drawn]) for *words, values in _energy_layers(history, released, settled)]
     layers = [layer for layer in layers if np.any(layer[2] != 0.0)]
     start = float(ledger.stored[0]) + released + settled
     supply = ledger.input[drawn] + start
     factor, unit = unit_with_prefix(float(np.max(np.abs(supply))), "J")
     time = history.time[drawn]
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, 3.4)
+    with figures.styled(size=size):
+        figure = figures.new(6.3, 3.4)
         axes = figure.subplots()
         if layers:
             axes.stackplot(
@@ -637,10 +610,12 @@ def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
             axes.axvline(time[-1], color=BLUE, linestyle=":", label="overturning")
         axes.set_xlim(float(history.time[0]), float(history.time[-1]))
         axes.set(ylim=(0.0, 1.06 * float(np.max(supply)) / factor or 1.0), xlabel="time [s]", ylabel=f"energy [{unit}]")
-        title = f"{curve.label} under {literal_text(curve.response.motion)}, closing error {ledger.closing_error:.1e}"
+        title = (
+            f"{curve.label} under {figures.literal(curve.response.motion)}, closing error {ledger.closing_error:.1e}"
+        )
         axes.set_title(title)
         handles, _ = axes.get_legend_handles_labels()
-        add_legend_beside(figure, handles[::-1])
+        figures.add_legend_beside(figure, handles[::-1])
     return figure
 
 
@@ -651,7 +626,7 @@ def _energy_layers(history: History, released: float, settled: float) -> list[tu
     return [
         ("damped", GRAY, ledger.damped),
         ("lost in impacts", RED, ledger.lost),
-        ("yield of tendons" if only_tendons else "taken by elements", YELLOW, ledger.elements.sum(axis=1)),
+        ("yield of tendons" if only_tendons else "taken by elements", figures.YELLOW, ledger.elements.sum(axis=1)),
         ("friction of the base", BROWN, ledger.friction),
         ("damped by the ground", SAND, ledger.soil.sum(axis=1)),
         ("raised weight", GREEN, ledger.gravity + settled),
@@ -707,19 +682,20 @@ def plot_footing(response: Response, *, title: str | None = None, size: Size | N
             "The base of this response is not on springs. Simulate it with "
             "ground=Ground(springs=..., base_inertia=...), or use plot_history."
         )
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, 5.4)
+    with figures.styled(size=size):
+        figure = figures.new(6.3, 5.4)
         edges, soil, contact = figure.subplots(3, 1, sharex=True, height_ratios=(1.0, 1.3, 0.7))
         _draw_base_edges(edges, history)
         _draw_soil_pressure(figure, soil, history, springs)
         _draw_base_contact(contact, history, springs)
         for axes, mark in zip((edges, soil, contact), "ABC", strict=True):
-            label_panel(axes, mark)
+            figures.label_panel(axes, mark)
         contact.set_xlabel("time [s]")
         contact.set_xlim(float(history.time[0]), float(history.time[-1]))
         figure.align_ylabels([edges, soil, contact])
         edges.set_title(
-            literal_text(curve.label) + (f" under {given}" if (given := response_figure_title(curves, title)) else "")
+            figures.literal(curve.label)
+            + (f" under {given}" if (given := response_figure_title(curves, title)) else "")
         )
     return figure
 

@@ -13,50 +13,16 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from rockflex import modal
 from rockflex._arrays import Array
 from rockflex._checks import checked_positive
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._number_format import short_number, unit_with_prefix
-from rockflex.modal import (
-    BaseElement,
-    ElementLaw,
-    FrictionDamper,
-    Pivot,
-    RockingProperties,
-    Tendon,
-    ViscousDamper,
-    YieldingDissipator,
-)
-from rockflex.plot._history import (
-    ResponseCurve,
-    add_response_legend,
-    draw_history_panel,
-    panel_quantities,
-    quantity_axis_scale,
-    response_curves,
-    response_figure_title,
-    rotation_axis_limit,
-    shade_uplifts,
-)
-from rockflex.plot._style import (
-    BLACK,
-    BLUE,
-    GRAY,
-    GREEN,
-    ORANGE,
-    PURPLE,
-    RED,
-    SKY,
-    SMALL,
-    Size,
-    add_legend_above,
-    is_narrow_figure,
-    label_panel,
-    literal_text,
-    new_figure,
-    with_figure_style,
-)
+from rockflex.plot import _figures as figures
+from rockflex.plot import _history as histories
+from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, ORANGE, PURPLE, RED, SKY, SMALL, Size
+from rockflex.plot._history import ResponseCurve
 from rockflex.response import (
     MomentRotation,
     MomentRotationOnSprings,
@@ -70,11 +36,11 @@ from rockflex.response import (
 from rockflex.study import RockingStructure, rocking_properties_of
 
 _COLORS = (SKY, ORANGE, PURPLE, GREEN, RED, "#7a5195")  # of elements, in their order
-_ELEMENT_NAMES: dict[type[BaseElement], str] = {
-    Tendon: "tendon",
-    YieldingDissipator: "fuse",
-    ViscousDamper: "viscous damper",
-    FrictionDamper: "friction damper",
+_ELEMENT_NAMES: dict[type[modal.BaseElement], str] = {
+    modal.Tendon: "tendon",
+    modal.YieldingDissipator: "fuse",
+    modal.ViscousDamper: "viscous damper",
+    modal.FrictionDamper: "friction damper",
 }
 _PER_ROW = 2
 _LIMIT = 1.1
@@ -107,7 +73,7 @@ class BaseLoops:
     """
 
     title: str
-    elements: tuple[BaseElement, ...]
+    elements: tuple[modal.BaseElement, ...]
     rotation: Array
     weight: Array
     parts: Array
@@ -124,31 +90,25 @@ class BaseLoops:
 
 
 def base_loops(result: MomentRotation | MomentRotationOnSprings | Response) -> BaseLoops:
-    """Return the path of a base from a cyclic pushover, or from the history of a run.
-
-    Raises
-    ------
-    InputError
-        If `result` is neither, has no history, or is of a base that cannot lift.
-    """
-    if isinstance(result, MomentRotation | MomentRotationOnSprings):
-        return BaseLoops(
-            "", result.elements, result.rotation, result.weight_moment, result.element_moment,
-            result.element_elongation, result.element_force, result.spring_moment, result.edge_uplift,
-        )  # fmt: skip
+    """Return the path of a base from a cyclic pushover, or from the history of a run."""
     given: Any = result
+    if hasattr(given, "weight_moment"):  # a quasi-static path
+        return BaseLoops(
+            "", given.elements, given.rotation, given.weight_moment, given.element_moment, given.element_elongation,
+            given.element_force, given.spring_moment, given.edge_uplift,
+        )  # fmt: skip
     if not hasattr(given, "history"):
         raise InputError(
             f"result must be a Response or a MomentRotation, but {type(given).__name__} was given. Give what simulate "
             "or moment_rotation returned."
         )
-    (curve,) = curves = response_curves(result)
+    (curve,) = curves = histories.response_curves(given)
     if not curve.lifts:
         raise InputError(
             "The base of this response cannot lift, so it has no loops. Give the response of a model that rocks, such "
             'as "2DOF-S".'
         )
-    return _loops_of_run(curve, response_figure_title(curves, None))
+    return _loops_of_run(curve, histories.response_figure_title(curves, None))
 
 
 def _loops_of_run(curve: ResponseCurve, title: str = "") -> BaseLoops:
@@ -174,20 +134,20 @@ def _loops_of_run(curve: ResponseCurve, title: str = "") -> BaseLoops:
     )  # fmt: skip
 
 
-def is_moment_path_independent(properties: RockingProperties) -> bool:
+def is_moment_path_independent(properties: modal.RockingProperties) -> bool:
     """Whether the resisting moment depends on the rotation alone: all elements stay elastic."""
     return all(
         not any(branch.yields for branch in each.law.values())
-        if isinstance(each, ElementLaw)
-        else isinstance(each, Tendon) and each.post_yield_ratio is None
+        if isinstance(each, modal.ElementLaw)
+        else isinstance(each, modal.Tendon) and each.post_yield_ratio is None
         for each in properties.elements
     )
 
 
-def _element_name(elements: Sequence[BaseElement], place: int) -> str:
+def _element_name(elements: Sequence[modal.BaseElement], place: int) -> str:
     """Name of an element in a figure, with its number, counted from 1, and its position."""
     element = elements[place]
-    words = element.words if isinstance(element, ElementLaw) else _ELEMENT_NAMES[type(element)]
+    words = element.words if isinstance(element, modal.ElementLaw) else _ELEMENT_NAMES[type(element)]
     return f"{place + 1} {words}, {element.where}"
 
 
@@ -240,11 +200,11 @@ def plot_loops(
     drawn = [] if loops.edges is None else [_draw_edge_loops]
     drawn += [partial(_draw_element_loop, place=place) for place in range(len(loops.elements))]
     count = len(drawn)
-    with with_figure_style(size=size):
-        narrow = is_narrow_figure()
+    with figures.styled(size=size):
+        narrow = figures.is_narrow()
         rows = count if narrow else max(math.ceil(count / _PER_ROW), 1)
         beside = 0 if narrow else math.ceil(count / rows)
-        figure = new_figure(4.2 + 2.2 * beside, max(3.6, (3.3 if narrow else 0.7) + 2.3 * rows))
+        figure = figures.new(4.2 + 2.2 * beside, max(3.6, (3.3 if narrow else 0.7) + 2.3 * rows))
         figure.get_layout_engine().set(w_pad=0.07)  # pyright: ignore
         if narrow:
             grid = figure.add_gridspec(1 + rows, 1, height_ratios=(1.4, *[1.0] * rows))
@@ -256,8 +216,8 @@ def plot_loops(
         for place, draw in enumerate(drawn):
             row, column = (1 + place, 0) if narrow else (place // beside, 1 + place % beside)
             draw(figure.add_subplot(grid[row, column]), loops)
-        heading = literal_text(title) if title is not None else loops.title
-        add_legend_above(figure, base.get_lines(), title=heading, handlelength=2.0)
+        heading = figures.literal(title) if title is not None else loops.title
+        figures.add_legend_above(figure, base.get_lines(), title=heading, handlelength=2.0)
     return figure
 
 
@@ -339,11 +299,11 @@ def plot_hysteresis(
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('$u_{\\mathrm{top}}$, relative [m]', '$V_b$ [kN]')
     """
-    curves = response_curves(responses, labels)
-    with with_figure_style(size=size):
-        figure = new_figure(4.2, 3.6)
+    curves = histories.response_curves(responses, labels)
+    with figures.styled(size=size):
+        figure = figures.new(4.2, 3.6)
         lines = _draw_hysteresis(figure.subplots(), curves)
-        add_response_legend(figure, curves, lines, [curve.label for curve in curves], title)
+        histories.add_legend(figure, curves, lines, {}, title)
     return figure
 
 
@@ -392,35 +352,35 @@ def plot_yielding(
     >>> len(figure.axes), figure.axes[-1].get_xlabel()
     (3, '$u_{\\mathrm{top}}$, relative [m]')
     """
-    curves = response_curves(responses, labels)
-    with with_figure_style(size=size):
-        tall, narrow = max(1.45, 0.155 * (len(curves) + 2)), is_narrow_figure()
-        figure = new_figure(8.6, 2.0 * tall + 2.6 * narrow + 0.9)
+    curves = histories.response_curves(responses, labels)
+    with figures.styled(size=size):
+        tall, narrow = max(1.45, 0.155 * (len(curves) + 2)), figures.is_narrow()
+        figure = figures.new(8.6, 2.0 * tall + 2.6 * narrow + 0.9)
         if narrow:
             grid = figure.add_gridspec(3, 1, height_ratios=(tall, tall, 2.6))
         else:
             grid = figure.add_gridspec(2, 2, width_ratios=(1.55, 1.0))
         top = figure.add_subplot(grid[0, 0])
-        histories: list[Axes] = [top, figure.add_subplot(grid[1, 0], sharex=top)]
-        quantities = panel_quantities(("rotation", "top_displacement"))
-        for axes, quantity, mark in zip(histories, quantities, "AB", strict=True):
-            draw_history_panel(axes, quantity, curves, mark)
-        shade_uplifts(histories, curves)
+        panels: list[Axes] = [top, figure.add_subplot(grid[1, 0], sharex=top)]
+        quantities = histories.panel_quantities(("rotation", "top_displacement"))
+        for axes, quantity, mark in zip(panels, quantities, "AB", strict=True):
+            histories.draw_panel(axes, quantity, curves, mark)
+        histories.shade_uplifts(panels, curves)
         top.tick_params(labelbottom=False)
-        histories[1].set(xlabel="time [s]", xlim=(0.0, max(float(curve.history.time[-1]) for curve in curves)))
+        panels[1].set(xlabel="time [s]", xlim=(0.0, histories.time_axis_limits(curves)[1]))
         loops = figure.add_subplot(grid[2, 0] if narrow else grid[:, 1])
         lines = _draw_hysteresis(loops, curves)
-        label_panel(loops, "C")
-        figure.align_ylabels(histories)
-        add_response_legend(figure, curves, lines, [curve.label for curve in curves], title)
+        figures.label_panel(loops, "C")
+        figure.align_ylabels(panels)
+        histories.add_legend(figure, curves, lines, {}, title)
     return figure
 
 
 def _draw_hysteresis(axes: Axes, curves: list[ResponseCurve]) -> list[Artist]:
     """Fill a panel with V_b over u_top; return a line for each curve."""
-    displacement, force = panel_quantities(("top_displacement", "base_shear"))
-    _, across, right = quantity_axis_scale(displacement, curves)
-    factor, unit, high = quantity_axis_scale(force, curves)
+    displacement, force = histories.panel_quantities(("top_displacement", "base_shear"))
+    _, across, right = histories.quantity_axis_scale(displacement, curves)
+    factor, unit, high = histories.quantity_axis_scale(force, curves)
     axes.set(xlim=(-right, right), ylim=(-high, high))
     axes.locator_params(axis="x", nbins=5)
     axes.set(xlabel=f"{displacement.symbol} [{across}]", ylabel=f"{force.symbol} [{unit}]")
@@ -477,19 +437,19 @@ def plot_moment_rotation(
     >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     ('', '')
     """
-    curves = [curve for curve in response_curves(responses, labels) if curve.lifts]
+    curves = [curve for curve in histories.response_curves(responses, labels) if curve.lifts]
     if not curves:
         raise InputError(
             "None of the responses has a base that can lift, so there is no moment over rotation to plot. "
             'Give at least one of a model that rocks, such as "2DOF-S".'
         )
-    rotation = _LIMIT * (rotation_axis_limit(curves) or max(map(static_line_rotation, curves)))
+    rotation = _LIMIT * (histories.rotation_axis_limit(curves) or max(map(static_line_rotation, curves)))
     largest = max(largest_base_moment_on_axes(curve) for curve in curves)
     factor, unit = unit_with_prefix(largest, "N m")
-    with with_figure_style(size=size):
-        columns = 1 if is_narrow_figure() else min(len(curves), _RUNS_PER_ROW)
+    with figures.styled(size=size):
+        columns = 1 if figures.is_narrow() else min(len(curves), _RUNS_PER_ROW)
         rows = math.ceil(len(curves) / columns)
-        figure = new_figure(2.2 + 1.8 * columns, 0.6 + 2.6 * rows)
+        figure = figures.new(2.2 + 1.8 * columns, 0.6 + 2.6 * rows)
         grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
         panels: list[Axes] = list(grid.flat)
         panels[0].set(xlim=(-rotation, rotation), ylim=(-_LIMIT * largest / factor, _LIMIT * largest / factor))
@@ -505,7 +465,7 @@ def plot_moment_rotation(
         figure.supxlabel("θ [rad]", fontsize="medium")
         figure.supylabel(f"$M_b$ [{unit}]", fontsize="medium")
         kinds = {line.get_label(): line for axes in panels for line in axes.get_lines()[1:]}
-        add_legend_above(figure, list(kinds.values()), max_columns=1, handlelength=3.0)
+        figures.add_legend_above(figure, list(kinds.values()), max_columns=1, handlelength=3.0)
     return figure
 
 
@@ -546,7 +506,7 @@ def resisting_moment_line(curve: ResponseCurve, rotation: float, factor: float) 
 
 
 def plot_moment_rotation_laws(
-    structure: "RockingStructure | RockingProperties",
+    structure: "RockingStructure | modal.RockingProperties",
     spring: float | None = None,
     *,
     rotation: float | None = None,
@@ -608,15 +568,15 @@ def plot_moment_rotation_laws(
     line = is_moment_path_independent(p)
     if not line:
         zeros = [_rotation_of_zero_moment(*push) for push in pushes]
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, 5.6 if is_narrow_figure() else 3.1)
-        left, right = figure.subplots(*((2, 1) if is_narrow_figure() else (1, 2)), sharex=True, sharey=True)
+    with figures.styled(size=size):
+        figure = figures.new(6.3, 5.6 if figures.is_narrow() else 3.1)
+        left, right = figure.subplots(*((2, 1) if figures.is_narrow() else (1, 2)), sharex=True, sharey=True)
         for axes, mark, title in ((left, "A", "pinned beam on a spring"), (right, "B", "rocking base")):
             axes.axhline(0.0, color=GRAY, linewidth=0.8, label="_axis")
             axes.axvline(0.0, color=GRAY, linewidth=0.8, label="_axis")
             axes.set(title=title, xlabel="θ [rad]")
             axes.tick_params(labelleft=True)
-            label_panel(axes, mark)
+            figures.label_panel(axes, mark)
         left.set(
             ylabel=f"M [{unit}]",
             xlim=(-end, end),
@@ -665,7 +625,7 @@ def _rotation_of_zero_moment(rotation: Array, moment: Array) -> float:
     return float(rotation[k] + (rotation[k + 1] - rotation[k]) * moment[k] / (moment[k] - moment[k + 1]))
 
 
-def _moment_slope_text(sides: tuple[Pivot, Pivot], *, symmetric: bool) -> str:
+def _moment_slope_text(sides: tuple[modal.Pivot, modal.Pivot], *, symmetric: bool) -> str:
     held = any(side.tendon_stiffness for side in sides)
     name = r"k_t - L_0^r\,g" if held else r"-L_0^r\,g"
     values = [_moment_with_unit(side.rocking_stiffness, "N m/rad") for side in sides]

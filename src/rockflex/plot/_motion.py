@@ -8,7 +8,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import LogLocator, NullFormatter
 
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
@@ -16,28 +15,9 @@ from rockflex._errors import InputError
 from rockflex._number_format import short_number
 from rockflex._shown import number_with_noun
 from rockflex.motion import MEASURES, GroundMotion, MeasureInput, Selection
-from rockflex.plot._study_tables import check_table_columns
-from rockflex.plot._style import (
-    BLACK,
-    BLUE,
-    GRAY,
-    GREEN,
-    LINE_STYLES,
-    ORANGE,
-    RED,
-    SHADE,
-    LineStyle,
-    Size,
-    add_legend_above,
-    add_legend_beside,
-    assign_distinct,
-    is_narrow_figure,
-    literal_text,
-    new_figure,
-    recoloured_line_styles,
-    scaled_font_size,
-    with_figure_style,
-)
+from rockflex.plot import _figures as figures
+from rockflex.plot._figures import BLACK, BLUE, GRAY, GREEN, LINE_STYLES, ORANGE, RED, SHADE, LineStyle, Size
+from rockflex.plot._study_tables import check_table_columns, label_log_axis_plainly
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -110,9 +90,9 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
     ]
     if motion.vertical is not None:
         histories.insert(1, ("a_v", "m/s²", motion.vertical, f"{said['pva']} ({short_number(motion.pva / GRAVITY)} g)"))
-    with with_figure_style(size=size):
-        figure = new_figure(7.2, 1.0 + 1.2 * len(histories) + 2.4 * is_narrow_figure())
-        if is_narrow_figure():
+    with figures.styled(size=size):
+        figure = figures.new(7.2, 1.0 + 1.2 * len(histories) + 2.4 * figures.is_narrow())
+        if figures.is_narrow():
             stacked: list[Any] = [[name] for name in (*(symbol for symbol, *_ in histories), "spectrum")]
             panels = figure.subplot_mosaic(stacked, height_ratios=(*[1.0] * len(histories), 1.7))
         else:
@@ -123,7 +103,7 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
             axes.plot(motion.time, values, color=BLACK, linewidth=0.7)
             limit = 1.1 * float(np.max(np.abs(values))) or 1.0
             axes.set(ylim=(-limit, limit), xlim=(0.0, motion.duration), ylabel=f"${symbol}$ [{unit}]")
-            axes.set_title(peak, loc="right", fontsize=scaled_font_size(8.0))
+            axes.set_title(peak, loc="right", fontsize=figures.scaled_font_size(8.0))
         for symbol, *_ in histories[:-1]:
             panels[symbol].sharex(panels["d"])
             panels[symbol].tick_params(labelbottom=False)
@@ -134,14 +114,14 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
         if motion.vertical is not None:
             upwards = motion.vertical_motion.spectrum(_PERIODS, _DAMPING)
             axes.plot(upwards.period, upwards.sa, color=ORANGE, linewidth=1.2, linestyle="--", label="vertical")
-            axes.legend(loc="upper right", fontsize=scaled_font_size(8.0))
+            axes.legend(loc="upper right", fontsize=figures.scaled_font_size(8.0))
             largest = max(largest, float(upwards.sa.max()))
         axes.set(xscale="log", xlim=(_PERIODS[0], _PERIODS[-1]), ylim=(0.0, 1.08 * largest or 1.0))
         axes.xaxis.set_major_formatter("{x:g}")
         axes.set(xlabel="$T$ [s]", ylabel="$S_a$ [m/s²]")
         words = f"{said['arias']}, {said['d5_95']} (shaded)\nspectrum for ζ = {100.0 * _DAMPING:g} %"
-        axes.set_title(words, fontsize=scaled_font_size(8.0))
-        figure.suptitle(literal_text(motion.name) or "ground motion", fontsize="medium")
+        axes.set_title(words, fontsize=figures.scaled_font_size(8.0))
+        figure.suptitle(figures.literal(motion.name) or "ground motion", fontsize="medium")
     return figure
 
 
@@ -189,13 +169,13 @@ def plot_selection(selection: Selection, *, size: Size | None = None) -> Figure:
     periods = np.geomspace(low / _BEYOND, high * _BEYOND, _N_PERIODS)
     known = periods[(periods >= target.periods[0]) & (periods <= target.periods[-1])]
     rows = selection.at(periods)
-    with with_figure_style(size=size):
-        figure = new_figure(5.4, 4.6)
+    with figures.styled(size=size):
+        figure = figures.new(5.4, 4.6)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
         for axes in (upper, lower):
             axes.axvspan(low, high, color=SHADE, zorder=0.5)
         _draw_selected_spectra(upper, selection, periods, rows)
-        upper.plot(known, target.at(known), color=RED, linewidth=1.6, label=literal_text(target.name) or "target")
+        upper.plot(known, target.at(known), color=RED, linewidth=1.6, label=figures.literal(target.name) or "target")
         within = np.isin(periods, known)
         lower.plot(known, rows.mean(axis=0)[within] / target.at(known), color=BLUE, linewidth=1.4)
         lower.axhline(1.0, color=RED, linewidth=0.9)
@@ -206,12 +186,10 @@ def plot_selection(selection: Selection, *, size: Size | None = None) -> Figure:
         upper.set(xscale="log", yscale="log", ylabel=f"{_NAMES[selection.measure]} [m/s²]")
         upper.set_xlim(float(periods[0]), float(periods[-1]))
         for axis in (upper.xaxis, upper.yaxis):
-            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-            axis.set_major_formatter("{x:g}")
-            axis.set_minor_formatter(NullFormatter())
+            label_log_axis_plainly(axis)
         handles, labels = upper.get_legend_handles_labels()
         title = f"ζ = {100.0 * target.damping_ratio:g} %, {low:.3g} to {high:.3g} s"
-        add_legend_above(figure, handles, labels, title=title, max_columns=2)
+        figures.add_legend_above(figure, handles, labels, title=title, max_columns=2)
     return figure
 
 
@@ -267,13 +245,13 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "", size: Size 
         table, ("slenderness", "period", "relative_rotation", "overturned"), "what rocking_spectrum returned"
     )
     groups = dict(iter(table.groupby("slenderness")))
-    styles = assign_distinct(list(groups), recoloured_line_styles(_SPECTRUM_STYLES), "slendernesses")
+    styles = figures.assign_distinct(list(groups), figures.recoloured_line_styles(_SPECTRUM_STYLES), "slendernesses")
     fell = table["overturned"].fillna(False).astype(bool)
     standing = [float(value) for value in table["relative_rotation"][~fell] if np.isfinite(value)]
     share = 1.0 - _CROSS_ROW * (len(groups) + 1)
     limit = (1.05 * max(standing, default=0.0) or 1.0) / share
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, 3.6)
+    with figures.styled(size=size):
+        figure = figures.new(6.3, 3.6)
         axes = figure.subplots()
         for rank, (slenderness, style) in enumerate(styles.items()):
             block = groups[slenderness].sort_values("period")
@@ -285,10 +263,10 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "", size: Size 
                 block["period"][over], np.full(over.sum(), 1.0 - _CROSS_ROW * (rank + 1)), "x", color=style.color,
                 markersize=3.5, transform=axes.get_xaxis_transform(), label="_overturned",
             )  # fmt: skip
-        axes.set(ylim=(0.0, limit), xlabel=r"$2π/p$ [s]", ylabel=r"$θ_{\mathrm{max}}/α$", title=literal_text(title))
+        axes.set(ylim=(0.0, limit), xlabel=r"$2π/p$ [s]", ylabel=r"$θ_{\mathrm{max}}/α$", title=figures.literal(title))
         cross = Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.5, label="overturned")
         handles, _ = axes.get_legend_handles_labels()
-        add_legend_beside(figure, [*handles, cross])
+        figures.add_legend_beside(figure, [*handles, cross])
     return figure
 
 
@@ -333,12 +311,12 @@ def plot_overturning_spectrum(
     named: Mapping[str, pd.DataFrame] = tables if isinstance(tables, Mapping) else {"": tables}
     if not named:
         raise InputError("There is no table to plot. Give at least one from overturning_spectrum.")
-    styles = assign_distinct(list(named), recoloured_line_styles(_SPECTRUM_STYLES), "tables")
+    styles = figures.assign_distinct(list(named), figures.recoloured_line_styles(_SPECTRUM_STYLES), "tables")
     needed = ("frequency_ratio", "lowest", "highest_standing")
     for table in named.values():
         check_table_columns(table, needed, "what overturning_spectrum returned")
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, 3.6)
+    with figures.styled(size=size):
+        figure = figures.new(6.3, 3.6)
         axes = figure.subplots()
         ends = [value for table in named.values() for name in needed[1:] for value in table[name]]
         limit = 1.1 * max(value for value in (*ends, 1.0) if np.isfinite(value))
@@ -351,12 +329,12 @@ def plot_overturning_spectrum(
                 ratio, low, high, where=both, facecolor="none", edgecolor=style.color, hatch="////", linewidth=0.0,
                 alpha=0.5,
             )  # fmt: skip
-            axes.plot(ratio, low, **style.look, label=literal_text(name) or "lowest")
+            axes.plot(ratio, low, **style.look, label=figures.literal(name) or "lowest")
         axes.axhline(1.0, color=GRAY, linewidth=0.8, label="uplift")
         axes.set_xlim(left=0.0)
-        axes.set(ylim=(0.0, limit), xlabel=r"$ω_g/p$", ylabel=r"$a_p/(g\,α)$", title=literal_text(title))
+        axes.set(ylim=(0.0, limit), xlabel=r"$ω_g/p$", ylabel=r"$a_p/(g\,α)$", title=figures.literal(title))
         handles, _ = axes.get_legend_handles_labels()
         if axes.collections and any(len(area.get_paths()) for area in axes.collections):
             handles.append(Patch(facecolor="none", edgecolor=GRAY, hatch="////", linewidth=0.0, label="either"))
-        add_legend_beside(figure, handles)
+        figures.add_legend_beside(figure, handles)
     return figure

@@ -10,19 +10,10 @@ from matplotlib.figure import Figure
 
 from rockflex._arrays import Array
 from rockflex._number_format import unit_with_prefix
-from rockflex.plot._history import (
-    ResponseCurve,
-    add_response_legend,
-    draw_history_curves,
-    panel_quantities,
-    quantity_axis_scale,
-    response_curves,
-    rotation_axis_limit,
-    shade_uplifts,
-    time_axis_limits,
-)
+from rockflex.plot import _figures as figures
+from rockflex.plot import _history as histories
+from rockflex.plot._history import ResponseCurve
 from rockflex.plot._loops import largest_base_moment_on_axes, resisting_moment_line, static_line_rotation
-from rockflex.plot._style import BLACK, SMALL, new_figure, scaled_font_size, with_figure_style
 from rockflex.response import Response
 
 _MM = 1.0 / 25.4  # inches
@@ -46,49 +37,48 @@ def draw_run_sheet(
     InputError
         If there are no responses or too many, or one has no history.
     """
-    curves = response_curves(responses, labels)
+    curves = histories.response_curves(responses, labels)
     lifting = [curve for curve in curves if curve.lifts]
     loops = [curve for curve in lifting if curve.history.model.properties.n_modes]
-    quantities = panel_quantities(_run_sheet_panels(curves, height))
-    with with_figure_style():
-        figure = new_figure(width * _MM, height * _MM)
+    quantities = histories.panel_quantities(_run_sheet_panels(curves, height))
+    with figures.styled():
+        figure = figures.new(width * _MM, height * _MM)
         figure.get_layout_engine().set(h_pad=0.01, w_pad=0.02, hspace=0.02, wspace=0.02)  # pyright: ignore
         grid = figure.add_gridspec(len(quantities), 2 if loops else 1, width_ratios=(1.9, 1.0) if loops else None)
         panels: list[Axes] = []
         handles: list[Artist] = []
         for row, (quantity, mark) in enumerate(zip(quantities, ascii_uppercase, strict=False)):
             axes = figure.add_subplot(grid[row, 0], sharex=panels[0] if panels else None)
-            handles, _ = draw_history_curves(axes, quantity, curves)
+            handles, _ = histories.draw_curves(axes, quantity, curves)
             _label_inside_panel(axes, mark)
             axes.set_ylabel(
-                _short_axis_label(axes.get_ylabel(), height / len(quantities)), fontsize=scaled_font_size(8.0)
+                _short_axis_label(axes.get_ylabel(), height / len(quantities)), fontsize=figures.scaled_font_size(8.0)
             )
             axes.tick_params(labelbottom=row == len(quantities) - 1)
             axes.locator_params(axis="y", nbins=5)
             panels.append(axes)
-        uplifts = shade_uplifts(panels, curves)
-        panels[-1].set(xlabel="time [s]", xlim=time_axis_limits(curves))
+        uplifts = histories.shade_uplifts(panels, curves)
+        panels[-1].set(xlabel="time [s]", xlim=histories.time_axis_limits(curves))
         figure.align_ylabels(panels)
         if loops:
             _draw_moment_rotation_loops(figure.add_subplot(grid[:, 1]), loops, ascii_uppercase[len(quantities)])
-        entries = [*handles, *uplifts.values()], [*(curve.label for curve in curves), *uplifts]
-        add_response_legend(figure, curves, *entries, "", borderpad=0.1, borderaxespad=0.1)
+        histories.add_legend(figure, curves, handles, uplifts, "", borderpad=0.1, borderaxespad=0.1)
     return figure
 
 
 def draw_record_strip(time: Array, acceleration: Array, *, width: float, height: float) -> Figure:
     """Draw a ground acceleration in m/s² over the time in s, `width` by `height` mm."""
     largest = float(np.max(np.abs(acceleration))) or 1.0
-    with with_figure_style():
-        figure = new_figure(width * _MM, height * _MM)
+    with figures.styled():
+        figure = figures.new(width * _MM, height * _MM)
         figure.get_layout_engine().set(h_pad=0.01, w_pad=0.02)  # pyright: ignore
         axes = figure.add_subplot()
-        axes.plot(time, acceleration, color=BLACK, linewidth=0.5)
+        axes.plot(time, acceleration, color=figures.BLACK, linewidth=0.5)
         axes.set(xlim=(float(time[0]), float(time[-1])), ylim=(-_MARGIN * largest, _MARGIN * largest))
         axes.locator_params(axis="y", nbins=4)
-        axes.tick_params(labelsize=SMALL)
-        axes.set_xlabel("time [s]", fontsize=SMALL, labelpad=1.0)
-        axes.set_ylabel("$a_g$ [m/s²]", fontsize=SMALL, labelpad=1.0)
+        axes.tick_params(labelsize=figures.SMALL)
+        axes.set_xlabel("time [s]", fontsize=figures.SMALL, labelpad=1.0)
+        axes.set_ylabel("$a_g$ [m/s²]", fontsize=figures.SMALL, labelpad=1.0)
     return figure
 
 
@@ -119,11 +109,11 @@ def _short_axis_label(label: str, room: float) -> str:
 
 def _draw_moment_rotation_loops(axes: Axes, curves: list[ResponseCurve], mark: str) -> None:
     """Draw base moment over rotation, and the static resisting moment."""
-    rotation = _MARGIN * (rotation_axis_limit(curves) or max(map(static_line_rotation, curves)))
-    (moment,) = panel_quantities(["base_moment"])
+    rotation = _MARGIN * (histories.rotation_axis_limit(curves) or max(map(static_line_rotation, curves)))
+    (moment,) = histories.panel_quantities(["base_moment"])
     largest = max(
         largest_base_moment_on_axes(curves[0]),
-        quantity_axis_scale(moment, curves)[2] * quantity_axis_scale(moment, curves)[0] / _MARGIN,
+        histories.quantity_axis_scale(moment, curves)[2] * histories.quantity_axis_scale(moment, curves)[0] / _MARGIN,
     )
     factor, unit = unit_with_prefix(largest, "N m")
     for curve in curves:
@@ -138,7 +128,7 @@ def _draw_moment_rotation_loops(axes: Axes, curves: list[ResponseCurve], mark: s
     limit = _MARGIN * largest / factor
     axes.set(xlim=(-rotation, rotation), ylim=(-limit, limit), xlabel="θ [rad]", ylabel=f"$M_b$ [{unit}]")
     axes.locator_params(axis="x", nbins=4)
-    axes.set_title(f"$M_b$ over θ; blue: resisting moment\nof {curves[0].label}", fontsize=SMALL, loc="right")
+    axes.set_title(f"$M_b$ over θ; blue: resisting moment\nof {curves[0].label}", fontsize=figures.SMALL, loc="right")
     _label_inside_panel(axes, mark)
 
 

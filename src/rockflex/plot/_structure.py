@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from string import ascii_uppercase
-from typing import TYPE_CHECKING, Protocol, SupportsIndex
+from typing import TYPE_CHECKING, SupportsIndex
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,38 +12,17 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Wedge
 
+from rockflex import modal
 from rockflex._arrays import Array
 from rockflex._checks import checked_positive, checked_whole_number
 from rockflex._errors import InputError
 from rockflex._number_format import short_number
 from rockflex._shown import shown
-from rockflex.modal import (
-    ModalProperties,
-    PinnedBeam,
-    RockingProperties,
-    UpliftedModes,
-    frequency_equation,
-    uplifted_modes,
-)
+from rockflex.plot import _figures as figures
+from rockflex.plot._figures import BLUE, GRAY, RED, SHADE, SMALL, LineStyle, Size
 from rockflex.plot._study_tables import check_table_columns, label_log_axis_plainly, model_line_styles
-from rockflex.plot._style import (
-    BLUE,
-    GRAY,
-    RED,
-    SHADE,
-    SMALL,
-    LineStyle,
-    Size,
-    add_legend_above,
-    is_narrow_figure,
-    label_panel,
-    literal_text,
-    new_figure,
-    scaled_font_size,
-    with_figure_style,
-    write_notes_beside,
-)
 from rockflex.structure import TaperedTower
+from rockflex.structure._structure import Structure
 from rockflex.study import RockingStructure, rocking_properties_of
 
 if TYPE_CHECKING:
@@ -61,12 +40,8 @@ _DASHES: tuple[Dashes, ...] = ("-", (0, (5, 2)), (0, (1, 1)), (0, (6, 1, 1, 1)))
 _MARGIN = 1.06
 
 
-class _HasModes(Protocol):
-    def modal(self, n_modes: int | None = None) -> ModalProperties: ...
-
-
 def plot_mode_shapes(
-    structure_or_modal: _HasModes | ModalProperties, n_modes: int | None = None, *, size: Size | None = None
+    structure_or_modal: Structure | modal.ModalProperties, n_modes: int | None = None, *, size: Size | None = None
 ) -> Figure:
     """Plot the mode shapes Γ_n φ_n over the height, one panel each.
 
@@ -102,20 +77,20 @@ def plot_mode_shapes(
     >>> len(figure.axes), figure.axes[0].get_ylabel()
     (2, 'height [m]')
     """
-    if not isinstance(structure_or_modal, ModalProperties) and not hasattr(structure_or_modal, "modal"):
+    if not isinstance(structure_or_modal, modal.ModalProperties) and not hasattr(structure_or_modal, "modal"):
         raise InputError(
             "structure_or_modal must be a structure with modes, such as a Frame, or its ModalProperties, but "
             f"{type(structure_or_modal).__name__} was given. Give the structure itself, or structure.modal()."
         )
-    modes = structure_or_modal if isinstance(structure_or_modal, ModalProperties) else structure_or_modal.modal()
+    modes = structure_or_modal if isinstance(structure_or_modal, modal.ModalProperties) else structure_or_modal.modal()
     # Γ_n φ_n sums to 1 at every height over all modes, and only over all of them.
     complete = np.allclose(modes.shapes @ modes.participation, 1.0, rtol=0.0, atol=1e-6)
     total = float(modes.effective_mass.sum()) if complete else None
     shown = modes if n_modes is None else modes.truncated(n_modes)
-    with with_figure_style(size=size):
-        per_row = min(shown.n_modes, _PER_NARROW_ROW if is_narrow_figure() else _PER_ROW)
+    with figures.styled(size=size):
+        per_row = min(shown.n_modes, _PER_NARROW_ROW if figures.is_narrow() else _PER_ROW)
         rows = math.ceil(shown.n_modes / per_row)
-        figure = new_figure(max(1.26 * per_row, 2.6), 3.4 * rows)
+        figure = figures.new(max(1.26 * per_row, 2.6), 3.4 * rows)
         grid = figure.subplots(rows, per_row, sharey=True, squeeze=False)
         panels: list[Axes] = list(grid.flat)
         for n, axes in enumerate(panels):
@@ -129,7 +104,7 @@ def plot_mode_shapes(
     return figure
 
 
-def _draw_mode_shape(axes: Axes, modes: ModalProperties, n: int, total: float | None) -> None:
+def _draw_mode_shape(axes: Axes, modes: modal.ModalProperties, n: int, total: float | None) -> None:
     ordinates = np.concatenate(([0.0], modes.participation[n] * modes.shapes[:, n]))
     heights = np.concatenate(([0.0], modes.heights))
     axes.axvline(0.0, color=GRAY, linewidth=0.8)
@@ -141,10 +116,10 @@ def _draw_mode_shape(axes: Axes, modes: ModalProperties, n: int, total: float | 
     axes.set_xlim(-1.25 * largest, 1.25 * largest)
     axes.set_xticks([-tick, 0.0, tick], [f"−{tick:g}", "0", f"{tick:g}"])
     axes.set_ylim(0.0, 1.04 * float(heights[-1]))
-    axes.set_title(_mode_description(modes, n, total), fontsize=scaled_font_size(8.0))
+    axes.set_title(_mode_description(modes, n, total), fontsize=figures.scaled_font_size(8.0))
 
 
-def _mode_description(modes: ModalProperties, n: int, total: float | None) -> str:
+def _mode_description(modes: modal.ModalProperties, n: int, total: float | None) -> str:
     mass, height = float(modes.effective_mass[n]), float(modes.effective_height[n])
     if total is None:
         share = rf"$m^*_{{{n + 1}}}$ = {short_number(mass)} kg"
@@ -155,7 +130,7 @@ def _mode_description(modes: ModalProperties, n: int, total: float | None) -> st
 
 
 def plot_frequency_equation(
-    structures: "RockingStructure | RockingProperties | Mapping[str, RockingStructure | RockingProperties]",
+    structures: "RockingStructure | modal.RockingProperties | Mapping[str, RockingStructure | modal.RockingProperties]",
     n_modes: Sequence[SupportsIndex | None] = (1, 2, None),
     *,
     highest: float | None = None,
@@ -210,38 +185,41 @@ def plot_frequency_equation(
     end = None if highest is None else checked_positive("highest", highest, "ω/ω_1")
     models = {name: _truncated_models(each, n_modes, side) for name, each in named.items()}
     styles = model_line_styles(label for each in models.values() for label in each)
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, 0.5 + 2.4 * len(named))
+    with figures.styled(size=size):
+        figure = figures.new(6.3, 0.5 + 2.4 * len(named))
         panels: list[Axes] = list(figure.subplots(len(named), 1, squeeze=False).flat)
         for axes, (name, each), mark in zip(panels, models.items(), ascii_uppercase, strict=False):
             _draw_frequency_equation(axes, each, styles, end, side)
-            axes.set_title(literal_text(name))
-            label_panel(axes, mark)
+            axes.set_title(figures.literal(name))
+            figures.label_panel(axes, mark)
         panels[-1].set_xlabel(r"$ω/ω_1$")
         handles = [Line2D([], [], **style.look, linewidth=style.width, label=label) for label, style in styles.items()]
         handles.append(Line2D([], [], color=GRAY, linestyle=":", linewidth=0.9, label=r"$ω_n/ω_1$, fixed base"))
-        add_legend_above(figure, handles, handlelength=2.8)
+        figures.add_legend_above(figure, handles, handlelength=2.8)
     return figure
 
 
 def _truncated_models(
-    structure: "RockingStructure | RockingProperties", n_modes: Sequence[SupportsIndex | None], side: int | None
-) -> dict[str, tuple[RockingProperties, UpliftedModes]]:
+    structure: "RockingStructure | modal.RockingProperties", n_modes: Sequence[SupportsIndex | None], side: int | None
+) -> dict[str, tuple[modal.RockingProperties, modal.UpliftedModes]]:
     """Truncated properties and uplifted modes by the models' labels."""
     full = rocking_properties_of(structure)
     if full.n_modes == 0:
         raise InputError("A structure without modes has no frequency equation to plot. Give one with modes.")
-    found: dict[str, tuple[RockingProperties, UpliftedModes]] = {}
+    found: dict[str, tuple[modal.RockingProperties, modal.UpliftedModes]] = {}
     for each in n_modes:
         count = full.n_modes if each is None else checked_whole_number("n_modes", each, 1, full.n_modes)
         truncated = full.truncated(count)
-        found["MDOF-S" if each is None else f"{count + 1}DOF-S"] = (truncated, uplifted_modes(truncated, side=side))
+        found["MDOF-S" if each is None else f"{count + 1}DOF-S"] = (
+            truncated,
+            modal.uplifted_modes(truncated, side=side),
+        )
     return found
 
 
 def _draw_frequency_equation(
     axes: Axes,
-    models: dict[str, tuple[RockingProperties, UpliftedModes]],
+    models: dict[str, tuple[modal.RockingProperties, modal.UpliftedModes]],
     styles: dict[str, LineStyle],
     highest: float | None,
     side: int | None,
@@ -259,7 +237,7 @@ def _draw_frequency_equation(
         style = styles[label]
         omega = _frequencies_between_poles(p.omega, end * first)
         inertia = p.weaker_pivot.i_theta if side is None else p.pivot(side).i_theta
-        ordinate = frequency_equation(p, omega, side=side) / (inertia * first**2)
+        ordinate = modal.frequency_equation(p, omega, side=side) / (inertia * first**2)
         ordinates.append(np.abs(ordinate[np.isfinite(ordinate)]))
         order = 2.5 - 0.1 * style.width
         axes.plot(omega / first, ordinate, **style.look, linewidth=style.width, label=label, zorder=order)
@@ -271,7 +249,7 @@ def _draw_frequency_equation(
         notes += [(label, style.color), *((f"   {root:.3f}", style.color) for root in roots[:_NAMED_ROOTS])]
     limit = float(np.percentile(np.concatenate(ordinates), _SHARE))
     axes.set(ylim=(-limit, limit), xlim=(0.0, end), ylabel=r"frequency equation / $I_θ\,ω_1^2$")
-    write_notes_beside(axes, notes, 10.5)
+    figures.write_notes_beside(axes, notes, 10.5)
 
 
 def _frequencies_between_poles(poles: Array, end: float) -> Array:
@@ -284,7 +262,7 @@ def _frequencies_between_poles(poles: Array, end: float) -> Array:
 
 def plot_frequency_ratios(
     tables: "pd.DataFrame | Mapping[str, pd.DataFrame]",
-    limits: PinnedBeam | Mapping[str, PinnedBeam] | None = None,
+    limits: modal.PinnedBeam | Mapping[str, modal.PinnedBeam] | None = None,
     *,
     modes: Sequence[SupportsIndex] = (1, 2),
     mark: float | None = 10.0,
@@ -336,9 +314,9 @@ def plot_frequency_ratios(
     _check_frequency_ratios(named, bounds, shown)
     styles = model_line_styles(str(model) for table in named.values() for model in table["model"])
     dashes = dict(zip(named, _DASHES, strict=False))
-    with with_figure_style(size=size):
-        rows = len(shown) if is_narrow_figure() else 1
-        figure = new_figure(0.6 + 2.95 * len(shown) + 0.5 * (len(shown) == 1), 0.9 + 2.6 * rows)
+    with figures.styled(size=size):
+        rows = len(shown) if figures.is_narrow() else 1
+        figure = figures.new(0.6 + 2.95 * len(shown) + 0.5 * (len(shown) == 1), 0.9 + 2.6 * rows)
         panels: list[Axes] = list(figure.subplots(rows, len(shown) // rows, squeeze=False).flat)
         for axes, mode, mark_of_panel in zip(panels, shown, ascii_uppercase, strict=False):
             top = max(_draw_frequency_ratios(axes, table, mode, styles, dashes[name]) for name, table in named.items())
@@ -354,15 +332,15 @@ def plot_frequency_ratios(
                 axes.axvline(mark, color=GRAY, linewidth=1.2, zorder=1.5, label="_mark")
             axes.set_xscale("log")
             axes.margins(x=0.0)
-            if is_narrow_figure():
+            if figures.is_narrow():
                 label_log_axis_plainly(axes.xaxis)
             axes.set(
                 ylim=(1.0 - (_MARGIN - 1.0) * (top - 1.0), 1.0 + _MARGIN * (top - 1.0) + 1e-6), xlabel=r"$h^*_1/B$"
             )
             axes.set_ylabel(rf"$ω^*_{{{mode}}}/ω_{{{mode}}}$")
-            label_panel(axes, mark_of_panel)
+            figures.label_panel(axes, mark_of_panel)
         handles = _frequency_ratio_handles(styles, dashes, bool(bounds), mark)
-        add_legend_above(figure, handles, max_columns=3)
+        figures.add_legend_above(figure, handles, max_columns=3)
     return figure
 
 
@@ -388,7 +366,7 @@ def _frequency_ratio_handles(
     handles = [Line2D([], [], color=style.color, linewidth=style.width, label=model) for model, style in styles.items()]
     if list(dashes) != [""]:
         grays = {name: LineStyle("#606060", dash) for name, dash in dashes.items()}
-        handles += [Line2D([], [], **gray.look, label=literal_text(name)) for name, gray in grays.items()]
+        handles += [Line2D([], [], **gray.look, label=figures.literal(name)) for name, gray in grays.items()]
     if bounded:
         handles.append(Line2D([], [], color=BLUE, linewidth=0.8, label="pinned beam, no spring"))
     if mark is not None:
@@ -397,7 +375,7 @@ def _frequency_ratio_handles(
 
 
 def _check_frequency_ratios(
-    named: "Mapping[str, pd.DataFrame]", bounds: Mapping[str, PinnedBeam], modes: list[int]
+    named: "Mapping[str, pd.DataFrame]", bounds: Mapping[str, modal.PinnedBeam], modes: list[int]
 ) -> None:
     if not modes:
         raise InputError("modes is empty. Give at least one mode, counted from 1.")
@@ -461,16 +439,16 @@ def plot_tower(tower: TaperedTower, section: float | None = None, *, size: Size 
     z = 0.5 * tower.height if section is None else checked_positive("section", section, "m")
     if z > tower.height:
         raise InputError(f"section must be at most the height of the tower, {tower.height:g} m, but {z:g} m was given.")
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, 7.2 if is_narrow_figure() else 4.6)
-        if is_narrow_figure():
+    with figures.styled(size=size):
+        figure = figures.new(6.3, 7.2 if figures.is_narrow() else 4.6)
+        if figures.is_narrow():
             left, right = figure.subplots(2, 1, height_ratios=(1.5, 1.0))
         else:
             left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
         _draw_tower_elevation(left, tower, z)
         _draw_tower_section(right, tower, z)
-        label_panel(left, "A")
-        label_panel(right, "B")
+        figures.label_panel(left, "A")
+        figures.label_panel(right, "B")
     return figure
 
 

@@ -14,17 +14,8 @@ from rockflex._errors import InputError
 from rockflex._number_format import short_number
 from rockflex._shown import shown
 from rockflex.motion import MEASURES
-from rockflex.plot._style import (
-    BLACK,
-    GREEN,
-    LINE_STYLES,
-    RED,
-    LineStyle,
-    is_narrow_figure,
-    literal_text,
-    new_figure,
-    recoloured_line_styles,
-)
+from rockflex.plot import _figures as figures
+from rockflex.plot._figures import BLACK, GREEN, LINE_STYLES, RED, LineStyle
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -42,7 +33,7 @@ def model_line_styles(models: Iterable[str]) -> dict[str, LineStyle]:
     if len(others) > len(LINE_STYLES):
         raise InputError(f"{len(names)} models are too many to distinguish in one figure. Plot fewer at a time.")
     styles = _OWN | dict(zip(others, LINE_STYLES, strict=False))
-    return dict(zip(names, recoloured_line_styles(styles[name] for name in names), strict=True))
+    return dict(zip(names, figures.recoloured_line_styles(styles[name] for name in names), strict=True))
 
 
 def check_table_columns(table: object, columns: Iterable[str], source: str, called: str = "") -> None:
@@ -55,7 +46,7 @@ def check_table_columns(table: object, columns: Iterable[str], source: str, call
 
 def measure_axis_name(measure: str) -> str:
     """Name of an axis: an intensity measure with its unit, or the name of another column."""
-    return MEASURES[measure].axis if measure in MEASURES else literal_text(measure)
+    return MEASURES[measure].axis if measure in MEASURES else figures.literal(measure)
 
 
 def names_in_column(column: "pd.Series[Any] | Iterable[object]") -> list[str]:
@@ -97,15 +88,15 @@ def structure_panels(names: Sequence[str], across: int, height: float, x: str, y
         raise InputError(
             f"{len(names)} structures are too many for one figure; {_MAX_PANELS} fit. Plot fewer at a time."
         )
-    columns = 1 if is_narrow_figure() else min(across, len(names))
+    columns = 1 if figures.is_narrow() else min(across, len(names))
     rows = math.ceil(len(names) / columns)
-    figure = new_figure(4.2 if columns == 1 else 6.3, 0.6 + height * rows)
+    figure = figures.new(4.2 if columns == 1 else 6.3, 0.6 + height * rows)
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     panels: list[Axes] = list(grid.flat)
     for spare in panels[len(names) :]:
         spare.remove()
     for place, (axes, name) in enumerate(zip(panels, names, strict=False)):
-        axes.set_title(literal_text(name))
+        axes.set_title(figures.literal(name))
         if place + columns >= len(names):
             axes.set_xlabel(x)
             axes.tick_params(labelbottom=True)

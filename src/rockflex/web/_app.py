@@ -2,11 +2,13 @@
 
 import asyncio
 import logging
-from collections.abc import AsyncGenerator, Callable, Sequence
+import re
+from collections.abc import AsyncGenerator, Callable, Coroutine, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 from threading import Event, Thread
 from typing import Any
+from urllib.parse import quote
 
 import anyio
 from starlette.applications import Starlette
@@ -20,34 +22,18 @@ from starlette.staticfiles import StaticFiles
 from rockflex._errors import InputError, SolverError
 from rockflex._json import as_json_value
 from rockflex.solve import RunStoppedError, stopping_when
+from rockflex.web import _limits as limits
 from rockflex.web._downloads import MEDIA_TYPES, animation_file, download_file, study_file
 from rockflex.web._earthquake import PULSES, embedded_suite_names, record_view, suite_view
 from rockflex.web._folders import FIELD, MAX_LIST_BYTES, read_record_folder, unpacked_record_files
 from rockflex.web._forms import PRESETS, forms_of_structures
 from rockflex.web._jobs import MAX_FILES, MAX_STUDIES, BackgroundFileJob, BackgroundJobs, StudyJob
-from rockflex.web._limits import (
-    MAX_DURATION,
-    MAX_ELEMENTS,
-    MAX_FILE_BYTES,
-    MAX_FOLDER_BYTES,
-    MAX_FOLDER_FILES,
-    MAX_FREEDOMS,
-    MAX_MODELS,
-    MAX_STUDY_RUNS,
-)
 from rockflex.web._protection import KnownHosts, SecurityHeaders
 from rockflex.web._refusal import Refusal
-from rockflex.web._requests import (
-    file_download_answer,
-    sampling_step_in_query,
-    state_and_request_content,
-    state_in_request,
-    uploaded_file_bytes,
-)
 from rockflex.web._response import response_view
 from rockflex.web._selection import scale_factor_view, selection_view
-from rockflex.web._state import PageState, limit_state_labels, measure_labels
-from rockflex.web._structure import build_page_structure, structure_view
+from rockflex.web._state import PageState, limit_state_labels, measure_labels, parse_page_json, parse_page_state
+from rockflex.web._structure import structure_view
 from rockflex.web._studies import PAGES, study_plan
 from rockflex.web._uploads import UploadedRecords, read_uploaded_matrices, read_uploaded_record, read_uploaded_vertical
 
@@ -59,7 +45,10 @@ MAX_FOLDERS_READ = 1  # folders read at once: each may need some hundred megabyt
 MAX_FOLDERS_RECEIVED = 3  # folders in memory that are received, or wait to be read: each may have 80 MB
 MAX_SELECTIONS_COMPUTED = 1  # selections at once: each may take some seconds
 MAX_MESSAGE_LETTERS = 1000  # of a message: some repeat an input
+BODY_TIMEOUT = 60.0  # s to receive a body
+MAX_INLINE_BYTES = 20_000  # bytes that are checked within a few milliseconds; more would block the event loop
 Answer = Callable[[], Any]
+Endpoint = Callable[[Request], Coroutine[Any, Any, Response]]
 
 
 class PageServer:
@@ -67,10 +56,8 @@ class PageServer:
 
     def __init__(self) -> None:
         self.uploads = UploadedRecords()
-        self.jobs, self.files = (
-            BackgroundJobs[StudyJob]("studies", MAX_STUDIES),
-            BackgroundJobs[BackgroundFileJob]("files", MAX_FILES),
-        )
+        self.jobs = BackgroundJobs[StudyJob]("studies", MAX_STUDIES)
+        self.files = BackgroundJobs[BackgroundFileJob]("files", MAX_FILES)
         self._ready = Event()
         self._folders_received = asyncio.Semaphore(MAX_FOLDERS_RECEIVED)
         self._limiters: dict[int, anyio.CapacityLimiter] = {}
@@ -121,38 +108,23 @@ class PageServer:
 
     async def state(self, request: Request) -> Response:
         """Check the state of a link, and fill in its missing values."""
-        state = await state_in_request(request)
+        state, _ = await _state_and_content(request)
         return JSONResponse(as_json_value(state.model_dump(exclude_none=True)))
 
-    async def structure(self, request: Request) -> Response:
-        """Structure tab."""
-        state = await state_in_request(request)
-        return JSONResponse(await self.answer(lambda: structure_view(state.structure, state.ground)))
+    def view(self, work: Callable[[PageState, dict[str, Any]], Any], most: int = MAX_ANSWERS) -> Endpoint:
+        """Return the endpoint that answers with a function of the state, and of the whole content, of a request."""
 
-    async def record(self, request: Request) -> Response:
-        """Earthquake tab."""
-        state = await state_in_request(request)
+        async def endpoint(request: Request) -> Response:
+            state, content = await _state_and_content(request)
+            return JSONResponse(await self.run(request, lambda: work(state, content), most))
 
-        def work() -> Any:
-            try:
-                built = build_page_structure(state.structure)
-            except Refusal:
-                built = None  # the record can be shown before the structure is complete
-            return record_view(state, built, self.uploads)
-
-        return JSONResponse(await self.answer(work))
-
-    async def response(self, request: Request) -> Response:
-        """Response tab."""
-        state, content = await state_and_request_content(request)
-        asked = content.get("focus"), content.get("element")
-        return JSONResponse(await self.run(request, lambda: response_view(state, self.uploads, *asked)))
+        return endpoint
 
     async def upload(self, request: Request) -> Response:
         """A record from an uploaded file, or the vertical component of the record `under`; its name is in the query."""
         body, query = await uploaded_file_bytes(request), request.query_params
         name, units = query.get("name", "record"), query.get("units") or None
-        dt, under = sampling_step_in_query(query.get("dt", "")), query.get("under", "")
+        dt, under = _sampling_step_in_query(query.get("dt", "")), query.get("under", "")
 
         def work() -> Any:
             if under:
@@ -168,11 +140,9 @@ class PageServer:
     async def folder(self, request: Request) -> Response:
         """Records from a folder."""
         async with self._folders_received:  # others wait with their files on their own machines
-            body, query = (
-                await uploaded_file_bytes(request, MAX_FOLDER_BYTES + MAX_LIST_BYTES, MAX_FOLDER_BYTES),
-                request.query_params,
-            )
-            units, dt = query.get("units") or None, sampling_step_in_query(query.get("dt", ""), FIELD)
+            query, most = request.query_params, limits.MAX_FOLDER_BYTES
+            body = await uploaded_file_bytes(request, most + MAX_LIST_BYTES, most)
+            units, dt = query.get("units") or None, _sampling_step_in_query(query.get("dt", ""), FIELD)
 
             def work() -> dict[str, Any]:
                 files = unpacked_record_files(body)
@@ -187,20 +157,6 @@ class PageServer:
         token = request.path_params["token"]
         return JSONResponse({"folder": token, **self.uploads.folders.get(token).report})
 
-    async def selection(self, request: Request) -> Response:
-        """Records selected for a target spectrum."""
-        state = await state_in_request(request)
-        return JSONResponse(
-            await self.run(request, lambda: selection_view(state, self.uploads), MAX_SELECTIONS_COMPUTED)
-        )
-
-    async def factor(self, request: Request) -> Response:
-        """Scale factor of the record for a target spectrum."""
-        state, content = await state_and_request_content(request)
-        return JSONResponse(
-            await self.run(request, lambda: scale_factor_view(state, self.uploads, content.get("period")))
-        )
-
     async def matrices(self, request: Request) -> Response:
         """Matrices from a file."""
         body, query = await uploaded_file_bytes(request), request.query_params
@@ -209,16 +165,16 @@ class PageServer:
 
     async def download(self, request: Request) -> Response:
         """A file of the results on the page."""
-        state = await state_in_request(request)
+        state, _ = await _state_and_content(request)
         what = request.path_params["what"]
-        return file_download_answer(
+        return _file_answer(
             *await self.run(request, lambda: download_file(state, what, self.uploads), MAX_FILES_WRITTEN)
         )
 
     async def start(self, request: Request) -> Response:
         """Start a study."""
         kind = _study_kind_in_request(request)
-        state = await state_in_request(request)
+        state, _ = await _state_and_content(request)
 
         def work() -> dict[str, str]:
             return {"token": self.jobs.start(StudyJob(study_plan(PAGES[kind].study(state, self.uploads), kind), kind))}
@@ -228,17 +184,15 @@ class PageServer:
     async def progress(self, request: Request) -> Response:
         """Progress of a study, and its results so far for the limit states of the page."""
         kind, job = self._job(request)
-        state = await state_in_request(request)
+        state, _ = await _state_and_content(request)
         return JSONResponse(await self.answer(lambda: PAGES[kind].view(job, state)))
 
     async def study_file(self, request: Request) -> Response:
         """Table or figure of a study."""
         kind, job = self._job(request)
-        state = await state_in_request(request)
+        state, _ = await _state_and_content(request)
         what = request.path_params["what"]
-        return file_download_answer(
-            *await self.answer(lambda: study_file(PAGES[kind], job, state, what), MAX_FILES_WRITTEN)
-        )
+        return _file_answer(*await self.answer(lambda: study_file(PAGES[kind], job, state, what), MAX_FILES_WRITTEN))
 
     async def cancel(self, request: Request) -> Response:
         """Stop a study."""
@@ -250,7 +204,7 @@ class PageServer:
         what = request.path_params["what"]
         if what != "animation":
             raise Refusal(f"There is no file named {what[:40]!r} to make.", 404)
-        state = await state_in_request(request)
+        state, _ = await _state_and_content(request)
         return JSONResponse(
             {"token": self.files.start(BackgroundFileJob(lambda told: animation_file(state, self.uploads, told)))}
         )
@@ -267,7 +221,7 @@ class PageServer:
         if job.file is None:
             raise Refusal("The file is not finished.", 404)
         name, content = job.file
-        return file_download_answer(name, MEDIA_TYPES[Path(name).suffix], content)
+        return _file_answer(name, MEDIA_TYPES[Path(name).suffix], content)
 
     async def unmake(self, request: Request) -> Response:
         """Stop to make a file."""
@@ -288,9 +242,87 @@ def _study_kind_in_request(request: Request) -> str:
     return kind
 
 
+async def _state_and_content(request: Request) -> tuple[PageState, dict[str, Any]]:
+    """Return the state in a request, checked, and all of its content."""
+    body = await _request_body(request, "application/json")
+    if len(body) <= MAX_INLINE_BYTES:
+        return _parse_request_body(body)
+    return await anyio.to_thread.run_sync(_parse_request_body, body)
+
+
+async def uploaded_file_bytes(
+    request: Request, most: int = limits.MAX_BODY_BYTES, said: int = limits.MAX_FILE_BYTES
+) -> bytes:
+    """Return the bytes of an uploaded file, of at most `most`; messages name the limit `said`."""
+    return await _request_body(request, "application/octet-stream", most, said)
+
+
+async def _request_body(
+    request: Request, wanted: str, most: int = limits.MAX_BODY_BYTES, said: int = limits.MAX_FILE_BYTES
+) -> bytes:
+    """Return the body of a request, within the limits of its size and its time.
+
+    Another content type would let foreign pages send it unasked, without the browser's preflight.
+    """
+    if request.headers.get("content-type", "").split(";")[0].strip().lower() != wanted:
+        raise Refusal(f"A request must be {wanted}.", 415)
+    chunks, size = list[bytes](), 0
+    try:
+        with anyio.fail_after(BODY_TIMEOUT):
+            async for chunk in request.stream():
+                size += len(chunk)
+                if size <= most:
+                    chunks.append(chunk)
+                elif size > most + 4 * limits.MAX_BODY_BYTES:
+                    break
+    except TimeoutError as error:
+        raise Refusal(f"The request did not arrive within {BODY_TIMEOUT:g} s.", 408) from error
+    if size > most:  # the rest was read and dropped, because most clients lose an answer that comes before the end
+        raise Refusal(f"More than {said / 1e6:g} MB were sent, which is more than the page takes.", 413)
+    return b"".join(chunks)
+
+
+def _parse_request_body(body: bytes) -> tuple[PageState, dict[str, Any]]:
+    content = parse_page_json(body)
+    if not isinstance(content, dict):
+        raise Refusal("A request must be a JSON object.", 400)
+    return parse_page_state(content.get("state")), content
+
+
+def _sampling_step_in_query(text: str, field: str = "record.upload") -> float | None:
+    """Return the sampling step in a query; None for the file's own. Messages are about `field`."""
+    if not text.strip():
+        return None
+    try:
+        return float(text)
+    except ValueError as error:
+        message = (
+            f"the sampling step must be a number in s, but {text[:40]!r} was given.{limits.unclear_commas_text(text)}"
+        )
+        raise Refusal({field: message}) from error
+
+
+def _file_answer(name: str, kind: str, content: bytes) -> Response:
+    """Return a file as a download with a name."""
+    # A header holds Latin letters only: others are given in the long form, and as underscores in the short one.
+    short = re.sub(r"[^ -~]", "_", name)
+    disposition = f"attachment; filename=\"{short}\"; filename*=UTF-8''{quote(name)}"
+    return Response(content, media_type=kind, headers={"Content-Disposition": disposition})
+
+
 def create_page_application(host: str, names: Sequence[str]) -> Starlette:
     """Return the application for a host name; it answers to that and to some others (`KnownHosts`)."""
     server = PageServer()
+    view, uploads = server.view, server.uploads
+
+    def response(state: PageState, content: dict[str, Any]) -> Any:
+        return response_view(state, uploads, content.get("focus"), content.get("element"))
+
+    def selection(state: PageState, _: dict[str, Any]) -> Any:
+        return selection_view(state, uploads)
+
+    def factor(state: PageState, content: dict[str, Any]) -> Any:
+        return scale_factor_view(state, uploads, content.get("period"))
 
     @asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncGenerator[None]:
@@ -309,14 +341,14 @@ def create_page_application(host: str, names: Sequence[str]) -> Starlette:
         Route("/api/about", server.about),
         Route("/api/suite/{name}", server.suite),
         Route("/api/state", server.state, methods=["POST"]),
-        Route("/api/structure", server.structure, methods=["POST"]),
-        Route("/api/record", server.record, methods=["POST"]),
-        Route("/api/response", server.response, methods=["POST"]),
+        Route("/api/structure", view(lambda state, _: structure_view(state.structure, state.ground)), methods=["POST"]),
+        Route("/api/record", view(lambda state, _: record_view(state, uploads)), methods=["POST"]),
+        Route("/api/response", view(response), methods=["POST"]),
         Route("/api/upload", server.upload, methods=["POST"]),
         Route("/api/folder", server.folder, methods=["POST"]),
         Route("/api/folder/{token}", server.folder_report),
-        Route("/api/selection", server.selection, methods=["POST"]),
-        Route("/api/factor", server.factor, methods=["POST"]),
+        Route("/api/selection", view(selection, MAX_SELECTIONS_COMPUTED), methods=["POST"]),
+        Route("/api/factor", view(factor), methods=["POST"]),
         Route("/api/matrices", server.matrices, methods=["POST"]),
         Route("/api/download/{what}", server.download, methods=["POST"]),
         Route("/api/study/{kind}", server.start, methods=["POST"]),
@@ -346,15 +378,15 @@ async def _page_html(_: Request) -> Response:
 def _answer_about_page() -> dict[str, Any]:
     usual = ("amplitude", "period")
     pulses = {name: {"title": each.title, "fields": (*usual, *each.fields)} for name, each in PULSES.items()}
-    limits = {
-        "file": MAX_FILE_BYTES,
-        "files": MAX_FOLDER_FILES,
-        "folder": MAX_FOLDER_BYTES,
-        "freedoms": MAX_FREEDOMS,
-        "duration": MAX_DURATION,
-        "models": MAX_MODELS,
-        "runs": MAX_STUDY_RUNS,
-        "elements": MAX_ELEMENTS,
+    most = {
+        "file": limits.MAX_FILE_BYTES,
+        "files": limits.MAX_FOLDER_FILES,
+        "folder": limits.MAX_FOLDER_BYTES,
+        "freedoms": limits.MAX_FREEDOMS,
+        "duration": limits.MAX_DURATION,
+        "models": limits.MAX_MODELS,
+        "runs": limits.MAX_STUDY_RUNS,
+        "elements": limits.MAX_ELEMENTS,
     }
     first = PageState.model_validate({"structure": PRESETS[0]["structure"]})
     return forms_of_structures() | {
@@ -362,7 +394,7 @@ def _answer_about_page() -> dict[str, Any]:
         "measures": measure_labels(),
         "limit_states": limit_state_labels(),
         "pulses": pulses,
-        "limits": limits,
+        "limits": most,
         "state": as_json_value(first.model_dump(exclude_none=True)),
     }
 

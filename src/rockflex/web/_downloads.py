@@ -2,107 +2,37 @@
 
 import csv
 import io
-import math
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import tomli_w
 
 from rockflex.kinds import KINDS
-from rockflex.motion import GroundMotion, record_csv
+from rockflex.motion import GroundMotion, Selection, Suite, record_csv
 from rockflex.report.run import run_report_as_html
-from rockflex.response import UNITS_OF_GROUND, UNITS_OF_HISTORY, Response, ground_columns
+from rockflex.response import UNITS_OF_GROUND, UNITS_OF_HISTORY, Response, history_columns
 from rockflex.web._earthquake import chosen_motion
-from rockflex.web._encoding import figure_svg_bytes
 from rockflex.web._folders import records_as_zip
 from rockflex.web._jobs import StudyJob
 from rockflex.web._refusal import Refusal, errors_as_refusals
 from rockflex.web._response import check_work_of_energy, simulate_state_models
-from rockflex.web._script import response_script
-from rockflex.web._selection import (
-    RECORDS_FOLDER,
-    SELECTIONS,
-    UNPACK_HINT,
-    VISITOR_FOLDER,
-    WHOLE_FOLDER,
-    folder_suite,
-    selection_options_of_choice,
-    target_spectrum_call,
-    target_spectrum_of_choice,
-)
+from rockflex.web._script import response_script, selection_script
+from rockflex.web._selection import RECORDS_FOLDER, SELECTIONS, UNPACK_HINT, WHOLE_FOLDER, folder_suite
 from rockflex.web._state import PageState
+from rockflex.web._structure import build_page_structure
 from rockflex.web._studies import PAGES, StudyPage
 from rockflex.web._uploads import UploadedRecords, clean_upload_name
 
-
-def _selection_table_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
-    return "selection.csv", SELECTIONS.of(state, uploads)[0].table().to_csv(index=False, lineterminator="\n")
-
-
-def _selection_spectra_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
-    return "spectra.csv", SELECTIONS.of(state, uploads)[0].spectra().to_csv(index=False, lineterminator="\n")
-
-
-def _selection_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes]:
-    from rockflex.plot import plot_selection
-
-    return "selection.svg", figure_svg_bytes(plot_selection(SELECTIONS.of(state, uploads)[0]))
-
-
-def _selection_records_file(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes]:
-    return "scaled-records.zip", records_as_zip(SELECTIONS.of(state, uploads)[0].suite)
-
-
-def _selection_python_file(state: PageState, _: UploadedRecords) -> tuple[str, str]:
-    choice = state.target
-    name, values, named = target_spectrum_call(choice)
-    if name == "read_target":
-        target = target_spectrum_of_choice(choice)
-        name, named = "TargetSpectrum", {"damping_ratio": target.damping_ratio, "name": target.name}
-        values = [target.periods.tolist(), target.sa.tolist()]
-    options = {key: value for key, value in selection_options_of_choice(choice).items() if value is not None}
-    given = (
-        f"rf.read_suite({WHOLE_FOLDER!r})  # unpacked from {WHOLE_FOLDER}.zip, which the page saves: Your records (ZIP)"
-    )
-    lines = [
-        "import rockflex as rf",
-        "",
-        f"target = rf.{name}({_python_arguments(values, named)})",
-        f"suite = {given if choice.source == VISITOR_FOLDER else f'rf.load_suite({choice.source!r})'}",
-        "chosen = suite.select(target, "
-        f"{_python_arguments([choice.count, (choice.shortest, choice.longest)], options)})",
-        "print(chosen)",
-        "print(chosen.table().to_string(index=False))",
-        'chosen.spectra().to_csv("spectra.csv", index=False)',
-        'rf.save_figure(rf.plot_selection(chosen), "selection.png")',
-    ]
-    return "selection.py", "\n".join([*lines, ""])
-
-
-def _python_arguments(values: list[Any], named: dict[str, Any]) -> str:
-    return ", ".join([*map(repr, values), *(f"{name}={value!r}" for name, value in named.items())])
-
-
-SELECTION_FILES: dict[str, Callable[[PageState, UploadedRecords], tuple[str, str | bytes]]] = {
-    "selection": _selection_table_file,
-    "selection-spectra": _selection_spectra_file,
-    "selection-figure": _selection_figure_file,
-    "selection-records": _selection_records_file,
-    "selection-python": _selection_python_file,
-}
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 def run_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
     """Return the name and the text of the report of the runs of a state.
 
     Energies and friction that would keep a visitor waiting are left out, and the page says so.
-
-    Raises
-    ------
-    Refusal
-        If a run cannot be made, or takes too long.
     """
     built, acting, found = simulate_state_models(state, uploads)
     motion = chosen_motion(state.record, uploads)
@@ -142,14 +72,9 @@ def animation_file(
     """Return the name and the content of a GIF of the models that are shown, at their true speed.
 
     `progress` is called with the number of frames drawn and that of all.
-
-    Raises
-    ------
-    Refusal
-        If a run cannot be made, or the animation would be too long.
     """
     from rockflex.plot import animate
-    from rockflex.plot._style import literal_text
+    from rockflex.plot._figures import literal
 
     built, motion, found = simulate_state_models(state, uploads)
     seconds = max(response.end_time for response in found)
@@ -160,7 +85,7 @@ def animation_file(
             "shorter record or less free vibration, or take Python lines and add rf.animate(..., start=, stop=)."
         )
         raise Refusal({"free_vibration": message})
-    title = None if state.scale == 1.0 else f"{literal_text(motion.name)} × {state.scale:g}"
+    title = None if state.scale == 1.0 else f"{literal(motion.name)} × {state.scale:g}"
     with TemporaryDirectory() as folder, errors_as_refusals("models"):
         file = animate(
             found, Path(folder) / "animation.gif", structure=built.structure, frames_per_second=rate, title=title,
@@ -190,17 +115,10 @@ def download_file(state: PageState, what: str, uploads: UploadedRecords) -> tupl
     state
         The state of the page.
     what
-        ``"report"``, ``"figure"``, ``"energy"``, ``"modes"``, ``"peaks"``, ``"histories"``,
-        ``"record"``, ``"records"``, ``"study"``, ``"structure"``, ``"python"``, those of `SELECTION_FILES`, and
-        ``"cloud-study"``, ``"cloud-python"``, ``"cloud-records"``, ``"design-study"``, ``"design-python"``,
-        ``"design-records"``.
+        A key of `_MAKERS`, or one of a study: ``"cloud-study"``, ``"cloud-python"``, ``"cloud-records"``,
+        ``"design-study"``, ``"design-python"``, ``"design-records"``.
     uploads
         Records of visitors.
-
-    Raises
-    ------
-    Refusal
-        If there is no such file, or the state cannot be simulated.
     """
     maker = _MAKERS.get(what) or _maker_of_study_file(what)
     if maker is None:
@@ -210,29 +128,27 @@ def download_file(state: PageState, what: str, uploads: UploadedRecords) -> tupl
     return name, MEDIA_TYPES[Path(name).suffix], data
 
 
-def _history_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes]:
-    from rockflex.plot import plot_history
+def _history_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
+    from rockflex.plot import figure_as_svg, plot_history
 
-    return "response.svg", figure_svg_bytes(plot_history(simulate_state_models(state, uploads)[2]))
+    return "response.svg", figure_as_svg(plot_history(simulate_state_models(state, uploads)[2]))
 
 
-def _energy_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes]:
-    from rockflex.plot import plot_energy
+def _energy_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
+    from rockflex.plot import figure_as_svg, plot_energy
 
     _, motion, found = simulate_state_models(state, uploads)
     check_work_of_energy(found[0], motion, state)
-    return "energy.svg", figure_svg_bytes(plot_energy(found[0]))
+    return "energy.svg", figure_as_svg(plot_energy(found[0]))
 
 
-def _mode_shapes_figure_file(state: PageState, _: UploadedRecords) -> tuple[str, bytes]:
-    from rockflex.plot import plot_mode_shapes
-    from rockflex.web._structure import build_page_structure
+def _mode_shapes_figure_file(state: PageState, _: UploadedRecords) -> tuple[str, str]:
+    from rockflex.plot import figure_as_svg, plot_mode_shapes
 
     built = build_page_structure(state.structure)
     if built.modes is None:
-        message = "the shapes of the modes are not known, so there is no figure of them."
-        raise Refusal({"structure": message})
-    return "modes.svg", figure_svg_bytes(plot_mode_shapes(built.modes, min(built.modes.n_modes, 10)))
+        raise Refusal({"structure": "the shapes of the modes are not known, so there is no figure of them."})
+    return "modes.svg", figure_as_svg(plot_mode_shapes(built.modes, min(built.modes.n_modes, 10)))
 
 
 def _peaks_table_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
@@ -256,40 +172,31 @@ def _histories_table_file(state: PageState, uploads: UploadedRecords) -> tuple[s
             "Python lines."
         )
         raise Refusal({"models": message})
-    of_ground = [_ground_history_columns(each) for each in found]
-    cells = sum(
-        each.time.size * (len(UNITS_OF_HISTORY) + len(more)) for each, more in zip(found, of_ground, strict=True)
-    )
+    tables = [_history_table(each) for each in found]
+    cells = sum(table.size for table in tables)
     if cells > MAX_HISTORY_VALUES:
         message = (
             f"the histories with the forces of all springs have {cells} values, but the page writes "
             f"{MAX_HISTORY_VALUES} at most. Choose fewer models or springs, or Python lines."
         )
         raise Refusal({"models": message})
-    heads = {name: f"{name} ({unit})" if unit else name for name, unit in UNITS_OF_HISTORY.items()}
-    # The total displacement is missing where the height of the top is not known.
-    columns = ({head: getattr(each, name, math.nan) for name, head in heads.items()} for each in found)
-    tables = [
-        pd.DataFrame({"model": each.model, **part, **_element_history_columns(each), **more})
-        for each, part, more in zip(found, columns, of_ground, strict=True)
-    ]
     return "histories.csv", pd.concat(tables).to_csv(index=False, float_format="%.9g", na_rep="nan")
 
 
-def _ground_history_columns(response: Response) -> dict[str, Any]:
-    """Return the histories of a base that slides or is on springs, and of vertical motion, as columns."""
-    columns = {} if response.history is None else ground_columns(response.history)
-    return {f"{name} ({UNITS_OF_GROUND[name.rstrip('0123456789').rstrip('_')]})": columns[name] for name in columns}
+def _history_table(response: Response) -> "pd.DataFrame":
+    """Return the columns of a history, and before those of its ground those of the elements, counted from one."""
+    import pandas as pd
 
-
-def _element_history_columns(response: Response) -> dict[str, Any]:
-    """Return the histories of the elements between the base and the ground as columns, counted from one."""
-    columns: dict[str, Any] = {}
-    parts = zip(response.element_elongation.T, response.element_force.T, strict=True)
-    for place, (elongation, force) in enumerate(parts, start=1):
-        columns[f"element_{place}_elongation (m)"] = elongation
-        columns[f"element_{place}_force (N)"] = force
-    return columns
+    units = UNITS_OF_HISTORY | UNITS_OF_GROUND
+    known = history_columns(response.history)
+    heads = {name: units[name.rstrip("0123456789").rstrip("_")] for name in known}
+    columns = {f"{name} ({unit})" if unit else name: known[name] for name, unit in heads.items()}
+    table = pd.DataFrame({"model": response.model} | columns)
+    place = 1 + len(UNITS_OF_HISTORY)
+    for k in reversed(range(response.element_force.shape[1])):
+        table.insert(place, f"element_{k + 1}_force (N)", response.element_force[:, k])
+        table.insert(place, f"element_{k + 1}_elongation (m)", response.element_elongation[:, k])
+    return table
 
 
 def _record_csv_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
@@ -297,17 +204,23 @@ def _record_csv_file(state: PageState, uploads: UploadedRecords) -> tuple[str, s
     return f"{_motion_file_name(motion)}.csv", record_csv(motion)
 
 
-def _folder_records_file(state: PageState, uploads: UploadedRecords) -> tuple[str, bytes]:
-    return f"{WHOLE_FOLDER}.zip", records_as_zip(folder_suite(state, uploads))
+def _selection(state: PageState, uploads: UploadedRecords) -> Selection[Suite]:
+    return SELECTIONS.of(state, uploads)[0]
+
+
+def _selection_figure_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
+    from rockflex.plot import figure_as_svg, plot_selection
+
+    return "selection.svg", figure_as_svg(plot_selection(_selection(state, uploads)))
+
+
+def _csv(table: "pd.DataFrame") -> str:
+    return table.to_csv(index=False, lineterminator="\n")
 
 
 def _motion_file_name(motion: GroundMotion) -> str:
     """The name of a motion as a file name; a unit in it, such as m/s, is not a path."""
     return clean_upload_name(motion.name.replace("/", "_"))
-
-
-def _structure_toml_file(state: PageState, _: UploadedRecords) -> tuple[str, str]:
-    return "structure.toml", tomli_w.dumps(state.structure.model_dump(exclude_none=True))
 
 
 def _response_study_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
@@ -360,20 +273,16 @@ def _maker_of_study_file(what: str) -> Callable[[PageState, UploadedRecords], tu
 
 
 def study_file(page: StudyPage, job: StudyJob, state: PageState, what: str) -> tuple[str, str, bytes]:
-    """Return the name, the type and the content of the table or the figure of a study, from its runs so far.
-
-    Raises
-    ------
-    Refusal
-        If there are no runs yet, or nothing can be drawn.
-    """
+    """Return the name, the type and the content of the table or the figure of a study, from its runs so far."""
     if what == "table":
         return f"{page.table_name}.csv", "text/csv", page.table(job, state).to_csv(index=False).encode()
+    from rockflex.plot import figure_as_svg
+
     with errors_as_refusals(""):
-        return f"{page.figure_name}.svg", "image/svg+xml", figure_svg_bytes(page.figure(job, state))
+        return f"{page.figure_name}.svg", "image/svg+xml", figure_as_svg(page.figure(job, state)).encode()
 
 
-_MAKERS: dict[str, Any] = SELECTION_FILES | {
+_MAKERS: dict[str, Callable[[PageState, UploadedRecords], tuple[str, str | bytes]]] = {
     "figure": _history_figure_file,
     "energy": _energy_figure_file,
     "report": run_report_file,
@@ -381,8 +290,13 @@ _MAKERS: dict[str, Any] = SELECTION_FILES | {
     "peaks": _peaks_table_file,
     "histories": _histories_table_file,
     "record": _record_csv_file,
-    "records": _folder_records_file,
-    "structure": _structure_toml_file,
+    "records": lambda state, uploads: (f"{WHOLE_FOLDER}.zip", records_as_zip(folder_suite(state, uploads))),
+    "structure": lambda state, _: ("structure.toml", tomli_w.dumps(state.structure.model_dump(exclude_none=True))),
     "study": _response_study_file,
     "python": _response_python_file,
+    "selection": lambda state, uploads: ("selection.csv", _csv(_selection(state, uploads).table())),
+    "selection-spectra": lambda state, uploads: ("spectra.csv", _csv(_selection(state, uploads).spectra())),
+    "selection-figure": _selection_figure_file,
+    "selection-records": lambda state, given: ("scaled-records.zip", records_as_zip(_selection(state, given).suite)),
+    "selection-python": lambda state, _: ("selection.py", selection_script(state.target)),
 }

@@ -26,9 +26,9 @@ from rockflex.motion import (
     vertical_measures,
 )
 from rockflex.web._encoding import envelope_indices, pack_array_as_base64
-from rockflex.web._refusal import errors_as_refusals
+from rockflex.web._refusal import Refusal, errors_as_refusals
 from rockflex.web._state import PageState, PulseChoice, RecordChoice
-from rockflex.web._structure import BuiltStructure
+from rockflex.web._structure import build_page_structure
 from rockflex.web._uploads import UploadedRecords
 
 MAX_THUMBNAIL_POINTS = 120  # points of a thumbnail
@@ -72,13 +72,7 @@ def _loaded_suite(name: str) -> Suite:
 
 
 def chosen_motion(choice: RecordChoice, uploads: UploadedRecords) -> GroundMotion:
-    """Return the chosen record, without the scale factor.
-
-    Raises
-    ------
-    Refusal
-        If there is none.
-    """
+    """Return the chosen record, without the scale factor."""
     if choice.source == "upload":
         return uploads.get(choice.upload)
     if choice.source == "folder":
@@ -93,13 +87,7 @@ def chosen_motion(choice: RecordChoice, uploads: UploadedRecords) -> GroundMotio
 
 
 def chosen_folder_motion(choice: RecordChoice, uploads: UploadedRecords) -> GroundMotion:
-    """Return the chosen record of the folder, with its vertical component if that is wanted and there.
-
-    Raises
-    ------
-    Refusal
-        If the server does not have the folder, or it has no such record.
-    """
+    """Return the chosen record of the folder, with its vertical component if that is wanted and there."""
     suite = uploads.folders.get(choice.folder).suite(vertical=choice.vertical)
     with errors_as_refusals("record.folder"):
         return suite[choice.given]
@@ -107,13 +95,7 @@ def chosen_folder_motion(choice: RecordChoice, uploads: UploadedRecords) -> Grou
 
 @lru_cache(maxsize=8)
 def suite_view(name: str) -> dict[str, Any]:
-    """Return the records of a suite with thumbnails and intensity measures.
-
-    Raises
-    ------
-    Refusal
-        If the suite is unknown.
-    """
+    """Return the records of a suite with thumbnails and intensity measures."""
     return as_json_value({"name": name, "records": [_record_thumbnail(motion) for motion in _loaded_suite(name)]})
 
 
@@ -134,19 +116,20 @@ def _record_thumbnail(motion: GroundMotion) -> dict[str, Any]:
     }
 
 
-def record_view(state: PageState, built: BuiltStructure | None, uploads: UploadedRecords) -> dict[str, Any]:
-    """Return the history, the spectrum and the measures of the scaled record."""
+def record_view(state: PageState, uploads: UploadedRecords) -> dict[str, Any]:
+    """Return the history, the spectrum and the measures of the scaled record, some of which depend on the structure."""
+    try:
+        built = build_page_structure(state.structure)
+    except Refusal:
+        built = None  # the record can be shown before the structure is complete
     motion = chosen_motion(state.record, uploads).scaled(state.scale)
     velocity, displacement = motion.velocity, motion.displacement
     upwards = [] if motion.vertical is None else [motion.vertical]
     kept = envelope_indices([motion.acceleration, velocity, displacement, *upwards], MAX_CURVE_POINTS)
     spectrum = motion.spectrum(PERIODS)
+    known = record_measures() + (vertical_measures() if upwards else [])
     measures: list[dict[str, Any]] = [
-        *(_measure_fact(measure, measure.of(MeasureInput(motion)), measure.words) for measure in record_measures()),
-        *(
-            _measure_fact(measure, measure.of(MeasureInput(motion)), measure.words)
-            for measure in _vertical_measures_of_motion(motion)
-        ),
+        *(_measure_fact(measure, measure.of(MeasureInput(motion)), measure.words) for measure in known),
         {"name": "Duration", "value": motion.duration, "unit": "s", "help": "length of the record"},
         {"name": "Step", "value": motion.dt, "unit": "s", "help": "sampling step"},
     ]
@@ -174,10 +157,6 @@ def record_view(state: PageState, built: BuiltStructure | None, uploads: Uploade
             "lifting": None if built is None else built.properties.uplift_acceleration,
         }
     )
-
-
-def _vertical_measures_of_motion(motion: GroundMotion) -> list[IntensityMeasure]:
-    return [] if motion.vertical is None else vertical_measures()
 
 
 def _measure_fact(measure: IntensityMeasure, value: float, words: str) -> dict[str, Any]:

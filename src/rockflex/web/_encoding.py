@@ -1,10 +1,7 @@
-"""Curves and figures in the form that a browser receives."""
+"""Curves in the form that a browser receives."""
 
 import base64
 from itertools import pairwise
-from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -44,11 +41,3 @@ def envelope_indices(curves: list[Array], most: int) -> NDArray[np.intp]:
             part = values[low:high]
             kept.append(np.array([low + int(part.argmin()), low + int(part.argmax())]))
     return np.unique(np.concatenate(kept))
-
-
-def figure_svg_bytes(figure: Any) -> bytes:
-    """Return a figure as SVG."""
-    from rockflex.plot import save_figure
-
-    with TemporaryDirectory() as folder:
-        return save_figure(figure, Path(folder) / "figure.svg").read_bytes()

@@ -1,6 +1,5 @@
-"""Folders of records that visitors send: unpacked, read, reported on, and kept in memory under a checksum."""
+"""Folders of records that visitors send: unpacked, read, and reported on."""
 
-import hashlib
 import io
 import re
 import warnings
@@ -16,9 +15,7 @@ from rockflex._errors import InputError, RecordWarning
 from rockflex._json import as_json_value
 from rockflex.motion import GroundMotion, RecordSurvey, Suite, SurveyEntry, record_csv, survey_without_obspy
 from rockflex.motion._record_info import unique_record_names
-from rockflex.web._cache import LatestValuesCache
 from rockflex.web._limits import (
-    MAX_CACHED_SAMPLES,
     MAX_FILE_BYTES,
     MAX_FOLDER_BYTES,
     MAX_FOLDER_FILES,
@@ -54,12 +51,6 @@ def unpacked_record_files(body: bytes) -> list[SentRecordFile]:
     body
         A line of JSON, ``[{"name": "folder/a.AT2", "size": 120, "sent": true}, ...]``, and the contents in this order;
         a file that was too large to be sent has ``"sent": false`` and no content.
-
-    Raises
-    ------
-    Refusal
-        If the list does not fit the contents, there are too many or too large files, a name points out of the folder,
-        or an archive cannot be unpacked.
     """
     paths, found, work = list[str](), list[tuple[bytes | None, int]](), 0
     for path, content, size in _files_in_list(body):
@@ -149,13 +140,7 @@ def _unpacked_size(content: bytes | None) -> int:
 
 
 def _checked_folder_path(path: str) -> str:
-    """Return a path within the folder of a visitor.
-
-    Raises
-    ------
-    Refusal
-        If it points out of the folder.
-    """
+    """Return a path within the folder of a visitor."""
     parts = re.split(r"[/\\]", path)
     if ".." in parts or not parts[0] or re.match(r"[A-Za-z]:", path):
         raise _folder_refusal(
@@ -218,13 +203,6 @@ def records_as_zip(motions: Iterable[GroundMotion]) -> bytes:
     return packed.getvalue()
 
 
-FOLDER_LOST = (
-    "the server no longer has these records: it was restarted, or others gave newer ones. Give the folder again on "
-    "the Earthquake tab; a link does not contain it."
-)
-NO_FOLDER = "no records were given yet. Choose a folder on the Earthquake tab first."
-
-
 @dataclass(frozen=True, eq=False)
 class RecordFolder:
     """Records of a visitor, and the report of them on the page.
@@ -252,48 +230,8 @@ class RecordFolder:
         return self.both if vertical else self.along
 
 
-class RecordFolders:
-    """Sets of records by the checksum of their files; the latest ones of all visitors, as far as memory is set aside.
-
-    The checksum is known only to those who have the files or a link with it.
-    """
-
-    def __init__(self) -> None:
-        self._folders = LatestValuesCache[RecordFolder](lambda: MAX_CACHED_SAMPLES, lambda folder: folder.samples)
-
-    def add(self, folder: RecordFolder, files: Sequence[SentRecordFile], options: str) -> str:
-        """Keep a set, and return its checksum."""
-        digest = hashlib.sha256(options.encode())
-        for each in sorted(files, key=lambda file: file.name):
-            content = each.content or b""
-            digest.update(f"\0{each.name}\0{each.size}\0{len(content)}\0".encode())
-            digest.update(content)
-        token = digest.hexdigest()
-        self._folders.put(token, folder)
-        return token
-
-    def get(self, token: str) -> RecordFolder:
-        """Return a set.
-
-        Raises
-        ------
-        Refusal
-            If it is not, or no longer, kept.
-        """
-        found = self._folders.get(token)
-        if found is None:
-            raise Refusal({FIELD: FOLDER_LOST if token else NO_FOLDER}, 410)
-        return found
-
-
 def read_record_folder(files: Sequence[SentRecordFile], units: str | None, dt: float | None) -> RecordFolder:
-    """Read the files of a visitor, as `survey_records` does, without ObsPy.
-
-    Raises
-    ------
-    Refusal
-        If there is no record among them that can be used, or they have too many samples together.
-    """
+    """Read the files of a visitor, as `survey_records` does, without ObsPy."""
     large = [
         SurveyEntry(
             file=each.name,
@@ -338,8 +276,7 @@ def _folder_surveys(
             except InputError as error:
                 raise Refusal({FIELD: str(error).replace(folder, "the folder")}) from error
     except OSError as error:
-        message = "the server could not store the files temporarily. Try again."
-        raise Refusal({FIELD: message}, 503) from error
+        raise Refusal({FIELD: "the server could not store the files temporarily. Try again."}, 503) from error
 
 
 def _record_too_long_text(motion: GroundMotion) -> str:

@@ -126,13 +126,7 @@ class BackgroundJobs(Generic[AnyWork]):
         self._thread: Thread | None = None
 
     def start(self, job: AnyWork) -> str:
-        """Queue a job, and return its token.
-
-        Raises
-        ------
-        Refusal
-            If too many jobs are waiting.
-        """
+        """Queue a job, and return its token."""
         with self._lock:
             if sum(not each.over for each in self._jobs.values()) >= MAX_WAITING:
                 raise Refusal(f"The server is busy with other {self._what}. Try again in a minute.", 503)
@@ -150,13 +144,7 @@ class BackgroundJobs(Generic[AnyWork]):
         return token
 
     def get(self, token: str) -> AnyWork:
-        """Return a job, and record that its page is still open.
-
-        Raises
-        ------
-        Refusal
-            If there is no job with that token.
-        """
+        """Return a job, and record that its page is still open."""
         with self._lock:
             job = self._jobs.get(token)
         if job is None:

@@ -181,5 +181,4 @@ def check_size_of_study(plan: "CloudPlan", path: str) -> None:
                 if task is not None:
                     work += len(plan.scales) * _checked_work_of_run(task, path)
     if work > MAX_STUDY_COST:
-        message = "it takes too long for a page. Choose models with fewer modes, or use the command line."
-        raise Refusal({path: message})
+        raise Refusal({path: "it takes too long for a page. Choose models with fewer modes, or use the command line."})

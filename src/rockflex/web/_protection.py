@@ -1,16 +1,13 @@
-"""Protection of the server: known host names, security headers, and limits of waiting connections."""
+"""Protection of the server: known host names, and security headers."""
 
 import socket
-from asyncio import TimerHandle, Transport
 from collections.abc import Iterable
-from operator import attrgetter
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers as RequestHeaders
 from starlette.datastructures import MutableHeaders
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
-from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from rockflex.web._hosts import is_host_of_all_addresses, is_loopback_host, is_numeric_host
 
@@ -83,58 +80,3 @@ class KnownHosts:
         except ValueError:
             return False
         return name in self._names or is_loopback_host(name) or (self._everywhere and is_numeric_host(name))
-
-
-REQUEST_TIMEOUT = 20  # s for the next request to begin and its headers to arrive
-MAX_CONNECTIONS = 400  # connections, before those that wait for their clients are closed
-
-
-class LimitedConnection(H11Protocol):
-    """A connection of uvicorn with a time limit for headers; beyond `MAX_CONNECTIONS` the idlest are closed.
-
-    A server alone would keep half a request for ever, and refuse everybody once it has too many.
-    """
-
-    since: float = 0.0  # when it was opened, or its last answer was complete
-    _limit: TimerHandle | None = None
-
-    def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
-        """Begin to wait for a request, and close other connections if there are too many."""
-        super().connection_made(transport)
-        self._wait()
-        if len(self.connections) > MAX_CONNECTIONS:
-            waiting = [each for each in self.connections if isinstance(each, LimitedConnection) and each.waits]
-            if waiting:
-                idlest = min(waiting, key=attrgetter("since"))
-                idlest.transport.abort()
-                self.connections.discard(idlest)  # now, so that it does not count against the others
-
-    def on_response_complete(self) -> None:
-        """Begin to wait for the next request."""
-        super().on_response_complete()
-        self._wait()
-
-    def connection_lost(self, exc: Exception | None) -> None:
-        """Stop waiting."""
-        if self._limit is not None:
-            self._limit.cancel()
-        super().connection_lost(exc)
-
-    @property
-    def waits(self) -> bool:
-        """Whether the client has to send or receive something before the server can go on."""
-        return self._idle or self.cycle.more_body or self.flow.write_paused
-
-    @property
-    def _idle(self) -> bool:
-        return not self.cycle or self.cycle.response_complete
-
-    def _wait(self) -> None:
-        self.since = self.loop.time()
-        if self._limit is not None:
-            self._limit.cancel()
-        self._limit = self.loop.call_later(REQUEST_TIMEOUT, self._give_up)
-
-    def _give_up(self) -> None:
-        if self._idle:
-            self.transport.close()

@@ -7,7 +7,10 @@ from rockflex._errors import InputError, SolverError
 
 
 class Refusal(Exception):  # noqa: N818 - an answer, not a failure
-    """Messages by the dotted path of the field at fault, such as ``structure.frame.period``; empty for none of them."""
+    """Messages by the dotted path of the field at fault, such as ``structure.frame.period``; empty for none of them.
+
+    Every function of this layer that uses what a visitor sent may raise it.
+    """
 
     def __init__(self, errors: Mapping[str, str] | str, status: int = 422) -> None:
         self.errors = {"": errors} if isinstance(errors, str) else dict(errors)

@@ -85,13 +85,7 @@ MAX_ENERGY_COST = 1.0  # s of estimated computing time of the energies, see `roc
 def simulate_state_models(
     state: PageState, uploads: UploadedRecords
 ) -> tuple[BuiltStructure, GroundMotion, list[Response]]:
-    """Simulate the models of a state.
-
-    Raises
-    ------
-    Refusal
-        If a run cannot be made, or takes too long.
-    """
+    """Simulate the models of a state."""
     built = build_page_structure(state.structure)
     motion = chosen_motion(state.record, uploads).scaled(state.scale)
     options, cases = (
@@ -248,8 +242,7 @@ def check_work_of_energy(response: Response, motion: GroundMotion, state: PageSt
         1.0 + 0.5 * len(model.elements)
     )  # more branches to follow
     if work > MAX_ENERGY_COST:
-        message = "the energy is not computed here for so many or such fast modes over so long a time."
-        raise Refusal({"energy": message})
+        raise Refusal({"energy": "the energy is not computed here for so many or such fast modes over so long a time."})
 
 
 def _energy_view(motion: GroundMotion, response: Response, state: PageState) -> dict[str, Any]:

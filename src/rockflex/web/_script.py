@@ -16,8 +16,16 @@ from rockflex.study.cloud import CloudStudy
 from rockflex.study.design import DesignStudy
 from rockflex.study.spec import GroundTable, SpringBedTable, SpringsTable
 from rockflex.web._earthquake import PULSES
-from rockflex.web._selection import RECORDS_FOLDER, VISITOR_SUITES
-from rockflex.web._state import ROTATION, PageState, PulseChoice
+from rockflex.web._selection import (
+    RECORDS_FOLDER,
+    VISITOR_FOLDER,
+    VISITOR_SUITES,
+    WHOLE_FOLDER,
+    selection_options_of_choice,
+    target_spectrum_call,
+    target_spectrum_of_choice,
+)
+from rockflex.web._state import ROTATION, PageState, PulseChoice, TargetChoice
 
 
 def response_script(state: PageState, upload_name: str = "record") -> str:
@@ -91,6 +99,32 @@ def design_script(state: PageState, study: DesignStudy) -> str:
         ],
         yields=study.bouc_wen is not None,
     )
+
+
+def selection_script(choice: TargetChoice) -> str:
+    """Return a program that repeats the choice of records for a target, in `chosen`."""
+    name, values, named = target_spectrum_call(choice)
+    if name == "read_target":
+        target = target_spectrum_of_choice(choice)
+        name, named = "TargetSpectrum", {"damping_ratio": target.damping_ratio, "name": target.name}
+        values = [target.periods.tolist(), target.sa.tolist()]
+    given = (
+        f"rf.read_suite({WHOLE_FOLDER!r})  # unpacked from {WHOLE_FOLDER}.zip, which the page saves: Your records (ZIP)"
+    )
+    asked = [repr(choice.count), repr((choice.shortest, choice.longest))]
+    asked += [f"{key}={value!r}" for key, value in selection_options_of_choice(choice).items() if value is not None]
+    lines = [
+        "import rockflex as rf",
+        "",
+        f"target = {_python_call(name, named, *values)}",
+        f"suite = {given if choice.source == VISITOR_FOLDER else f'rf.load_suite({choice.source!r})'}",
+        f"chosen = suite.select(target, {', '.join(asked)})",
+        "print(chosen)",
+        "print(chosen.table().to_string(index=False))",
+        'chosen.spectra().to_csv("spectra.csv", index=False)',
+        'rf.save_figure(rf.plot_selection(chosen), "selection.png")',
+    ]
+    return "\n".join([*lines, ""])
 
 
 def uploaded_record_file_name(upload_name: str) -> str:

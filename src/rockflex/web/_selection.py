@@ -28,12 +28,11 @@ from rockflex.motion import (
 )
 from rockflex.solve import check_interruption
 from rockflex.study import Records
-from rockflex.web._cache import LatestValuesCache
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._limits import unclear_commas_text
 from rockflex.web._refusal import Refusal, errors_as_refusals
 from rockflex.web._state import PageState, TargetChoice
-from rockflex.web._uploads import UploadedRecords
+from rockflex.web._uploads import LatestValuesCache, UploadedRecords
 
 VISITOR_FOLDER = "given"  # stands for the visitor's folder among the names of suites
 SELECTED = "chosen"  # and this for the records chosen for the target spectrum
@@ -65,24 +64,12 @@ class VisitorRecords(Records):
         return found
 
     def load(self, base: Path) -> Suite:  # noqa: ARG002 - nothing is read from files
-        """Load the records; the suites come first.
-
-        Raises
-        ------
-        InputError
-            If a suite is unknown, or two records have the same name.
-        """
+        """Load the records; the suites come first."""
         return Suite([*(motion for name in self.suites for motion in load_suite(name)), *self._motions])
 
 
 def folder_suite(state: PageState, uploads: UploadedRecords) -> Suite:
-    """Return the records of the visitor's folder, with vertical components if these are wanted.
-
-    Raises
-    ------
-    Refusal
-        If the server does not have them.
-    """
+    """Return the records of the visitor's folder, with vertical components if these are wanted."""
     return uploads.folders.get(state.record.folder).suite(vertical=state.record.vertical)
 
 
@@ -116,13 +103,7 @@ def _refusing_target(missing: str) -> Generator[None]:
 
 
 def target_spectrum_of_choice(choice: TargetChoice) -> TargetSpectrum:
-    """Return the target spectrum.
-
-    Raises
-    ------
-    Refusal
-        If it cannot be made, at the field at fault.
-    """
+    """Return the target spectrum."""
     with _refusing_target("kind"):
         name, values, named = target_spectrum_call(choice)
         if name == "read_target":
@@ -174,18 +155,10 @@ class LatestSelections:
     """The latest choices of records of all visitors, so that charts, files and studies do not repeat them."""
 
     def __init__(self) -> None:
-        self._selections = LatestValuesCache[Selected](lambda: MAX_SELECTIONS)
+        self._selections = LatestValuesCache[Selected](MAX_SELECTIONS)
 
     def of(self, state: PageState, uploads: UploadedRecords) -> Selected:
-        """Return the records chosen for the target of a state, and remarks on the choice.
-
-        Raises
-        ------
-        Refusal
-            If the target or the choice cannot be made, at the field at fault, or would take too long.
-        RunStoppedError
-            If nobody waits for it any more.
-        """
+        """Return the records chosen for the target of a state, and remarks on the choice."""
         choice = state.target
         key = json.dumps([choice.model_dump(exclude={"shown"}), self._source(state)])
         found = self._selections.get(key)
@@ -224,13 +197,7 @@ def selection_options_of_choice(choice: TargetChoice) -> dict[str, Any]:
 
 
 def suite_to_select_from(state: PageState, uploads: UploadedRecords) -> Suite:
-    """Return the records that are chosen from.
-
-    Raises
-    ------
-    Refusal
-        If there is no such suite, or the server does not have the visitor's folder.
-    """
+    """Return the records that are chosen from."""
     if state.target.source != VISITOR_FOLDER:
         with _refusing_target("source"):
             return load_suite(state.target.source)
@@ -249,13 +216,7 @@ def _check_work_of_selection(suite: Suite, choice: TargetChoice) -> None:
 
 
 def selection_view(state: PageState, uploads: UploadedRecords) -> dict[str, Any]:
-    """Return the chosen records with their factors, and the spectra around the range of periods.
-
-    Raises
-    ------
-    Refusal
-        As `LatestSelections.of`.
-    """
+    """Return the chosen records with their factors, and the spectra around the range of periods."""
     chosen, notes = SELECTIONS.of(state, uploads)
     target, low, high = chosen.target, float(chosen.periods[0]), float(chosen.periods[-1])
     first, last = float(target.periods[0]), float(target.periods[-1])
@@ -288,13 +249,7 @@ def selection_view(state: PageState, uploads: UploadedRecords) -> dict[str, Any]
 
 
 def scale_factor_view(state: PageState, uploads: UploadedRecords, period: object) -> dict[str, Any]:
-    """Return the factor that scales the page's record to the target at a period in s, or over the range if it is None.
-
-    Raises
-    ------
-    Refusal
-        If it cannot be scaled, or the factor is beyond those of the page.
-    """
+    """Return the factor that scales the record to the target at a period in s, or over the range if it is None."""
     choice, motion, target = state.target, chosen_motion(state.record, uploads), target_spectrum_of_choice(state.target)
     if period is None:
         with _refusing_target("longest"):
@@ -325,14 +280,7 @@ TITLES = {VISITOR_FOLDER: "your folder", SELECTED: "the records for the target"}
 def records_of_named_suites(
     state: PageState, names: Sequence[str], uploads: UploadedRecords, path: str
 ) -> VisitorRecords:
-    """Return the records of the suites with these names, the choice of the field `path`.
-
-    Raises
-    ------
-    Refusal
-        If a suite is unknown, the server does not have the folder, the records cannot be chosen, or two suites have a
-        record of the same name.
-    """
+    """Return the records of the suites with these names, the choice of the field `path`."""
     own = dict[str, Suite]()
     try:
         if VISITOR_FOLDER in names:

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from starlette.applications import Starlette
 
 NEEDED = ("anyio", "starlette", "tomli_w", "uvicorn")
+KEEP_ALIVE = 20  # s for the next request on an open connection
 GRACE = 3  # s for the answers in progress when the server is stopped
 
 
@@ -39,8 +40,7 @@ def make_app(host: str = "127.0.0.1", names: Sequence[str] = ()) -> "Starlette":
 def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (), open_browser: bool = False) -> None:
     """Serve the web page until interrupted.
 
-    A client must send a request within 20 s, and its content within 60 s. Where more than 400 connections are open,
-    those that have waited longest for their client are closed.
+    A client must send the content of a request within 60 s.
 
     Parameters
     ----------
@@ -67,8 +67,6 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (
 
     import uvicorn
 
-    from rockflex.web._protection import REQUEST_TIMEOUT, LimitedConnection
-
     listener = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
@@ -79,8 +77,8 @@ def serve(port: int = 8080, host: str = "127.0.0.1", *, names: Sequence[str] = (
             f"The page cannot listen on {host}, port {number}: {error.strerror or error}. Choose another --port."
         ) from error
     config = uvicorn.Config(
-        app, log_level="warning", http=LimitedConnection, ws="none", timeout_keep_alive=REQUEST_TIMEOUT,
-        limit_concurrency=500, timeout_graceful_shutdown=GRACE, server_header=False,
+        app, log_level="warning", http="h11", ws="none", timeout_keep_alive=KEEP_ALIVE, limit_concurrency=500,
+        timeout_graceful_shutdown=GRACE, server_header=False,
     )  # fmt: skip
     server = uvicorn.Server(config)
     # The threads that it starts are daemons as well: none of them, whatever it reads, keeps the process alive.

@@ -257,13 +257,7 @@ class PageState(RunOptionKeys):
     target: TargetChoice = Field(default_factory=lambda: TargetChoice.model_validate({}), description="a table")
 
     def run_options(self, ground: Ground | None) -> RunOptions:
-        """Return the options of the runs of the Response tab, on the ground of the structure.
-
-        Raises
-        ------
-        InputError
-            If a value is out of range.
-        """
+        """Return the options of the runs of the Response tab, on the ground of the structure."""
         return RunOptions.of(
             self.free_vibration, impact=self.law(), bouc_wen=self.hysteresis(), ground=ground, work_limit=RUN_WORK_LIMIT
         )
@@ -275,13 +269,7 @@ class PageState(RunOptionKeys):
 
 
 def parse_page_json(body: bytes) -> Any:
-    """Read JSON; infinite and absurdly large numbers are left to the checks of the fields.
-
-    Raises
-    ------
-    Refusal
-        If it is not JSON, or nested too deep.
-    """
+    """Read JSON; infinite and absurdly large numbers are left to the checks of the fields."""
     try:
         return json.loads(body, parse_int=lambda text: int(text) if len(text) < 16 else float(text))
     except (ValueError, RecursionError) as error:
@@ -289,13 +277,7 @@ def parse_page_json(body: bytes) -> Any:
 
 
 def parse_page_state(content: Any) -> PageState:
-    """Return the state of a form or a link, checked.
-
-    Raises
-    ------
-    Refusal
-        With a message for each field at fault.
-    """
+    """Return the state of a form or a link, checked."""
     if not isinstance(content, dict):
         raise Refusal("The link does not hold a state of the page.")
     try:

@@ -15,6 +15,7 @@ from rockflex._json import as_json_value
 from rockflex.modal import Ground, ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
 from rockflex.structure import structure_warnings
 from rockflex.structure._from_matrices import DegreesOfFreedom
+from rockflex.structure._outline import outline_of_structure
 from rockflex.structure.file import Structure, StructureEntry, StructureTable, TomlTable
 from rockflex.structure.file._structure_tables import MatricesTable, ModesTable
 from rockflex.study.spec import GroundTable
@@ -24,13 +25,7 @@ MAX_SPRINGS_DRAWN = 9  # springs of a drawing, at most
 
 
 def ground_under_page_structure(table: GroundTable | None, p: RockingProperties) -> Ground | None:
-    """Return the ground under a structure, None if it is rigid and the base cannot slide.
-
-    Raises
-    ------
-    Refusal
-        If its values contradict each other, at the field at fault.
-    """
+    """Return the ground under a structure, None if it is rigid and the base cannot slide."""
     try:
         return None if table is None else table.under(p)
     except InputError as error:
@@ -114,13 +109,7 @@ class BuiltStructure:
 
 
 def build_page_structure(entry: StructureEntry) -> BuiltStructure:
-    """Build a structure, or return it from the cache.
-
-    Raises
-    ------
-    Refusal
-        If it cannot be built, with the message at the field at fault.
-    """
+    """Build a structure, or return it from the cache."""
     try:
         return _build_structure_from_json(json.dumps(entry.model_dump(exclude_none=True)))
     except InputError as error:
@@ -135,35 +124,14 @@ def _build_structure_from_json(text: str) -> BuiltStructure:
     entry = StructureEntry.model_validate(json.loads(text))
     structure = entry.build()
     if isinstance(structure, RockingProperties):
-        return BuiltStructure(structure, structure, None, *_straight_shape_of_structure(entry, structure))
-    properties, modes = structure.rocking(), structure.modal()
-    kept = np.unique(np.linspace(0, modes.heights.size - 1, min(MAX_HEIGHTS_DRAWN, modes.heights.size)).astype(int))
-    shapes = (modes.shapes * modes.participation)[kept, : properties.n_modes]
-    heights = np.concatenate(([0.0], modes.heights[kept]))
-    shapes = np.vstack((np.zeros(shapes.shape[1]), shapes))
-    # The heights of freedoms may come in any order.
-    order = np.argsort(heights, kind="stable")
-    return BuiltStructure(structure, properties, modes, heights[order], shapes[order])
-
-
-def _straight_shape_of_structure(entry: StructureEntry, p: RockingProperties) -> tuple[Array, Array]:
-    """Shape of a structure with only a known displacement of the top: a straight line."""
-    if p.n_modes:
-        height = float(np.abs(p.effective_height).max()) * 1.25
+        properties, modes = structure, None
     else:
-        table: Any = entry.table
-        height = 2.0 * float(table.half_diagonal) * float(np.cos(table.slenderness))
-    return np.array([0.0, height]), np.vstack((np.zeros(p.n_modes), p.top_ordinate))
+        properties, modes = structure.rocking(), structure.modal()
+    return BuiltStructure(structure, properties, modes, *outline_of_structure(properties, modes, MAX_HEIGHTS_DRAWN))
 
 
 def structure_view(entry: StructureEntry, table: GroundTable | None = None) -> dict[str, Any]:
-    """Return the outline, the parameters, the modes and the adequacy of a structure, and the ground under it.
-
-    Raises
-    ------
-    Refusal
-        If it cannot be built, the adequacy of its modes cannot be determined, or the ground contradicts itself.
-    """
+    """Return the outline, the parameters, the modes and the adequacy of a structure, and the ground under it."""
     built = build_page_structure(entry)
     p = built.properties
     with errors_as_refusals("structure"):

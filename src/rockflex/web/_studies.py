@@ -7,20 +7,11 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 
+from rockflex import fragility
 from rockflex._arrays import Array
 from rockflex._errors import InputError, SolverError
 from rockflex._json import as_json_value
 from rockflex._shown import number_with_noun
-from rockflex.fragility import (
-    NOMINAL,
-    OVERTURNING,
-    ROCKING,
-    CloudFits,
-    fit_each_cloud,
-    fit_outcomes,
-    observed_exceedance_fractions,
-    recordings_of_runs,
-)
 from rockflex.kinds import KINDS
 from rockflex.motion import MEASURES
 from rockflex.study import count_pivot_lifts, tables_to_dataframe, yielding_model_labels
@@ -73,13 +64,7 @@ class StudyPage:
 def common_study_content(
     state: PageState, uploads: UploadedRecords, kind: Literal["cloud", "design"], labels: Sequence[str], name: str
 ) -> dict[str, Any]:
-    """Return the content that both kinds of study share; `name` is used for a structure without a name.
-
-    Raises
-    ------
-    Refusal
-        If the server does not have the records.
-    """
+    """Return the content that both kinds of study share; `name` is used for a structure without a name."""
     choice = state.cloud if kind == "cloud" else state.design
     return {
         "name": state.structure.name or name,
@@ -94,13 +79,7 @@ def common_study_content(
 
 
 def study_plan(study: CloudStudy | DesignStudy, path: str) -> CloudPlan:
-    """Return the runs of a study, divided into small chunks.
-
-    Raises
-    ------
-    Refusal
-        If they cannot be prepared, are too many for the page, or take too long.
-    """
+    """Return the runs of a study, divided into small chunks."""
     with errors_as_refusals(path):
         plan = cast("CloudPlan", study.plan())  # the page has no design study with a search
     plan.matrix = plan.matrix.limited(MAX_RUN_COST)
@@ -115,13 +94,7 @@ def runs_of_study_job(job: StudyJob) -> "pd.DataFrame | None":
 
 
 def some_runs_of_study_job(job: StudyJob) -> "pd.DataFrame":
-    """Return the table of the runs so far.
-
-    Raises
-    ------
-    Refusal
-        If there are none.
-    """
+    """Return the table of the runs so far."""
     runs = runs_of_study_job(job)
     if runs is None:
         raise Refusal("There are no runs yet.")
@@ -154,13 +127,7 @@ OBSERVED_BINS = 8  # groups of the observed fractions
 
 
 def cloud_study(state: PageState, uploads: UploadedRecords) -> CloudStudy:
-    """Return the study of a state, as `rockflex cloud` runs it; `uploads` are the records of visitors.
-
-    Raises
-    ------
-    Refusal
-        If the state does not describe a valid study.
-    """
+    """Return the study of a state, as `rockflex cloud` runs it; `uploads` are the records of visitors."""
     build_page_structure(state.structure)  # for its messages, which are shown next to the fields
     content = common_study_content(state, uploads, "cloud", state.cloud.models, "Cloud")
     with errors_as_refusals("cloud"):
@@ -190,7 +157,7 @@ def cloud_view(job: StudyJob, state: PageState) -> dict[str, Any]:
         view["notes"].append("All runs so far have the same intensity.")
         return as_json_value(view)
     grid = np.geomspace(im.min(), im.max(), CURVE_POINTS)
-    fits, reasons = fit_each_cloud(solved, choice.measure, nominal=choice.limit == NOMINAL.name)
+    fits, reasons = fragility.fit_each_cloud(solved, choice.measure, nominal=choice.limit == fragility.NOMINAL.name)
     view["notes"] += [f"{model}: {reason}" for (_, model), reason in reasons.items()]
     for fit in fits:
         part = solved[solved["model"].astype(str) == fit.model]
@@ -199,7 +166,7 @@ def cloud_view(job: StudyJob, state: PageState) -> dict[str, Any]:
 
 
 def _fragility_curve_view(
-    fit: CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Array, notes: list[str]
+    fit: fragility.CloudFits, part: "pd.DataFrame", choice: CloudChoice, grid: Array, notes: list[str]
 ) -> dict[str, Any]:
     im, rotation = (part[name].to_numpy(dtype=float) for name in (choice.measure, "max_rotation"))
     over = limit_state_of_choice(choice.limit, choice.rotation).exceeded(part).to_numpy(dtype=bool)
@@ -211,7 +178,7 @@ def _fragility_curve_view(
         "point_im": im,
         "point_rotation": np.minimum(rotation, 0.5 * math.pi),
         "point_over": over.astype(int),
-        "observed": observed_exceedance_fractions(im, over, OBSERVED_BINS),
+        "observed": fragility.observed_exceedance_fractions(im, over, OBSERVED_BINS),
         "median": None,
         "p": None,
         "low": None,
@@ -221,15 +188,17 @@ def _fragility_curve_view(
     if choice.limit == ROTATION:
         try:
             # On springs bases turn without uplift too, so a rotation is not one of rocking runs only.
-            fallen = OVERTURNING.exceeded(part).to_numpy(dtype=bool)
-            turned = fit_outcomes(im, rotation, fallen, recordings_of_runs(part)).curve(choice.rotation)
+            fallen = fragility.OVERTURNING.exceeded(part).to_numpy(dtype=bool)
+            turned = fragility.fit_outcomes(im, rotation, fallen, fragility.recordings_of_runs(part)).curve(
+                choice.rotation
+            )
             found["p"] = turned.probability(grid)
             found["median"] = _interpolated_fragility_median(grid, found["p"])
             found["low"], found["high"] = turned.band(grid, choice.confidence)
         except (InputError, SolverError) as error:
             notes.append(f"{fit.model}: {error}")
         return found
-    curve = fit.outcomes.initiation if choice.limit == ROCKING.name else fit.outcomes.overturning
+    curve = fit.outcomes.initiation if choice.limit == fragility.ROCKING.name else fit.outcomes.overturning
     low, high = curve.band(grid, choice.confidence)
     median = getattr(curve, "median", None)
     note = getattr(curve, "note", "")
@@ -256,7 +225,9 @@ def _cloud_figure(job: StudyJob, state: PageState) -> Any:
     from rockflex.plot import plot_fragility
 
     choice = state.cloud
-    fits, reasons = fit_each_cloud(some_runs_of_study_job(job), choice.measure, nominal=choice.limit == NOMINAL.name)
+    fits, reasons = fragility.fit_each_cloud(
+        some_runs_of_study_job(job), choice.measure, nominal=choice.limit == fragility.NOMINAL.name
+    )
     if not fits:
         reason = " ".join(f"{model}: {why}" for (_, model), why in reasons.items())
         raise Refusal(f"There is no curve to draw. {reason}")
@@ -280,13 +251,7 @@ def limit_for_fragility(choice: DesignChoice) -> float | str:
 
 
 def design_study(state: PageState, uploads: UploadedRecords) -> DesignStudy:
-    """Return the study of a state, as `rockflex design` runs it; `uploads` are the records of visitors.
-
-    Raises
-    ------
-    Refusal
-        If the state does not describe a valid study.
-    """
+    """Return the study of a state, as `rockflex design` runs it; `uploads` are the records of visitors."""
     choice = state.design
     present = build_page_structure(state.structure).properties
     if choice.widest <= choice.narrowest:

@@ -4,10 +4,13 @@ import hashlib
 import io
 import re
 import zipfile
+from collections import OrderedDict
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from threading import Lock
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -19,13 +22,82 @@ from rockflex.motion import (
     is_vertical_component,
     read_motion_without_obspy,
 )
-from rockflex.web._cache import LatestValuesCache
-from rockflex.web._folders import RecordFolders
-from rockflex.web._limits import MAX_FILE_BYTES, MAX_FREEDOMS, check_record_length
+from rockflex.web._folders import FIELD, RecordFolder, SentRecordFile
+from rockflex.web._limits import MAX_CACHED_SAMPLES, MAX_FILE_BYTES, MAX_FREEDOMS, check_record_length
 from rockflex.web._refusal import Refusal, errors_as_refusals
 
 MAX_RECORDS = 64  # in memory
 MATRICES = ("mass", "stiffness", "heights", "rotations")
+
+
+Cached = TypeVar("Cached")
+
+
+class LatestValuesCache(Generic[Cached]):
+    """The values last stored or read, by their keys, as many as fit; safe for threads.
+
+    Parameters
+    ----------
+    capacity
+        Largest sum of the sizes of all values; the last one stays even if it alone is larger.
+    size
+        Returns the size of a value.
+    """
+
+    def __init__(self, capacity: int, size: Callable[[Cached], int] = lambda _: 1) -> None:
+        self._values: OrderedDict[str, Cached] = OrderedDict()
+        self._lock, self._capacity, self._size = Lock(), capacity, size
+
+    def put(self, key: str, value: Cached) -> None:
+        """Store a value, and forget those that have not been used for the longest time."""
+        with self._lock:
+            self._values[key] = value
+            self._values.move_to_end(key)
+            while len(self._values) > 1 and sum(map(self._size, self._values.values())) > self._capacity:
+                self._values.popitem(last=False)
+
+    def get(self, key: str) -> Cached | None:
+        """Return a value; None if it is not, or no longer, stored."""
+        with self._lock:
+            value = self._values.get(key)
+            if value is not None:
+                self._values.move_to_end(key)
+        return value
+
+
+FOLDER_LOST = (
+    "the server no longer has these records: it was restarted, or others gave newer ones. Give the folder again on "
+    "the Earthquake tab; a link does not contain it."
+)
+NO_FOLDER = "no records were given yet. Choose a folder on the Earthquake tab first."
+
+
+class RecordFolders:
+    """Sets of records by the checksum of their files; the latest ones of all visitors, as far as memory is set aside.
+
+    The checksum is known only to those who have the files or a link with it.
+    """
+
+    def __init__(self) -> None:
+        self._folders = LatestValuesCache[RecordFolder](MAX_CACHED_SAMPLES, lambda folder: folder.samples)
+
+    def add(self, folder: RecordFolder, files: Sequence[SentRecordFile], options: str) -> str:
+        """Keep a set, and return its checksum."""
+        digest = hashlib.sha256(options.encode())
+        for each in sorted(files, key=lambda file: file.name):
+            content = each.content or b""
+            digest.update(f"\0{each.name}\0{each.size}\0{len(content)}\0".encode())
+            digest.update(content)
+        token = digest.hexdigest()
+        self._folders.put(token, folder)
+        return token
+
+    def get(self, token: str) -> RecordFolder:
+        """Return a set."""
+        found = self._folders.get(token)
+        if found is None:
+            raise Refusal({FIELD: FOLDER_LOST if token else NO_FOLDER}, 410)
+        return found
 
 
 class UploadedRecords:
@@ -35,7 +107,7 @@ class UploadedRecords:
     """
 
     def __init__(self) -> None:
-        self._records = LatestValuesCache[GroundMotion](lambda: MAX_RECORDS)
+        self._records = LatestValuesCache[GroundMotion](MAX_RECORDS)
         self.folders = RecordFolders()
 
     def add(self, motion: GroundMotion, content: bytes, options: str) -> str:
@@ -45,13 +117,7 @@ class UploadedRecords:
         return key
 
     def get(self, key: str) -> GroundMotion:
-        """Return a record.
-
-        Raises
-        ------
-        Refusal
-            If it is not, or no longer, stored.
-        """
+        """Return a record."""
         motion = self._records.get(key)
         if motion is None:
             message = (
@@ -72,11 +138,6 @@ def read_uploaded_record(name: str, content: bytes, units: str | None, dt: float
         Its bytes.
     units, dt
         As in `read_motion`, or None.
-
-    Raises
-    ------
-    Refusal
-        If the file is too large, cannot be read, or contains a vertical component or a record that is too long.
     """
     named = _read_uploaded_motion(name, content, units, dt, "record.upload")
     if is_vertical_component(named):
@@ -92,13 +153,7 @@ def read_uploaded_record(name: str, content: bytes, units: str | None, dt: float
 def read_uploaded_vertical(
     name: str, content: bytes, units: str | None, dt: float | None, along: GroundMotion
 ) -> GroundMotion:
-    """Return a stored horizontal record with the vertical component in a file; parameters as in `read_uploaded_record`.
-
-    Raises
-    ------
-    Refusal
-        If the file cannot be read, contains a horizontal component, or has another step than the record.
-    """
+    """Return a stored horizontal record with the vertical component in a file, as `read_uploaded_record` reads it."""
     upwards = _read_uploaded_motion(name, content, units, dt, "record.vertical")
     with errors_as_refusals("record.vertical"):
         motion = along.with_vertical(upwards)
@@ -122,8 +177,7 @@ def _read_uploaded_motion(name: str, content: bytes, units: str | None, dt: floa
                     said = f"{said.partition(' Name one:')[0]} Choose a file with a single one."
                 raise Refusal({field: said}) from error
     except OSError as error:
-        message = "the server could not store the file temporarily. Try again."
-        raise Refusal({field: message}, 503) from error
+        raise Refusal({field: "the server could not store the file temporarily. Try again."}, 503) from error
     info = motion.metadata or RecordInfo()
     # The temporary file has another name.
     info = replace(info, direction=component_direction(Path(shown), info.component) or info.direction)
@@ -148,11 +202,6 @@ def read_uploaded_matrices(name: str, content: bytes, part: str) -> dict[str, An
     """Read matrices from a ``.npz`` with arrays mass, stiffness, heights and rotations, or one of them from a CSV file.
 
     Heights are one for each freedom, NaN for none; or rows of an index and a height, or with NaN, which become a table.
-
-    Raises
-    ------
-    Refusal
-        If the file is too large or cannot be read, or an array is.
     """
     shown = clean_upload_name(name)
     _check_upload_size(shown, content, "structure")
@@ -160,8 +209,7 @@ def read_uploaded_matrices(name: str, content: bytes, part: str) -> dict[str, An
         if shown.lower().endswith(".npz"):
             return _matrices_from_npz(shown, content)
         if part not in MATRICES:
-            message = f"say which of {', '.join(MATRICES)} the file {shown} holds."
-            raise Refusal({"structure": message})
+            raise Refusal({"structure": f"say which of {', '.join(MATRICES)} the file {shown} holds."})
         return {part: _matrix_as_numbers(shown, part, _matrix_from_text(content.decode("utf-8-sig")))}
     except Refusal:
         raise
@@ -210,13 +258,11 @@ def _matrix_as_numbers(name: str, part: str, array: Any) -> Any:
     values = np.asarray(array, dtype=np.float64)
     blank = np.isnan(values) & (part == "heights")
     if not (np.isfinite(values) | blank).all() or blank.all() or max(values.shape) > MAX_FREEDOMS:
-        message = f"{name}: {part} must hold finite numbers for up to {MAX_FREEDOMS} freedoms."
-        raise Refusal({"structure": message})
+        raise Refusal({"structure": f"{name}: {part} must hold finite numbers for up to {MAX_FREEDOMS} freedoms."})
     if part == "heights" and values.ndim == 2 and values.shape[1] == 2 and len(values) > 1:
         found = {str(_index_of_freedom(name, part, each)): height for each, height in values.tolist()}
         if len(found) < len(values):
-            message = f"{name}: {part} must hold each freedom once."
-            raise Refusal({"structure": message})
+            raise Refusal({"structure": f"{name}: {part} must hold each freedom once."})
         return found
     if values.ndim == 2 and 1 in values.shape and part != "stiffness":
         values = values.ravel()

@@ -19,11 +19,16 @@ specimen is built is a `ConstructionCheck`, not a number; additional computation
 
 import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 import rockflex as rf
+from rockflex._arrays import Array
 from rockflex.report import ConstructionCheck, PublishedNumber
 from rockflex.report._document import decimal_text
 
@@ -146,11 +151,6 @@ def printed_range(printed: str, *, truncated: bool = False) -> PrintedRange:
         value represents all that rounds to its digits, and with a word before it, of that what is within 20 % of it.
     truncated
         Whether digits may have been cut off instead of rounded: up to a unit of the last digit away from zero.
-
-    Raises
-    ------
-    InputError
-        If it is none of these.
     """
     bound = _BOUND.fullmatch(printed.strip())
     if bound:
@@ -165,10 +165,8 @@ def printed_range(printed: str, *, truncated: bool = False) -> PrintedRange:
             "Give what is no number as a statement, with a criterion."
         )
     divisor = _parsed_printed_number(match["divisor"]) if match["divisor"] else 1.0
-    value, step = (
-        _parsed_printed_number(match["value"]) / divisor,
-        _step_of_last_printed_digit(match["value"]) / divisor,
-    )
+    value = _parsed_printed_number(match["value"]) / divisor
+    step = _step_of_last_printed_digit(match["value"]) / divisor
     low, high = value - 0.5 * step, value + 0.5 * step
     if truncated:
         low, high = (value - step, high) if value < 0.0 else (low, value + step)
@@ -198,13 +196,16 @@ class ResampledInterval(NamedTuple):
         return ResampledInterval(*(factor * value for value in self))
 
 
-def bootstrap_intervals(band: rf.BootstrapBand) -> list[ResampledInterval]:
-    """Return the interval of each value of a bootstrap."""
+def bootstrap_intervals(
+    fit: Callable[[Array, Array], Array], x: Array, y: NDArray[Any], groups: NDArray[Any], size: int, n: int
+) -> list[ResampledInterval]:
+    """Return the interval of each of the `size` values of a fit, over `n` draws of whole groups."""
+    band = rf.bootstrap_band(fit, x, y, groups, at=np.arange(size), n=n, curve=lambda values, _: values)
     three = zip(band.estimate.tolist(), band.low.tolist(), band.high.tolist(), strict=True)
     return [ResampledInterval(*each) for each in three]
 
 
-def compared_number(
+def number(
     name: str,
     place: str,
     printed: str,
@@ -221,7 +222,7 @@ def compared_number(
     ----------
     name, place, printed, ours, unit, note
         As in `PublishedNumber`; `ours` in the unit in print.
-    ground
+    agreed
         Verdict if the value agrees.
     truncated
         Whether digits may have been cut off in print (rule 1).
@@ -236,7 +237,7 @@ def compared_number(
     return _compared_number_of_verdict(name, place, printed, value, unit, criterion, verdict, wanted, note)
 
 
-def compared_statement(
+def statement(
     name: str,
     place: str,
     printed: str,
@@ -255,7 +256,7 @@ def compared_statement(
     )
 
 
-def compared_statistic(
+def statistic(
     name: str, place: str, printed: str, ours: ResampledInterval, unit: str = "", *, note: str = ""
 ) -> PublishedNumber:
     """Compare a printed value with the interval of ours, from other records or draws (rule 2)."""
@@ -277,7 +278,7 @@ def compared_statistic(
     )
 
 
-def compared_count(name: str, place: str, printed: str, ours: ResampledInterval) -> PublishedNumber:
+def count(name: str, place: str, printed: str, ours: ResampledInterval) -> PublishedNumber:
     """Show a count of outcomes, which depends on how strong the records are, next to the printed one (rule 4)."""
     criterion = f"none; 90 % interval {decimal_text(ours.low, 0)} to {decimal_text(ours.high, 0)}"
     wanted, note = printed_range(printed), "depends on how strong the records are"
@@ -286,7 +287,7 @@ def compared_count(name: str, place: str, printed: str, ours: ResampledInterval)
     )
 
 
-def compared_tendency(
+def tendency(
     name: str, place: str, printed: str, ours: ResampledInterval, criterion: str, unit: str = "", *, note: str = ""
 ) -> PublishedNumber:
     """Check a bound or a statement in words on the interval of a number from other records or draws (rule 2)."""
@@ -300,7 +301,7 @@ def compared_tendency(
     return PublishedNumber(name, place, printed, value, unit, text, digits, note, verdict, None, None)
 
 
-def construction_check(
+def check(
     name: str, place: str, printed: str, ours: float, criterion: str = "", unit: str = "", *, note: str = ""
 ) -> ConstructionCheck:
     """Check a value against a bound, such as ``"< 1"``, or by default against the printed number."""

@@ -33,17 +33,18 @@ SUITES = ("fema-p695-far-field", "fema-p695-near-field-no-pulse")
 def table_1_frame(name: str) -> rf.Frame:
     """Return a structure of Table 1."""
     period, aspect_ratio, behaviour = STRUCTURES[name]
-    return rf.Frame(
-        n_stories=5, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=BEHAVIOURS[behaviour],
-        period=period, aspect_ratio=aspect_ratio, damping_ratio=0.02,
-    )  # fmt: skip
+    return _frame(5, behaviour, period, aspect_ratio)
 
 
 def tall_frame(behaviour: str, aspect_ratio: float = MARK) -> rf.Frame:
     """Return the 15-story building of Section 3.4; its period and base mass are assumed."""
+    return _frame(15, behaviour, 1.0, aspect_ratio)
+
+
+def _frame(n_stories: int, behaviour: str, period: float, aspect_ratio: float) -> rf.Frame:
     return rf.Frame(
-        n_stories=15, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=BEHAVIOURS[behaviour],
-        period=1.0, aspect_ratio=aspect_ratio, damping_ratio=0.02,
+        n_stories, story_height=3.0, story_mass=40e3, base_mass=40e3, stiffness_ratio=BEHAVIOURS[behaviour],
+        period=period, aspect_ratio=aspect_ratio, damping_ratio=0.02,
     )  # fmt: skip
 
 

@@ -9,13 +9,8 @@ import numpy as np
 
 import rockflex as rf
 from rockflex._arrays import Array
-from rockflex.papers.silva_stojadinovic_2024._comparison import (
-    RemarkKind,
-    Verdict,
-    compared_number,
-    compared_statement,
-    construction_check,
-)
+from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
+from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, Verdict
 from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
 from rockflex.report import ConstructionCheck, PublishedNumber, Remark, ReproducedResult
 from rockflex.report._document import decimal_text
@@ -32,8 +27,8 @@ S1 = {
     "spacing": (1.5, 1.3, 1.65),
 }
 
-equal = partial(compared_number, agreed=Verdict.EQUIVALENT)
-holds = partial(compared_statement, agreed=Verdict.EQUIVALENT)
+equal = partial(compare.number, agreed=Verdict.EQUIVALENT)
+holds = partial(compare.statement, agreed=Verdict.EQUIVALENT)
 BY_CONSTRUCTION = "the equivalent is built so"
 
 Free = Mapping[str, tuple[float, ...]]
@@ -150,10 +145,10 @@ def _numbers_of_figure_3(p: rf.RockingProperties, runs: dict[str, rf.Response]) 
 
 def _checks_of_figure_3(p: rf.RockingProperties, complete: rf.Response) -> tuple[ConstructionCheck, ...]:
     return (
-        construction_check("T_1", PLACE, "0.5", 2.0 * np.pi / p.omega[0], unit="s", note=BY_CONSTRUCTION),
-        construction_check("m*_1/m_s,tot", PLACE, "0.92", p.effective_mass[0] / 1.0, note=BY_CONSTRUCTION),
-        construction_check("B/h*_1", PLACE, "0.16", _slenderness_angle(p), note=BY_CONSTRUCTION),
-        construction_check(
+        compare.check("T_1", PLACE, "0.5", 2.0 * np.pi / p.omega[0], unit="s", note=BY_CONSTRUCTION),
+        compare.check("m*_1/m_s,tot", PLACE, "0.92", p.effective_mass[0] / 1.0, note=BY_CONSTRUCTION),
+        compare.check("B/h*_1", PLACE, "0.16", _slenderness_angle(p), note=BY_CONSTRUCTION),
+        compare.check(
             "simplified over complete resisting moment, less 1, mean while rocking", PLACE, "approximately 7",
             100.0 * _simplified_moment_excess(p, complete), unit="%", note="its size is chosen for 7 % at the uplift",
         ),
@@ -246,9 +241,9 @@ def _numbers_of_figure_4(runs: dict[str, rf.Response]) -> list[PublishedNumber]:
 def _checks_of_figure_4(p: rf.RockingProperties) -> tuple[ConstructionCheck, ...]:
     lever = p.effective_mass[0] * p.effective_height[0]
     return (
-        construction_check("T_1", PLACE, "0.11", 2.0 * np.pi / p.omega[0], unit="s", note=BY_CONSTRUCTION),
-        construction_check("m*_1/m_s,tot", PLACE, "0.48", p.effective_mass[0] / 1.0, note=BY_CONSTRUCTION),
-        construction_check("m*_1 h*_1/L_0^r", PLACE, "0.87", lever / p.l0r, note=BY_CONSTRUCTION),
+        compare.check("T_1", PLACE, "0.11", 2.0 * np.pi / p.omega[0], unit="s", note=BY_CONSTRUCTION),
+        compare.check("m*_1/m_s,tot", PLACE, "0.48", p.effective_mass[0] / 1.0, note=BY_CONSTRUCTION),
+        compare.check("m*_1 h*_1/L_0^r", PLACE, "0.87", lever / p.l0r, note=BY_CONSTRUCTION),
     )
 
 

@@ -10,14 +10,8 @@ from numpy.typing import NDArray
 
 import rockflex as rf
 from rockflex._arrays import Array, Bools
-from rockflex.papers.silva_stojadinovic_2024._comparison import (
-    RemarkKind,
-    ResampledInterval,
-    bootstrap_intervals,
-    compared_number,
-    compared_statistic,
-    compared_tendency,
-)
+from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
+from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, ResampledInterval, bootstrap_intervals
 from rockflex.papers.silva_stojadinovic_2024._inputs import MODELS, STRUCTURES, PaperRecords, table_1_frame
 from rockflex.report import PublishedNumber, Remark, ReproducedResult
 
@@ -141,7 +135,7 @@ def _table_1_modal_values(name: str) -> dict[str, float]:
 def _farthest_from_print(quantity: str, printed: str, values: Mapping[str, float]) -> PublishedNumber:
     """Compare the value that differs most from the printed one."""
     place = f"Table 1, {', '.join(values)}"
-    lines = [compared_number(quantity, place, printed, value) for value in values.values()]
+    lines = [compare.number(quantity, place, printed, value) for value in values.values()]
     return max(lines, key=lambda line: abs(line.difference or 0.0))
 
 
@@ -167,19 +161,14 @@ def differences_between_models(records: PaperRecords, quantity: str) -> dict[str
         unit (``"median, of the largest relative"``). Of the medians only: ``"#3 over the others"``, the largest
         relative difference of #3 over that of all others; ``"2DOF-C less 2DOF-S"``, their largest difference over the
         largest relative one; ``"shear"`` and ``"flexure"``, the mean ratio of a 2DOF model to MDOF-S.
-
-    Raises
-    ------
-    InputError
-        If too few runs rocked for a fit.
     """
     im, table, groups = _rocking_runs(records, quantity)
     names = list(_compared_cloud_fits(_fitted_cloud_quantiles(im, table)))
-    band = rf.bootstrap_band(
-        _fitted_cloud_quantiles, im, table, groups, at=np.arange(len(names)), n=CLOUD_RESAMPLES,
-        curve=lambda fits, _: np.array(list(_compared_cloud_fits(fits).values())),
-    )  # fmt: skip
-    return dict(zip(names, bootstrap_intervals(band), strict=True))
+
+    def fit(im: Array, table: Array) -> Array:
+        return np.array(list(_compared_cloud_fits(_fitted_cloud_quantiles(im, table)).values()))
+
+    return dict(zip(names, bootstrap_intervals(fit, im, table, groups, len(names), CLOUD_RESAMPLES), strict=True))
 
 
 def cases_of_differences(records: PaperRecords, quantity: str) -> "pd.DataFrame":
@@ -207,7 +196,7 @@ def largest_model_differences(
     """
     found, at = differences_between_models(records, quantity), cases_of_differences(records, quantity).idxmax()
     return [
-        compared_statistic(
+        compare.statistic(
             name, AT_PGV, printed, found[key].times(100.0 if unit == "%" else 1.0), unit, note=str(at[column])
         )
         for name, printed, unit, key, column in rows
@@ -265,15 +254,15 @@ def figure_5(records: PaperRecords) -> ReproducedResult:
     shear, flexure, more = _largest_probability_gaps(runs)
     words = "the curves agree well"
     numbers = (
-        compared_tendency(
+        compare.tendency(
             "largest difference of P between MDOF-S and a 2DOF model, shear", PLACE, words, shear, AGREE,
             note="0.1 is our reading",
         ),
-        compared_tendency(
+        compare.tendency(
             "largest difference of P between MDOF-S and a 2DOF model, flexure", PLACE, words, flexure, AGREE,
             note=f"0.1 is our reading; {_runs_without_rocking(runs)}",
         ),
-        compared_tendency(
+        compare.tendency(
             "largest difference of P between MDOF-S and a 2DOF model, flexure less shear", PLACE,
             "largest differences for flexure-dominant structures", more, "> 0",
         ),
@@ -300,16 +289,7 @@ def _largest_probability_gaps(runs: "pd.DataFrame") -> list[ResampledInterval]:
         shear, flexure = gaps[SHEAR].max(), gaps[~SHEAR].max()
         return np.array([shear, flexure, flexure - shear])
 
-    band = rf.bootstrap_band(
-        fit,
-        pgv,
-        rows,
-        runs["group"].astype(str).to_numpy(),
-        at=np.arange(3),
-        n=CURVE_RESAMPLES,
-        curve=lambda found, _: found,
-    )
-    return bootstrap_intervals(band)
+    return bootstrap_intervals(fit, pgv, rows, runs["group"].astype(str).to_numpy(), 3, CURVE_RESAMPLES)
 
 
 def _rocking_probability_curve(pgv: Array, rocks: Bools, grid: Array) -> Array:
@@ -377,7 +357,7 @@ def figure_7(records: PaperRecords) -> ReproducedResult:
     runs, found = run_cloud_of_paper(records), differences_between_models(records, DISPLACEMENT)
     numbers = largest_model_differences(records, DISPLACEMENT, DISPLACEMENT_ROWS)
     numbers += [
-        compared_tendency(name, place, words, found[key], bound, note="".join(note))
+        compare.tendency(name, place, words, found[key], bound, note="".join(note))
         for name, place, words, key, bound, *note in DISPLACEMENT_STATEMENTS
     ]
     note = (
@@ -393,10 +373,10 @@ def sliding(records: PaperRecords) -> ReproducedResult:
     """Run the structures under every third record, and compare medians of the required friction."""
     found = friction_intervals(_friction_runs(records), MODEL, "printed")
     numbers = [
-        compared_tendency(f"median of the required friction, least ratio: {name}", PLACE, words, found[name], "> 1")
+        compare.tendency(f"median of the required friction, least ratio: {name}", PLACE, words, found[name], "> 1")
         for name, words in WORDS.items()
     ]
-    numbers.append(compared_tendency(ABOVE, PLACE, "cases higher than 1.0", found[ABOVE], "> 0"))
+    numbers.append(compare.tendency(ABOVE, PLACE, "cases higher than 1.0", found[ABOVE], "> 0"))
     note = (
         f"{MODEL}, every third record unscaled ({len(records.suite[::EVERY])} records), runs that rock and stand; "
         "Eqs. 20-22, with Eq. 22 as it is printed. Intervals are over resampled records."
@@ -443,11 +423,8 @@ def friction_intervals(runs: "pd.DataFrame", model: str, sign: str) -> dict[str,
 
     # Infinite where the ground would have to pull; large enough for a median or a count.
     friction = np.minimum(mine[sign].to_numpy(dtype=float), 1e6)
-    band = rf.bootstrap_band(
-        fit, friction, codes, mine["group"].to_numpy(), at=np.arange(len(PAIRS) + 1), n=FRICTION_RESAMPLES,
-        curve=lambda values, _: values,
-    )  # fmt: skip
-    return dict(zip((*PAIRS, ABOVE), bootstrap_intervals(band), strict=True))
+    found = bootstrap_intervals(fit, friction, codes, mine["group"].to_numpy(), len(PAIRS) + 1, FRICTION_RESAMPLES)
+    return dict(zip((*PAIRS, ABOVE), found, strict=True))
 
 
 def _both_signs_of_friction(records: PaperRecords) -> Remark:

@@ -8,14 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import rockflex as rf
-from rockflex.papers.silva_stojadinovic_2024._comparison import (
-    RemarkKind,
-    ResampledInterval,
-    compared_count,
-    compared_statistic,
-    compared_tendency,
-    construction_check,
-)
+from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
+from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, ResampledInterval
 from rockflex.papers.silva_stojadinovic_2024._inputs import PaperRecords
 from rockflex.report import Remark, ReproducedResult
 
@@ -239,7 +233,7 @@ def figure_8(records: PaperRecords) -> ReproducedResult:
     for behaviour, (name, *rest) in COEFFICIENTS.items():
         columns[name] = (pairs.loc[pairs["behaviour"] == behaviour, "coefficient"], *rest)
     checks = [
-        construction_check(f"{which} {name}", place, printed, float(value), criterion)
+        compare.check(f"{which} {name}", place, printed, float(value), criterion)
         for name, (drawn, printed, low, high) in columns.items()
         for which, value, criterion in (("least", drawn.min(), low), ("largest", drawn.max(), high))
     ]
@@ -251,16 +245,16 @@ def figure_8(records: PaperRecords) -> ReproducedResult:
 def figure_9(records: PaperRecords) -> ReproducedResult:
     """Compare the models pair by pair."""
     found = population_intervals(records)
-    numbers = [compared_count(name, PLACE, n, found[key]) for key, (name, n) in COUNTS.items()]
+    numbers = [compare.count(name, PLACE, n, found[key]) for key, (name, n) in COUNTS.items()]
     numbers.append(
-        compared_tendency(
+        compare.tendency(
             "θ_max of 2DOF-S where MDOF-S does not uplift, largest", PLACE, "smaller than 5·10⁻⁵",
             found["largest rotation of 2DOF-S"].times(1e5), "< 5", "10⁻⁵ rad",
         )
     )  # fmt: skip
-    numbers += [compared_statistic(*row, found[key]) for key, row in AGREEMENT.items()]
+    numbers += [compare.statistic(*row, found[key]) for key, row in AGREEMENT.items()]
     numbers += [
-        compared_tendency(name, PLACE, words, found[key], bound, note=note)
+        compare.tendency(name, PLACE, words, found[key], bound, note=note)
         for key, (name, words, bound, note) in DISCREPANCIES.items()
     ]
     note = (
@@ -301,12 +295,12 @@ def figure_13(records: PaperRecords) -> ReproducedResult:
     found, pairs = population_intervals(records), first_thousand_pairs(records)
     slope = found["slope, top_displacement, SRSS"]
     numbers = (
-        *(compared_statistic(name, SECTION_3_4, text, found[key]) for key, (name, text) in COMBINATION.items()),
+        *(compare.statistic(name, SECTION_3_4, text, found[key]) for key, (name, text) in COMBINATION.items()),
         *(
-            compared_tendency(name, SECTION_3_4, words, found[key], bound)
+            compare.tendency(name, SECTION_3_4, words, found[key], bound)
             for key, (name, words, bound) in COMBINED.items()
         ),
-        compared_tendency(
+        compare.tendency(
             "u_top,max over SRSS, slope less 1", SECTION_3_4, "no systematic trend", _slope_minus_one(slope), "< 0.02",
             note="2 % is our reading; in magnitude",
         ),

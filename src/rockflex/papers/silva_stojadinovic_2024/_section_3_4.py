@@ -7,7 +7,7 @@ import numpy as np
 
 import rockflex as rf
 from rockflex._arrays import Array
-from rockflex.papers.silva_stojadinovic_2024._comparison import compared_statement, construction_check
+from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
 from rockflex.papers.silva_stojadinovic_2024._inputs import BEHAVIOURS, MARK, PaperRecords, table_1_frame, tall_frame
 from rockflex.report import PublishedNumber, ReproducedResult
 
@@ -57,7 +57,7 @@ def table_2(_: PaperRecords) -> ReproducedResult:
         "ζ": (damping, float(p.zeta[0]), "given"),
     }  # fmt: skip
     checks = [
-        construction_check(
+        compare.check(
             f"#1: {name}, formula over ours, less 1", "Table 2", formula, 1e9 * abs(value / ours - 1.0), "< 1", "10⁻⁹"
         )
         for name, (value, ours, formula) in formulas.items()
@@ -102,7 +102,7 @@ def figure_10(_: PaperRecords) -> ReproducedResult:
 
     numbers = [number for behaviour in BEHAVIOURS for number in _numbers_of_behaviour(behaviour)]
     numbers.append(
-        compared_statement(
+        compare.statement(
             "shear: error of ω*_1 of 2DOF-S, h*_1/B = 5", PLACE, "likely satisfactory below 5",
             frequency_ratio_error("shear", "2DOF-S", 1, 5.0), "< 20", "%",
             note="20 % is our reading; for flexure see Figure 12",
@@ -117,7 +117,7 @@ def _numbers_of_behaviour(behaviour: str) -> list[PublishedNumber]:
         frequency_ratio_error(behaviour, *few, MARK) - frequency_ratio_error(behaviour, *few, 1.0) for few in FEW
     )
     bounds = [
-        compared_statement(
+        compare.statement(
             f"{behaviour}: ω*_n/ω_n of {model} over the pinned beam's, largest, h*_1/B = {NARROW:g}", PLACE,
             f"the pinned beam bounds {model} from above",
             max(uplifted_frequency_ratio(behaviour, model, n, NARROW) / float(beam[n - 1]) for n in modes), "≤ 1",
@@ -128,11 +128,11 @@ def _numbers_of_behaviour(behaviour: str) -> list[PublishedNumber]:
     first, second = (uplifted_frequency_ratio(behaviour, "MDOF-S", n, MARK) - 1.0 for n in (1, 2))
     return [
         *_numbers_at_low_aspect_ratios(behaviour),
-        compared_statement(
+        compare.statement(
             f"{behaviour}: growth of the error of 2DOF-S and 3DOF-S from h*_1/B = 1 to 10, least", PLACE,
             "degrades with the aspect ratio", growth, "> 0", "%",
         ),
-        compared_statement(
+        compare.statement(
             f"{behaviour}: rise of ω_1 over that of ω_2, MDOF-S, h*_1/B = {MARK:g}", PLACE,
             "uplift affects the first mode much more", first / second, "> 1",
         ),
@@ -153,14 +153,14 @@ def _numbers_at_low_aspect_ratios(behaviour: str) -> list[PublishedNumber]:
     at = " and ".join(f"{x:g}" for x in LOW)
     return [
         *(
-            compared_statement(
+            compare.statement(
                 f"{behaviour}: ω*_{n}/ω_{n} less 1, largest of all models, h*_1/B = {at}", PLACE,
                 "about 1 for lower aspect ratios", max(rise[n]), "< 0.1",
                 note=f"0.1 is our reading; at h*_1/B = {LOW[0]:g} it is {rise[n][0]:.3f}",
             )
             for n in (1, 2)
         ),
-        compared_statement(
+        compare.statement(
             f"{behaviour}: error of 2DOF-S and 3DOF-S, largest, h*_1/B = {at}", PLACE,
             "all models predict them well at lower aspect ratios", miss, "< 5", "%", note="5 % is our reading",
         ),
@@ -187,7 +187,7 @@ def figure_11(_: PaperRecords) -> ReproducedResult:
     moment = -free * float(response.rotation_acceleration[0])
     slope = (moment - p.resisting_moment) / float(response.rotation[0]) / (p.l0r * 9.81)
     checks = (
-        construction_check(
+        compare.check(
             "slope of the resisting moment of MDOF-S over L_0^r g", "Section 3.4", "negative rotational stiffness",
             slope, "< 0",
             note="by construction: M = m_tot g B − L_0^r g θ has slope −1; from the first instant of a free motion",
@@ -200,7 +200,7 @@ def figure_11(_: PaperRecords) -> ReproducedResult:
 def figure_12(_: PaperRecords) -> ReproducedResult:
     """Compare the zeros with those of MDOF-S."""
     numbers = tuple(
-        compared_statement(
+        compare.statement(
             f"{behaviour}: error of ω*_{mode} of {model}", "Section 3.4", words,
             frequency_ratio_error(behaviour, model, mode, MARK), criterion, "%",
         )

@@ -8,12 +8,8 @@ import numpy as np
 
 import rockflex as rf
 from rockflex._arrays import Array
-from rockflex.papers.silva_stojadinovic_2024._comparison import (
-    RemarkKind,
-    compared_number,
-    compared_statement,
-    printed_range,
-)
+from rockflex.papers.silva_stojadinovic_2024 import _comparison as compare
+from rockflex.papers.silva_stojadinovic_2024._comparison import RemarkKind, printed_range
 from rockflex.papers.silva_stojadinovic_2024._inputs import TOWER, PaperRecords, table_1_frame
 from rockflex.report import PublishedNumber, Remark, ReproducedResult
 
@@ -55,9 +51,9 @@ def figure_14(_: PaperRecords) -> ReproducedResult:
     """Compare the three integrals."""
     p, unit = TOWER.rocking(), math.pi * TOWER.density
     numbers = (
-        compared_number("I_θ", "Eq. 33", "24'178'750", p.i_theta / unit, "π ρ_c m⁵"),
-        compared_number("L_0^r", "Eq. 34", "580000/3", p.l0r / unit, "π ρ_c m⁴"),
-        compared_number("M_r", "Eq. 35", "17'600", p.resisting_moment / (9.81 * unit), "π ρ_c g m⁴"),
+        compare.number("I_θ", "Eq. 33", "24'178'750", p.i_theta / unit, "π ρ_c m⁵"),
+        compare.number("L_0^r", "Eq. 34", "580000/3", p.l0r / unit, "π ρ_c m⁴"),
+        compare.number("M_r", "Eq. 35", "17'600", p.resisting_moment / (9.81 * unit), "π ρ_c g m⁴"),
     )
     return ReproducedResult("figure-14", FIGURE_14, numbers, {"figure-14": lambda: rf.plot_tower(TOWER)})
 
@@ -148,7 +144,7 @@ def _numbers_of_ritz_modes() -> list[PublishedNumber]:
     p = TOWER.rocking()
     ours = {"ω": p.omega, "m*": p.effective_mass / 1e6, "h*": p.effective_height, "Γ": p.top_ordinate}
     return [
-        compared_number(
+        compare.number(
             f"{name}_{n}", f"Table 3, mode {n}", printed, ours[name][n - 1], unit, truncated=True,
         )
         for n in range(1, 6)
@@ -176,7 +172,7 @@ def _numbers_of_finite_elements() -> list[PublishedNumber]:
         ("(m*_1 h*_1 + m*_2 h*_2)/L_0^r", "0.94", lever[:2].sum() / p.l0r, "", ""),
     )
     return [
-        compared_number(f"{name}, finite elements", "Section 4.1.1", printed, float(value), unit, note=note)
+        compare.number(f"{name}, finite elements", "Section 4.1.1", printed, float(value), unit, note=note)
         for name, printed, value, unit, note in found
     ]
 
@@ -242,7 +238,7 @@ def _numbers_of_figure_15(runs: dict[str, rf.Response]) -> list[PublishedNumber]
         return _peak_error(runs[model], runs[against], quantity)
 
     lines = [
-        compared_number(
+        compare.number(
             f"{SYMBOLS[quantity]}, reduction by rocking",
             CHIMNEY,
             printed,
@@ -251,21 +247,21 @@ def _numbers_of_figure_15(runs: dict[str, rf.Response]) -> list[PublishedNumber]
         )
         for quantity, printed in (("base_moment", "about 44"), ("base_shear", "about 24"))
     ]
-    lines.append(compared_number("θ_max of 6DOF-S", CHIMNEY, "≤ 3.2", 1e3 * runs["6DOF-S"].max_rotation, "10⁻³ rad"))
+    lines.append(compare.number("θ_max of 6DOF-S", CHIMNEY, "≤ 3.2", 1e3 * runs["6DOF-S"].max_rotation, "10⁻³ rad"))
     for model, quantity, printed in ERRORS:
         found, signed = error(model, quantity), quantity == "base_moment"
         note = "" if signed else f"ours is {_signed_percent(found, 2)}"
         name = f"{SYMBOLS[quantity]}, error of {model}"
-        lines.append(compared_number(name, CHIMNEY, printed, found if signed else abs(found), "%", note=note))
+        lines.append(compare.number(name, CHIMNEY, printed, found if signed else abs(found), "%", note=note))
     further = abs(error("4DOF-S", "base_shear")) / abs(error("3DOF-S", "base_shear"))
     words = "4DOF-S would further improve the base shear"
-    lines.append(compared_statement("V_b,max, error of 4DOF-S over that of 3DOF-S", CHIMNEY, words, further, "< 1"))
+    lines.append(compare.statement("V_b,max, error of 4DOF-S over that of 3DOF-S", CHIMNEY, words, further, "< 1"))
     top, moment, shear = (abs(error("2DOF-S", q)) for q in ("top_displacement", "base_moment", "base_shear"))
     general = "Section 3.4"
     words = "higher modes have less effect on displacements than on forces"
-    lines.append(compared_statement("error of 2DOF-S, u_top,max over M_b,max", general, words, top / moment, "< 1"))
+    lines.append(compare.statement("error of 2DOF-S, u_top,max over M_b,max", general, words, top / moment, "< 1"))
     words = "less effect on the base moment than on the base shear"
-    lines.append(compared_statement("error of 2DOF-S, M_b,max over V_b,max", general, words, moment / shear, "< 1"))
+    lines.append(compare.statement("error of 2DOF-S, M_b,max over V_b,max", general, words, moment / shear, "< 1"))
     return lines
 
 
@@ -340,14 +336,14 @@ def figure_16(records: PaperRecords) -> ReproducedResult:
     weak, stronger = (run_yielding_structure(records, "2DOF-S-BW", value) for value in (WEAK, STRONGER))
     assumed = f"D_1,y = {WEAK} m is assumed"
     numbers = (
-        compared_statement(
+        compare.statement(
             "largest |z| of the weak structure", PLACE, "clearly yields", largest_yielding(weak), YIELDS, note=assumed,
         ),
-        compared_statement(
+        compare.statement(
             "θ_max of the weak structure over the elastic one", PLACE, "barely rocks",
             weak.max_rotation / elastic.max_rotation, BARELY, note=f"{assumed}; 0.4 is our reading",
         ),
-        compared_number("u_top,max of the weak structure", PLACE, TOP, weak.max_top_displacement, "m", note=assumed),
+        compare.number("u_top,max of the weak structure", PLACE, TOP, weak.max_top_displacement, "m", note=assumed),
     )  # fmt: skip
     names = ["2DOF-S", *(f"2DOF-S-BW, $D_y$ = {value} m" for value in (WEAK, STRONGER))]
     text = (
@@ -401,13 +397,13 @@ def figure_17(records: PaperRecords) -> ReproducedResult:
     weak = run_yielding_structure(records, "2DOF-S-BW", WEAK)
     top = rocking.max_top_displacement
     numbers = (
-        compared_number("θ_max, rocking", PLACE, "≈ 0.01", rocking.max_rotation, "rad"),
-        compared_number("u_top,max, rocking", PLACE, "≈ 0.05", top, "m"),
-        compared_number("u_top,max, fixed over rocking", PLACE, "approximately 2", fixed.max_top_displacement / top),
-        compared_statement("largest |z|, rocking", PLACE, "barely yields", largest_yielding(rocking), "< 0.7",
+        compare.number("θ_max, rocking", PLACE, "≈ 0.01", rocking.max_rotation, "rad"),
+        compare.number("u_top,max, rocking", PLACE, "≈ 0.05", top, "m"),
+        compare.number("u_top,max, fixed over rocking", PLACE, "approximately 2", fixed.max_top_displacement / top),
+        compare.statement("largest |z|, rocking", PLACE, "barely yields", largest_yielding(rocking), "< 0.7",
                note="0.7 is our reading"),
-        compared_statement("largest |z|, fixed", PLACE, "the fixed base yields", largest_yielding(fixed), "> 0.99"),
-        compared_statement(
+        compare.statement("largest |z|, fixed", PLACE, "the fixed base yields", largest_yielding(fixed), "> 0.99"),
+        compare.statement(
             "u_top,max of Fig. 16's weak structure over Fig. 17's", PLACE, "approximately the same",
             weak.max_top_displacement / top, SAME, note=f"with D_1,y = {WEAK} m for Fig. 16; 1.1 is our interpretation",
         ),

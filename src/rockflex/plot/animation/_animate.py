@@ -7,7 +7,7 @@ from typing import Any
 from rockflex._checks import checked_positive, checked_whole_number
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.plot._history import ResponseCurve, default_history_panels, panel_quantities, response_curves
+from rockflex.plot._history import ResponseCurve, default_panels, panel_quantities, response_curves
 from rockflex.plot.animation._files import GIF, MP4, animation_path_and_suffix, write_gif, write_video
 from rockflex.plot.animation._poses import default_amplification, frame_timing, structure_outline, structure_poses
 from rockflex.plot.animation._scene import AnimatedFigure
@@ -151,7 +151,7 @@ def _checked_amplification(given: float) -> float:
 
 def _default_animation_panels(curves: list[ResponseCurve]) -> list[str]:
     """Return a few of the panels of a history; the total displacement of the top rather than the relative one."""
-    available = default_history_panels(curves)
+    available = default_panels(curves)
     left_out = {"top_displacement"} if "total_top_displacement" in available else set[str]()
     if not any(curve.lifts for curve in curves):
         left_out.add("rotation")

@@ -63,12 +63,10 @@ def write_gif(target: Path, figure: AnimatedFigure, timing: FrameTiming, advance
     shown_for[-1] += LAST_FRAME
     with writing_atomically(target) as temporary, temporary.open("wb") as file:
         before: Indices | None = None
-        for place, picture in enumerate(figure.pictures(count)):
+        for place, picture in enumerate(map(figure.picture, range(count))):
             indices = table[_packed_colors(picture)]
             if before is None:
-                _write_gif_blocks(
-                    file, GifImagePlugin.getheader(_image_of_palette(indices, palette), info={"loop": 0})[0]
-                )
+                file.writelines(GifImagePlugin.getheader(_image_of_palette(indices, palette), info={"loop": 0})[0])
             _write_changed_gif_rectangle(file, indices, before, palette, int(shown_for[place]))
             before = indices
             advance(1)
@@ -118,17 +116,10 @@ def _write_changed_gif_rectangle(
         rows, columns = (np.flatnonzero(differs.any(axis=axis)) for axis in (1, 0))
         ends = (rows[0], rows[-1] + 1, columns[0], columns[-1] + 1) if rows.size else (0, 1, 0, 1)
         where = np.s_[ends[0] : ends[1], ends[2] : ends[3]]
-        offset, part = (
-            (int(ends[2]), int(ends[0])),
-            np.where(differs[where], indices[where], MAX_COLORS).astype(np.uint8),
-        )
+        offset = int(ends[2]), int(ends[0])
+        part = np.where(differs[where], indices[where], MAX_COLORS).astype(np.uint8)
     more = {"duration": 10 * hundredths, "disposal": 1, "transparency": MAX_COLORS, "interlace": 0}
-    _write_gif_blocks(file, GifImagePlugin.getdata(_image_of_palette(part, palette), offset, **more))
-
-
-def _write_gif_blocks(file: IO[bytes], blocks: list[bytes]) -> None:
-    for block in blocks:
-        file.write(block)
+    file.writelines(GifImagePlugin.getdata(_image_of_palette(part, palette), offset, **more))
 
 
 def write_video(target: Path, figure: AnimatedFigure, timing: FrameTiming, advance: Callable[[int], None]) -> Path:
@@ -137,17 +128,14 @@ def write_video(target: Path, figure: AnimatedFigure, timing: FrameTiming, advan
 
     count, still = timing.times.size, round(0.01 * LAST_FRAME * timing.frames_per_second)
     with writing_atomically(target, ".mp4") as temporary:  # ffmpeg chooses the format by it
-        style: dict[str, Any] = {"pix_fmt_in": "rgb24", "pix_fmt_out": "yuv420p", "codec": "libx264"}
-        style |= {
-            "macro_block_size": 1,
-            "quality": None,
-            "fps": timing.frames_per_second,
-            "output_params": _OPTIONS,
-            "ffmpeg_log_level": "error",
-        }
-        with closing(write_frames(str(temporary), figure.size, **style)) as encoder:
+        style: dict[str, Any] = {"quality": None, "fps": timing.frames_per_second}
+        frames = write_frames(
+            str(temporary), figure.size, pix_fmt_in="rgb24", pix_fmt_out="yuv420p", codec="libx264",
+            macro_block_size=1, output_params=_OPTIONS, ffmpeg_log_level="error", **style,
+        )  # fmt: skip
+        with closing(frames) as encoder:
             encoder.send(None)
-            for picture in figure.pictures(count):
+            for picture in map(figure.picture, range(count)):
                 encoder.send(picture)
                 advance(1)
             for _ in range(still):

@@ -11,10 +11,11 @@ from rockflex._arrays import Array, Bools
 from rockflex._checks import checked_finite, checked_positive, real_or_nan
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.modal import RockingProperties
-from rockflex.plot._history import ResponseCurve
+from rockflex.modal import ModalProperties, RockingProperties
+from rockflex.plot._history import ResponseCurve, time_axis_limits
 from rockflex.response import History
 from rockflex.structure import CantileverWithTipMass, Eccentric, FishBone, Frame, Leaning, LumpedStructure, Restrained
+from rockflex.structure._outline import outline_of_structure
 
 MAX_FRAMES = 20_000
 RATES = {".gif": (1.0, 50.0), ".mp4": (1.0, 120.0)}
@@ -56,13 +57,7 @@ def frame_timing(
     start: float | None,
     stop: float | None,
 ) -> FrameTiming:
-    """Return the frames of an animation in a file with some suffix; the arguments are those of `animate`.
-
-    Raises
-    ------
-    InputError
-        If one is out of range, or there would be too many frames.
-    """
+    """Return the frames of an animation in a file with some suffix; the arguments are those of `animate`."""
     ratio = checked_positive("speed", speed, "seconds of the response per second of the animation")
     low, high = RATES[suffix]
     rate = real_or_nan(frames_per_second)
@@ -73,8 +68,7 @@ def frame_timing(
             f"given. Give 25, which is smooth{more}.",
             field="frames_per_second",
         )
-    first = min(float(curve.history.time[0]) for curve in curves)
-    last = max(float(curve.history.time[-1]) for curve in curves)
+    first, last = time_axis_limits(curves)
     begin = first if start is None else checked_finite("start", start, "s")
     end = last if stop is None else checked_finite("stop", stop, "s")
     if not first <= begin < end <= last:
@@ -135,26 +129,17 @@ def structure_outline(history: History, structure: Any | None, place: int) -> St
     """Return the outline of the structure of a response, number `place` of those given.
 
     Without the structure itself, floors are drawn where its properties have them, and otherwise a straight line.
-
-    Raises
-    ------
-    InputError
-        If the structure is none, or not that of the response.
     """
-    p = history.model.properties
-    edges = -p.pivot(-1).arm, p.pivot(1).arm
+    p, modes = history.model.properties, None
     if not p.n_modes:
-        heights = np.array([0.0, p.top_height or 2.0 * p.l0r / p.m_tot])
-        return StructureOutline("block", heights, np.zeros((2, 0)), *edges)
-    if structure is not None and not isinstance(structure, RockingProperties):
-        return StructureOutline(_outline_kind(structure), *_outline_from_modes(structure, p, place), *edges)
-    if p.floors is not None:
-        stories = p.floors.heights.size > 1
-        return StructureOutline(
-            "frame" if stories else "mast", *_outline_with_base(p.floors.heights, p.floors.displacement), *edges
-        )
-    top = p.top_height or 1.25 * float(np.abs(p.effective_height).max())
-    return StructureOutline("column", *_outline_with_base(np.array([top]), p.top_ordinate[None, :]), *edges)
+        kind: Kind = "block"
+    elif structure is not None and not isinstance(structure, RockingProperties):
+        kind, modes = _outline_kind(structure), _checked_modes(structure, p, place)
+    elif p.floors is not None:
+        kind = "frame" if p.floors.heights.size > 1 else "mast"
+    else:
+        kind = "column"
+    return StructureOutline(kind, *outline_of_structure(p, modes, MAX_POINTS), -p.pivot(-1).arm, p.pivot(1).arm)
 
 
 def _outline_kind(structure: Any) -> Kind:
@@ -165,15 +150,15 @@ def _outline_kind(structure: Any) -> Kind:
     return "frame" if isinstance(structure, _STORIES) else "column"
 
 
-def _outline_from_modes(structure: Any, p: RockingProperties, place: int) -> tuple[Array, Array]:
-    """Return heights and shapes from the modes of the structure."""
+def _checked_modes(structure: Any, p: RockingProperties, place: int) -> ModalProperties:
+    """Return the modes of the structure with these properties."""
     if not hasattr(structure, "modal"):
         raise InputError(
             f"structure must be that of responses[{place}], such as a Frame, but {type(structure).__name__} was given. "
             "Give what simulate was given, or leave it out.",
             field="structure",
         )
-    modes, own = structure.modal(), structure.rocking()
+    own = structure.rocking()
     if own.n_modes < p.n_modes or abs(own.half_width - p.half_width) > _WIDTH_TOLERANCE * p.half_width:
         raise InputError(
             f"structure is not that of responses[{place}]: it has {own.n_modes} modes and B = {own.half_width:g} m, "
@@ -181,14 +166,7 @@ def _outline_from_modes(structure: Any, p: RockingProperties, place: int) -> tup
             "each response if they differ, or leave it out.",
             field="structure",
         )
-    return _outline_with_base(modes.heights, (modes.shapes * modes.participation)[:, : p.n_modes])
-
-
-def _outline_with_base(heights: Array, shapes: Array) -> tuple[Array, Array]:
-    """Add the base, order the points by height, and leave some out where there are very many."""
-    order = np.argsort(heights, kind="stable")
-    kept = order[np.unique(np.linspace(0, order.size - 1, min(MAX_POINTS, order.size)).astype(int))]
-    return np.append(0.0, heights[kept]), np.vstack((np.zeros(shapes.shape[1]), shapes[kept]))
+    return structure.modal()
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,6 @@
 """The picture of an animation: still parts drawn once, structures and histories drawn frame by frame."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,15 +13,9 @@ from matplotlib.patches import Polygon, Rectangle
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex.plot._history import (
-    PanelQuantity,
-    ResponseCurve,
-    add_response_legend,
-    draw_history_curves,
-    quantity_axis_scale,
-    shade_uplifts,
-)
-from rockflex.plot._style import BLUE, GRAY, RED, SHADE, SMALL, new_figure, with_figure_style
+from rockflex.plot import _figures as figures
+from rockflex.plot import _history as histories
+from rockflex.plot._history import PanelQuantity, ResponseCurve
 from rockflex.plot.animation._poses import FrameTiming, StructurePoses
 
 Polyline = Sequence[tuple[float, float]]
@@ -102,15 +96,15 @@ def structure_state_text(curve: ResponseCurve, poses: StructurePoses, frame: int
     if curve.falls and time >= float(curve.history.time[curve.before_fall][-1]):
         return "falling", DARK_RED
     if time > end:
-        return f"ends at {end:.2f} s", GRAY
+        return f"ends at {end:.2f} s", figures.GRAY
     if not poses.lifts:
-        return "fixed base", GRAY
+        return "fixed base", figures.GRAY
     if poses.sprung and poses.rise[frame].min() > 0.0:
-        return "off the ground", BLUE
+        return "off the ground", figures.BLUE
     if poses.impact[frame] and not poses.uplifted[frame]:
-        return "impact", RED
+        return "impact", figures.RED
     texts = [word for word, holds in (("uplifted", poses.uplifted[frame]), ("sliding", poses.sliding[frame])) if holds]
-    return (", ".join(texts), BLUE) if texts else ("in contact", GRAY)
+    return (", ".join(texts), figures.BLUE) if texts else ("in contact", figures.GRAY)
 
 
 class MetresToStagePoints(NamedTuple):
@@ -137,10 +131,10 @@ class StructureArtists:
         color = curve.style.color
         block = poses.outline.kind == "block"
         self._draw_at_rest(axes)
-        self._gap = _animated_area(axes, facecolor=RED, alpha=0.25, linewidth=0.0)
+        self._gap = _animated_area(axes, facecolor=figures.RED, alpha=0.25, linewidth=0.0)
         self._free = _animated_line(axes, SPRING_FREE, 1.0)
         self._pressed = _animated_line(axes, SPRING, 1.2)
-        self._block = _animated_area(axes, facecolor=SHADE, edgecolor=color, linewidth=2.0, visible=block)
+        self._block = _animated_area(axes, facecolor=figures.SHADE, edgecolor=color, linewidth=2.0, visible=block)
         thick = 3.6 if poses.outline.kind == "column" else 2.0
         self._columns = _animated_line(axes, color, thick)
         self._floors = _animated_line(axes, color, 1.0 if poses.outline.heights.size > _MAX_THICK_FLOORS else 2.6)
@@ -149,7 +143,7 @@ class StructureArtists:
         kinds = sorted({type(each).__name__ for each in self._elements})
         self._element_lines = {kind: _animated_line(axes, ELEMENT_COLORS.get(kind, LAW_COLOR), 1.3) for kind in kinds}
         self._impacts = _animated_line(
-            axes, RED, 0.0, marker="o", markersize=11.0, markerfacecolor="none", markeredgewidth=1.8
+            axes, figures.RED, 0.0, marker="o", markersize=11.0, markerfacecolor="none", markeredgewidth=1.8
         )
 
     @property
@@ -290,7 +284,7 @@ class StructurePanel:
                 fontsize=9.0, wrap=False,
             )  # fmt: skip
             state = axes.text(middle, 17.0, "", ha="center", fontsize=8.0, animated=True)
-            number = axes.text(middle, 5.0, "", ha="center", fontsize=SMALL, color=_INK, animated=True)
+            number = axes.text(middle, 5.0, "", ha="center", fontsize=figures.SMALL, color=_INK, animated=True)
             self._texts.append((state, number))
         self._time = axes.text(EDGE, height - 10.0, "", fontsize=9.0, color="black", animated=True)
         axes.text(
@@ -377,9 +371,9 @@ def _structure_extent(poses: StructurePoses, amplification: float) -> _Structure
 
 
 def _draw_stage_ground(axes: Axes, left: float, right: float) -> None:
-    axes.plot([left, right], [FOOT - 1.5] * 2, color=GRAY, linewidth=1.0)
+    axes.plot([left, right], [FOOT - 1.5] * 2, color=figures.GRAY, linewidth=1.0)
     for x in np.arange(left + 6.0, right, 7.0):
-        axes.plot([x, x - 4.0], [FOOT - 2.0, FOOT - 6.5], color=GRAY, linewidth=0.7)
+        axes.plot([x, x - 4.0], [FOOT - 2.0, FOOT - 6.5], color=figures.GRAY, linewidth=0.7)
 
 
 class HistoryPanels:
@@ -389,12 +383,10 @@ class HistoryPanels:
         self, grid: list[Axes], quantities: Sequence[PanelQuantity], curves: list[ResponseCurve], timing: FrameTiming
     ) -> None:
         self._timing = timing
-        self.handles: list[Artist] = []
-        self.names = [curve.label for curve in curves]
+        self.lines: list[Artist] = []
         for axes, quantity in zip(grid, quantities, strict=True):
-            self.handles, _ = draw_history_curves(axes, quantity, curves)
-        uplifts = shade_uplifts(grid, curves)
-        self.handles, self.names = [*self.handles, *uplifts.values()], [*self.names, *uplifts]
+            self.lines, _ = histories.draw_curves(axes, quantity, curves)
+        self.uplifts = histories.shade_uplifts(grid, curves)
         grid[-1].set_xlabel("time [s]")
         self._end = float(timing.times[-1])
         grid[-1].set_xlim(float(timing.times[0]), self._end)
@@ -402,9 +394,13 @@ class HistoryPanels:
         self._cursors = [axes.axvline(0.0, color="black", linewidth=0.9, animated=True) for axes in grid]
         self._dots: list[tuple[Line2D, Array]] = []
         for axes, quantity in zip(grid, quantities, strict=True):
-            factor, _, _ = quantity_axis_scale(quantity, curves)
+            factor, _, _ = histories.quantity_axis_scale(quantity, curves)
             for curve in curves:
-                self._dots.append(_cursor_dot(axes, curve, _quantity_at_frames(quantity, curve, timing) / factor))
+                dot = _animated_line(
+                    axes, curve.style.color, 0.0, marker="o", markersize=4.5, markeredgecolor="white",
+                    markeredgewidth=0.6,
+                )  # fmt: skip
+                self._dots.append((dot, _quantity_at_frames(quantity, curve, timing) / factor))
 
     @property
     def moving(self) -> list[Artist]:
@@ -438,12 +434,6 @@ def _fading_rectangle(axes: Axes) -> Rectangle:
     return shape
 
 
-def _cursor_dot(axes: Axes, curve: ResponseCurve, values: Array) -> tuple[Line2D, Array]:
-    (dot,) = axes.plot([], [], "o", color=curve.style.color, markersize=4.5, markeredgecolor="white",
-                       markeredgewidth=0.6, animated=True)  # fmt: skip
-    return dot, values
-
-
 class AnimatedFigure:
     """The figure of an animation, with its still and its moving artists."""
 
@@ -451,18 +441,16 @@ class AnimatedFigure:
         self, curves: list[ResponseCurve], poses: Sequence[StructurePoses], quantities: Sequence[PanelQuantity],
         timing: FrameTiming, amplification: float, title: str | None, width: int,
     ) -> None:  # fmt: skip
-        with with_figure_style():
+        with figures.styled():
             self._figure, axes, grid = _animation_layout(len(curves), len(quantities), width)
-            histories = HistoryPanels(grid, quantities, curves, timing)
-            add_response_legend(self._figure, curves, histories.handles, histories.names, title)
+            panels = HistoryPanels(grid, quantities, curves, timing)
+            histories.add_legend(self._figure, curves, panels.lines, panels.uplifts, title)
             self._canvas = FigureCanvasAgg(self._figure)
             self._figure.draw_without_rendering()  # so that the places are known
             self._figure.set_layout_engine("none")
             structures = StructurePanel(axes, curves, poses, timing, amplification)
-            self._parts = structures, histories
-            self._moving: list[tuple[Axes, Artist]] = [
-                (_axes_of_artist(each), each) for part in self._parts for each in part.moving
-            ]
+            self._parts = structures, panels
+            self._moving = [each for part in self._parts for each in part.moving]
             self._canvas.draw()
             self._still = self._canvas.copy_from_bbox(self._figure.bbox)
 
@@ -474,24 +462,13 @@ class AnimatedFigure:
 
     def picture(self, frame: int) -> Picture:
         """Return a frame."""
-        with with_figure_style():
+        with figures.styled():
             self._canvas.restore_region(self._still)
             for part in self._parts:
                 part.show(frame)
-            for axes, each in self._moving:
-                axes.draw_artist(each)
+            for each in self._moving:
+                each.axes.draw_artist(each)  # pyright: ignore[reportOptionalMemberAccess, reportAttributeAccessIssue]
             return np.asarray(self._canvas.buffer_rgba())[:, :, :3].copy()
-
-    def pictures(self, count: int) -> Generator[Picture]:
-        """Yield the first frames, one after the other."""
-        for frame in range(count):
-            yield self.picture(frame)
-
-
-def _axes_of_artist(artist: Artist) -> Axes:
-    axes = artist.axes
-    assert isinstance(axes, Axes)  # everything that moves was added to axes
-    return axes
 
 
 def _animation_layout(models: int, panels: int, width: int) -> tuple[Figure, Axes, list[Axes]]:
@@ -500,7 +477,7 @@ def _animation_layout(models: int, panels: int, width: int) -> tuple[Figure, Axe
     inches = max(4.8, 1.35 * panels + 1.1) if beside else 3.3 + 1.2 * panels + 0.9
     dpi = width / INCHES
     pixels = 2 * (width // 2), 2 * round(0.5 * inches * dpi)
-    figure = new_figure(*((each + 1e-3) / dpi for each in pixels))
+    figure = figures.new(*((each + 1e-3) / dpi for each in pixels))
     figure.set_dpi(dpi)
     if beside:
         cells = figure.add_gridspec(panels, 2, width_ratios=(0.42, 0.58) if models == 1 else (0.5, 0.5))

@@ -1,7 +1,7 @@
 """Agreement of one mode with all modes (Section 3.3), and the contribution of the second mode (Section 3.4)."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, SupportsIndex
+from typing import TYPE_CHECKING, NamedTuple, SupportsIndex
 
 import numpy as np
 
@@ -73,6 +73,29 @@ class PopulationStatistics(Value):
     outliers: "pd.DataFrame"
 
 
+class OutcomeGroups(NamedTuple):
+    """Pairs that were solved, those of them without uplift, and those that rock while no model overturns."""
+
+    solved: "pd.DataFrame"
+    resting: "pd.DataFrame"
+    rocking: "pd.DataFrame"
+
+
+def outcome_groups(pairs: "pd.DataFrame") -> OutcomeGroups:
+    """Divide pairs by their outcome, according to MDOF-S."""
+    solved = pairs[pairs["status_mdof"].notna() & pairs["status_2dof"].notna()]
+    rocking = (solved["status_mdof"] == "rocking") & (solved["status_2dof"] != "overturned")
+    return OutcomeGroups(solved, solved[solved["status_mdof"] == "no_uplift"], solved[rocking])
+
+
+def slope_and_r2(x: Array, y: Array) -> tuple[float, float]:
+    """Return c1 of y = c1 x by least squares, and R² of the line y = x; NaN for too few pairs."""
+    if x.size < MIN_PAIRS:
+        return np.nan, np.nan
+    slope, r2 = _slopes_and_r2(_regression_terms(x, y).sum(axis=0)[None])[0].tolist()
+    return slope, r2
+
+
 @dataclass(frozen=True, eq=False)
 class _PopulationComparison:
     group: str
@@ -125,24 +148,21 @@ def population_statistics(
     checked_in_range("confidence", confidence, 1e-9, 1.0)
     resamples, start = checked_whole_number("n_resamples", n_resamples, 1), checked_whole_number("seed", seed, 0)
     shown = checked_whole_number("n_outliers", n_outliers, 0)
-    solved = pairs[pairs["status_mdof"].notna() & pairs["status_2dof"].notna()]
+    solved, resting, rocking = outcome_groups(pairs)
     if not len(solved):
         raise InputError(
             "pairs holds no pair that was solved. Give the table of run_population, or see its column error."
         )
     import pandas as pd
 
-    resting = solved[solved["status_mdof"] == "no_uplift"]
-    rocking = solved[(solved["status_mdof"] == "rocking") & (solved["status_2dof"] != "overturned")]
-    agreeing = [
-        *_comparison_rows(
-            _agreement_comparisons("no_uplift", resting, ("top_displacement",)), confidence, resamples, start
-        ),
-        *_comparison_rows(
-            _agreement_comparisons("rocking", rocking, ("top_displacement", "rotation")), confidence, resamples, start
-        ),
-    ]
-    combining = pd.DataFrame(_comparison_rows(_combination_comparisons(rocking), confidence, resamples, start))
+    agreeing, combining = list[dict[str, object]](), _combination_comparisons(rocking)
+    for group, frame, quantities in (
+        ("no_uplift", resting, ("top_displacement",)),
+        ("rocking", rocking, ("top_displacement", "rotation")),
+    ):
+        compared = _agreement_comparisons(group, frame, quantities)
+        agreeing += _comparison_rows(compared, confidence, resamples, start)
+    combination = pd.DataFrame(_comparison_rows(combining, confidence, resamples, start))
     counts = pd.crosstab(
         pd.Categorical(solved["status_mdof"], STATUSES),
         pd.Categorical(solved["status_2dof"], STATUSES),
@@ -156,7 +176,7 @@ def population_statistics(
         n_nominal_mdof=int(solved["nominal_overturning_mdof"].sum()),
         n_nominal_2dof=int(solved["nominal_overturning_2dof"].sum()),
         agreement=pd.DataFrame(agreeing),
-        combination=combining.drop(columns=["group", "behaviour"]),
+        combination=combination.drop(columns=["group", "behaviour"]),
         outliers=_outlying_pairs(solved, rocking, shown),
     )
 
@@ -195,7 +215,7 @@ def _comparison_rows(
     comparisons: list[_PopulationComparison], confidence: float, resamples: int, seed: int
 ) -> list[dict[str, object]]:
     """Return the rows of comparisons over the same pairs, which are resampled together."""
-    terms = np.column_stack([_regression_terms_of_pairs(each) for each in comparisons])
+    terms = np.column_stack([_regression_terms(each.x, each.y, each.kept) for each in comparisons])
     n = terms.shape[0]
     rng = np.random.Generator(np.random.Philox(seed))
     drawn = np.full((resamples, len(comparisons), 2), np.nan)
@@ -231,11 +251,11 @@ def _comparison_rows(
     return rows
 
 
-def _regression_terms_of_pairs(each: _PopulationComparison) -> Array:
+def _regression_terms(x: Array, y: Array, kept: Bools | None = None) -> Array:
     """Return the terms of the sums, one row per pair: x², xy, (y - x)², and y, y² about the mean of all y, and 1."""
-    x, y, kept = each.x, each.y, each.kept.astype(float)
-    away = y - (float(y[each.kept].mean()) if each.kept.any() else 0.0)
-    return np.column_stack((x * x, x * y, (y - x) ** 2, away, away**2, np.ones_like(x))) * kept[:, None]
+    among = np.ones(x.size, dtype=bool) if kept is None else kept
+    away = y - (float(y[among].mean()) if among.any() else 0.0)
+    return np.column_stack((x * x, x * y, (y - x) ** 2, away, away**2, np.ones_like(x))) * among[:, None]
 
 
 def _slopes_and_r2(sums: Array) -> Array:

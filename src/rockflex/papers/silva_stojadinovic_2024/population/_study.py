@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 import numpy as np
 from pydantic import Field
 
+from rockflex import study
 from rockflex._checks import checked_whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
@@ -16,27 +17,6 @@ from rockflex.models import LinearModel, modal_displacement
 from rockflex.motion import Suite
 from rockflex.response import Response, respond
 from rockflex.structure import Frame
-from rockflex.study import (
-    WORK_LIMIT,
-    ChunkedPlan,
-    Columns,
-    Motions,
-    PreparedCase,
-    Row,
-    SecondMode,
-    checked_motions,
-    checked_work_limit,
-    columns_of_kind,
-    combine_modal_peaks,
-    free_vibration_time,
-    record_columns,
-    record_facts,
-    result_columns,
-    result_row,
-    run_plan,
-    second_mode_peaks,
-    solutions_of_runs,
-)
 from rockflex.study.progress import ProgressChoice
 from rockflex.study.spec import FreeVibration, StudySpec
 
@@ -176,18 +156,18 @@ class PopulationStudy(StudySpec):
         InputError
             If a record cannot be read.
         """
-        free = free_vibration_time(self.free_vibration)
+        free = study.free_vibration_time(self.free_vibration)
         return PopulationPlan(
             self.records.load(self._folder),
             self.pairs,
             self.seed,
             free,
             max(1, self.runs_per_chunk // 2),
-            checked_work_limit(self.work_limit),
+            study.checked_work_limit(self.work_limit),
         )
 
 
-class PopulationPlan(ChunkedPlan):
+class PopulationPlan(study.ChunkedPlan):
     """Pairs of runs, MDOF-S and 2DOF-S of the same random structure and record, divided into chunks.
 
     Pairs share no data, so a study of any size fits in memory.
@@ -206,7 +186,7 @@ class PopulationPlan(ChunkedPlan):
     ) -> None:
         super().__init__(motions, pairs, pairs_per_chunk)
         self.seed, self.free_vibration, self.work_limit = seed, free_vibration, work_limit
-        self._facts = record_facts(motions)
+        self._facts = study.record_facts(motions)
 
     @property
     def n_runs(self) -> int:
@@ -214,18 +194,22 @@ class PopulationPlan(ChunkedPlan):
         return 2 * self.n_units
 
     @property
-    def columns(self) -> Columns:
+    def columns(self) -> study.Columns:
         """Columns of every chunk's table."""
         found: dict[str, Any] = {
             "pair": int,
             "n_stories": int,
             "behaviour": BEHAVIOURS,
-            **columns_of_kind(DRAWN, float),
+            **study.columns_of_kind(DRAWN, float),
         }
-        found |= record_columns(self.motions)
-        found |= columns_of_kind("pga pgv", float) | columns_of_kind(STRUCTURE, float) | columns_of_kind(SECOND, float)
-        found |= result_columns(suffix="_mdof") | result_columns(suffix="_2dof")
-        return found | columns_of_kind(COMBINED, float) | {"error": str}
+        found |= study.record_columns(self.motions)
+        found |= (
+            study.columns_of_kind("pga pgv", float)
+            | study.columns_of_kind(STRUCTURE, float)
+            | study.columns_of_kind(SECOND, float)
+        )
+        found |= study.result_columns(suffix="_mdof") | study.result_columns(suffix="_2dof")
+        return found | study.columns_of_kind(COMBINED, float) | {"error": str}
 
     def results(self, units: Sequence[int]) -> dict[str, list[Any]]:
         """Draw a structure a unit, and simulate it with both models; some at a time."""
@@ -233,20 +217,20 @@ class PopulationPlan(ChunkedPlan):
         rows = [row for batch in batches for row in batch]
         return {name: [row.get(name) for row in rows] for name in self.columns}
 
-    def _rows(self, units: Sequence[int]) -> list[Row]:
+    def _rows(self, units: Sequence[int]) -> list[study.Row]:
         """Do each step for all structures before the next one, so that its code stays in the processor's cache."""
         drawn = [draw_prototype(self.seed, unit, len(self.motions)) for unit in units]
         motions = [self.motions[each.record] for each in drawn]
         structures = [each.frame().rocking() for each in drawn]
-        seconds = [second_mode_peaks(*each) for each in zip(structures, motions, strict=True)]
+        seconds = [study.second_mode_peaks(*each) for each in zip(structures, motions, strict=True)]
         cases = [self._cases(properties) for properties in structures]
         runs = [(case, motion, 1.0) for both, motion in zip(cases, motions, strict=True) for case in both]
-        solved = solutions_of_runs(runs)
-        rows = list[Row]()
+        solved = study.solutions_of_runs(runs)
+        rows = list[study.Row]()
         pairs = zip(solved[::2], solved[1::2], strict=True)
         given = zip(units, drawn, motions, structures, seconds, cases, pairs, strict=True)
         for unit, prototype, motion, properties, second, both, solutions in given:
-            row: Row = {"pair": unit, "pga": motion.pga, "pgv": motion.pgv}
+            row: study.Row = {"pair": unit, "pga": motion.pga, "pgv": motion.pgv}
             row |= (
                 _prototype_facts(prototype, properties)
                 | self._facts[prototype.record]
@@ -260,26 +244,26 @@ class PopulationPlan(ChunkedPlan):
                 respond(case.model, motion.name, solution, case.tracked)
                 for case, solution in zip(both, solutions, strict=True)
             )
-            row |= result_row(all_modes, "_mdof")
+            row |= study.result_row(all_modes, "_mdof")
             row["max_second_displacement_mdof"] = both[0].tracked.peaks.named(solutions[0].peaks)["second_mode"].item()
-            row |= result_row(one_mode, "_2dof")
+            row |= study.result_row(one_mode, "_2dof")
             rows.append(row | _combined_peak_columns(one_mode, second))
         return rows
 
-    def _cases(self, properties: RockingProperties) -> Sequence[PreparedCase | InputError]:
+    def _cases(self, properties: RockingProperties) -> Sequence[study.PreparedCase | InputError]:
         """Return the cases of both models, with the peak of the second mode (of the first, if there is only one)."""
         models = LinearModel("MDOF-S", properties), LinearModel("2DOF-S", properties.truncated(1))
         extra = [modal_displacement(model, min(model.properties.n_modes, 2) - 1) for model in models]
         try:
             return [
-                PreparedCase(model, self.free_vibration, work_limit=self.work_limit, extra={"second_mode": each})
+                study.PreparedCase(model, self.free_vibration, work_limit=self.work_limit, extra={"second_mode": each})
                 for model, each in zip(models, extra, strict=True)
             ]
         except InputError as error:
             return error, error
 
 
-def _prototype_facts(drawn: Prototype, properties: RockingProperties) -> Row:
+def _prototype_facts(drawn: Prototype, properties: RockingProperties) -> study.Row:
     return {
         "n_stories": drawn.n_stories,
         "behaviour": BEHAVIOURS.index("shear" if math.isinf(drawn.stiffness_ratio) else "flexure"),
@@ -298,7 +282,7 @@ def _prototype_facts(drawn: Prototype, properties: RockingProperties) -> Row:
     }
 
 
-def _second_mode_columns(properties: RockingProperties, second: SecondMode) -> Row:
+def _second_mode_columns(properties: RockingProperties, second: study.SecondMode) -> study.Row:
     omega = float(properties.omega[1])
     return {
         "period_2": 2.0 * math.pi / omega,
@@ -310,19 +294,19 @@ def _second_mode_columns(properties: RockingProperties, second: SecondMode) -> R
     }
 
 
-def _combined_peak_columns(rocking: Response, second: SecondMode) -> Row:
+def _combined_peak_columns(rocking: Response, second: study.SecondMode) -> study.Row:
     """Return the combined peaks of 2DOF-S and the second mode on a fixed base (Section 3.4)."""
-    peaks = combine_modal_peaks(rocking, second)
+    peaks = study.combine_modal_peaks(rocking, second)
     return {f"srss_{name}": getattr(peaks, f"max_{name}") for name in ("top_displacement", "base_shear", "base_moment")}
 
 
 def run_population(
-    motions: Motions,
+    motions: study.Motions,
     pairs: int = 1000,
     seed: int = 0,
     free_vibration: float | Literal["settle"] = 0.0,
     workers: SupportsIndex | None = None,
-    work_limit: float | None = WORK_LIMIT,
+    work_limit: float | None = study.WORK_LIMIT,
     progress: ProgressChoice = None,
 ) -> "pd.DataFrame":
     """Simulate random structures under random records with MDOF-S and 2DOF-S (Silva & Stojadinović 2024, Section 3.3).
@@ -372,6 +356,6 @@ def run_population(
     2     2          3   flexure     rocking     rocking
     """
     count, start = checked_whole_number("pairs", pairs, 1, MAX_PAIRS), checked_whole_number("seed", seed, 0)
-    suite = motions if isinstance(motions, Suite) else Suite(checked_motions(motions))
-    free, limit = free_vibration_time(free_vibration), checked_work_limit(work_limit)
-    return run_plan(PopulationPlan(suite, count, start, free, 128, limit), workers, progress)
+    suite = motions if isinstance(motions, Suite) else Suite(study.checked_motions(motions))
+    free, limit = study.free_vibration_time(free_vibration), study.checked_work_limit(work_limit)
+    return study.run_plan(PopulationPlan(suite, count, start, free, 128, limit), workers, progress)

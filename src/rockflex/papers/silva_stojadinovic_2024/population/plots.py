@@ -1,6 +1,5 @@
 """Figures of the random population, apart from its study: a study needs no matplotlib."""
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -16,28 +15,15 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex.papers.silva_stojadinovic_2024.population._statistics import OutcomeGroups, outcome_groups, slope_and_r2
+from rockflex.plot import _figures as figures
+from rockflex.plot._figures import BLUE, GRAY, GREEN, ORANGE, RED, SMALL, Size
 from rockflex.plot._study_tables import MARKERS, check_table_columns, measure_axis_name
-from rockflex.plot._style import (
-    BLUE,
-    GRAY,
-    GREEN,
-    ORANGE,
-    RED,
-    SMALL,
-    Size,
-    add_legend_above,
-    is_narrow_figure,
-    label_panel,
-    new_figure,
-    scaled_font_size,
-    with_figure_style,
-)
 
 if TYPE_CHECKING:
     import pandas as pd
 
 BEHAVIOURS = {"shear": r"shear, $ρ=\infty$", "flexure": r"flexure, $ρ=0$"}
-_MIN_PAIRS = 3  # pairs for a comparison, as in `population_statistics`
 _STATUSES = ("behaviour", "status_mdof", "status_2dof")
 _CHARACTERISTICS = {
     "n_stories": "stories",
@@ -68,32 +54,15 @@ _EDGE = "#303030"
 _SYMBOLS = {"shear": ("o", ORANGE), "flexure": ("^", GREEN)}
 
 
-@dataclass(frozen=True, eq=False)
-class OutcomeGroups:
-    """Pairs by outcome, as in `population_statistics`; `left_out` gives the number of other pairs, and the reason."""
-
-    resting: "pd.DataFrame"
-    rocking: "pd.DataFrame"
-    left_out: str
-
-
-def outcome_groups(pairs: "pd.DataFrame", columns: tuple[str, ...]) -> OutcomeGroups:
-    """Divide the pairs into those without uplift and those that rock, according to MDOF-S.
-
-    Raises
-    ------
-    InputError
-        If the table lacks a column, or no pair was solved.
-    """
+def _checked_outcome_groups(pairs: "pd.DataFrame", columns: tuple[str, ...]) -> tuple[OutcomeGroups, str]:
+    """Return the pairs by outcome, and how many others are left out, for which reason."""
     check_table_columns(pairs, (*_STATUSES, *columns), "what run_population returned")
-    solved = pairs[pairs["status_mdof"].notna() & pairs["status_2dof"].notna()]
-    if not len(solved):
+    groups = outcome_groups(pairs)
+    if not len(groups.solved):
         raise InputError("No pair was solved. See the column error of the table.")
-    resting = solved[solved["status_mdof"] == "no_uplift"]
-    rocking = solved[(solved["status_mdof"] == "rocking") & (solved["status_2dof"] != "overturned")]
-    fallen, failed = len(solved) - len(resting) - len(rocking), len(pairs) - len(solved)
-    counts = ((fallen, "overturned"), (failed, "failed"))
-    return OutcomeGroups(resting, rocking, ", ".join(f"{count} {word}" for count, word in counts if count))
+    fallen = len(groups.solved) - len(groups.resting) - len(groups.rocking)
+    counts = ((fallen, "overturned"), (len(pairs) - len(groups.solved), "failed"))
+    return groups, ", ".join(f"{count} {word}" for count, word in counts if count)
 
 
 def draw_square_panel(axes: Axes, x: Array, y: Array, lines: list[str]) -> float:
@@ -107,17 +76,6 @@ def draw_square_panel(axes: Axes, x: Array, y: Array, lines: list[str]) -> float
         bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0}, zorder=1.4,
     )  # fmt: skip
     return limit
-
-
-def slope_of_agreement(x: Array, y: Array) -> float:
-    """Return c1 of y = c1 x by least squares; NaN for too few pairs."""
-    return float(x @ y / (x @ x)) if x.size >= _MIN_PAIRS and x.any() else math.nan
-
-
-def r2_of_agreement(x: Array, y: Array) -> float:
-    """Return R² = 1 - Σ(y - x)²/Σ(y - ȳ)² of the line y = x; NaN for too few pairs."""
-    spread = float(np.sum((y - y.mean()) ** 2)) if y.size >= _MIN_PAIRS else 0.0
-    return 1.0 - float(np.sum((y - x) ** 2)) / spread if spread > 0.0 else math.nan
 
 
 def decimal_or_dash(value: float, digits: int = 2) -> str:
@@ -156,21 +114,21 @@ def plot_population(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figur
     6
     """
     check_table_columns(pairs, ("behaviour", *_CHARACTERISTICS), "what run_population returned")
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, 5.6 if is_narrow_figure() else 4.3)
-        panels: list[Axes] = list(figure.subplots(*((3, 2) if is_narrow_figure() else (2, 3))).flat)
+    with figures.styled(size=size):
+        figure = figures.new(6.3, 5.6 if figures.is_narrow() else 4.3)
+        panels: list[Axes] = list(figure.subplots(*((3, 2) if figures.is_narrow() else (2, 3))).flat)
         for axes, (name, label), mark in zip(panels, _CHARACTERISTICS.items(), "ABCDEF", strict=True):
             _draw_population_bars(axes, name, pairs)
             axes.set_xlabel(label)
             axes.grid(visible=False, axis="x")
             axes.locator_params(axis="y", integer=True, nbins=6)
-            label_panel(axes, mark)
-        for axes in panels[:: 2 if is_narrow_figure() else 3]:
+            figures.label_panel(axes, mark)
+        for axes in panels[:: 2 if figures.is_narrow() else 3]:
             axes.set_ylabel("pairs")
         counts = {name: int((pairs["behaviour"] == name).sum()) for name in BEHAVIOURS}
         handles, _ = panels[0].get_legend_handles_labels()
         names = [f"{BEHAVIOURS[name]} ({count})" for name, count in counts.items()]
-        add_legend_above(figure, handles, names)
+        figures.add_legend_above(figure, handles, names)
     return figure
 
 
@@ -188,7 +146,7 @@ def _draw_population_bars(axes: Axes, name: str, pairs: "pd.DataFrame") -> None:
         )  # fmt: skip
         below += counts
     if _has_few_values(values) and name != "height":
-        most = _MAX_TICKS // 2 if is_narrow_figure() else _MAX_TICKS
+        most = _MAX_TICKS // 2 if figures.is_narrow() else _MAX_TICKS
         axes.set_xticks(centres[:: -(-centres.size // most)])
 
 
@@ -243,13 +201,13 @@ def plot_agreement(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figure
     >>> [axes.get_title() for axes in figure.axes[:3]]
     ['no uplift', 'rocking', 'rocking']
     """
-    groups = outcome_groups(pairs, _PEAKS)
+    groups, left_out = _checked_outcome_groups(pairs, _PEAKS)
     markers = _markers_by_aspect_ratio(pairs)
     periods = pairs["period"].to_numpy(dtype=float)
     scale = Normalize(float(periods.min()), float(periods.max()))
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, 9.8 if is_narrow_figure() else 6.0)
-        if is_narrow_figure():
+    with figures.styled(size=size):
+        figure = figures.new(6.3, 9.8 if figures.is_narrow() else 6.0)
+        if figures.is_narrow():
             panels: list[Axes] = list(figure.subplots(4, 1, height_ratios=(1.0, 1.0, 1.0, 0.75)))
         else:
             panels = list(figure.subplots(2, 2).flat)
@@ -257,8 +215,8 @@ def plot_agreement(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figure
             rows = groups.resting if group == "no_uplift" else groups.rocking
             _draw_agreement(axes, rows, quantity, markers, scale)
             axes.set(xlabel=rf"${symbol}$, 2DOF-S [{unit}]", ylabel=rf"${symbol}$, MDOF-S [{unit}]", title=name)
-            label_panel(axes, mark)
-        _draw_agreement_legends(figure, panels[3], pairs, markers, scale, groups.left_out)
+            figures.label_panel(axes, mark)
+        _draw_agreement_legends(figure, panels[3], pairs, markers, scale, left_out)
     return figure
 
 
@@ -277,7 +235,7 @@ def _draw_agreement(
     x, y = (rows[f"max_{quantity}_{model}"].to_numpy(dtype=float) for model in ("2dof", "mdof"))
     ratios, behaviours = rows["aspect_ratio"].to_numpy(dtype=float), rows["behaviour"].astype(str).to_numpy()
     size, period = _marker_area(rows["n_stories"].to_numpy(dtype=float)), rows["period"].to_numpy(dtype=float)
-    lines = [f"R² = {decimal_or_dash(r2_of_agreement(x, y))}, n = {x.size}"]
+    lines = [f"R² = {decimal_or_dash(slope_and_r2(x, y)[1])}, n = {x.size}"]
     for behaviour, colors in _MAPS.items():
         of_behaviour = behaviours == behaviour
         for ratio, marker in markers.items():
@@ -287,7 +245,7 @@ def _draw_agreement(
                     x[mine], y[mine], size[mine], c=period[mine], cmap=colors, norm=scale, marker=marker,
                     edgecolors=_EDGE, linewidths=0.25, alpha=0.85, zorder=2.0, label=f"_{behaviour} {ratio:g}",
                 )  # fmt: skip
-        lines.append(f"$c_1$ = {decimal_or_dash(slope_of_agreement(x[of_behaviour], y[of_behaviour]))}, {behaviour}")
+        lines.append(f"$c_1$ = {decimal_or_dash(slope_and_r2(x[of_behaviour], y[of_behaviour])[0])}, {behaviour}")
     draw_square_panel(axes, x, y, lines)
 
 
@@ -388,15 +346,15 @@ def plot_modal_combination(pairs: "pd.DataFrame", *, size: Size | None = None) -
     4
     """
     needed = {name for panel in _COMBINATION_PANELS for name in (panel.y, panel.x, panel.alone, panel.unit) if name}
-    groups = outcome_groups(pairs, tuple(sorted(needed)))
+    groups, left_out = _checked_outcome_groups(pairs, tuple(sorted(needed)))
     rows = groups.rocking
     behaviours = rows["behaviour"].astype(str).to_numpy()
-    with with_figure_style(size=size):
-        figure = new_figure(6.3, 9.8 if is_narrow_figure() else 6.4)
-        axes_of: list[Axes] = list(figure.subplots(*((4, 1) if is_narrow_figure() else (2, 2))).flat)
+    with figures.styled(size=size):
+        figure = figures.new(6.3, 9.8 if figures.is_narrow() else 6.4)
+        axes_of: list[Axes] = list(figure.subplots(*((4, 1) if figures.is_narrow() else (2, 2))).flat)
         for axes, panel, mark in zip(axes_of, _COMBINATION_PANELS, "ABCD", strict=True):
             _draw_combination(axes, panel, rows, behaviours)
-            label_panel(axes, mark)
+            figures.label_panel(axes, mark)
         handles = [
             Line2D([], [], color=color, marker=marker, linestyle="", markersize=3.5, label=BEHAVIOURS[behaviour])
             for behaviour, (marker, color) in _SYMBOLS.items()
@@ -405,8 +363,8 @@ def plot_modal_combination(pairs: "pd.DataFrame", *, size: Size | None = None) -
             Line2D([], [], color=GRAY, linestyle="--", linewidth=0.8, label="equal"),
             Line2D([], [], color=BLUE, label="$y = c_1 x$"),
         ]
-        title = f"{len(rows)} rocking pairs" + (f"; left out: {groups.left_out}" if groups.left_out else "")
-        add_legend_above(figure, handles, title=title, title_size=scaled_font_size(8.0))
+        title = f"{len(rows)} rocking pairs" + (f"; left out: {left_out}" if left_out else "")
+        figures.add_legend_above(figure, handles, title=title, title_size=figures.scaled_font_size(8.0))
     return figure
 
 
@@ -422,10 +380,10 @@ def _draw_combination(
             x[mine], y[mine], marker, color=color, markersize=2.6, markeredgewidth=0.0, alpha=0.6, zorder=2.0,
             label=f"_{behaviour}",
         )  # fmt: skip
-    c1 = slope_of_agreement(x, y)
-    lines = [f"R² = {decimal_or_dash(r2_of_agreement(x, y))}"]
+    c1, r2 = slope_and_r2(x, y)
+    lines = [f"R² = {decimal_or_dash(r2)}"]
     if panel.alone:
-        lines.append(f"(2DOF-S alone: {decimal_or_dash(r2_of_agreement(_float_column(rows, panel.alone) / unit, y))})")
+        lines.append(f"(2DOF-S alone: {decimal_or_dash(slope_and_r2(_float_column(rows, panel.alone) / unit, y)[1])})")
     limit = draw_square_panel(axes, x, y, [*lines, f"$y$ = {decimal_or_dash(c1)} $x$"])
     if np.isfinite(c1):
         axes.plot([0.0, limit], [0.0, c1 * limit], color=BLUE, linewidth=1.1, zorder=3.0, label="_regression")

@@ -118,14 +118,8 @@ _DRAWN: ContextVar[list[Figure] | None] = ContextVar("drawn", default=None)
 
 
 @contextmanager
-def with_figure_style(theme: str = "light", size: Size | None = None) -> Generator[None, None, None]:
-    """Apply the style while a figure is drawn; matplotlib's settings are global, so one thread at a time.
-
-    Raises
-    ------
-    InputError
-        If the size is neither a name nor a width and a height in inches.
-    """
+def styled(theme: str = "light", size: Size | None = None) -> Generator[None, None, None]:
+    """Apply the style while a figure is drawn; matplotlib's settings are global, so one thread at a time."""
     inches = _figure_size_in_inches(size)
     with _LOCK:
         usual = _FONT if inches is None or inches[0] >= _NARROW else _COLUMN_FONT
@@ -180,7 +174,7 @@ def _figure_size_in_inches(size: Size | None) -> tuple[float, float | None] | No
     )
 
 
-def literal_text(text: str) -> str:
+def literal(text: str) -> str:
     """Escape names so that they are not read as mathematics."""
     return text.replace("$", r"\$")
 
@@ -201,13 +195,13 @@ class NotebookFigure(Figure):
 
     def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
         content = io.BytesIO()
-        with with_figure_style():
+        with styled():
             self.savefig(content, format="png", dpi=PIXEL_RATIO * NOTEBOOK_DPI)
         width, height = (round(NOTEBOOK_DPI * inches) for inches in self.get_size_inches())
         return content.getvalue(), {"width": width, "height": height}
 
 
-def new_figure(width: float, height: float) -> Figure:
+def new(width: float, height: float) -> Figure:
     """Empty figure, without a window or an entry in the global list of figures.
 
     Width and height in inches are those of a figure for which the caller has asked for no size.
@@ -223,7 +217,7 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
-def is_narrow_figure() -> bool:
+def is_narrow() -> bool:
     """Whether the caller has asked for a figure so narrow that panels must be stacked."""
     asked = _SIZE.get()
     return asked is not None and asked[0] < _NARROW
@@ -243,13 +237,7 @@ def recoloured_line_styles(styles: Iterable[LineStyle]) -> list[LineStyle]:
 
 
 def assign_distinct(names: Sequence[Any], among: Sequence[_T], what: str) -> dict[Any, _T]:
-    """Give each name one of some line styles or symbols; `what` says in the plural what the names are of.
-
-    Raises
-    ------
-    InputError
-        If there are too many names to distinguish.
-    """
+    """Give each name one of some line styles or symbols; `what` says in the plural what the names are of."""
     if len(names) > len(among):
         raise InputError(
             f"{len(names)} {what} are too many to distinguish in one figure, which can show {len(among)}. Plot fewer "
@@ -287,7 +275,7 @@ def add_legend_above(
 
 def add_legend_beside(figure: Figure, handles: Sequence[Artist]) -> None:
     """Add the legend of a figure to the right of its panels, or above them in a narrow one."""
-    if is_narrow_figure():
+    if is_narrow():
         add_legend_above(figure, handles)
     else:
         figure.legend(handles=handles, loc="outside right upper")
@@ -429,6 +417,6 @@ def figure_as_svg(figure: Figure) -> str:
 
 def _figure_file_content(figure: Figure, suffix: str) -> bytes:
     content = io.BytesIO()
-    with with_figure_style():
+    with styled():
         figure.savefig(content, format=suffix[1:], dpi=_DPI, metadata=_UNDATED[suffix])
     return content.getvalue()
