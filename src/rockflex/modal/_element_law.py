@@ -145,6 +145,8 @@ class ElementLaw(ABC):
         own = getattr(cls, "__post_init__", None)
 
         def check(self: ElementLaw) -> None:
+            lists = {each.name: getattr(self, each.name) for each in fields(self)}  # as files hold them
+            vars(self).update({name: tuple(value) for name, value in lists.items() if isinstance(value, list)})
             if own is not None:
                 own(self)
             vars(self).update(position=checked_finite("position", self.position, "m"))

@@ -10,8 +10,8 @@ from pydantic import Field, create_model, model_validator
 
 from rockflex._errors import InputError
 from rockflex._files import check_regular_file, checked_file_path
-from rockflex._registry import registered
-from rockflex._schema import PLAIN, Eccentricity, SchemaKey, one_for_each
+from rockflex._registry import registered, source_checksum
+from rockflex._schema import NUMBER, PLAIN, WHOLE, Eccentricity, SchemaKey, one_for_each
 from rockflex._shown import shortened
 from rockflex.modal import (
     BaseElement,
@@ -42,7 +42,13 @@ from rockflex.structure.file._structure_tables import (
     TaperedTowerTable,
     WallFrameTable,
 )
-from rockflex.structure.file._toml_table import AnyTable, TomlTable, first_table_in_annotation, parse_toml_table
+from rockflex.structure.file._toml_table import (
+    AnyTable,
+    TomlTable,
+    first_table_in_annotation,
+    members_of_annotation,
+    parse_toml_table,
+)
 
 _POST_YIELD_RATIO = "the stiffness after yielding over the elastic one"
 _POSITION = SchemaKey("the distance to the right of the axis of the masses", "m")
@@ -62,6 +68,7 @@ class ElementTable(TomlTable):
 
     makes: ClassVar[Callable[..., BaseElement]]
     title: ClassVar[str]
+    tuples: ClassVar[tuple[str, ...]] = ()  # keys whose lists are tuples in the element, which sees to that itself
 
     def element(self) -> BaseElement:
         """Return the element.
@@ -182,18 +189,36 @@ class MultilinearBarTable(ElementTable):
     tension_only: Annotated[bool, SchemaKey("whether the bar cannot push", form="true or false: {}")] = False
 
 
+_FORMS = {
+    float: NUMBER,
+    int: WHOLE,
+    bool: "true or false: {}",
+    str: "{}, a text in quotes",
+    list[float]: "{}, a list of numbers{unit}",
+}
+
+
 def registered_table(made: Any, base: type[AnyTable], **more: Any) -> type[AnyTable]:
-    """Return the table of a class of another package, a dataclass, from its fields."""
+    """Return the table of a class of another package, a dataclass, from its fields.
+
+    The metadata of a field may hold its "description", its "unit", and the least and largest number that the page
+    accepts, "low" and "high".
+    """
     hints = get_type_hints(made)
-    keys: dict[str, Any] = {
-        part.name: (
-            Annotated[list[float] if get_origin(hints[part.name]) is tuple else hints[part.name], SchemaKey(part.name)],
-            ... if part.default is MISSING else part.default,
-        )
-        for part in fields(made)
-    }
+    keys: dict[str, Any] = {}
+    for part in fields(made):
+        if not part.init:
+            continue
+        kind = list[float] if get_origin(hints[part.name]) is tuple else hints[part.name]
+        first = members_of_annotation(kind)[0]
+        key = SchemaKey(**{"description": part.name, "form": _FORMS.get(first, PLAIN), **part.metadata})
+        default: Any = ... if part.default is MISSING else part.default
+        if part.default_factory is not MISSING:
+            default = Field(default_factory=part.default_factory)
+        keys[part.name] = Annotated[kind, key], default
     found: Any = create_model(f"{made.__name__}Table", __base__=base, **keys, **more)
     found.makes, found.title = made, made.__name__
+    found.tuples = tuple(name for name in keys if get_origin(hints[name]) is tuple)
     return found
 
 
@@ -211,6 +236,8 @@ ELEMENTS: dict[str, type[ElementTable]] = {
     "multilinear_bar": MultilinearBarTable,
 } | {kind: _element_table(kind, law) for kind, law in registered("elements").items()}
 """The table of each kind of element by its name in a file."""
+
+ELEMENT_NAMES = {table: kind for kind, table in ELEMENTS.items()}
 
 AnyElementTable: TypeAlias = Annotated[Union[tuple(ELEMENTS.values())], Field(discriminator="kind")]  # pyright: ignore # noqa: UP007
 """The table of any element, chosen by its `kind`."""
@@ -333,13 +360,19 @@ class _OwnStructures(TomlTable):
     def checksums(self, folder: Path | str = "") -> dict[str, str]:
         """SHA-256 of the numbers in each file that the structure is built from, by its key, such as "matrices.mass".
 
+        With those of the sources of structures and elements of other packages, by the name of their kind.
+
         Raises
         ------
         InputError
             If a file of numbers cannot be read.
         """
         files = self.table.files(Path(folder))
-        return {f"{self.kind}.{name}": matrix_file_checksum(name, path) for name, path in files.items()}
+        found = {f"{self.kind}.{name}": matrix_file_checksum(name, path) for name, path in files.items()}
+        made: dict[str, Any] = {self.kind: type(self.table).makes}
+        made |= {ELEMENT_NAMES[type(each)]: type(each).makes for each in self.elements or []}
+        sources = {f"source of {kind}": source_checksum(each) for kind, each in made.items()}
+        return found | {kind: each for kind, each in sources.items() if each is not None}
 
     def describe(self) -> dict[str, Any]:
         """Return the values of the structure's table, with eccentricity, tendons and elements if given."""
