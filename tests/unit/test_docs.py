@@ -30,7 +30,7 @@ INDENTED = re.compile(r"(?:^    \S.*\n)+", re.MULTILINE)
 PRIVATE = re.compile(r"\brockflex(?:\.\w+)*\._\w|\brf\._\w|\bimport _\w")
 NOT_RUN = ("reproduce", "serve")  # some minutes, and for ever
 FEW = [f"FF-{number}-*" for number in (1, 3, 5, 9, 10, 19)]  # of an example's records: some stand still, some fall
-PLACES = ("study", "papers.silva_stojadinovic_2024.population")  # of names that the front does not have
+PLACES = ("study", "engine", "papers.silva_stojadinovic_2024.population")  # of names that the front does not have
 GENERATED = ("gallery/", "../gallery/")
 
 
