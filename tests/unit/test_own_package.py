@@ -51,6 +51,7 @@ def site(tmp_path_factory) -> Path:
 @pytest.fixture
 def here(tmp_path) -> Path:
     """A folder with the files of a user."""
+    (tmp_path / "a.log").write_text("TANKLOG at=T1 dt=0.01 n=4\n0.0\n20.0\n-30.0\n10.0\n", "utf-8")
     (tmp_path / "tank.toml").write_text(TANK.format(prefix=""), "utf-8")
     for study, (_, more) in STUDIES.items():
         (tmp_path / f"{study}.toml").write_text(STUDY.format(study=study, more=more), "utf-8")
@@ -81,6 +82,8 @@ for model in ("MDOF-S", "2DOF-C"):
     assert back.history.model.properties.elements == tank.elements
     assert (back.element_force == run.element_force).all()
     assert back.max_rotation == run.max_rotation
+assert rf.read_motion("a.log").pga == 9.81e-3 * 30.0
+assert [each.metadata.station for each in rf.read_suite(".")] == ["T1"]
 ground = rf.Ground(springs=rf.winkler_bed(1.2, 2.4, 1e8, n=8), base_inertia=1e5)
 assert rf.simulate(tank, motion, ground=ground).element_energy[0] > 0.0
 """
@@ -107,7 +110,13 @@ def test_commands(site, here):
     """All in one program, since each would take seconds to start."""
     wrong = (here / "tank.toml").read_text("utf-8").replace("2e7", '"stiff"')
     (here / "wrong.toml").write_text(wrong, "utf-8")
-    lines = ["--help", "modes tank.toml", "modes wrong.toml", "run tank.toml el-centro-1940 --out out --report r.html"]
+    lines = [
+        "--help",
+        "motion a.log",
+        "modes tank.toml",
+        "modes wrong.toml",
+        "run tank.toml el-centro-1940 --out out --report r.html",
+    ]
     for study, (command, _) in STUDIES.items():
         again = f"{command} {study}.toml --out {study}"
         lines += [f"{command} {study}.toml --dry-run", again, f"figures {study}", again]

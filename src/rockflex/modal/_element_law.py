@@ -137,6 +137,7 @@ class ElementLaw(ABC):
     """
 
     position: float
+    title: ClassVar[str] = ""  # name in a list; that of the class, if empty
     if TYPE_CHECKING:
         __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # every class that is derived is a dataclass
 

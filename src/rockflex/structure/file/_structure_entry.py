@@ -11,15 +11,13 @@ from pydantic import Field, create_model, model_validator
 from rockflex._errors import InputError
 from rockflex._files import check_regular_file, checked_file_path
 from rockflex._registry import registered, source_checksum
-from rockflex._schema import NUMBER, PLAIN, WHOLE, Eccentricity, SchemaKey, one_for_each
+from rockflex._schema import NUMBER, PLAIN, WHOLE, Eccentricity, SchemaKey
 from rockflex._shown import shortened
 from rockflex.modal import (
+    BARS,
     BaseElement,
     ElementLaw,
-    FlagShapedBar,
     FrictionDamper,
-    GapBar,
-    MultilinearBar,
     RockingProperties,
     Tendon,
     ViscousDamper,
@@ -52,10 +50,8 @@ from rockflex.structure.file._toml_table import (
 
 _POST_YIELD_RATIO = "the stiffness after yielding over the elastic one"
 _POSITION = SchemaKey("the distance to the right of the axis of the masses", "m")
-_ELEMENT_KINDS = (
-    *("tendon", "yielding_dissipator", "viscous_damper", "friction_damper"),
-    *("flag_shaped_bar", "gap_bar", "multilinear_bar", *registered("elements")),
-)
+LAWS: dict[str, type[ElementLaw]] = BARS | registered("elements")
+_ELEMENT_KINDS = ("tendon", "yielding_dissipator", "viscous_damper", "friction_damper", *LAWS)
 _ELEMENT_KIND = SchemaKey(
     ", ".join(f'"{kind}"' for kind in _ELEMENT_KINDS[:-1]) + f' or "{_ELEMENT_KINDS[-1]}"', form=PLAIN
 )
@@ -148,47 +144,6 @@ class FrictionDamperTable(ElementTable):
     force: Annotated[float, SchemaKey("the force at which the damper slides", "N")]
 
 
-class FlagShapedBarTable(ElementTable):
-    """The arguments of `FlagShapedBar`."""
-
-    makes = FlagShapedBar
-    title = "Flag-shaped bar"
-
-    kind: Annotated[Literal["flag_shaped_bar"], _ELEMENT_KIND]
-    position: Annotated[float, _POSITION] = 0.0
-    stiffness: Annotated[float, SchemaKey("the elastic stiffness", "N/m")]
-    yield_force: Annotated[float, SchemaKey("the force at which the upper plateau begins", "N")]
-    post_yield_ratio: Annotated[float, SchemaKey(_POST_YIELD_RATIO)]
-    flag_depth: Annotated[float, SchemaKey("the height of the loop over the yield force")]
-    tension_only: Annotated[bool, SchemaKey("whether the bar cannot push", form="true or false: {}")] = False
-
-
-class GapBarTable(ElementTable):
-    """The arguments of `GapBar`."""
-
-    makes = GapBar
-    title = "Bar with a gap"
-
-    kind: Annotated[Literal["gap_bar"], _ELEMENT_KIND]
-    position: Annotated[float, _POSITION] = 0.0
-    stiffness: Annotated[float, SchemaKey("the stiffness beyond the gap", "N/m")]
-    gap: Annotated[float, SchemaKey("the elongation from which the bar is stretched", "m")]
-    both_ways: Annotated[bool, SchemaKey("whether it acts when it is shortened, too", form="true or false: {}")] = False
-
-
-class MultilinearBarTable(ElementTable):
-    """The arguments of `MultilinearBar`."""
-
-    makes = MultilinearBar
-    title = "Multi-linear elastic bar"
-
-    kind: Annotated[Literal["multilinear_bar"], _ELEMENT_KIND]
-    position: Annotated[float, _POSITION] = 0.0
-    elongations: Annotated[list[float], SchemaKey("the elongations of the points", "m", form=one_for_each("point"))]
-    forces: Annotated[list[float], SchemaKey("the forces at these elongations", "N", form=one_for_each("point"))]
-    tension_only: Annotated[bool, SchemaKey("whether the bar cannot push", form="true or false: {}")] = False
-
-
 _FORMS = {
     float: NUMBER,
     int: WHOLE,
@@ -199,7 +154,7 @@ _FORMS = {
 
 
 def registered_table(made: Any, base: type[AnyTable], **more: Any) -> type[AnyTable]:
-    """Return the table of a class of another package, a dataclass, from its fields.
+    """Return the table of a class, a dataclass, from its fields.
 
     The metadata of a field may hold its "description", its "unit", and the least and largest number that the page
     accepts, "low" and "high".
@@ -217,7 +172,7 @@ def registered_table(made: Any, base: type[AnyTable], **more: Any) -> type[AnyTa
             default = Field(default_factory=part.default_factory)
         keys[part.name] = Annotated[kind, key], default
     found: Any = create_model(f"{made.__name__}Table", __base__=base, **keys, **more)
-    found.makes, found.title = made, made.__name__
+    found.makes, found.title = made, getattr(made, "title", "") or made.__name__
     found.tuples = tuple(name for name in keys if get_origin(hints[name]) is tuple)
     return found
 
@@ -231,10 +186,8 @@ ELEMENTS: dict[str, type[ElementTable]] = {
     "yielding_dissipator": YieldingDissipatorTable,
     "viscous_damper": ViscousDamperTable,
     "friction_damper": FrictionDamperTable,
-    "flag_shaped_bar": FlagShapedBarTable,
-    "gap_bar": GapBarTable,
-    "multilinear_bar": MultilinearBarTable,
-} | {kind: _element_table(kind, law) for kind, law in registered("elements").items()}
+    **{kind: _element_table(kind, law) for kind, law in LAWS.items()},
+}
 """The table of each kind of element by its name in a file."""
 
 ELEMENT_NAMES = {table: kind for kind, table in ELEMENTS.items()}
