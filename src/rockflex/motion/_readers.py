@@ -44,8 +44,8 @@ class RecordFormat:
         Whether the lines of a file, which are at least one, begin as this format does and no other; folders ask with
         the lines within the first 4 KiB.
     parse : callable
-        Returns all components of a file from its path and its lines, as a list of `GroundMotion` in m/s². It raises an
-        `InputError` that names the file and the line if the file is not whole.
+        Returns all components of a file from its path and its lines, of which some may be empty, as a list of
+        `GroundMotion` in m/s². It raises an `InputError` that names the file and the line if the file is not whole.
 
     Examples
     --------

@@ -12,7 +12,7 @@ def is_log(lines):
 
 def parse_log(file, lines):
     keys = dict(each.split("=") for each in lines[0].split()[1:])
-    values = np.array([float(line) for line in lines[1:]])
+    values = np.array([float(line) for line in lines[1:] if line.strip()])
     if len(values) != int(keys["n"]):
         raise rf.InputError(f"{file}, line 1: n = {keys['n']}, but {len(values)} samples follow. Copy the whole file.")
     info = rf.RecordInfo(station=keys["at"], source=file.name, source_format="TANKLOG")
