@@ -29,7 +29,7 @@ from rockflex.models._modal_model import horizontal_reaction
 from rockflex.models._phase import Key
 from rockflex.models._quantities import Quantities, rows_of
 from rockflex.models._sliding import LOST, STICK, SlidingModel
-from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, SpringModel, code_of
+from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, SpringModel
 
 TINY = 1e-300
 MORE = 1e6  # m/s², of gravity: the terms that it adds outweigh the rounding of all others
@@ -518,7 +518,7 @@ class OnSprings(ElementBase):
 
     def marks(self, key: Key) -> tuple[float, ...]:
         """The branches, as codes."""
-        return code_of(key[1:])
+        return self.model.codes(key)
 
 
 def _with(key: Key, place: int, branch: int) -> Key:

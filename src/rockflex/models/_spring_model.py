@@ -23,8 +23,9 @@ LOADED, LIFTED, RECEDING = 0, 1, 2
 STICK = 0  # the branch of the slip; 1 and -1: it slips to the right or left
 
 
-# Branches of many elements are kept in the state as a few numbers.
-BASE, DIGITS = 8, 17  # a double holds 17 octal digits exactly
+# Branches of many springs and elements are kept in the state as digits of a few numbers.
+BASES = 8, 64  # the least in which all branches are digits; an element has at most 32
+BITS = 51  # of a number, that a double holds exactly
 SHIFT = 1  # the lowest branch is -1
 
 
@@ -63,7 +64,7 @@ class SpringModel(LinearModel):
     @cached_property
     def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Layout of the state vector."""
-        n_internal = internal_count(self.elements) + codes_for(self._key_size)
+        n_internal = internal_count(self.elements) + codes_for(self._key_size, self.base)
         return layout_of(self.properties.n_modes, n_internal=n_internal, slides=self.friction is not None, heaves=True)
 
     @property
@@ -81,6 +82,16 @@ class SpringModel(LinearModel):
     @property
     def _key_size(self) -> int:
         return self.springs.n + 1 + len(self.elements)
+
+    @cached_property
+    def base(self) -> int:
+        """Base of the numbers whose digits are the branches of springs and elements."""
+        most = max((max(each.branches) for each in self.elements), default=0)
+        return next(base for base in BASES if most + SHIFT < base)
+
+    def codes(self, key: Key) -> tuple[float, ...]:
+        """Return the numbers that stand for the branches of a phase."""
+        return code_of(key[1:], self.base)
 
     def element_key(self, key: Key) -> Key:
         """Return the branches of the base and of the elements."""
@@ -102,7 +113,7 @@ class SpringModel(LinearModel):
         """Return the branches at the states of a history, shape (n, K)."""
         first = HEADER + self.layout.memory + internal_count(self.elements)
         codes = states[:, first : HEADER + self.layout.size]
-        return np.column_stack((np.zeros(side.size, dtype=np.int64), decoded(codes, self._key_size)))
+        return np.column_stack((np.zeros(side.size, dtype=np.int64), decoded(codes, self._key_size, self.base)))
 
     def lifted(self, states: Array) -> Bools:
         """Return which springs the base has left at the states of a history, shape (n, n_springs)."""
@@ -278,7 +289,7 @@ class SpringModel(LinearModel):
             of_elements.append(branch)
             kept += remembered
         key = (CLOSED, *(int(branch) for branch in branches), STICK, *of_elements)
-        start[layout.memory :] = (*kept, *code_of(key[1:]))
+        start[layout.memory :] = (*kept, *self.codes(key))
         return key, start
 
     @property
@@ -300,19 +311,25 @@ def heave_at(springs: Springs, rotation: float, weight: float) -> float:
     return float(heaves[np.argmax(fits)])
 
 
-def codes_for(size: int) -> int:
+def digits_of(base: int) -> int:
+    """Return how many digits a number has."""
+    return BITS // (base.bit_length() - 1)
+
+
+def codes_for(size: int, base: int) -> int:
     """Return how many numbers hold the branches of `size` elements."""
-    return -(-size // DIGITS)
+    return -(-size // digits_of(base))
 
 
-def code_of(branches: tuple[int, ...]) -> tuple[float, ...]:
-    """Return the numbers that stand for branches from -1 to 6."""
-    parts = (branches[first : first + DIGITS] for first in range(0, len(branches), DIGITS))
-    return tuple(float(sum((branch + SHIFT) * BASE**k for k, branch in enumerate(part))) for part in parts)
+def code_of(branches: tuple[int, ...], base: int) -> tuple[float, ...]:
+    """Return the numbers that stand for branches from -1 to base - 2."""
+    digits = digits_of(base)
+    parts = (branches[first : first + digits] for first in range(0, len(branches), digits))
+    return tuple(float(sum((branch + SHIFT) * base**k for k, branch in enumerate(part))) for part in parts)
 
 
-def decoded(codes: Array, size: int) -> NDArray[np.int64]:
-    """Return the branches of `size` elements from their numbers, (n, codes_for(size)), as (n, size)."""
-    whole = codes.astype(np.int64)
-    columns = [whole[:, k // DIGITS] // BASE ** (k % DIGITS) % BASE - SHIFT for k in range(size)]
+def decoded(codes: Array, size: int, base: int) -> NDArray[np.int64]:
+    """Return the branches of `size` elements from their numbers, (n, codes_for(size, base)), as (n, size)."""
+    whole, digits = codes.astype(np.int64), digits_of(base)
+    columns = [whole[:, k // digits] // base ** (k % digits) % base - SHIFT for k in range(size)]
     return np.stack(columns, axis=1)
