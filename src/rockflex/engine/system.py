@@ -16,6 +16,7 @@ from rockflex.engine.field import Compiled, Field, Function, Jump
 
 Key = Hashable
 MAX_STATES, MAX_ROWS = 1000, 4096  # as in march.h
+C_FUNCTION: Any = ctypes.CFUNCTYPE(None).__base__  # of all functions that ctypes knows
 
 
 class StepTooLongError(InputError):
@@ -352,7 +353,7 @@ def _checked_field(place: str, phase: NonlinearPhase, n: int, m: int, count: int
 
 def _address_of(function: Any) -> int | None:
     """The address of a compiled function that ctypes or numba holds; None for a function in Python."""
-    if isinstance(function, ctypes._CFuncPtr):  # pyright: ignore[reportPrivateUsage]
+    if isinstance(function, C_FUNCTION):
         return ctypes.cast(function, ctypes.c_void_p).value
     address: Any = getattr(function, "address", None)
     return address if isinstance(address, int) else None

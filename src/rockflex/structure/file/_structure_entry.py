@@ -166,11 +166,11 @@ def registered_table(made: Any, base: type[AnyTable], **more: Any) -> type[AnyTa
             continue
         kind = list[float] if get_origin(hints[part.name]) is tuple else hints[part.name]
         first = members_of_annotation(kind)[0]
-        key = SchemaKey(**{"description": part.name, "form": _FORMS.get(first, PLAIN), **part.metadata})
+        said: dict[str, Any] = {"description": part.name, "form": _FORMS.get(first, PLAIN), **part.metadata}
         default: Any = ... if part.default is MISSING else part.default
         if part.default_factory is not MISSING:
             default = Field(default_factory=part.default_factory)
-        keys[part.name] = Annotated[kind, key], default
+        keys[part.name] = Annotated[kind, SchemaKey(**said)], default
     found: Any = create_model(f"{made.__name__}Table", __base__=base, **keys, **more)
     found.makes, found.title = made, getattr(made, "title", "") or made.__name__
     found.tuples = tuple(name for name in keys if get_origin(hints[name]) is tuple)
