@@ -1,5 +1,8 @@
 """What other packages add to this one, by entry points of their distributions."""
 
+import hashlib
+import inspect
+import sys
 import warnings
 from collections.abc import Iterator, MutableMapping
 from functools import cache
@@ -29,6 +32,23 @@ def registered(group: str) -> dict[str, Any]:
     return found
 
 
+def source_checksum(part: Any) -> str | None:
+    """Return the SHA-256 of the source of the module that defines a class or function; None for those of rockflex.
+
+    Raises
+    ------
+    LookupError
+        If it is not defined in a file.
+    """
+    module: str = part.__module__
+    if module.partition(".")[0] == __name__.partition(".")[0]:
+        return None
+    try:
+        return hashlib.sha256(inspect.getsource(sys.modules[module]).encode()).hexdigest()
+    except (OSError, TypeError, KeyError) as error:
+        raise LookupError(module) from error
+
+
 class Catalogue(MutableMapping[str, Part], Generic[Part]):
     """Objects by their names: those of this package, then those of others, which are imported when first asked for.
 
@@ -43,6 +63,12 @@ class Catalogue(MutableMapping[str, Part], Generic[Part]):
     def __init__(self, own: tuple[Part, ...], group: str) -> None:
         self._own: dict[str, Part] = {each.name: each for each in own}  # pyright: ignore[reportAttributeAccessIssue]
         self._group = group
+        self._first = tuple(self._own)
+
+    @property
+    def added(self) -> dict[str, Part]:
+        """The objects that are not of this package: registered by others, or entered in this session."""
+        return {name: part for name, part in self.items() if name not in self._first}
 
     def __getitem__(self, name: str) -> Part:
         return self._own[name] if name in self._own else registered(self._group)[name]

@@ -137,3 +137,20 @@ def test_fuses_under_a_record_with_vertical_motion_and_friction(model):
     assert run.max_slip > 0.0
     assert run.element_yielded.any()
     assert run.energy.closing_error < 1e-10
+
+
+def test_elements_with_many_branches(tmp_path):
+    """Twenty pieces to each bar: more branches than octal digits."""
+    places = np.linspace(0.0015, 0.03, 20)
+    bars = [rf.MultilinearBar(places, 3e5 * np.tanh(places / 0.01), x, tension_only=True) for x in (-0.3, 0.3)]
+    frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    bed = rf.winkler_bed(frame.half_width, 3.0, 1e8, n=6).damped(0.3, frame.rocking().m_tot)
+    pulse, ground = rf.one_sine_pulse(amplitude=3.0, period=0.8), rf.Ground(springs=bed, base_inertia=1e5)
+    run = rf.simulate(rf.Restrained(frame, bars), pulse, ground=ground, free_vibration=2.0)
+    stretched = run.history.element_elongation
+    assert stretched.max() > 0.02
+    force = np.column_stack([[bar.slow_force(each) for each in stretched[:, k]] for k, bar in enumerate(bars)])
+    np.testing.assert_allclose(run.element_force, force, rtol=0.0, atol=1e-12 * force.max())
+    assert run.energy.closing_error < 1e-10
+    back = rf.Response.load(run.save(tmp_path / "run"))
+    np.testing.assert_array_equal(back.element_force, run.element_force)

@@ -97,13 +97,15 @@ def test_the_heave_under_a_weight(rotation):
     assert springs.stiffness @ depth == pytest.approx(2e6, rel=1e-12)
 
 
-@pytest.mark.parametrize("size", [1, 16, 17, 18, 40])
-def test_codes_of_branches(size):
+@pytest.mark.parametrize(("base", "least"), [(8, 17), (64, 8)])
+@pytest.mark.parametrize("size", [1, 7, 8, 9, 16, 17, 18, 40])
+def test_codes_of_branches(size, base, least):
     chance = np.random.default_rng(size)
-    branches = chance.integers(-1, 6, size=(5, size))
-    codes = np.array([code_of(tuple(each)) for each in branches.tolist()])
-    assert codes.shape == (5, codes_for(size))
-    np.testing.assert_array_equal(decoded(codes, size), branches)
+    branches = chance.integers(-1, base - 1, size=(5, size))
+    branches[0] = base - 2  # all digits are the largest
+    codes = np.array([code_of(tuple(each), base) for each in branches.tolist()])
+    assert codes.shape == (5, codes_for(size, base)) == (5, -(-size // least))
+    np.testing.assert_array_equal(decoded(codes, size, base), branches)
 
 
 def refused(text, structure=FRAME, model="2DOF-S", **ground):

@@ -217,7 +217,9 @@ def test_a_changed_matrix_is_another_study(tmp_path):
     with pytest.raises(InputError) as caught:
         rf.run_study(of_files(tmp_path, k=0.9e7), folder)
     first, second, last = str(caught.value).splitlines()
-    assert first == f"{folder} holds this study with another record, matrix or impact law. Checksums that differ:"
+    assert (
+        first == f"{folder} holds this study with another record, matrix, source or impact law. Checksums that differ:"
+    )
     assert second.startswith('  structures[1].matrices.stiffness: "')
     assert last == "Use the same files, or give another folder."
 

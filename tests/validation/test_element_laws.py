@@ -1,11 +1,7 @@
 """Elements given by their branches: against adaptive integration (SciPy), closed forms, and elements they equal."""
 
-import os
 import pickle
-import subprocess
-import sys
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -292,73 +288,3 @@ def test_laws_travel_to_other_processes():
     again = pickle.loads(pickle.dumps(FLAGS[0]))
     assert again == FLAGS[0]
     assert again.slow_force(0.02) == FLAGS[0].slow_force(0.02)
-
-
-PLUGIN = """
-from dataclasses import dataclass
-import rockflex as rf
-
-@dataclass(frozen=True)
-class Stop(rf.ElementLaw):
-    stiffness: float
-    gap: float = 0.01
-    position: float = 0.0
-
-    def branches(self):
-        k, gap = self.stiffness, self.gap
-        return {
-            "open": rf.Branch(ends=[rf.BranchEnd("shut", gap, rising=True)]),
-            "shut": rf.Branch(k, -k * gap, ends=[rf.BranchEnd("open", gap, rising=False)]),
-        }
-"""
-STRUCTURE = """
-[frame]
-n_stories = 2
-story_height = 3.0
-story_mass = 40e3
-base_mass = 40e3
-stiffness_ratio = 1.0
-period = 0.5
-aspect_ratio = 8.0
-damping_ratio = 0.02
-
-[[elements]]
-kind = "bumper_stop"
-stiffness = 5e7
-gap = 0.005
-"""
-
-
-def test_elements_of_another_package_are_read_and_saved(tmp_path):
-    """An installed package with an entry point: its kind is one of a structure file, and of saved responses."""
-    (tmp_path / "bumpers.py").write_text(PLUGIN)
-    about = tmp_path / "bumpers-1.0.dist-info"
-    about.mkdir()
-    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: bumpers\nVersion: 1.0\n")
-    (about / "entry_points.txt").write_text("[rockflex.elements]\nbumper_stop = bumpers:Stop\n")
-    (tmp_path / "s.toml").write_text(STRUCTURE)
-    code = (
-        "import rockflex as rf\n"
-        "structure = rf.read_structure('s.toml')\n"
-        "run = rf.simulate(structure, rf.one_sine_pulse(amplitude=3.0, period=0.8))\n"
-        "back = rf.Response.load(run.save('run'))\n"
-        "assert back.history.model.properties.elements == structure.elements\n"
-        "print(type(structure.elements[0]).__name__, run.max_rotation)\n"
-    )
-    options = {"cwd": tmp_path, "capture_output": True, "text": True}
-    environment = os.environ | {"PYTHONPATH": str(tmp_path)}
-    done = subprocess.run([sys.executable, "-c", code], env=environment, **options, check=False)
-    assert done.returncode == 0, done.stderr
-    name, rotation = done.stdout.split()
-    frame = rf.read_structure(plain(tmp_path))
-    same = rf.simulate(rf.Restrained(frame, rf.GapBar(5e7, 0.005)), rf.one_sine_pulse(amplitude=3.0, period=0.8))
-    assert name == "Stop"
-    assert float(rotation) == pytest.approx(same.max_rotation, rel=1e-9)
-    with pytest.raises(rf.InputError, match="'Stop', which no installed package registers"):
-        rf.Response.load(tmp_path / "run.npz")
-
-
-def plain(folder: Path) -> Path:
-    path = folder / "plain.toml"
-    path.write_text(STRUCTURE.split("[[elements]]")[0])
-    return path

@@ -18,5 +18,15 @@ cdef class Function(Field):
     cdef call(self, const double *y, double a, double a_v, double *out)
 
 
+ctypedef void (*CFunction)(const double *y, double a, double a_v, double *out) noexcept nogil
+
+
+@cython.final
+cdef class Compiled(Field):
+    cdef object source
+    cdef CFunction function
+    cdef int n
+
+
 cdef class Jump:
     cdef int apply(self, double *y, double a, double a_v) noexcept nogil

@@ -4,10 +4,14 @@ Their methods take addresses of arrays when compiled, and the arrays themselves 
 declared here does nothing; subclasses in `rockflex.models` say what it does.
 """
 
+import ctypes
+
 import cython
 import numpy as np
 
 from rockflex._errors import InputError
+
+SIGNATURE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
 
 
 @cython.cclass
@@ -138,6 +142,36 @@ class Function(Field):
             return
         for k in range(self.n):
             out[k] = found[k]
+
+    def sizes(self, y, a, a_v, out):
+        """Take the rates themselves."""
+        k: cython.int
+        self.rates(y, a, a_v, out, False)
+        for k in range(self.n):
+            out[k] = abs(out[k])
+
+
+@cython.final
+@cython.cclass
+class Compiled(Field):
+    """A field that is a compiled function: ``void f(const double *y, double a, double a_v, double *out)``.
+
+    `source` is what holds it in memory at its address.
+    """
+
+    def __init__(self, source, address: cython.size_t, n):
+        self.source, self.n = source, n
+        if cython.compiled:
+            self.function = cython.cast(CFunction, cython.cast(cython.p_void, address))  # noqa: F821
+        else:
+            self.function = SIGNATURE(address)
+
+    def rates(self, y, a, a_v, out, counted):
+        """Call the function."""
+        if cython.compiled:
+            self.function(y, a, a_v, out)
+        else:
+            self.function(y.ctypes.data, a, a_v, out.ctypes.data)
 
     def sizes(self, y, a, a_v, out):
         """Take the rates themselves."""

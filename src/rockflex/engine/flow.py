@@ -5,7 +5,7 @@ radian, so that a row deviates from the cubic through its values and slopes at b
 cubic's curvature (a harmonic that turns by x: x²/48); a fifth is allowed for. Declarations: `flow.pxd`.
 """
 
-from math import fabs, isfinite, sqrt
+from math import ceil, fabs, isfinite, sqrt
 
 import cython
 import numpy as np
@@ -14,7 +14,7 @@ from rockflex.engine import tableau
 from rockflex.engine.tableau import C
 
 if cython.compiled:
-    from cython.cimports.libc.math import INFINITY, fabs, isfinite, sqrt
+    from cython.cimports.libc.math import INFINITY, ceil, fabs, isfinite, sqrt
 else:
     INFINITY = float("inf")
 
@@ -193,7 +193,8 @@ class Flow:
     def take(self, place, start, end, v, u):
         """Take a step from the place u of a sample; return the part of the sample, -1 if none is short enough."""
         longest: cython.double = 1.0 - u
-        part: cython.double = min(self.step, longest)
+        # Of steps as long as allowed the last one would be short, and the others err most; equal ones are as many.
+        part: cython.double = longest if self.step >= longest else longest / ceil(longest / self.step)
         most: cython.double = MOST
         error: cython.double
         if self.tried:

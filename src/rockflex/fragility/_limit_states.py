@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError
 from rockflex._registry import Catalogue
+from rockflex._shown import shown
 
 OVERTURNED = 0.5 * math.pi  # rad
 ROCKED = 1e-4  # rad; uplift with a smaller rotation does not count as rocking
@@ -141,6 +142,27 @@ TENDON_YIELD = LimitState(
     exceeded=lambda runs: (runs["tendon_utilisation"] >= 1.0) | _overturned_runs(runs),
 )
 LIMIT_STATES = Catalogue[LimitState]((UPLIFT, ROCKING, NOMINAL, TENDON_YIELD, OVERTURNING), "limit_states")
+
+
+def limit_state_named(name: str) -> LimitState:
+    """Return the limit state of a name, also of one that another package registers.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+
+    Examples
+    --------
+    >>> from rockflex.fragility import limit_state_named
+    >>> limit_state_named("overturning").rotation
+    '|θ| = π/2'
+    """
+    found = LIMIT_STATES.get(name) if isinstance(name, str) else None  # pyright: ignore[reportUnnecessaryIsInstance]
+    if found is None:
+        words = ", ".join(f'"{each}"' for each in LIMIT_STATES)
+        raise InputError(f"limit must be one of {words}, but {shown(name)} was given.", field="limit")
+    return found
 
 
 def limit_state_label(limit: float | str) -> str:

@@ -204,13 +204,14 @@ INCREMENTAL = StudyKind(
 
 def _report_stripes(study: Any, runs: Runs, found: StudyFindings) -> None:
     from rockflex._cases import runs_by_case
-    from rockflex.fragility import NOMINAL, OVERTURNING, UPLIFT, fit_stripes
+    from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, UPLIFT, fit_stripes
     from rockflex.study.stripes import stripe_counts
 
     counts = found.tables[f"Runs beyond the limit at each level of {study.measure}"] = []
     fits = found.tables[f"Fragility by maximum likelihood, lognormal in {study.measure}"] = []
-    for limit in (UPLIFT, NOMINAL, OVERTURNING):
-        for structure, model, each in runs_by_case(stripe_counts(runs, limit.name)):  # pyright: ignore[reportArgumentType]
+    for limit in (UPLIFT, NOMINAL, OVERTURNING, *LIMIT_STATES.added.values()):
+        exceeding = found.fitted(lambda limit=limit: stripe_counts(runs, limit), limit.label)
+        for structure, model, each in runs_by_case(exceeding) if exceeding is not None else ():
             stripes = each["level"], each["n_exceeding"], each["n_total"]
             what = f"{structure} with {model}, {limit.label}"
             fit = found.fitted(lambda stripes=stripes: fit_stripes(*stripes), what)

@@ -14,13 +14,14 @@ from rockflex.modal._elements import (
     initial_force,
 )
 from rockflex.modal._ground import Ground, Springs, asce41_bed, winkler_bed
-from rockflex.modal._law_bars import FlagShapedBar, GapBar, MultilinearBar
+from rockflex.modal._law_bars import BARS, FlagShapedBar, GapBar, MultilinearBar
 from rockflex.modal._participation import MassNormalisedModes, excited_mode_indices, rocking_properties
 from rockflex.modal._pivot import Pivot
 from rockflex.modal._rocking import RockingProperties
 from rockflex.modal._uplifted import PinnedBeam, UpliftedModes, frequency_equation, pinned_beam, uplifted_modes
 
 __all__ = [
+    "BARS",
     "PLACE",
     "Adequacy",
     "AdequacyTolerance",

@@ -4,7 +4,7 @@ import math
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import Field, dataclass
+from dataclasses import Field, dataclass, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
@@ -138,6 +138,7 @@ class ElementLaw(Attachment, ABC):
     [0.056, 0.0389]
     """
 
+    title: ClassVar[str] = ""  # name in a list; that of the class, if empty
     if TYPE_CHECKING:
         __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # every class that is derived is a dataclass
 
@@ -146,6 +147,8 @@ class ElementLaw(Attachment, ABC):
         own = getattr(cls, "__post_init__", None)
 
         def check(self: ElementLaw) -> None:
+            lists = {each.name: getattr(self, each.name) for each in fields(self)}  # as files hold them
+            vars(self).update({name: tuple(value) for name, value in lists.items() if isinstance(value, list)})
             if own is not None:
                 own(self)
             vars(self).update(position=checked_finite("position", self.position, "m"))

@@ -1,7 +1,11 @@
-"""Bars between base and ground given by their branches: flag-shaped, with a gap, and multi-linear elastic."""
+"""Bars between base and ground given by their branches: flag-shaped, with a gap, and multi-linear elastic.
+
+The metadata of a field are what files and the page say of it.
+"""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +15,15 @@ from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal._element_law import Branch, BranchEnd, ElementLaw
 from rockflex.modal._elements import checked_post_yield_ratio
+
+
+def about(description: str, unit: str = "", **more: Any) -> dict[str, Any]:
+    """Return the metadata of a field: its description, which completes "it must be ...", and its unit."""
+    return {"description": description, "unit": unit, **more}
+
+
+POSITION = about("the distance to the right of the axis of the masses", "m")
+ONLY_PULLS = about("whether the bar cannot push")
 
 
 @dataclass(frozen=True, repr=False)
@@ -50,12 +63,14 @@ class FlagShapedBar(ElementLaw):
     220000
     """
 
-    stiffness: float
-    yield_force: float
-    post_yield_ratio: float
-    flag_depth: float
-    position: float = 0.0
-    tension_only: bool = False
+    title: ClassVar[str] = "Flag-shaped bar"
+
+    stiffness: float = field(metadata=about("the elastic stiffness", "N/m"))
+    yield_force: float = field(metadata=about("the force at which the upper plateau begins", "N"))
+    post_yield_ratio: float = field(metadata=about("the stiffness after yielding over the elastic one"))
+    flag_depth: float = field(metadata=about("the height of the loop over the yield force"))
+    position: float = field(default=0.0, metadata=POSITION)
+    tension_only: bool = field(default=False, metadata=ONLY_PULLS)
 
     def __post_init__(self) -> None:
         ratio = checked_post_yield_ratio(self.post_yield_ratio)
@@ -152,10 +167,12 @@ class GapBar(ElementLaw):
     400000.0
     """
 
-    stiffness: float
-    gap: float
-    position: float = 0.0
-    both_ways: bool = False
+    title: ClassVar[str] = "Bar with a gap"
+
+    stiffness: float = field(metadata=about("the stiffness beyond the gap", "N/m"))
+    gap: float = field(metadata=about("the elongation from which the bar is stretched", "m"))
+    position: float = field(default=0.0, metadata=POSITION)
+    both_ways: bool = field(default=False, metadata=about("whether it acts when it is shortened, too"))
 
     def __post_init__(self) -> None:
         vars(self).update(
@@ -198,10 +215,12 @@ class MultilinearBar(ElementLaw):
     125000.0
     """
 
-    elongations: tuple[float, ...]
-    forces: tuple[float, ...]
-    position: float = 0.0
-    tension_only: bool = False
+    title: ClassVar[str] = "Multi-linear elastic bar"
+
+    elongations: tuple[float, ...] = field(metadata=about("the elongations of the points", "m"))
+    forces: tuple[float, ...] = field(metadata=about("the forces at these elongations", "N"))
+    position: float = field(default=0.0, metadata=POSITION)
+    tension_only: bool = field(default=False, metadata=ONLY_PULLS)
 
     def __post_init__(self) -> None:
         for name in ("elongations", "forces"):
@@ -222,6 +241,14 @@ class MultilinearBar(ElementLaw):
     def branches(self) -> Mapping[str, Branch]:
         """Return a branch for each piece."""
         return pieces([0.0, *self.elongations], [0.0, *self.forces], mirrored=not self.tension_only)
+
+
+BARS: dict[str, type[ElementLaw]] = {
+    "flag_shaped_bar": FlagShapedBar,
+    "gap_bar": GapBar,
+    "multilinear_bar": MultilinearBar,
+}
+"""The classes of this module by the names of their kinds in files."""
 
 
 def pieces(elongations: Sequence[float], forces: Sequence[float], *, mirrored: bool) -> dict[str, Branch]:

@@ -12,8 +12,9 @@ from rockflex._arrays import Array
 # vertical acceleration of the ground.
 TIME, SIDE, GROUND, RISE, HEADER = 0, 1, 2, 3, 4
 
-# Branches of many elements are kept in the state as a few numbers.
-BASE, DIGITS = 8, 17  # a double holds 17 octal digits exactly
+# Branches of many springs and elements are kept in the state as digits of a few numbers.
+BASES = 8, 64  # the least in which all branches are digits; an element has at most 32
+BITS = 51  # of a number, that a double holds exactly
 SHIFT = 1  # the lowest branch is -1
 
 
@@ -118,19 +119,25 @@ def layout_of(
     return StateLayout(modes, *base, core, core + 1, core + 2, core + 3, swept, memory, n_internal, moving, size)
 
 
-def codes_for(size: int) -> int:
+def digits_of(base: int) -> int:
+    """Return how many digits a number has."""
+    return BITS // (base.bit_length() - 1)
+
+
+def codes_for(size: int, base: int) -> int:
     """Return how many numbers hold the branches of `size` elements."""
-    return -(-size // DIGITS)
+    return -(-size // digits_of(base))
 
 
-def code_of(branches: tuple[int, ...]) -> tuple[float, ...]:
-    """Return the numbers that stand for branches from -1 to 6."""
-    parts = (branches[first : first + DIGITS] for first in range(0, len(branches), DIGITS))
-    return tuple(float(sum((branch + SHIFT) * BASE**k for k, branch in enumerate(part))) for part in parts)
+def code_of(branches: tuple[int, ...], base: int) -> tuple[float, ...]:
+    """Return the numbers that stand for branches from -1 to base - 2."""
+    digits = digits_of(base)
+    parts = (branches[first : first + digits] for first in range(0, len(branches), digits))
+    return tuple(float(sum((branch + SHIFT) * base**k for k, branch in enumerate(part))) for part in parts)
 
 
-def decoded(codes: Array, size: int) -> NDArray[np.int64]:
-    """Return the branches of `size` elements from their numbers, (n, codes_for(size)), as (n, size)."""
-    whole = codes.astype(np.int64)
-    columns = [whole[:, k // DIGITS] // BASE ** (k % DIGITS) % BASE - SHIFT for k in range(size)]
+def decoded(codes: Array, size: int, base: int) -> NDArray[np.int64]:
+    """Return the branches of `size` elements from their numbers, (n, codes_for(size, base)), as (n, size)."""
+    whole, digits = codes.astype(np.int64), digits_of(base)
+    columns = [whole[:, k // digits] // base ** (k % digits) % base - SHIFT for k in range(size)]
     return np.array(columns, dtype=np.int64).reshape(size, len(codes)).T

@@ -29,7 +29,18 @@ from rockflex.models._elements import (
     set_off,
 )
 from rockflex.models._impact import ImpactLaw
-from rockflex.models._layout import HEADER, SIDE, TIME, StateLayout, code_of, codes_for, decoded, layout_of
+from rockflex.models._layout import (
+    BASES,
+    HEADER,
+    SHIFT,
+    SIDE,
+    TIME,
+    StateLayout,
+    code_of,
+    codes_for,
+    decoded,
+    layout_of,
+)
 from rockflex.models._phase import BaseEquations, BorderedSystem, Key
 
 MAX_PHASES = 1000  # whose equations of motion are kept
@@ -92,7 +103,7 @@ class ModalModel(Value):
             self.properties.n_modes,
             integrated=self.integrated,
             viscous=any(isinstance(each, Dashpot) for each in self.elements),
-            n_internal=internal_count(self.elements) + codes_for(len(self.attached_places)),
+            n_internal=internal_count(self.elements) + codes_for(len(self.attached_places), self.code_base),
         )
 
     @cached_property
@@ -104,6 +115,12 @@ class ModalModel(Value):
     def attached_places(self) -> tuple[int, ...]:
         """The places of attached elements and stories among the elements."""
         return tuple(place for place, each in enumerate(self.elements) if each.position is None)
+
+    @cached_property
+    def code_base(self) -> int:
+        """Base of the numbers whose digits are the branches of springs and elements."""
+        most = max((max(each.branches) for each in self.elements), default=0)
+        return next(base for base in BASES if most + SHIFT < base)
 
     @cached_property
     def attached(self) -> dict[int, Array]:
@@ -168,7 +185,7 @@ class ModalModel(Value):
 
     def marks(self, key: Key) -> tuple[float, ...]:
         """Return the last internal variables of the state, which tell the branches of attached elements."""
-        return code_of(tuple(key[1 + place] for place in self.attached_places))
+        return code_of(tuple(key[1 + place] for place in self.attached_places), self.code_base)
 
     def element_key(self, key: Key) -> Key:
         """Return the branches of the base and of the elements, without those that a kind of ground adds."""
@@ -184,8 +201,9 @@ class ModalModel(Value):
         branches[:, 0] = side
         known = internal_places(self.elements)
         first = HEADER + self.layout.memory + internal_count(self.elements)
-        codes = states[:, first : first + codes_for(len(self.attached_places))]
-        attached = dict(zip(self.attached_places, decoded(codes, len(self.attached_places)).T, strict=True))
+        codes = states[:, first : first + codes_for(len(self.attached_places), self.code_base)]
+        branches_of = decoded(codes, len(self.attached_places), self.code_base).T
+        attached = dict(zip(self.attached_places, branches_of, strict=True))
         for place, each in enumerate(self.elements):
             if place in attached:
                 branches[:, 1 + place] = attached[place]

@@ -46,7 +46,7 @@ class SlidingModel(LinearModel):
     @cached_property
     def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Layout of the state vector."""
-        n_internal = internal_count(self.elements) + codes_for(len(self.attached_places)) + 1
+        n_internal = internal_count(self.elements) + codes_for(len(self.attached_places), self.code_base) + 1
         return layout_of(self.properties.n_modes, n_internal=n_internal, slides=True)
 
     @property

@@ -58,7 +58,7 @@ class SpringModel(LinearModel):
     @cached_property
     def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Layout of the state vector."""
-        n_internal = internal_count(self.elements) + codes_for(self._key_size)
+        n_internal = internal_count(self.elements) + codes_for(self._key_size, self.code_base)
         return layout_of(self.properties.n_modes, n_internal=n_internal, slides=self.friction is not None, heaves=True)
 
     @property
@@ -97,7 +97,7 @@ class SpringModel(LinearModel):
         """Return the branches at the states of a history, shape (n, K)."""
         first = HEADER + self.layout.memory + internal_count(self.elements)
         codes = states[:, first : HEADER + self.layout.size]
-        return np.column_stack((np.zeros(side.size, dtype=np.int64), decoded(codes, self._key_size)))
+        return np.column_stack((np.zeros(side.size, dtype=np.int64), decoded(codes, self._key_size, self.code_base)))
 
     def lifted(self, states: Array) -> Bools:
         """Return which springs the base has left at the states of a history, shape (n, n_springs)."""
@@ -257,7 +257,7 @@ class SpringModel(LinearModel):
 
     def marks(self, key: Key) -> tuple[float, ...]:
         """Return the last internal variables of the state, which tell all branches."""
-        return code_of(key[1:])
+        return code_of(key[1:], self.code_base)
 
     @property
     def _weight(self) -> float:

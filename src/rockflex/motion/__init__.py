@@ -22,7 +22,7 @@ from rockflex.motion._pulses import (
     ricker_pulse,
 )
 from rockflex.motion._read_suite import OnError, Vertical, read_components_by_file, read_suite, record_files_in_folder
-from rockflex.motion._readers import read_components, read_motion, read_motion_without_obspy
+from rockflex.motion._readers import FORMATS, RecordFormat, read_components, read_motion, read_motion_without_obspy
 from rockflex.motion._record_info import RecordInfo, component_direction
 from rockflex.motion._recordings import (
     Combination,
@@ -39,6 +39,7 @@ from rockflex.motion._targets import asce7_site_spectrum, asce7_spectrum, ec8_se
 from rockflex.motion._text import UNITS, acceleration_in_text
 
 __all__ = [
+    "FORMATS",
     "MEASURES",
     "UNITS",
     "Combination",
@@ -46,6 +47,7 @@ __all__ = [
     "IntensityMeasure",
     "MeasureInput",
     "OnError",
+    "RecordFormat",
     "RecordInfo",
     "RecordSurvey",
     "ResponseSpectrum",

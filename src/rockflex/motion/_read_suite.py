@@ -59,7 +59,7 @@ def record_files_in_folder(folder: Path) -> list[Path]:
     if not files:
         raise InputError(
             f"{folder} holds no record: no file ends in {', '.join(RECORD_SUFFIXES)}, or begins as a file in one "
-            f"of the formats {first_texts_shown([name for name, _, _ in FORMATS])}."
+            f"of the formats {first_texts_shown(list(FORMATS))}."
         )
     return sorted(files)
 

@@ -1,6 +1,8 @@
 """Reading a record file: the content decides on the format."""
 
 import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +10,7 @@ import numpy as np
 from rockflex._checks import checked_instance, checked_positive
 from rockflex._errors import InputError, RecordWarning
 from rockflex._files import checked_file_path
+from rockflex._registry import Catalogue
 from rockflex._shown import shown
 from rockflex.motion import _obspy, _text
 from rockflex.motion._at2 import find_at2_header, parse_at2
@@ -18,12 +21,44 @@ from rockflex.motion._geonet import is_geonet, parse_geonet
 from rockflex.motion._ground_motion import GroundMotion, info_of, is_vertical_component
 from rockflex.motion._knet import is_knet, parse_knet
 
-# Formats that state unit and step, each known by its first lines, whatever the suffix of the file.
-FORMATS = (
-    ("K-NET", is_knet, parse_knet),
-    ("ESM", is_esm, parse_esm),
-    ("COSMOS", is_cosmos, parse_cosmos),
-    ("GeoNet", is_geonet, parse_geonet),
+
+@dataclass(frozen=True)
+class RecordFormat:
+    """A format of text files that states the unit and the time step, known by its first lines whatever the suffix.
+
+    A package adds one by an entry point of the group ``rockflex.readers``; in a session, an entry of `FORMATS` does.
+
+    Attributes
+    ----------
+    name : str
+        Name in messages.
+    known : callable
+        Whether the lines of a file, which are at least one, begin as this format does and no other; folders ask with
+        the lines within the first 4 KiB.
+    parse : callable
+        Returns all components of a file from its path and its lines, of which some may be empty, as a list of
+        `GroundMotion` in m/s². It raises an `InputError` that names the file and the line if the file is not whole.
+
+    Examples
+    --------
+    >>> from rockflex.motion import FORMATS
+    >>> list(FORMATS)
+    ['K-NET', 'ESM', 'COSMOS', 'GeoNet']
+    """
+
+    name: str
+    known: Callable[[list[str]], bool]
+    parse: Callable[[Path, list[str]], list[GroundMotion]]
+
+
+FORMATS = Catalogue[RecordFormat](
+    (
+        RecordFormat("K-NET", is_knet, parse_knet),
+        RecordFormat("ESM", is_esm, parse_esm),
+        RecordFormat("COSMOS", is_cosmos, parse_cosmos),
+        RecordFormat("GeoNet", is_geonet, parse_geonet),
+    ),
+    "readers",
 )
 PEAK_TOLERANCE = 0.01  # relative difference that the printing of a header explains
 PRINTED_DIGIT = 1e-5  # m/s², the last digit of peaks in K-NET headers, 0.001 gal
@@ -190,7 +225,7 @@ def components_in_file(
 
 def is_of_a_network(lines: list[str]) -> bool:
     """Return whether lines of text begin as a file in one of `FORMATS` does."""
-    return any(known(lines) for _, known, _ in FORMATS)
+    return any(each.known(lines) for each in FORMATS.values())
 
 
 def _read_components(
@@ -206,13 +241,13 @@ def _read_components(
         if not _obspy.is_obspy_installed():
             raise InputError(f"{file} is a binary file, but a record is expected as text or .xlsx. {_obspy.INSTALL}")
     lines = _text.text_lines(file, content)
-    for form, known, parse in FORMATS:
-        if known(lines):
-            found = parse(file, lines)
+    for form in FORMATS.values():
+        if form.known(lines):
+            found = form.parse(file, lines)
             if units is not None and not common:
                 raise InputError(
-                    f"{file} is a file in the {form} format, which states its unit, but units={shown(str(units))} was "
-                    "given. Leave units out.",
+                    f"{file} is a file in the {form.name} format, which states its unit, but units="
+                    f"{shown(str(units))} was given. Leave units out.",
                     field="units",
                 )
             return found if common else _with_stated_step(file, found, dt)

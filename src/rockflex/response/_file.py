@@ -17,12 +17,10 @@ from rockflex._files import check_regular_file, write_file_atomically
 from rockflex._registry import registered
 from rockflex._shown import shown
 from rockflex.modal import (
+    BARS,
     BaseElement,
-    FlagShapedBar,
     FloorModes,
     FrictionDamper,
-    GapBar,
-    MultilinearBar,
     RockingProperties,
     Springs,
     Tendon,
@@ -86,7 +84,7 @@ SPRINGS = ("positions", "stiffness", "damping", "area")
 FLOOR_MODES = ("heights", "displacement", "force")
 ELEMENTS: tuple[type[BaseElement], ...] = (
     *(Tendon, YieldingDissipator, ViscousDamper, FrictionDamper),
-    *(FlagShapedBar, GapBar, MultilinearBar),
+    *BARS.values(),
 )
 FLOOR_PEAKS = ("story_drift", "story_shear", "floor_acceleration", "total_floor_displacement")
 

@@ -4,14 +4,13 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, SupportsIndex
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, SupportsIndex
 
 from pydantic import Field, model_validator
 
-from rockflex._checks import checked_in_range, checked_positive, is_one_of
+from rockflex._checks import checked_in_range, checked_positive
 from rockflex._errors import InputError
-from rockflex._shown import shown
-from rockflex.fragility import LIMIT_STATES, OVERTURNING
+from rockflex.fragility import OVERTURNING, limit_state_named
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import scalable_measure
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, Structures
@@ -19,7 +18,7 @@ from rockflex.study._plan import CrossPlan, run_plan
 from rockflex.study._result_tables import Columns, Row, Table, joined_tables
 from rockflex.study._run_matrix import StudyMatrix, check_base_can_lift, study_matrix
 from rockflex.study.progress import ProgressChoice
-from rockflex.study.spec import FreeVibration, StructuresStudySpec
+from rockflex.study.spec import FreeVibration, StructuresStudySpec, validator_of_check
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -115,8 +114,6 @@ class ScaleLadder:
         }
 
 
-Limit = Literal["overturning", "nominal"]
-
 MAX_SCALE_RATIO = 1e12  # the last scale over the first
 
 
@@ -143,7 +140,9 @@ class IncrementalStudy(StructuresStudySpec):
     largest_scale: float = Field(20.0, description="the last factor on the acceleration, a number")
     growth: float = Field(1.15, description="each factor over the one before, a number above 1")
     tolerance: float = Field(0.01, description="the relative width to which bisection narrows a boundary, a number")
-    limit: Limit = Field("overturning", description='"overturning" (|θ| = π/2) or "nominal" (|θ| > 0.7 atan(B/h*_1))')
+    limit: Annotated[str, validator_of_check(limit_state_named)] = Field(
+        "overturning", description='the name of a limit state, such as "overturning" (|θ| = π/2)'
+    )
 
     @model_validator(mode="after")
     def _ladder(self) -> "IncrementalStudy":
@@ -168,7 +167,7 @@ class IncrementalPlan(CrossPlan):
     exact_count = False
     units = "ladders"
 
-    def __init__(self, matrix: StudyMatrix, steps: ScaleSteps, limit: Limit, runs_per_chunk: int) -> None:
+    def __init__(self, matrix: StudyMatrix, steps: ScaleSteps, limit: str, runs_per_chunk: int) -> None:
         check_scale_ladder(*steps)
         check_base_can_lift(matrix, "a base that cannot lift, so nothing overturns it")
         self.steps, self.limit = steps, limit
@@ -204,12 +203,12 @@ class IncrementalPlan(CrossPlan):
 
     def _ladder(self, unit: int) -> dict[str, list[Any]]:
         structure, record, model, _ = self.run_of(unit)
-        state, runs = LIMIT_STATES[self.limit], dict[float, Any]()
+        state, runs = limit_state_named(self.limit), dict[float, Any]()
 
         def overturns(scale: float) -> bool | None:
             runs[scale] = self.matrix.results([(structure, record, model, scale)])
             row = {name: values[0] for name, values in runs[scale].items()}
-            return None if row["status"] is None else OVERTURNING.exceeded(row) or state.exceeded(row)
+            return None if row["status"] is None else bool(OVERTURNING.exceeded(row) or state.exceeded(row))
 
         ladder = ScaleLadder(overturns, self.steps.growth, self.steps.tolerance)
         ladder.search(self.scales)
@@ -243,7 +242,7 @@ def run_incremental(
     largest_scale: float = 20.0,
     growth: float = 1.15,
     tolerance: float = 0.01,
-    limit: Limit = "overturning",
+    limit: str = "overturning",
     free_vibration: float | Literal["settle"] = "settle",
     bouc_wen: BoucWen | None = None,
     impact: ImpactLaw | None = None,
@@ -267,7 +266,8 @@ def run_incremental(
     tolerance
         Relative width of the boundaries.
     limit
-        ``"overturning"``: |θ| reaches π/2; ``"nominal"``: it passes 0.7 atan(B/h*_1).
+        Name of a limit state: ``"overturning"``: |θ| reaches π/2; ``"nominal"``: it passes 0.7 atan(B/h*_1); or
+        another one of `rockflex.fragility.LIMIT_STATES`.
     progress
         As in `run_cloud`, counted in ladders: all runs of a structure, a record and a model.
 
@@ -296,8 +296,7 @@ def run_incremental(
     matrix = study_matrix(
         structures, motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground
     )
-    if not is_one_of(limit, ("overturning", "nominal")):
-        raise InputError(f'limit must be "overturning" or "nominal", but {shown(limit)} was given.')
+    limit_state_named(limit)
     steps = ScaleSteps(smallest_scale, largest_scale, growth, tolerance)
     return run_plan(IncrementalPlan(matrix, steps, limit, 64), workers, progress)
 

@@ -1,9 +1,6 @@
 """The specification of a study in a file: the keys that all kinds share."""
 
-import hashlib
-import inspect
 import math
-import sys
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fnmatch import fnmatchcase
@@ -15,6 +12,7 @@ from pydantic import AfterValidator, Field, InstanceOf, PrivateAttr, ValidationE
 
 from rockflex._errors import InputError
 from rockflex._json import as_json_value
+from rockflex._registry import source_checksum
 from rockflex._schema import (
     IMPACT,
     PLAIN,
@@ -30,7 +28,7 @@ from rockflex._schema import (
 from rockflex._shown import shown
 from rockflex.modal import Ground, RockingProperties, Springs, asce41_bed, winkler_bed
 from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, VVELSimplified, parse_model
-from rockflex.motion import OnError, Suite, Vertical, load_suite, read_suite
+from rockflex.motion import MEASURES, OnError, Suite, Vertical, load_suite, read_suite
 from rockflex.structure.file import StructureEntry, TomlTable, toml_problem_sentences
 from rockflex.study._arguments import (
     WORK_LIMIT,
@@ -297,16 +295,28 @@ def impact_law_document(law: ImpactLaw) -> dict[str, Any]:
 def impact_law_checksum(law: ImpactLaw) -> dict[str, str]:
     """Return the SHA-256 of the module that defines the class of a law; an empty dictionary for laws of rockflex."""
     kind = type(law)
-    if kind.__module__.partition(".")[0] == __name__.partition(".")[0]:
-        return {}
     try:
-        source = inspect.getsource(sys.modules[kind.__module__])
-    except (OSError, TypeError, KeyError) as error:
+        found = source_checksum(kind)
+    except LookupError as error:
         raise InputError(
             f"The impact law {kind.__qualname__} is not defined in a file, so a study that is resumed cannot check "
             "that it is the same. Put it into a module (a .py file) and import it, or run the study without a folder."
         ) from error
-    return {f"impact, {kind.__module__}": hashlib.sha256(source.encode()).hexdigest()}
+    return {} if found is None else {f"impact, {kind.__module__}": found}
+
+
+def added_checksums(study: type) -> dict[str, str]:
+    """Return the SHA-256 of the sources of a class of studies and of measures that are not of rockflex."""
+    parts: dict[str, Any] = {"study": study} | {f"measure {name}": each.of for name, each in MEASURES.added.items()}
+    found = dict[str, str]()
+    for name, part in parts.items():
+        try:
+            checksum = source_checksum(part)
+        except LookupError:  # as in a notebook
+            checksum = "not in a file"
+        if checksum is not None:
+            found[f"{name}, {part.__module__}"] = checksum
+    return found
 
 
 def _impact_law_value(name: str, value: Any, kind: type) -> Any:
@@ -384,8 +394,16 @@ class StudySpec(TomlTable):
         return as_json_value(self.model_dump(exclude_none=True))
 
     def checksums(self) -> dict[str, str]:
-        """Return the SHA-256 of the numbers in each file that a structure names, by its key in the document."""
-        return {}
+        """Return the SHA-256 of what the study needs besides its document and records, by its key or module.
+
+        These are files that a structure names, and sources that are not of rockflex.
+
+        Raises
+        ------
+        InputError
+            If a user-defined impact law is not defined in a file.
+        """
+        return added_checksums(type(self))
 
     @property
     def file(self) -> Path | None:
@@ -419,14 +437,15 @@ class RunsStudySpec(RunOptionKeys, StudySpec):
         return self.model_copy(update={"impact": None}).document() | {"impact": impact_law_document(self.impact)}
 
     def checksums(self) -> dict[str, str]:
-        """Return the SHA-256 of the source of a user-defined impact law.
+        """Return the SHA-256 of what the study needs besides its document and records, by its key or module.
 
         Raises
         ------
         InputError
-            If that law is not defined in a file.
+            If a user-defined impact law is not defined in a file.
         """
-        return {} if self.impact is None or isinstance(self.impact, str) else impact_law_checksum(self.impact)
+        law = {} if self.impact is None or isinstance(self.impact, str) else impact_law_checksum(self.impact)
+        return super().checksums() | law
 
     def study_options(self, *, friction: bool = False) -> StudyOptions:
         """Return the options that all runs share."""
@@ -443,7 +462,7 @@ class StructuresStudySpec(RunsStudySpec):
     structures: list[StructureEntry] = Field(min_length=1, description="one or more tables [[structures]]")
 
     def checksums(self) -> dict[str, str]:
-        """Return the SHA-256 of the numbers in each file that a structure names, and of a user-defined impact law."""
+        """Return the SHA-256 of what the study needs besides its document and records, by its key or module."""
         files = {
             f"structures[{place}].{key}": value
             for place, entry in enumerate(self.structures)

@@ -9,7 +9,7 @@ from pydantic import Field
 from rockflex._checks import checked_positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.fragility import NOMINAL, OVERTURNING, TENDON_YIELD, UPLIFT, LimitState, rotation_limit_state
+from rockflex.fragility import LIMIT_STATES, LimitState, rotation_limit_state
 from rockflex.motion import scalable_measure
 from rockflex.study._arguments import checked_positive_numbers
 from rockflex.study._plan import CrossPlan
@@ -21,9 +21,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-COUNTED = (OVERTURNING, NOMINAL, TENDON_YIELD, UPLIFT)
-
-StripeLimit: TypeAlias = Literal["overturning", "nominal", "tendon_yield", "uplift"] | float | LimitState
+StripeLimit: TypeAlias = str | float | LimitState
 
 
 class StripeStudy(StructuresStudySpec):
@@ -99,8 +97,9 @@ def stripe_counts(runs: "pd.DataFrame", limit: StripeLimit = "overturning") -> "
     runs
         The table of a `StripeStudy`.
     limit
-        ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"tendon_yield"``, ``"uplift"``, a
-        rotation in rad, or a limit state such as ``rockflex.fragility.residual_rotation_limit_state(0.005)``.
+        Name of a limit state: ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)),
+        ``"tendon_yield"``, ``"uplift"``, or another one of `rockflex.fragility.LIMIT_STATES`; a rotation in rad; or a
+        limit state such as ``rockflex.fragility.residual_rotation_limit_state(0.005)``.
 
     Returns
     -------
@@ -139,8 +138,7 @@ def stripe_limit_state(limit: StripeLimit) -> LimitState:
         return limit
     if not isinstance(limit, str):
         return rotation_limit_state(checked_positive("limit", limit, "rad"))
-    state = next((each for each in COUNTED if each.name == limit), None)
-    if state is None:
-        words = ", ".join(f'"{each.name}"' for each in COUNTED)
+    if limit not in LIMIT_STATES:
+        words = ", ".join(f'"{each}"' for each in LIMIT_STATES)
         raise InputError(f"limit must be {words}, a LimitState or a rotation in rad, but {shown(limit)} was given.")
-    return state
+    return LIMIT_STATES[limit]

@@ -10,17 +10,15 @@ from pydantic import Field, create_model, model_validator
 
 from rockflex._errors import InputError
 from rockflex._files import check_regular_file, checked_file_path
-from rockflex._registry import registered
-from rockflex._schema import PLAIN, Eccentricity, SchemaKey, one_for_each
+from rockflex._registry import registered, source_checksum
+from rockflex._schema import NUMBER, PLAIN, WHOLE, Eccentricity, SchemaKey, one_for_each
 from rockflex._shown import shortened
 from rockflex.modal import (
+    BARS,
     PLACE,
     BaseElement,
     ElementLaw,
-    FlagShapedBar,
     FrictionDamper,
-    GapBar,
-    MultilinearBar,
     RockingProperties,
     Tendon,
     ViscousDamper,
@@ -44,14 +42,18 @@ from rockflex.structure.file._structure_tables import (
     TaperedTowerTable,
     WallFrameTable,
 )
-from rockflex.structure.file._toml_table import AnyTable, TomlTable, first_table_in_annotation, parse_toml_table
+from rockflex.structure.file._toml_table import (
+    AnyTable,
+    TomlTable,
+    first_table_in_annotation,
+    members_of_annotation,
+    parse_toml_table,
+)
 
 _POST_YIELD_RATIO = "the stiffness after yielding over the elastic one"
 _POSITION = SchemaKey("the distance to the right of the axis of the masses", "m")
-_ELEMENT_KINDS = (
-    *("tendon", "yielding_dissipator", "viscous_damper", "friction_damper"),
-    *("flag_shaped_bar", "gap_bar", "multilinear_bar", *registered("elements")),
-)
+LAWS: dict[str, type[ElementLaw]] = BARS | registered("elements")
+_ELEMENT_KINDS = ("tendon", "yielding_dissipator", "viscous_damper", "friction_damper", *LAWS)
 _ELEMENT_KIND = SchemaKey(
     ", ".join(f'"{kind}"' for kind in _ELEMENT_KINDS[:-1]) + f' or "{_ELEMENT_KINDS[-1]}"', form=PLAIN
 )
@@ -64,6 +66,7 @@ class ElementTable(TomlTable):
 
     makes: ClassVar[Callable[..., BaseElement]]
     title: ClassVar[str]
+    tuples: ClassVar[tuple[str, ...]] = ()  # keys whose lists are tuples in the element, which sees to that itself
 
     between: Annotated[
         list[int] | None,
@@ -156,60 +159,36 @@ class FrictionDamperTable(ElementTable):
     force: Annotated[float, SchemaKey("the force at which the damper slides", "N")]
 
 
-class FlagShapedBarTable(ElementTable):
-    """The arguments of `FlagShapedBar`."""
-
-    makes = FlagShapedBar
-    title = "Flag-shaped bar"
-
-    kind: Annotated[Literal["flag_shaped_bar"], _ELEMENT_KIND]
-    position: Annotated[float, _POSITION] = 0.0
-    stiffness: Annotated[float, SchemaKey("the elastic stiffness", "N/m")]
-    yield_force: Annotated[float, SchemaKey("the force at which the upper plateau begins", "N")]
-    post_yield_ratio: Annotated[float, SchemaKey(_POST_YIELD_RATIO)]
-    flag_depth: Annotated[float, SchemaKey("the height of the loop over the yield force")]
-    tension_only: Annotated[bool, SchemaKey("whether the bar cannot push", form="true or false: {}")] = False
-
-
-class GapBarTable(ElementTable):
-    """The arguments of `GapBar`."""
-
-    makes = GapBar
-    title = "Bar with a gap"
-
-    kind: Annotated[Literal["gap_bar"], _ELEMENT_KIND]
-    position: Annotated[float, _POSITION] = 0.0
-    stiffness: Annotated[float, SchemaKey("the stiffness beyond the gap", "N/m")]
-    gap: Annotated[float, SchemaKey("the elongation from which the bar is stretched", "m")]
-    both_ways: Annotated[bool, SchemaKey("whether it acts when it is shortened, too", form="true or false: {}")] = False
-
-
-class MultilinearBarTable(ElementTable):
-    """The arguments of `MultilinearBar`."""
-
-    makes = MultilinearBar
-    title = "Multi-linear elastic bar"
-
-    kind: Annotated[Literal["multilinear_bar"], _ELEMENT_KIND]
-    position: Annotated[float, _POSITION] = 0.0
-    elongations: Annotated[list[float], SchemaKey("the elongations of the points", "m", form=one_for_each("point"))]
-    forces: Annotated[list[float], SchemaKey("the forces at these elongations", "N", form=one_for_each("point"))]
-    tension_only: Annotated[bool, SchemaKey("whether the bar cannot push", form="true or false: {}")] = False
+_FORMS = {
+    float: NUMBER,
+    int: WHOLE,
+    bool: "true or false: {}",
+    str: "{}, a text in quotes",
+    list[float]: "{}, a list of numbers{unit}",
+}
 
 
 def registered_table(made: Any, base: type[AnyTable], **more: Any) -> type[AnyTable]:
-    """Return the table of a class of another package, a dataclass, from its fields."""
+    """Return the table of a class, a dataclass, from its fields.
+
+    The metadata of a field may hold its "description", its "unit", and the least and largest number that the page
+    accepts, "low" and "high".
+    """
     hints = get_type_hints(made)
-    keys: dict[str, Any] = {
-        part.name: (
-            Annotated[list[float] if get_origin(hints[part.name]) is tuple else hints[part.name], SchemaKey(part.name)],
-            ... if part.default is MISSING else part.default,
-        )
-        for part in fields(made)
-        if part.name not in base.model_fields
-    }
+    keys: dict[str, Any] = {}
+    for part in fields(made):
+        if not part.init or part.name in base.model_fields:
+            continue
+        kind = list[float] if get_origin(hints[part.name]) is tuple else hints[part.name]
+        first = members_of_annotation(kind)[0]
+        said: dict[str, Any] = {"description": part.name, "form": _FORMS.get(first, PLAIN), **part.metadata}
+        default: Any = ... if part.default is MISSING else part.default
+        if part.default_factory is not MISSING:
+            default = Field(default_factory=part.default_factory)
+        keys[part.name] = Annotated[kind, SchemaKey(**said)], default
     found: Any = create_model(f"{made.__name__}Table", __base__=base, **keys, **more)
-    found.makes, found.title = made, made.__name__
+    found.makes, found.title = made, getattr(made, "title", "") or made.__name__
+    found.tuples = tuple(name for name in keys if get_origin(hints[name]) is tuple)
     return found
 
 
@@ -222,11 +201,11 @@ ELEMENTS: dict[str, type[ElementTable]] = {
     "yielding_dissipator": YieldingDissipatorTable,
     "viscous_damper": ViscousDamperTable,
     "friction_damper": FrictionDamperTable,
-    "flag_shaped_bar": FlagShapedBarTable,
-    "gap_bar": GapBarTable,
-    "multilinear_bar": MultilinearBarTable,
-} | {kind: _element_table(kind, law) for kind, law in registered("elements").items()}
+    **{kind: _element_table(kind, law) for kind, law in LAWS.items()},
+}
 """The table of each kind of element by its name in a file."""
+
+ELEMENT_NAMES = {table: kind for kind, table in ELEMENTS.items()}
 
 AnyElementTable: TypeAlias = Annotated[Union[tuple(ELEMENTS.values())], Field(discriminator="kind")]  # pyright: ignore # noqa: UP007
 """The table of any element, chosen by its `kind`."""
@@ -372,13 +351,19 @@ class _OwnStructures(TomlTable):
     def checksums(self, folder: Path | str = "") -> dict[str, str]:
         """SHA-256 of the numbers in each file that the structure is built from, by its key, such as "matrices.mass".
 
+        With those of the sources of structures and elements of other packages, by the name of their kind.
+
         Raises
         ------
         InputError
             If a file of numbers cannot be read.
         """
         files = self.table.files(Path(folder))
-        return {f"{self.kind}.{name}": matrix_file_checksum(name, path) for name, path in files.items()}
+        found = {f"{self.kind}.{name}": matrix_file_checksum(name, path) for name, path in files.items()}
+        made: dict[str, Any] = {self.kind: type(self.table).makes}
+        made |= {ELEMENT_NAMES[type(each)]: type(each).makes for each in self.elements or []}
+        sources = {f"source of {kind}": source_checksum(each) for kind, each in made.items()}
+        return found | {kind: each for kind, each in sources.items() if each is not None}
 
     def describe(self) -> dict[str, Any]:
         """Return the values of the structure's table, and everything else that is given, but for the name."""

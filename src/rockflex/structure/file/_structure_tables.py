@@ -152,6 +152,7 @@ class StructureTable(TomlTable):
 
     makes: ClassVar[Callable[..., Built]]
     title: ClassVar[str]
+    tuples: ClassVar[tuple[str, ...]] = ()  # keys whose lists `makes` takes as tuples
 
     def build(self, folder: Path) -> Built:
         """Build the structure; the paths of other files are relative to `folder`.
@@ -161,7 +162,8 @@ class StructureTable(TomlTable):
         InputError
             If a value is outside its range, or the values contradict each other.
         """
-        return type(self).makes(**self.arguments(folder))
+        given = self.arguments(folder)
+        return type(self).makes(**given | {name: tuple(given[name]) for name in self.tuples if name in given})
 
     def values(self) -> dict[str, Any]:
         """Return the given values, and the defaults of the others."""

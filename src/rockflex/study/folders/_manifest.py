@@ -187,7 +187,7 @@ class StudyManifest:
         changed = specification_differences(self.checksums, given.checksums)
         if changed:
             raise InputError(
-                f"{folder} holds this study with another record, matrix or impact law. Checksums that differ:"
+                f"{folder} holds this study with another record, matrix, source or impact law. Checksums that differ:"
                 f"{listed_differences(changed)}\nUse the same files, or give another folder."
             )
         now = _compared_versions(given.versions)

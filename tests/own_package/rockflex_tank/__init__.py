@@ -1,0 +1,1 @@
+"""Water tanks that rock on flag-shaped bars."""
