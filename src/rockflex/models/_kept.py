@@ -7,11 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex.models._elements import element_force_sums
 from rockflex.models._fields import RockingField
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME
-from rockflex.models._nonlinear import NonlinearModel, Numbers, numbers_of
+from rockflex.models._nonlinear import NonlinearModel, Numbers, field_of, numbers_of
 from rockflex.models._phase import Key
 from rockflex.models._quantities import LINEAR, Quantities, rows_of
 
@@ -103,10 +102,22 @@ def fields_at(
     layout = model.layout
     backwards = layout.velocities(states)[:, 0] < 0.0 if numbers.bouc_wen is not None else np.zeros(side.size, bool)
     for chosen, key in phases_at(model, side, layout.of(states, layout.rotation), states):
-        pulls = element_force_sums(model.properties, model.elements, model.element_key(key))
         for branch, part in ((1, chosen & ~backwards), (-1, chosen & backwards)):
             if part.any():
-                yield part, RockingField(numbers, key[0], branch, pulls, [])
+                yield part, field_of(model, numbers, key, branch)
+
+
+def held_moment(model: RockingModel, states: Array) -> Array:
+    """Return the moment that friction dampers balance while they hold the base at a large rotation, in N m, (n,).
+
+    Over the lever arm factor cos(θ/2) of elements; the states are those of one phase.
+    """
+    rates = rates_of(model, states, accelerations(model, states))
+    motion, (a, a_v) = _apart(states)
+    found = np.zeros(len(states))
+    for chosen, field in fields_at(model, numbers_of(model), states, states[:, SIDE]):
+        found[chosen] = field.imbalance_along(motion[chosen], rates[chosen], a[chosen], a_v[chosen])
+    return found / np.cos(0.5 * model.layout.of(states, model.layout.rotation))
 
 
 def _apart(states: Array) -> tuple[Array, tuple[Array, Array]]:

@@ -10,7 +10,7 @@ import numpy as np
 from rockflex._checks import checked_whole_number, is_one_of
 from rockflex._errors import InputError
 from rockflex._shown import number_with_noun, shown
-from rockflex.modal import FrictionDamper, Ground, RockingProperties
+from rockflex.modal import Ground, RockingProperties
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._ground import check_base, model_on_ground
 from rockflex.models._impact import ImpactLaw, VVELComplete, VVELSimplified, housner
@@ -162,7 +162,6 @@ class Model:
         kept = properties if self.n_modes is None else properties.truncated(self.n_modes)
         self._check_missing_mass(kept)
         self._check_leaning(kept)
-        self._check_friction(kept)
         label = self._check_yielding(kept, bouc_wen)
         if ground is not None and not ground.rigid:
             self._check_ground(label, ground, impact, bouc_wen)
@@ -188,15 +187,6 @@ class Model:
                 f"{self.label} does not take leaning mass, whose columns are hinged and lean by small rotations. Use "
                 f"{replace(self, complete=False, closure=None).label}.",
                 field="model",
-            )
-
-    def _check_friction(self, kept: RockingProperties) -> None:
-        if self.complete and any(isinstance(each, FrictionDamper) and each.force > 0.0 for each in kept.elements):
-            raise InputError(
-                f"{self.label} does not take friction dampers: the moment on a base that they hold at a large rotation "
-                f"is not linear in the motion. Use {replace(self, complete=False, closure=None).label}, or a "
-                "YieldingDissipator with yield_force = F_0 and a stiffness far above that of the structure.",
-                field="elements",
             )
 
     def _check_ground(self, label: str, ground: Ground, impact: ImpactLaw | None, bouc_wen: BoucWen | None) -> None:

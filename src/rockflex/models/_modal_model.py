@@ -14,7 +14,7 @@ from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.modal import RockingProperties, Springs
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._element import Dashpot, Element, Slider
+from rockflex.models._element import Dashpot, Element
 from rockflex.models._elements import (
     CLOSED,
     LEFT,
@@ -23,6 +23,7 @@ from rockflex.models._elements import (
     base_equations_of,
     elements_of,
     first_key,
+    hold_shares,
     internal_count,
     internal_places,
     is_held,
@@ -395,20 +396,16 @@ class ModalModel(Value):
         return rows
 
     def _hold(self, key: Key, rows: Array) -> None:
-        """Add the tensions of friction dampers that hold the base: together they balance all other moments.
-
-        Each takes a part in proportion to its force F_0, as at the instant in which they slide.
-        """
+        """Add the tensions of friction dampers that hold the base: together they balance all other moments."""
+        if self.complete:  # that is not linear in the motion, see `held_moment`
+            return
         side, layout, p = key[0], self.layout, self.properties
         moment = -self.overturning_moment()
         others = base_equations_of(p, self.elements, key, self.gravity)
         moment[layout.rotation] -= others.stiffness[0, 0]
         moment[-1] += others.constant[0]
         moment[layout.memory : layout.memory + layout.n_internal] += others.recall[0]
-        sliders = {k: each for k, each in enumerate(self.elements) if isinstance(each, Slider)}
-        capacity = sum(each.force * abs(arm_of(p, each, side)) for each in sliders.values())
-        for place, each in sliders.items():
-            rows[place] = side * np.sign(arm_of(p, each, side)) * each.force / capacity * moment
+        rows += np.outer(hold_shares(p, self.elements, side), moment)
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,6 @@ from rockflex.models._elements import (
     RIGHT,
     arm_of,
     base_equations_of,
-    element_force_sums,
     internal_places,
     is_in_reach,
     marks_of,
@@ -29,7 +28,7 @@ from rockflex.models._fields import Change, Landing, Reversal, RockingField
 from rockflex.models._impact import Restitution, VVELComplete, VVELSimplified
 from rockflex.models._label import RockingModel
 from rockflex.models._landing import gains_energy, landing_of, shortest_excursion, sided
-from rockflex.models._nonlinear import numbers_of
+from rockflex.models._nonlinear import field_of, numbers_of
 from rockflex.models._phase import Key
 from rockflex.models._quantities import LINEAR, VERTICAL, Quantities, rows_of
 
@@ -103,6 +102,7 @@ class Rocks:
         rows = self.rows(model, own)
         more = self.rows(self.heavier, own) - rows
         outputs = rows[:, :n], rows[:, n], rows[:, n + 1]
+        curved = model.complete and side != CLOSED and not model.is_free(own)  # friction dampers hold the base
         if not model.is_free(own):
             stops, events = [], self.uplifts(own, branch)
         else:
@@ -129,6 +129,7 @@ class Rocks:
             self.curved if side != CLOSED else {},
             more[:, :n],
             more[:, n + 1],
+            (0, 1) if curved else (),
         )
 
     def rows(self, model: RockingModel, key: Key) -> Array:
@@ -153,7 +154,11 @@ class Rocks:
         heavier, _ = self.margins(self.heavier, key, following)
         scale = max([abs(each) for each in limits if 0.0 < abs(each) < np.inf], default=1.0)
         name, found = "uplift" if side == CLOSED else "release", list[Event]()
+        curved = model.complete and side != CLOSED  # `RockingField.conditions` has them
         for row, heavy, after in zip(rows, heavier - rows, following, strict=True):
+            if curved:
+                found.append(Event(name, np.zeros(len(row) - 2), self.full(after, branch), scale=scale))
+                continue
             event = Event(name, row[:-2], self.full(after, branch), float(row[-1]), float(row[-2]), scale)
             found.append(replace(event, row_v=heavy[:-2], direct_v=float(heavy[-1])))
         return tuple(found)
@@ -268,8 +273,7 @@ class Rocks:
 
     def field(self, key: Key, branch: int, stops: Sequence[Any] = ()) -> RockingField:
         """The vector field of a phase, with conditions or without."""
-        pulls = element_force_sums(self.model.properties, self.model.elements, key)
-        return RockingField(self.numbers, key[0], branch, pulls, list(stops))
+        return field_of(self.model, self.numbers, key, branch, stops)
 
     def reversal(self, key: Key, branch: int) -> Event:
         """The velocity of the hysteretic spring changes its sign."""
