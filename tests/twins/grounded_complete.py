@@ -306,13 +306,6 @@ class Twin:
                 self.hold(self.bars[k], y, phase)
             self.bars[k].way = way
             return y, phase
-        elif name in ("fill", "empty"):
-            before, now = phase.loaded, after.loaded
-            j = next(k for k in range(len(now)) if now[k] != before[k])
-            edge = j in (0, len(now) - 1)
-            lifted = self.depth(y[:count])[j] > -1e-12
-            if edge and lifted:
-                self.counts["uplift" if name == "empty" else "impact"] += 1
         return y, after
 
     def hold(self, bar, y, phase):
@@ -325,6 +318,8 @@ class Twin:
         n, count = self.n, self.count
         rise = np.zeros(len(acceleration)) if vertical is None else np.asarray(vertical)
         y, phase = np.zeros(2 * count), Phase()
+        self.last_depth = np.full(2, -1.0)
+        fresh = True  # what begins at a border may soon come back to it
         self.at_rest = (0.0, 0.0)
         if self.sprung:
             pull = sum(each.initial for each in self.bars)
@@ -344,15 +339,19 @@ class Twin:
                     rise[i] + u * (rise[i + 1] - rise[i]),
                 )
 
-            again = 0
+            again = begun = 0
             while t < end:
+                begun += 1
+                if begun > 500:
+                    msg = f"events accumulate at {t} s: {self.track[-6:]}"
+                    raise RuntimeError(msg)
                 known = self.conditions(phase)
                 failed = [(each(t, y, ground) / self.size(name), name, after) for name, each, after in known]
                 failed = [each for each in failed if each[0] < -1e-9]
                 if failed and again < 30:
                     _, name, after = min(failed, key=lambda each: each[0])
                     y, phase = self.leave(name, after, y, phase)
-                    again += 1
+                    again, fresh = again + 1, True
                     continue
                 events = []
                 for _, each, _ in known:
@@ -364,11 +363,11 @@ class Twin:
                     events.append(event)
                 found = solve_ivp(
                     lambda time, state, phase=phase, ground=ground: self.rates(time, state, phase, ground),
-                    (t, end), y, "DOP853", events=events, rtol=RTOL, atol=1e-11 * size, dense_output=True,
-                    max_step=0.5 * dt,
+                    (t, min(t + 0.05 * dt, end) if fresh else end), y, "DOP853", events=events, rtol=RTOL, atol=1e-11 * size, dense_output=True,
+                    max_step=(0.01 if fresh else 0.5) * dt,
                 )  # fmt: skip
                 self.note(found, phase)
-                t, y = found.t[-1], found.y[:, -1]
+                t, y, fresh = found.t[-1], found.y[:, -1], found.status == 1
                 if found.status == 1:
                     which = next(k for k, each in enumerate(found.t_events) if each.size)
                     name, _, after = known[which]
@@ -380,14 +379,21 @@ class Twin:
         return y, phase
 
     def size(self, name):
-        weight = self.p.m_tot * GRAVITY
-        return {"slip": weight, "pressure": weight, "empty": weight, "uplift": weight, "release": weight}.get(name, 1.0)
+        weight, turning = self.p.m_tot * GRAVITY, self.p.m_tot * GRAVITY * self.p.half_width
+        known = {"pressure": weight, "empty": weight, "uplift": turning, "release": turning}
+        return known.get(name, 1.0) if name != "slip" else float(np.max(self.friction)) * weight
 
     def note(self, found, phase):
         """Raise the peaks of |θ|, of the first D and of the slip."""
         n = self.n
         places = [n, 0, n + 1] if n else [0, 0, 1]
         times = np.linspace(found.t[0], found.t[-1], 24)
+        if self.sprung:
+            depths = np.array([self.depth(y[: self.count])[[0, -1]] for y in found.sol(times).T])
+            depths = np.vstack((self.last_depth, depths))
+            self.counts["uplift"] += int(((depths[:-1] < 0.0) & (depths[1:] >= 0.0)).sum())
+            self.counts["impact"] += int(((depths[:-1] >= 0.0) & (depths[1:] < 0.0)).sum())
+            self.last_depth = depths[-1]
         values = np.abs(found.sol(times)[places])
         for row, of_row in enumerate(values):
             k = int(np.argmax(of_row))

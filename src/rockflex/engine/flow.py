@@ -614,7 +614,8 @@ class Flow:
             if order == 0:
                 sums[0, e] = BLUR / VANISHES * self.phases.scale(self.place, e)
             else:
-                sums[order, e] = FLAT / VANISHES * away[e]
+                # The polynomial goes through values that are rounded, which counts in a short step.
+                sums[order, e] = FLAT / VANISHES * away[e] + self.phases.scale(self.place, e)
         if order == 2:
             for i in range(self.n):
                 v = self.velocities[self.place, i]

@@ -124,7 +124,7 @@ class RockingField(Field):
         self.stiffness, self.loading = self.ratio * p.omega**2, 1.0 / self.yields
         self.slip = float(p.omega[0] ** 2) * self.yields * (1.0 - self.ratio) if b is not None else 0.0
         self.whole = int(self.exponent) if float(self.exponent).is_integer() else 0
-        self.pulls, self.memory, self.n_internal = np.array(pulls), numbers.memory, pulls.shape[1] - 1
+        self.pulls, self.memory, self.n_internal = np.array(pulls), numbers.layout.memory, pulls.shape[1] - 1
         self.pulled, self.held = bool(pulls[[MOMENT, FORCE]].any()), bool(pulls[HOLD, 0])
         self.releases, self.grip = np.zeros((2, pulls.shape[1])) if releases is None else np.array(releases), grip
         self.kinds, self.levers = np.array(numbers.kinds, dtype=np.intc), np.array(numbers.levers, dtype=float)

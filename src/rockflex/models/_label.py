@@ -164,10 +164,12 @@ class Model:
         self._check_leaning(kept)
         label = self._check_yielding(kept, bouc_wen)
         if ground is not None and not ground.rigid:
-            self._check_ground(label, ground, impact, bouc_wen)
+            self._check_ground(label, ground, impact)
             check_base(kept, ground)
             given = impact if impact is not None or ground.springs is not None else self._law(kept)
-            return model_on_ground(label, kept, ground, given, self.missing_mass)
+            return model_on_ground(
+                label, kept, ground, given, self.missing_mass, complete=self.complete, bouc_wen=bouc_wen
+            )
         law = impact if impact is not None else self._law(kept)
         linear = LinearModel(label, kept, self.lifts, law, self.missing_mass)
         if self.complete or bouc_wen is not None:
@@ -189,13 +191,12 @@ class Model:
                 field="model",
             )
 
-    def _check_ground(self, label: str, ground: Ground, impact: ImpactLaw | None, bouc_wen: BoucWen | None) -> None:
+    def _check_ground(self, label: str, ground: Ground, impact: ImpactLaw | None) -> None:
         what = "Springs need" if ground.springs is not None else "Friction needs"
-        if not self.lifts or self.complete or bouc_wen is not None:
-            simple = replace(self, lifts=True, complete=False, closure=None, yields=False).label
+        if not self.lifts:
             raise InputError(
-                f"{what} a simplified model whose superstructure is elastic and whose base can lift, but {label} was "
-                f"given. Use {simple}, or leave the ground out.",
+                f"{what} a model whose base can lift, but {label} was given. Use {replace(self, lifts=True).label}, or "
+                "leave the ground out.",
                 field="ground",
             )
         if ground.springs is not None and impact is not None:

@@ -29,7 +29,7 @@ from rockflex.models._modal_model import horizontal_reaction
 from rockflex.models._phase import Key
 from rockflex.models._quantities import Quantities, rows_of
 from rockflex.models._sliding import LOST, STICK, SlidingModel
-from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, SpringModel, code_of
+from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, SpringModel
 
 TINY = 1e-300
 MORE = 1e6  # m/s², of gravity: the terms that it adds outweigh the rounding of all others
@@ -267,9 +267,8 @@ class ElementBase:
         return found
 
     def marks(self, key: Key) -> tuple[float, ...]:
-        """The internal variables of the model that tell the branches of the base."""
-        del key
-        return ()
+        """The internal variables of the model that tell the branches of the ground."""
+        return self.model.ground_marks(key)
 
 
 @dataclass(frozen=True, eq=False)
@@ -313,11 +312,7 @@ class OnRigidGround(ElementBase):
         """
         model, base = self.model, self.model.element_key(key)
         p, side = model.properties, base[0]
-        moment = model.overturning_moment()
-        if self.slides:
-            moment = (
-                moment + (p.l0r - float(np.sum(p.effective_mass * p.effective_height))) * model.accelerations(key)[-1]
-            )
+        moment = model.contact_moment(key)
         found, weight = list[Event](), p.m_tot * model.gravity * p.half_width
         known = internal_places(model.elements)
         for turn in (RIGHT, LEFT):
@@ -429,10 +424,6 @@ class OnRigidGround(ElementBase):
             return [*found, self.event("change", self.taken(-pressure, key), (*before, way), weight)]
         return [*found, self.event("change", self.taken(pressure, key), (*before, LOST * way), weight)]
 
-    def marks(self, key: Key) -> tuple[float, ...]:
-        """The branch of the slip."""
-        return (float(key[-1]),)
-
 
 @dataclass(frozen=True, eq=False)
 class OnSprings(ElementBase):
@@ -515,10 +506,6 @@ class OnSprings(ElementBase):
                 row = way * self.stretching(k, key)
                 found.append(self.event("turn", row, _with(key, place, each.stopped(key[place])), 1.0))
         return found
-
-    def marks(self, key: Key) -> tuple[float, ...]:
-        """The branches, as codes."""
-        return code_of(key[1:])
 
 
 def _with(key: Key, place: int, branch: int) -> Key:

@@ -104,6 +104,34 @@ class ModalModel(Value):
         """The elements between the base and the ground."""
         return elements_of(self.properties)
 
+    def integrates(self, side: Array) -> Bools:
+        """Return for every side of the base whether a phase on it is integrated step by step."""
+        return np.asarray(self.integrated & ((side != CLOSED) | (self.bouc_wen is not None)))
+
+    def bends(self, side: Array) -> Bools:
+        """Return for every side of the base whether rotations may be large, so that outputs are not linear."""
+        return np.asarray(self.complete & (np.asarray(side) != CLOSED))
+
+    def turned(self, rotation: Array) -> Array:
+        """Return sin θ in complete models, otherwise θ."""
+        return np.sin(rotation) if self.complete else rotation
+
+    def stretched(self, vector: Array) -> Array:
+        """Return vectors of states, shape (n, C), whose θ and θ' are what elongations and their rates are linear in.
+
+        In complete models that is 2 sin(θ/2), on springs sin θ.
+        """
+        if not self.complete:
+            return vector
+        found, half = vector.copy(), 0.5 * vector[:, self.layout.rotation]
+        found[:, self.layout.rotation] = 2.0 * np.sin(half)
+        found[:, self.layout.spin] *= np.cos(half)
+        return found
+
+    def ground_marks(self, key: Key) -> tuple[float, ...]:  # noqa: ARG002
+        """Return the internal variables that tell the branches of the ground in a phase."""
+        return ()
+
     def start(self, side: int) -> Key:
         """Return the branches on which a run starts in contact, or as the base begins to rotate about a pivot."""
         return first_key(self.properties, self.elements, side)
@@ -217,7 +245,7 @@ class ModalModel(Value):
     def edge_uplift(self, states: Array) -> Array:
         """Return the rise of the left and of the right edge in m, negative where they settle, shape (n, 2)."""
         rotation = self.layout.of(states, self.layout.rotation)
-        turn = np.sin(rotation) if self.complete else rotation
+        turn = self.turned(rotation)
         return 2.0 * self.properties.half_width * np.stack((np.maximum(turn, 0.0), np.maximum(-turn, 0.0)), axis=1)
 
     def heave(self, states: Array) -> Array:
@@ -296,6 +324,10 @@ class ModalModel(Value):
         rows.setflags(write=False)
         return rows
 
+    def contact_moment(self, key: Key) -> Array:  # noqa: ARG002
+        """Return the overturning moment in a phase in which the base stands still, in N m: a row, shape (C,)."""
+        return self.overturning_moment()
+
     def overturning_moment(self) -> Array:
         """Return the overturning moment in contact (left-hand side of Eq. 24 or 16) in N m: a row, shape (C,)."""
         p = self.properties
@@ -370,7 +402,7 @@ class ModalModel(Value):
         `RockingField.observe` gives the value.
         """
         row, side, p = np.zeros(self.layout.columns), key[0], self.properties
-        if self.complete and side != CLOSED:
+        if self.bends(side):
             return row
         if self.is_free(key):
             row -= side * p.m_tot * p.pivot(side).arm * self.angular_acceleration(key)

@@ -7,7 +7,19 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex.modal import FloorModes
 from rockflex.models._modal_model import ModalModel
-from rockflex.models._quantities import HORIZONTAL, LEFT_OUT, LINEAR, SWAY, SWING, Quantities, Share, collected, joined
+from rockflex.models._quantities import (
+    CLIMB,
+    HORIZONTAL,
+    LEFT_OUT,
+    LIFT,
+    LINEAR,
+    SWAY,
+    SWING,
+    Quantities,
+    Share,
+    collected,
+    joined,
+)
 
 
 def quantities(model: ModalModel, names: Iterable[str]) -> Quantities:
@@ -103,13 +115,13 @@ def element_moves(model: ModalModel) -> Quantities:
     """Return the elongation of each element of a base on springs and its negative in m, less what it had at rest."""
     places = np.repeat([each.position for each in model.elements], 2)
     signs = np.tile([1.0, -1.0], len(model.elements))
-    return Quantities.of(places.size, model.properties.n_modes, heave=signs, rotation=-signs * places)
+    return Quantities.of(places.size, model.properties.n_modes, LIFT, heave=signs, rotation=-signs * places)
 
 
 def element_speeds(model: ModalModel) -> Quantities:
     """Return the rate of elongation of each element of a base on springs in m/s."""
     places = np.array([each.position for each in model.elements])
-    return Quantities.of(places.size, model.properties.n_modes, heaving=1.0, swing=-places)
+    return Quantities.of(places.size, model.properties.n_modes, CLIMB, heaving=1.0, swing=-places)
 
 
 def rotation_rate_by_side(model: ModalModel) -> Quantities:

@@ -9,11 +9,9 @@ from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._elements import LEFT, MOMENT, RIGHT, element_force_sums, hold_shares, is_held, set_off
-from rockflex.models._fields import RockingField
 from rockflex.models._impact import ImpactLaw, VVELSimplified
+from rockflex.models._layout import StateLayout
 from rockflex.models._modal_model import LinearModel, ModalModel
-from rockflex.models._phase import Key
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +66,7 @@ class Numbers:
     viscous: bool
     gravity: float
     resting: float  # vertical reaction at rest
-    memory: int  # place of the first internal variable of an element
+    layout: StateLayout
     kinds: Sequence[int]  # of the outputs
     levers: Array
 
@@ -82,38 +80,7 @@ def numbers_of(model: ModalModel, kinds: Sequence[int] = (), levers: Array | Non
         viscous=model.layout.swept >= 0,
         gravity=model.gravity,
         resting=model.properties.resting_reaction,
-        memory=model.layout.memory,
+        layout=model.layout,
         kinds=kinds,
         levers=np.zeros((len(kinds), 2)) if levers is None else levers,
     )
-
-
-def field_of(
-    model: ModalModel,
-    numbers: Numbers,
-    key: Key,
-    branch: int,
-    stops: Sequence[tuple[int, int, tuple[float, float]]] = (),
-) -> RockingField:
-    """Return the vector field of a phase.
-
-    Parameters
-    ----------
-    model, numbers
-        The model, and what its fields know.
-    key
-        The phase, as a key of the model.
-    branch
-        The sign of the velocity of a hysteretic spring.
-    stops
-        Limits of the elongations that end the phase, see `RockingField`.
-    """
-    p, elements = model.properties, model.elements
-    branches = model.element_key(key)
-    pulls = element_force_sums(p, elements, branches)
-    releases, grip = None, 0.0
-    if model.complete and is_held(p, elements, branches):
-        after = (element_force_sums(p, elements, set_off(p, elements, branches, turn)) for turn in (RIGHT, LEFT))
-        releases = np.array([sums[MOMENT] for sums in after])
-        grip = float(hold_shares(p, elements, branches[0]).sum())
-    return RockingField(numbers, key[0], branch, pulls, stops, releases, grip)

@@ -109,6 +109,16 @@ class SlidingModel(LinearModel):
     def _new_accelerations(self, key: Key) -> Array:
         return accelerations_of(self, self.bordered_system(key))
 
+    def contact_moment(self, key: Key) -> Array:
+        """Return the overturning moment in a phase in which the base does not rotate, which its slip adds to."""
+        p = self.properties
+        moving = p.l0r - float(np.sum(p.effective_mass * p.effective_height))
+        return self.overturning_moment() + moving * self.accelerations(key)[-1]
+
+    def ground_marks(self, key: Key) -> tuple[float, ...]:
+        """Return the branch of the slip."""
+        return (float(key[-1]),)
+
     def pressure(self, key: Key) -> Array:
         """Return the vertical reaction m_tot (g + s B θ'') and the tensions of the elements in N: a row, shape (C,)."""
         row = -self.lost_support(key)

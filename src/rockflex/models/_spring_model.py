@@ -136,13 +136,14 @@ class SpringModel(LinearModel):
         """Return the rise of the left and of the right edge in m, negative where they settle, shape (n, 2)."""
         p, rotation = self.properties, self.layout.of(states, self.layout.rotation)
         places = np.array([-p.pivot(-1).arm, p.pivot(1).arm])
-        return self.heave(states)[:, None] - places * rotation[:, None]
+        return self.heave(states)[:, None] - places * self.turned(rotation)[:, None]
 
     def elongations_at(self, states: Array) -> Array:
         """Return how far the base has risen at every element since it was at rest, in m, shape (n, E)."""
         rotation, heave = self.layout.of(states, self.layout.rotation), self.heave(states)
         positions = np.array([each.position for each in self.elements])
-        return (heave - self.rest.heave)[:, None] - positions * (rotation - self.rest.rotation)[:, None]
+        turned = self.turned(rotation) - self.turned(self.rest.rotation)
+        return (heave - self.rest.heave)[:, None] - positions * turned[:, None]
 
     def raised_weight(self, states: Array) -> Array:
         """Return the gravity energy per unit of gravity in kg m, shape (n,)."""
@@ -152,6 +153,19 @@ class SpringModel(LinearModel):
     def rotary_inertia(self, side: Array) -> Array:
         """Return the inertia about the axis of the masses in kg m², shape (n,)."""
         return np.full(side.size, self.inertia)
+
+    def stretched(self, vector: Array) -> Array:
+        """Return vectors of states whose θ and θ' are what depths, elongations and their rates are linear in."""
+        if not self.complete:
+            return vector
+        found, rotation = vector.copy(), vector[:, self.layout.rotation]
+        found[:, self.layout.rotation] = np.sin(rotation)
+        found[:, self.layout.spin] *= np.cos(rotation)
+        return found
+
+    def ground_marks(self, key: Key) -> tuple[float, ...]:
+        """Return the branches of springs, slip and elements, as codes."""
+        return code_of(key[1:])
 
     def spring_forces(self, key: Key) -> Array:
         """Return the force of each spring on the base in a phase in N, upwards: rows, shape (n, C)."""
@@ -180,9 +194,9 @@ class SpringModel(LinearModel):
         return place, speed
 
     def stretch(self, element: Element) -> Array:
-        """Return the elongation of an element as a row, shape (C,): zero at rest."""
+        """Return the elongation of an element as a row over `stretched` states, shape (C,): zero at rest."""
         place, _ = self.risen(element.position)
-        place[-1] = element.position * self.rest.rotation - self.rest.heave
+        place[-1] = element.position * float(self.turned(self.rest.rotation)) - self.rest.heave
         return place
 
     def tension(self, place: int, branch: int) -> Array:
@@ -204,6 +218,8 @@ class SpringModel(LinearModel):
 
     def lost_support(self, key: Key) -> Array:
         """Return the decrease of the sum of the spring forces below its value at rest, in N: a row, shape (C,)."""
+        if self.bends(key[0]):
+            return np.zeros(self.layout.columns)
         row = np.zeros(self.layout.columns) - self.spring_forces(key).sum(axis=0)
         row[-1] += self.properties.resting_reaction
         return row
@@ -261,11 +277,12 @@ class SpringModel(LinearModel):
         if state is not None:
             start[: state.size] = state
             rotation += start[layout.rotation]
-            heave = heave_at(springs, rotation, self._weight)
+            heave = heave_at(springs, float(self.turned(rotation)), self._weight)
         start[layout.rotation], start[layout.heave] = rotation, heave
-        depth = heave - springs.positions * rotation
+        turned = float(self.turned(rotation))
+        depth = heave - springs.positions * turned
         pressed = np.where(depth < 0.0, springs.stiffness, 0.0)
-        spin = start[layout.spin]
+        spin = start[layout.spin] * (np.cos(rotation) if self.complete else 1.0)
         start[layout.heave + 1] = pressed @ springs.positions / pressed.sum() * spin if spin else 0.0
         speed = start[layout.heave + 1] - springs.positions * spin
         force = -springs.stiffness * depth - springs.damping * speed
@@ -273,7 +290,7 @@ class SpringModel(LinearModel):
         kept, of_elements = list[float](), list[int]()
         for each in self.elements:
             stretch = self.stretch(each)
-            elongation = float(stretch[-1] + stretch[layout.rotation] * rotation + stretch[layout.heave] * heave)
+            elongation = float(stretch[-1] + stretch[layout.rotation] * turned + stretch[layout.heave] * heave)
             branch, remembered = each.brought(elongation)
             of_elements.append(branch)
             kept += remembered

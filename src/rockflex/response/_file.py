@@ -45,6 +45,7 @@ from rockflex.models import (
     SpringModel,
     VVELComplete,
     VVELSimplified,
+    made_nonlinear,
 )
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History
@@ -276,10 +277,14 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     missing = _typed(scalars, "missing_mass", bool)
     law = _law(parameters)
     gravity = scalars.get("gravity", GRAVITY)
+    bouc_wen = None if scalars.get("bouc_wen") is None else BoucWen(**scalars["bouc_wen"])
+    nonlinear = {}
+    if "complete" in scalars:
+        nonlinear = {"complete": _typed(scalars, "complete", bool), "bouc_wen": bouc_wen}
     if "springs.positions" in arrays:
         springs = Springs(*(arrays.get(f"springs.{name}") for name in SPRINGS))  # pyright: ignore[reportArgumentType]
         rotation, heave = _typed(scalars, "rest", list)
-        return SpringModel(
+        on_springs = SpringModel(
             scalars["model"],
             properties,
             missing_mass=missing,
@@ -289,13 +294,12 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
             friction=arrays.get("springs.friction"),
             rest=Pose(rotation, heave),
         )
+        return made_nonlinear(on_springs, **nonlinear) if nonlinear else on_springs
     if "friction" in scalars:
-        return SlidingModel(
+        sliding = SlidingModel(
             scalars["model"], properties, lifts, law, missing, gravity, _typed(scalars, "friction", float)
         )
-    if "complete" not in scalars:
+        return made_nonlinear(sliding, **nonlinear) if nonlinear else sliding
+    if not nonlinear:
         return LinearModel(scalars["model"], properties, lifts, law, missing, gravity)
-    bouc_wen = None if scalars["bouc_wen"] is None else BoucWen(**scalars["bouc_wen"])
-    return NonlinearModel(
-        scalars["model"], properties, lifts, law, _typed(scalars, "complete", bool), bouc_wen, missing, gravity
-    )
+    return NonlinearModel(scalars["model"], properties, lifts, law, nonlinear["complete"], bouc_wen, missing, gravity)

@@ -368,7 +368,7 @@ class History(Value):
         model, springs = self.model, self.model.springs
         if springs is None or springs.area is None:
             raise no_area()
-        turn = model.layout.of(self.states, model.layout.rotation)[:, None]
+        turn = model.turned(model.layout.of(self.states, model.layout.rotation))[:, None]
         pushes = springs.stiffness * np.maximum(springs.positions * turn - self.heave[:, None], 0.0)
         force, p = pushes.sum(axis=1), model.properties
         middle = 0.5 * (p.pivot(1).arm - p.pivot(-1).arm)

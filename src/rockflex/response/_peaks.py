@@ -12,6 +12,8 @@ from rockflex._arrays import Array, Bools
 from rockflex.modal import BaseElement, ElementLaw, FrictionDamper, Tendon, ViscousDamper, YieldingDissipator
 from rockflex.models import (
     HEADER,
+    LIFT,
+    LINEAR,
     SIDE,
     Quantities,
     RockingModel,
@@ -125,7 +127,9 @@ def _edges(model: RockingModel) -> Quantities:
     p = model.properties
     right, left = p.pivot(1).arm, -p.pivot(-1).arm
     signs = np.array([1.0, -1.0, 1.0, -1.0, 0.0, 0.0])
-    return Quantities.of(len(EDGES), p.n_modes, heave=signs, rotation=[-right, right, -left, left, 1.0, -1.0])
+    found = Quantities.of(len(EDGES), p.n_modes, LIFT, heave=signs, rotation=[-right, right, -left, left, 1.0, -1.0])
+    found.kinds[4:] = LINEAR  # the rotations themselves
+    return found
 
 
 def largest_rotations(peaks: Mapping[str, Array]) -> tuple[float, float]:
