@@ -361,9 +361,10 @@ class Twin:
 
                     event.terminal, event.direction = True, -1.0
                     events.append(event)
+                until = min(t + 0.05 * dt, end) if fresh else end
                 found = solve_ivp(
                     lambda time, state, phase=phase, ground=ground: self.rates(time, state, phase, ground),
-                    (t, min(t + 0.05 * dt, end) if fresh else end), y, "DOP853", events=events, rtol=RTOL, atol=1e-11 * size, dense_output=True,
+                    (t, until), y, "DOP853", events=events, rtol=RTOL, atol=1e-11 * size, dense_output=True,
                     max_step=(0.01 if fresh else 0.5) * dt,
                 )  # fmt: skip
                 self.note(found, phase)

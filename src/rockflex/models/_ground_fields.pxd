@@ -29,4 +29,4 @@ cdef class GroundField(Field):
     cdef double push(self, const double *y, int j) noexcept nogil
     cdef double tension(self, const double *y, int e) noexcept nogil
     cdef double grip(self, const double *y) noexcept nogil
-    cdef (double, double) reactions(self, const double *y, const double *rates) noexcept nogil
+    cdef (double, double) reactions(self, const double *rates) noexcept nogil

@@ -1,8 +1,8 @@
 """The vector field of nonlinear models that slide or stand on springs, and its conditions. Declarations: `.pxd`.
 
-The state is that of `rockflex.models.StateLayout`; the equations are in docs/theory/ground.md. With a reference point of
-the base, its pivot on rigid ground and the axis of the masses on springs, at X along the ground and Z above it, and with
-A_x = (X'' + a) cos θ - (Z'' + a_v + g) sin θ and A_z = (X'' + a) sin θ + (Z'' + a_v + g) cos θ
+The state is that of `rockflex.models.StateLayout`; the equations are in docs/theory/ground.md. With a reference point
+of the base, its pivot on rigid ground and the axis of the masses on springs, at X along the ground and Z above it, and
+with A_x = (X'' + a) cos θ - (Z'' + a_v + g) sin θ and A_z = (X'' + a) sin θ + (Z'' + a_v + g) cos θ
 
     D'' + 2 ζ ω D' + ω² D + h* θ'' - (D - o) θ'² + A_x = 0
     I θ'' + Σ m* h* D'' + 2 θ' Σ m* (D - o) D' + L A_x - U A_z = Q_θ
@@ -20,12 +20,14 @@ import numpy as np
 from rockflex.models._elements import DAMPING, DRAG, FORCE, MOMENT, PULL, STIFFNESS
 
 if cython.compiled:
-    from cython.cimports.libc.math import cos, fabs, sin
+    from cython.cimports.libc.math import NAN, cos, fabs, sin
     from cython.cimports.rockflex.engine.field import Field
     from cython.cimports.rockflex.models._fields import RockingField
 else:
     from rockflex.engine.field import Field
     from rockflex.models._fields import RockingField
+
+    NAN = float("nan")
 
 P_MOMENT = cython.declare(cython.int, MOMENT)
 P_STIFFNESS = cython.declare(cython.int, STIFFNESS)
@@ -243,6 +245,8 @@ class GroundField(Field):
         turn = m21 / m11
         m22 -= turn * m12
         b2 -= turn * b1
+        if self.pressed and not m22 > 0.0:  # no acceleration satisfies Coulomb's law
+            m22 = NAN
         if self.heave >= 0:
             m23 -= turn * m13
             m33 -= m13 * m13 / m11 + m23 * m23 / m22
@@ -258,7 +262,7 @@ class GroundField(Field):
             out[self.heave], out[self.heave + 1] = y[self.heave + 1], climb
         if counted:
             # What the ground carries follows from the accelerations that have been found.
-            across, drag = self.reactions(y, out)
+            across, drag = self.reactions(out)
             if self.rubbed >= 0:
                 out[self.rubbed] = 0.0
                 if self.slides and self.spring_count > 0:
@@ -309,7 +313,7 @@ class GroundField(Field):
             rate = y[self.heave + 1] - self.elements[i, X] * self.cosine * self.spin
             out[self.sweeps + i] = rate * rate
 
-    def reactions(self, y, rates):
+    def reactions(self, rates):
         """The forces of the ground on the base, along it and across it; on springs the second is that of all masses."""
         n: cython.int = self.n
         i: cython.int
@@ -391,7 +395,7 @@ class GroundField(Field):
         along: cython.double
         upwards: cython.double
         self.gather(y, a, a_v)
-        along, upwards = self.reactions(y, rates)
+        along, upwards = self.reactions(rates)
         for k in range(self.check_count):
             kind, j = self.checks[k, 1], self.checks[k, 2]
             found = 0.0
@@ -427,7 +431,7 @@ class GroundField(Field):
         upwards: cython.double
         self.gather(y, a, a_v)
         fall = self.weight
-        along, upwards = self.reactions(y, rates)
+        along, upwards = self.reactions(rates)
         if self.slip >= 0:
             drive += rates[self.slip + 1]
         if self.heave >= 0:

@@ -1,4 +1,4 @@
-"""The nonlinear models as hybrid systems for `rockflex.engine`, and the phases of those that slide or stand on springs."""
+"""The nonlinear models as hybrid systems for `rockflex.engine`; phases of those that slide or stand on springs."""
 
 from collections.abc import Callable
 from typing import Any
@@ -46,6 +46,7 @@ class Slides(Rocks):
     def slips(self, key: Key, first: int) -> tuple[list[Check], tuple[Event, ...]]:
         """The base begins to slide, ends it, or loses its pressure on the ground (Coulomb)."""
         model, layout = self.model, self.model.layout
+        model.bordered_system(own_key(model, key))  # raises an error if the base jams at a small rotation
         place = -1 - (model.bouc_wen is not None)
         slip, weight = key[place], model.properties.m_tot * model.gravity
         way = 1 if slip > 0 else -1
@@ -75,7 +76,7 @@ class Slides(Rocks):
         return checks, tuple(found)
 
     def contact_rows(self, model: Any, key: Key) -> dict[int, Array]:
-        """Conditions of the slip in contact: rows over the state, a and 1, by the factor that they have while it rocks."""
+        """Conditions of the slip in contact: rows over the state, a and 1, by their factors while the base rocks."""
         assert isinstance(model, SlidingModel)
         own = own_key(self.model, key)
         pressure = model.pressure(own)

@@ -39,8 +39,8 @@ TREMOR = 0.01  # m/s²: the error of a step is relative to the response to it, o
 LIGHT = 0.05  # of the vertical reaction at rest: the least size of the loss of support
 BARELY = 1e-10  # of that response: a velocity that is zero at a reversal
 
-# A condition that is not linear, see `GroundField`: event, kind, number of a spring or an element, factor, and the place
-# of a limit, the factor of an internal variable in it and the place of that in the state, -1 if there is none.
+# A condition that is not linear, see `GroundField`: event, kind, number of a spring or an element, factor, and of a
+# limit its place, the factor of an internal variable in it, and the place of that in the state, -1 if there is none.
 Check = tuple[int, int, int, float, float, float, int]
 
 
@@ -309,7 +309,7 @@ class Rocks:
         return Event("impact", self.rotation(side), contact, jump=jump, other=other), tips
 
     def landing(self, key: Key) -> Callable[[Array, float, float], tuple[Array, Key]]:
-        """The jump of a law of the user's own, or on ground on which the base slides, at which elements cease to yield."""
+        """The jump of a law of the user's own, or of a base that slides, at which elements cease to yield."""
         spin, turnings = self.model.layout.spin, self.turnings(self.base_of(key))
         fields = {side: self.field(self.beside(key, side)) for side in (RIGHT, LEFT)}
         land = landing_of(

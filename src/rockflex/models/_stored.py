@@ -13,10 +13,10 @@ def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, A
     """Return kinetic, strain and gravity energy at the states of a history in J, each of shape (n,).
 
     Simplified models on rigid ground:
-    ½ I_θ θ'² + θ' Σ m* h* D' + ½ Σ m* D'², ½ Σ m* ω² D² and s m_tot g B θ - ½ L_0^r g θ² relative to the moving ground,
-    with a slip x plus ½ m_tot x'² + x' (L_0^r θ' + Σ m* D'). On springs the inertia is that about the axis of the
-    masses, and m_tot g z takes the place of s m_tot g B θ. For complete models those of Eqs. 6-8, with the momentum of the motion
-    relative to the base times the velocities of the base.
+    ½ I_θ θ'² + θ' Σ m* h* D' + ½ Σ m* D'², ½ Σ m* ω² D² and s m_tot g B θ - ½ L_0^r g θ² relative to the moving
+    ground, with a slip x plus ½ m_tot x'² + x' (L_0^r θ' + Σ m* D'). On springs the inertia is that about the axis of
+    the masses, and m_tot g z takes the place of s m_tot g B θ. For complete models those of Eqs. 6-8, with the momentum
+    of the motion relative to the base times the velocities of the base.
     """
     p, layout = model.properties, model.layout
     side, d, v = states[:, SIDE], layout.displacements(states), layout.velocities(states)
