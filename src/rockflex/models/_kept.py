@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex.models._fields import RockingField
+from rockflex.models._ground_fields import GroundField
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME
 from rockflex.models._nonlinear import Numbers, numbers_of
@@ -37,7 +38,7 @@ def accelerations(model: RockingModel, states: Array) -> Array:
     n = layout.modes
     found = np.zeros((states.shape[0], n + layout.freedoms))
     if model.integrated:
-        speeds = layout.spin + 2 * np.arange(layout.freedoms)
+        speeds = range(layout.spin, layout.spin + 2 * layout.freedoms, 2)
         for chosen, field in fields_at(model, numbers_of(model), states, side):
             motion, shaking = _apart(states[chosen])
             rates = field.rates_along(motion, *shaking, counted=False)
@@ -102,7 +103,7 @@ def observed(model: RockingModel, numbers: Numbers, states: Array, side: Array, 
 
 def fields_at(
     model: RockingModel, numbers: Numbers, states: Array, side: Array
-) -> Iterator[tuple[Bools, RockingField]]:
+) -> Iterator[tuple[Bools, RockingField | GroundField]]:
     """Yield a mask of the states of each phase, and its vector field."""
     layout = model.layout
     backwards = layout.velocities(states)[:, 0] < 0.0 if numbers.bouc_wen is not None else np.zeros(side.size, bool)
@@ -121,6 +122,7 @@ def held_moment(model: RockingModel, states: Array) -> Array:
     motion, (a, a_v) = _apart(states)
     found = np.zeros(len(states))
     for chosen, field in fields_at(model, numbers_of(model), states, states[:, SIDE]):
+        assert isinstance(field, RockingField)
         found[chosen] = field.imbalance_along(motion[chosen], rates[chosen], a[chosen], a_v[chosen])
     return found / np.cos(0.5 * model.layout.of(states, model.layout.rotation))
 

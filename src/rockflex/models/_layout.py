@@ -114,7 +114,8 @@ def layout_of(
     base = rotation, rotation + 1, slip, heave
     if not integrated:
         size = core + n_internal
-        return StateLayout(modes, *base, *(-1,) * 8, core, n_internal, size, size)
+        absent = -1, -1, -1, -1, -1, -1, -1, -1
+        return StateLayout(modes, *base, *absent, core, n_internal, size, size)
     swept = core + 4
     rubbed = swept + viscous
     soil = rubbed + slides
@@ -122,8 +123,5 @@ def layout_of(
     memory = sweeps + elements
     size = memory + n_internal
     moving = size if n_internal else core + 1
-    places = (
-        place if there else -1
-        for place, there in ((swept, viscous), (rubbed, slides), (soil, heaves), (sweeps, heaves))
-    )
-    return StateLayout(modes, *base, core, core + 1, core + 2, core + 3, *places, memory, n_internal, moving, size)
+    counters = swept if viscous else -1, rubbed if slides else -1, soil if heaves else -1, sweeps if heaves else -1
+    return StateLayout(modes, *base, core, core + 1, core + 2, core + 3, *counters, memory, n_internal, moving, size)

@@ -104,17 +104,17 @@ class ModalModel(Value):
         """The elements between the base and the ground."""
         return elements_of(self.properties)
 
-    def integrates(self, side: Array) -> Bools:
+    def integrates(self, side: Array | int) -> Bools:
         """Return for every side of the base whether a phase on it is integrated step by step."""
-        return np.asarray(self.integrated & ((side != CLOSED) | (self.bouc_wen is not None)))
+        return np.asarray(self.integrated & ((np.asarray(side) != CLOSED) | (self.bouc_wen is not None)))
 
-    def bends(self, side: Array) -> Bools:
+    def bends(self, side: Array | int) -> Bools:
         """Return for every side of the base whether rotations may be large, so that outputs are not linear."""
         return np.asarray(self.complete & (np.asarray(side) != CLOSED))
 
-    def turned(self, rotation: Array) -> Array:
+    def turned(self, rotation: Array | float) -> Array:
         """Return sin θ in complete models, otherwise θ."""
-        return np.sin(rotation) if self.complete else rotation
+        return np.sin(rotation) if self.complete else np.asarray(rotation)
 
     def stretched(self, vector: Array) -> Array:
         """Return vectors of states, shape (n, C), whose θ and θ' are what elongations and their rates are linear in.

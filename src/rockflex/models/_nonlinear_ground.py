@@ -148,11 +148,11 @@ class NonlinearSpringModel(SpringModel):
         """Always True."""
         return True
 
-    def integrates(self, side: Array) -> Bools:
+    def integrates(self, side: Array | int) -> Bools:
         """Return True for every side: no phase is solved in closed form."""
         return np.ones(np.shape(side), dtype=np.bool_)
 
-    def bends(self, side: Array) -> Bools:
+    def bends(self, side: Array | int) -> Bools:
         """Return for every side whether rotations may be large."""
         return np.full(np.shape(side), self.complete)
 

@@ -208,8 +208,8 @@ class Rocks:
 
     def event(self, name: str, row: Array, more: Array, target: Key, scale: float) -> Event:
         """An event from the row of its condition, and what each m/s² of vertical acceleration adds to it."""
-        given = {"constant": float(row[-1]), "direct": float(row[-2]), "direct_v": float(more[-1])}
-        return Event(name, row[:-2], target, scale=scale, row_v=more[:-2], **given)
+        found = Event(name, row[:-2], target, float(row[-1]), float(row[-2]), scale)
+        return replace(found, row_v=more[:-2], direct_v=float(more[-1]))
 
     def margins(self, model: RockingModel, key: Key, following: Sequence[Key]) -> tuple[Array, list[float]]:
         """By how much the moment is within its limits, rows over the state, a and 1, and these limits.

@@ -277,10 +277,10 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     missing = _typed(scalars, "missing_mass", bool)
     law = _law(parameters)
     gravity = scalars.get("gravity", GRAVITY)
-    bouc_wen = None if scalars.get("bouc_wen") is None else BoucWen(**scalars["bouc_wen"])
-    nonlinear = {}
+    complete = bouc_wen = None
     if "complete" in scalars:
-        nonlinear = {"complete": _typed(scalars, "complete", bool), "bouc_wen": bouc_wen}
+        complete, bouc_wen = _typed(scalars, "complete", bool), scalars["bouc_wen"]
+        bouc_wen = None if bouc_wen is None else BoucWen(**bouc_wen)
     if "springs.positions" in arrays:
         springs = Springs(*(arrays.get(f"springs.{name}") for name in SPRINGS))  # pyright: ignore[reportArgumentType]
         rotation, heave = _typed(scalars, "rest", list)
@@ -294,12 +294,12 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
             friction=arrays.get("springs.friction"),
             rest=Pose(rotation, heave),
         )
-        return made_nonlinear(on_springs, **nonlinear) if nonlinear else on_springs
+        return on_springs if complete is None else made_nonlinear(on_springs, complete=complete, bouc_wen=bouc_wen)
     if "friction" in scalars:
         sliding = SlidingModel(
             scalars["model"], properties, lifts, law, missing, gravity, _typed(scalars, "friction", float)
         )
-        return made_nonlinear(sliding, **nonlinear) if nonlinear else sliding
-    if not nonlinear:
+        return sliding if complete is None else made_nonlinear(sliding, complete=complete, bouc_wen=bouc_wen)
+    if complete is None:
         return LinearModel(scalars["model"], properties, lifts, law, missing, gravity)
-    return NonlinearModel(scalars["model"], properties, lifts, law, nonlinear["complete"], bouc_wen, missing, gravity)
+    return NonlinearModel(scalars["model"], properties, lifts, law, complete, bouc_wen, missing, gravity)

@@ -154,12 +154,11 @@ def states_at(model: RockingModel, states: Array, times: Array) -> Array:
     return found
 
 
-def freedoms_of(layout: StateLayout) -> tuple[list[int], list[int]]:
+def freedoms_of(layout: StateLayout) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return the columns of a history with D_n, θ, the slip and the heave, and those with their velocities."""
-    n, base = layout.modes, [layout.rotation + 2 * k for k in range(layout.freedoms)]
-    places = [*range(n), *base]
-    speeds = [*range(n, 2 * n), *(place + 1 for place in base)]
-    return [HEADER + place for place in places], [HEADER + place for place in speeds]
+    n, base = layout.modes, layout.rotation + 2 * np.arange(layout.freedoms)
+    places = np.concatenate((np.arange(n), base))
+    return HEADER + places, HEADER + places + np.where(places < n, n, 1)
 
 
 def _curve(model: RockingModel, states: Array, which: NDArray[np.intp], part: Array, inside: Array) -> None:
