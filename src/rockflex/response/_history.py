@@ -53,7 +53,8 @@ class History(Value):
         the ground (m/s²), D (m), D' (m/s), θ (rad) and θ' (rad/s). An event is two rows at the same time. A base that
         may slide adds its slip (m) and the velocity of it, one on springs its heave and the velocity of that. Nonlinear
         models have four more columns: z of Eq. 38, and the damped, input and hysteretic energy (J), which are known
-        where the motion was integrated. The last columns are the internal variables of elements that yield or slide,
+        where the motion was integrated; then come integrals for viscous dampers (∫ (δ'/r)² dt, on springs ∫ δ'² dt of
+        each element) and the energies lost by sliding and by each spring under the base. The last columns are the internal variables of elements that yield or slide,
         and of the ground: what sticks and what is lifted. Stored as a copy.
 
     Raises
@@ -298,7 +299,10 @@ class History(Value):
 
     @property
     def element_elongation(self) -> Array:
-        """Elongation r |θ| of each element in m, in complete models 2 r sin(|θ|/2), shape (n_states, E)."""
+        """Elongation r |θ| of each element in m, in complete models 2 r sin(|θ|/2), shape (n_states, E).
+
+        On springs how far the base has risen there since it was at rest.
+        """
         return self.model.elongations_at(self.states)
 
     @property
