@@ -171,7 +171,7 @@ def ground_of(rng: np.random.Generator, kind: str, half_width: float, mass: floa
 
 
 def nonlinear_elements(rng: np.random.Generator, weight: float, half_width: float) -> list[Any]:
-    """Some tendons, fuses and viscous dampers: complete models take no friction dampers."""
+    """Some tendons, fuses and viscous dampers."""
     found = []
     for _ in range(int(rng.integers(1, 4))):
         stiffness, place = weight * rng.uniform(0.3, 5.0), half_width * rng.choice([0.0, -0.9, 0.9, 0.5])

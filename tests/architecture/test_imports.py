@@ -93,7 +93,11 @@ NOT_LOADED = {
 }  # by `import rockflex`
 MAX_LINES = 600
 MAX_LINES_OF_ONE_TOPIC = 900  # of a module that is one class, or figures of one topic
-ONE_TOPIC = {"rockflex.response._history", *(f"rockflex.plot._{each}" for each in ("fragility", "history", "loops"))}
+ONE_TOPIC = {
+    "rockflex.response._history",
+    "rockflex.engine.flow",
+    *(f"rockflex.plot._{each}" for each in ("fragility", "history", "loops")),
+}
 
 RUNTIME, TYPING, DEFERRED = "when the module is imported", "for the type checker", "inside a function"
 

@@ -9,7 +9,7 @@ from scipy.special import ellipk
 
 from engine.test_systems import uncompiled
 from rockflex import InputError, SolverError
-from rockflex.engine import Event, LinearPhase, NonlinearPhase, Run, StateLayout, System
+from rockflex.engine import Event, Field, LinearPhase, NonlinearPhase, Run, StateLayout, System
 
 GRAVITY, LENGTH = 9.81, 1.7
 LAYOUT = StateLayout(place=1, velocity=1)
@@ -51,6 +51,52 @@ def test_a_pendulum_has_the_period_of_its_amplitude(run_of, start):
     assert run.peaks["place"][0] == pytest.approx(start, rel=3e-9)
     highest = 2.0 * np.sqrt(GRAVITY / LENGTH) * np.sin(0.5 * start)
     assert run.peaks["velocity"][0] == pytest.approx(highest, rel=3e-9)
+
+
+class Bob(Field):
+    """A pendulum that rings a bell when its bob passes a height; one says when in terms of the height itself."""
+
+    limit = 0.3  # m
+
+    def rates_at(self, y, a, a_v, counted=True):
+        del a, a_v, counted
+        return np.array([y[1], -GRAVITY / LENGTH * np.sin(y[0])])
+
+    def sizes_at(self, y, a, a_v):
+        return np.abs(self.rates_at(y, a, a_v))
+
+    def enter_at(self, y, more):
+        pass
+
+    def conditions_at(self, y, rates, a, a_v, out):
+        assert rates[0] == y[1]
+        out[0] = self.side * (LENGTH * (1.0 - np.cos(y[0])) - self.limit)
+
+
+def test_a_condition_that_is_not_linear_is_met_to_rounding():
+    """Run as Python: the fields of a user's own are compiled classes, or functions without conditions."""
+    nothing, angle = np.zeros(2), np.arccos(1.0 - Bob.limit / LENGTH)
+
+    def phase(key):
+        bob = Bob()
+        bob.side = -key
+        event = Event("rings", nothing, -key, scale=1.0)
+        return NonlinearPhase(
+            bob, UNIT, NOTHING, NOTHING, (event,), np.array([1e-3, 1e-3]), velocities={0: 1}, curved_events=(0,)
+        )
+
+    run = uncompiled().Run(System(LAYOUT, ("place", "velocity"), phase, 1), 0.02, [0.0, 2.0])
+    run.advance(np.zeros(151), history=True)
+    times, _, _, states, _ = run.history
+    rings = np.flatnonzero(np.diff(times) == 0.0)
+    assert len(rings) == len(run.events) > 3
+    np.testing.assert_allclose(np.abs(states[rings, 0]), angle, rtol=1e-13)
+
+
+def test_the_numbers_of_conditions_that_are_not_linear_are_checked():
+    phase = NonlinearPhase(Bob(), UNIT, NOTHING, NOTHING, (), np.ones(2), curved_events=(0,))
+    with pytest.raises(InputError, match="curved_events must be numbers from 0 to -1"):
+        Run(System(LAYOUT, ("place", "velocity"), lambda _key: phase, 1), 0.02)
 
 
 def spring(y, a, _a_v):

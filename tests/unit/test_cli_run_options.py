@@ -227,7 +227,7 @@ def made(monkeypatch):
     """Return the grounds that reach a model, which is then built without them."""
     grounds = []
 
-    def grounded(label, kept, ground, law, missing_mass):
+    def grounded(label, kept, ground, law, missing_mass, **_kind):
         grounds.append(ground)
         return LinearModel(label, kept, True, law or rf.VVELSimplified(), missing_mass)
 
@@ -300,7 +300,7 @@ def test_usual_models_on_a_ground(made, tmp_path):
     assert models == ["2DOF-S", "MDOF-S"]
     block = tmp_path / "block.toml"
     block.write_text("block = { slenderness = 0.2, half_diagonal = 2.5 }\n")
-    assert document(block, RECORD, *given)["options"]["models"] == ["rigid"]
+    assert document(block, RECORD, *given)["options"]["models"] == ["rigid", "rigid-C"]
     assert document(block, RECORD, "--ground-friction", "inf")["options"]["models"] == ["rigid", "rigid-C"]
     assert made
 
@@ -314,9 +314,9 @@ def test_usual_models_on_a_ground(made, tmp_path):
         (["--breadth", 3, *INERTIA], "[ground.bed]: A bed needs its stiffness. Give subgrade_modulus in N/m³;"),
         (["--breadth", 3, "--subgrade-modulus", -1, *INERTIA], "[ground.bed]: subgrade_modulus must be a positive,"),
         ([*INERTIA], "[ground]: Ground needs friction, springs or both"),
-        ([*BED, *INERTIA, "--model", "MDOF-S,fixed"], "Springs need a simplified model"),
-        ([*BED, *INERTIA, "--impact", "simplified"], "No impact law acts on springs")
-    ]
+        ([*BED, *INERTIA, "--model", "MDOF-S,fixed"], "Springs need a model whose base can lift"),
+        ([*BED, *INERTIA, "--impact", "simplified"], "No impact law acts on springs"),
+    ],
 )  # fmt: skip
 def test_messages(made, flags, message):
     result = invoke(STRUCTURE, RECORD, *flags)

@@ -140,13 +140,6 @@ def test_friction_of_a_yielding_structure_that_never_yields_is_that_of_an_elasti
         assert getattr(yielding, name) == pytest.approx(getattr(elastic, name), rel=1e-8)
 
 
-def test_complete_models_take_no_friction_dampers():
-    with pytest.raises(rf.InputError, match=r"2DOF-C does not take friction dampers: .* Use 2DOF-S, or") as e:
-        rf.simulate(rf.Restrained(FRAME, rf.FrictionDamper(FORCE)), MOTION, "2DOF-C")
-    assert e.value.field == "elements"
-    rf.simulate(rf.Restrained(FRAME, rf.FrictionDamper(0.0)), MOTION, "2DOF-C", output="peaks")
-
-
 def test_a_complete_model_settles_where_its_fuses_hold_it_open():
     strong = rf.Restrained(FRAME, [rf.YieldingDissipator(K, 1.2 * WEIGHT, 0.02, x) for x in (-B, B)])
     motion = MOTION.scaled(2.0)

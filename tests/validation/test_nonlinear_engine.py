@@ -10,12 +10,15 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import rockflex as rf
-from builders import finer
+from builders import finer, make_frame
 from random_runs import nonlinear_run
 from rockflex.engine import Run
 from rockflex.models import NonlinearModel, Quantities, element_force_sums, nonlinear_system, parse_model
 from rockflex.models import _fields as compiled
+from rockflex.models import _ground_fields as compiled_ground
+from rockflex.models import _nonlinear_ground_system as ground_systems
 from rockflex.models import _nonlinear_system as systems
+from rockflex.models._nonlinear import numbers_of
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -90,15 +93,16 @@ def test_a_rocking_frame_moves_as_scipy_says(n_modes):
     np.testing.assert_allclose(run.state[:core], state, rtol=1e-9, atol=1e-10)
 
 
-def as_python():
+def as_python(wanted="_fields"):
     """The vector fields, run as Python."""
     place = Path(str(systems.__file__)).with_name("_fields.py")
-    known = sys.modules.pop("rockflex.engine.field")
+    known = {name: sys.modules.pop(name) for name in ("rockflex.engine.field", "rockflex.models._fields")}
     try:
         modules = []
         for name, path in (
             ("rockflex.engine.field", Path(str(systems.__file__)).parents[1] / "engine" / "field.py"),
-            ("rockflex.models._fields_as_python", place),
+            ("rockflex.models._fields", place),
+            ("rockflex.models._ground_fields_as_python", place.with_name("_ground_fields.py")),
         ):
             spec = importlib.util.spec_from_file_location(name, path)
             assert spec is not None
@@ -106,9 +110,9 @@ def as_python():
             modules.append(importlib.util.module_from_spec(spec))
             sys.modules[name] = modules[-1]
             spec.loader.exec_module(modules[-1])
-        return modules[-1]
+        return modules[1 if wanted == "_fields" else 2]
     finally:
-        sys.modules["rockflex.engine.field"] = known
+        sys.modules.update(known)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -139,7 +143,7 @@ def test_fields_and_jumps_are_the_same_as_python(seed, monkeypatch):
             key[0],
             1,
             element_force_sums(model.properties, model.elements, key),
-            both[1].changes(key, 1)[0] if key[0] else [],
+            both[1].changes(own)[0] if key[0] else [],
         )
         y = 0.05 * rng.normal(size=n)
         more = [np.zeros(32), np.zeros(32)]
@@ -152,3 +156,61 @@ def test_fields_and_jumps_are_the_same_as_python(seed, monkeypatch):
             each.enter_at(y, limits)
         np.testing.assert_allclose(*seen, rtol=1e-12)
         np.testing.assert_allclose(*more, rtol=1e-14)
+
+
+GROUNDS = {
+    "slides": lambda b: rf.Ground(friction=0.3),
+    "springs": lambda b: rf.Ground(springs=rf.Springs([-b, b], 3e8, 3e6), base_inertia=6e4),
+    "both": lambda b: rf.Ground(
+        springs=rf.Springs([-b, 0.1 * b, b], 3e8, 3e6), base_inertia=6e4, friction=[0.2, 0.3, 0.4]
+    ),
+}
+
+
+@pytest.mark.parametrize("ground", GROUNDS)
+@pytest.mark.parametrize("name", ["MDOF-C", "2DOF-C-BW", "2DOF-S-BW"])
+def test_fields_on_ground_are_the_same_as_python(ground, name):
+    """The rates, their sizes, conditions and outputs of phases of every kind."""
+    frame = make_frame(n_stories=3, base_mass=120e3, stiffness_ratio=0.125, period=0.4, aspect_ratio=6.0)
+    p = frame.rocking()
+    b, weight = p.half_width, p.m_tot * 9.81
+    elements = [
+        rf.YieldingDissipator(5e7, 0.1 * weight, 0.03, 0.7 * b),
+        rf.ViscousDamper(1e6, -0.5 * b),
+        rf.Tendon(1e5, 1e7),
+    ]
+    spring = {"bouc_wen": rf.BoucWen(0.05)} if "BW" in name else {}
+    model = parse_model(name).of(rf.Restrained(frame, elements).rocking(), ground=GROUNDS[ground](b), **spring)
+    plain, rng = as_python("_ground_fields"), np.random.default_rng(1)
+    phases = ground_systems.Slides if ground == "slides" else ground_systems.Stands
+    kinds = (0, 1, 2, 3, 4, 5) if ground == "slides" else (0, 1, 2, 4, 5, 6, 7)
+    numbers = numbers_of(model, kinds, rng.normal(size=(len(kinds), 2)))
+    met = [model.start(1), model.start(-1)]
+    if ground == "slides":
+        met = [(*key[:-1], slip) for key in met for slip in (0, 1, -1, 2)]
+    else:
+        ways = (0, 1) if ground == "both" else (0,)
+        count = model.springs.n
+        met = [
+            (0, *branches, way, *met[0][count + 2 :])
+            for branches in itertools.product((0, 1, 2), repeat=count)
+            for way in ways
+        ]
+    of_model = phases(model, Quantities.none(model.layout.modes))
+    for key in met:
+        stops, checks, events = of_model.ends_of(systems.key_of(model, key))
+        given = numbers, model.ground_phase(key, 1), stops, checks
+        fields = [module.GroundField(*given) for module in (compiled_ground, plain)]
+        y = 0.05 * rng.normal(size=model.layout.size)
+        rates = [each.rates_at(y, 1.3, 0.4) for each in fields]
+        np.testing.assert_allclose(*rates, rtol=1e-11, atol=1e-11)
+        np.testing.assert_allclose(*(each.sizes_at(y, 1.3, 0.4) for each in fields), rtol=1e-11)
+        conditions, seen, limits = (np.zeros((2, 32)) for _ in range(3))
+        for place, each in enumerate(fields):
+            each.conditions_at(y, rates[0], 1.3, 0.4, conditions[place])
+            each.observe_at(y, rates[0], 1.3, 0.4, seen[place])
+            each.enter_at(y, limits[place])
+        np.testing.assert_allclose(*conditions, rtol=1e-10, atol=1e-12 * weight)
+        np.testing.assert_allclose(*seen, rtol=1e-10, atol=1e-12 * weight)
+        np.testing.assert_allclose(*limits, rtol=1e-14)
+        assert len(checks) <= len(events)

@@ -193,7 +193,7 @@ def made(monkeypatch):
     """Return the grounds that reach a model, which is then built without them."""
     grounds = []
 
-    def grounded(label, kept, ground, law, missing_mass):
+    def grounded(label, kept, ground, law, missing_mass, **_kind):
         grounds.append(ground)
         return LinearModel(label, kept, True, law or rf.VVELSimplified(), missing_mass)
 

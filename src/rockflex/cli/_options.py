@@ -162,8 +162,8 @@ Models = Annotated[
         "MDOF-C, 3DOF-C-SI, 3DOF-C-E, ...; without flexure: rigid, rigid-C; fixed base: fixed, 5DOF-fixed; one "
         "mode that yields: 2DOF-S-BW, 2DOF-C-BW, 1DOF-fixed-BW; with the mass of omitted modes in V_b and M_b: "
         "2DOF-S-R, 5DOF-fixed-R, ... Default: 2DOF-S,MDOF-S,fixed; with a hysteresis "
-        "2DOF-S,2DOF-S-BW,1DOF-fixed-BW; with an initial rotation, those of these that rock; on springs or with "
-        "--ground-friction, those that are simplified and elastic and rock.",
+        "2DOF-S,2DOF-S-BW,1DOF-fixed-BW; with an initial rotation, on springs or with "
+        "--ground-friction, those of these that rock.",
         show_default=False,
     ),
 ]

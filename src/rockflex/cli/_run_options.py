@@ -147,8 +147,7 @@ def choose_run_models(
         labels: list[str] = [*(usual if options.bouc_wen is None else YIELDING)]
         ground = ground_under_structure(properties, options.ground)
         if ground is not None and not ground.rigid:
-            labels = [label for label in labels if (each := parse_model(label)).lifts and not each.complete]
-            labels = [label for label in labels if not parse_model(label).yields]
+            labels = [label for label in labels if parse_model(label).lifts]
         if options.initial is not None:
             labels = [label for label in labels if parse_model(label).lifts]
     else:

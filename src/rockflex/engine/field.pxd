@@ -7,6 +7,7 @@ cdef class Field:
     cdef void rates(self, const double *y, double a, double a_v, double *out, bint counted) noexcept nogil
     cdef void sizes(self, const double *y, double a, double a_v, double *out) noexcept nogil
     cdef void observe(self, const double *y, const double *rates, double a, double a_v, double *out) noexcept nogil
+    cdef void conditions(self, const double *y, const double *rates, double a, double a_v, double *out) noexcept nogil
     cdef void enter(self, const double *y, double *more) noexcept nogil
 
 

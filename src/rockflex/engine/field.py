@@ -32,6 +32,9 @@ class Field:
     def observe(self, y, rates, a, a_v, out):
         """Replace the outputs that are not linear, of which `out` holds the rows."""
 
+    def conditions(self, y, rates, a, a_v, out):
+        """Replace the conditions that are not linear."""
+
     def enter(self, y, more):
         """As a phase begins, add to the constants of its conditions what the constant states say."""
 
@@ -64,6 +67,16 @@ class Field:
             self.observe(cython.address(state[0]), cython.address(moves[0]), a, a_v, cython.address(found[0]))
         else:
             self.observe(state, moves, a, a_v, found)
+
+    def conditions_at(self, y, rates, a, a_v, out):
+        """Do what `conditions` does, with arrays."""
+        state: cython.double[::1] = y
+        moves: cython.double[::1] = rates
+        found: cython.double[::1] = out
+        if cython.compiled:
+            self.conditions(cython.address(state[0]), cython.address(moves[0]), a, a_v, cython.address(found[0]))
+        else:
+            self.conditions(state, moves, a, a_v, found)
 
     def rates_along(self, states, a, a_v, counted=True):
         """Return the rates of many states, shape (k, n), each under its own accelerations."""

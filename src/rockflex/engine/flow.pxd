@@ -25,6 +25,8 @@ cdef class Flow:
     cdef int[:, ::1] velocities  # places of the states that are the rates of the states, -1 if there are none
     cdef int[:, ::1] exact  # conditions of states that have such rates
     cdef int[:, ::1] straight  # whether an output is linear, by phase
+    cdef int[:, ::1] checked  # numbers of the conditions that are not linear, by phase; the first is how many
+    cdef double[::1] slopes  # of a cubic, at both ends
 
     cdef void begin(self) noexcept nogil
     cdef void resume(self, bint counts) noexcept nogil
@@ -38,6 +40,12 @@ cdef class Flow:
     cdef int march(self, int place, const double[::1] a, const double[::1] v, int i, int last, double[:, ::1] states) noexcept nogil
     cdef double cross(self, int place, double start, double end, (double, double) v, double u, double sample) noexcept nogil
     cdef void look(self, int place, double a, double v, int at, int rates, int to) noexcept nogil
+    cdef void check(self, int place, double a, double v, int at, int rates, int to) noexcept nogil
+    cdef void check_within(self, int place, int stage, double t, int to) noexcept nogil
+    cdef void check_at(self, double[:, ::1] series, double t) noexcept nogil
+    cdef void fit(self, double[:, ::1] series, double[::1] away) noexcept nogil
+    cdef double sharpened(self, double[:, ::1] series, int e, double t) noexcept nogil
+    cdef void tilt(self, int first, int early, int late, int last, int j) noexcept nogil
     cdef void look_ahead(self, int place) noexcept nogil
     cdef double counted(self, int j, double value) noexcept nogil
     cdef void raise_to(self, int outs, double sample) noexcept nogil

@@ -29,6 +29,9 @@ OFTEN = cython.declare(cython.int, 64)  # steps in a sample without a look at Ct
 NEAR = cython.declare(cython.double, 0.75)  # of its peak: an output below that at both ends of a step does not reach it
 STRAY = cython.declare(cython.double, 0.2)  # of a cubic's curvature, by which a row may deviate from it
 VANISHES = cython.declare(cython.double, 1e-12)  # as in `series`
+BLUR = cython.declare(cython.double, 1e-10)  # of its scale: a condition that is not linear and zero
+FLAT = cython.declare(cython.double, 1e-9)  # of its changes: a slope of one that is zero
+TURNS = cython.declare(cython.int, 3)  # of Newton's method, for the zero of one
 CALM = cython.declare(cython.double, 1e-8)  # 1/s: of its largest value, the rate of a state that is at rest
 TERMS = cython.declare(cython.int, 8)  # of the polynomial over a step
 CURVED = cython.declare(cython.int, 10)  # of that of an output that is not linear
@@ -58,6 +61,8 @@ BEYOND = cython.declare(cython.int, tableau.BEYOND)
 SLOPES = cython.declare(cython.int, tableau.SLOPES)
 BENDS = cython.declare(cython.int, tableau.BENDS)
 MORE = cython.declare(cython.int, tableau.MORE)
+EARLY_CHECKS = cython.declare(cython.int, tableau.EARLY_CHECKS)
+LATE_CHECKS = cython.declare(cython.int, tableau.LATE_CHECKS)
 
 CUBIC = np.linalg.inv(np.vander((0.0, C[7], C[8], 1.0), increasing=True))  # through values at the start, early, ..
 
@@ -135,11 +140,12 @@ class Flow:
         self.least = np.zeros((1, 1))
         self.exact, self.terms = np.zeros((1, 1), dtype=np.intc), TERMS
         self.straight = np.zeros((1, 1), dtype=np.intc)
+        self.checked, self.slopes = np.zeros((1, 1), dtype=np.intc), np.zeros(2)
         self.place, self.counts, self.part, self.reached = -1, False, 0.0, 0.0
         self.begin()
 
     def know(self, phase, place):
-        """Take a phase: its outputs that are not linear, and which states are rates of others."""
+        """Take a phase: its outputs and conditions that are not linear, and which states are rates of others."""
         n, m = self.n, self.outputs
         velocities, curved, least = np.full(n, -1, dtype=np.intc), np.zeros(m + 1, dtype=np.intc), np.zeros(m + 1)
         velocities[list(phase.velocities)] = list(phase.velocities.values())
@@ -147,15 +153,19 @@ class Flow:
         curved[0], curved[1 : 1 + count], least[1 : 1 + count] = count, list(phase.curved), list(phase.curved.values())
         self.found = self.phases.found
         exact = [int(not event.row[0][velocities < 0].any()) for event in phase.events]
+        for e in phase.curved_events:
+            exact[e] = 0
         straight = np.ones(m + 1, dtype=np.intc)
         straight[list(phase.curved)] = 0
-        nothing = np.zeros(m + 1, dtype=np.intc), np.zeros(m + 1), np.full(n, -1, dtype=np.intc), straight, []
+        nothing = np.zeros(m + 1, dtype=np.intc), np.zeros(m + 1), np.full(n, -1, dtype=np.intc), straight, [], ()
         self.facts += [nothing] * (place + 1 - len(self.facts))
-        self.facts[place] = curved, least, velocities, straight, exact
+        self.facts[place] = curved, least, velocities, straight, exact, tuple(phase.curved_events)
         known = list(zip(*self.facts, strict=True))
         self.curved, self.least, self.velocities, self.straight = map(np.array, known[:4])
         most = max(1, *map(len, known[4]))
         self.exact = np.array([each + [0] * (most - len(each)) for each in known[4]], dtype=np.intc)
+        most = 1 + max(map(len, known[5]))
+        self.checked = np.array([[len(each), *each] + [0] * (most - 1 - len(each)) for each in known[5]], dtype=np.intc)
 
     def begin(self):
         """Begin a run anew."""
@@ -284,7 +294,7 @@ class Flow:
         if fresh:
             self.arrive(place, a, rise)
             self.look(place, a, rise, START, FIRST, OUTS)
-            self.phases.look(place, False, (rise, 0.0), 0, START, START, BELOW)
+            self.check(place, a, rise, START, FIRST, BELOW)
             self.told = True
         for _steps in range(OFTEN):
             part = self.take(place, start, end, v, u)
@@ -316,6 +326,12 @@ class Flow:
         if self.curved[place, 0] > 0:
             self.phases.observe(place, a, v, at, rates, to)
 
+    def check(self, place, a, v, at, rates, to):
+        """Compute the conditions of a state under both accelerations."""
+        self.phases.look(place, False, (v, 0.0), 0, at, at, to)
+        if self.checked[place, 0] > 0:
+            self.phases.check(place, a, v, at, rates, to)
+
     def look_ahead(self, place):
         """Compute the outputs at the end of the step."""
         a: cython.double = self.shaking[0] + self.shaking[1]
@@ -344,11 +360,18 @@ class Flow:
     def conditions_hide(self, place):
         """Whether a condition may fail within the step or at its end."""
         e: cython.int
+        k: cython.int
         more: cython.double
         length: cython.double = self.part * self.h
-        v: cython.double = self.shaking[2] + self.shaking[3]
-        self.phases.look(place, False, (v, 0.0), 0, END, END, BEYOND)
+        self.check(place, self.shaking[0] + self.shaking[1], self.shaking[2] + self.shaking[3], END, LAST, BEYOND)
         self.slopes_of(False, place)
+        if self.checked[place, 0] > 0:
+            self.check_within(place, EARLY, EARLY_AT, EARLY_CHECKS)
+            self.check_within(place, LATE, LATE_AT, LATE_CHECKS)
+        for k in range(self.checked[place, 0]):
+            e = self.checked[place, 1 + k]
+            self.tilt(BELOW, EARLY_CHECKS, LATE_CHECKS, BEYOND, e)
+            self.found[SLOPES, e], self.found[BENDS, e] = self.slopes[0] / length, self.slopes[1] / length
         for e in range(self.phases.events(place)):
             more = self.found[MORE, e]
             if falls(
@@ -397,8 +420,6 @@ class Flow:
         most: cython.double
         first: cython.double
         last: cython.double
-        before: cython.double
-        after: cython.double
         told: cython.bint = False
         for k in range(self.curved[place, 0]):
             j = self.curved[place, 1 + k]
@@ -411,14 +432,25 @@ class Flow:
                 self.look_within(place, EARLY, EARLY_AT, EARLY_OUTS)
                 self.look_within(place, LATE, LATE_AT, LATE_OUTS)
                 told = True
-            before = self.tilts[0, 0] * first + self.tilts[0, 1] * self.found[EARLY_OUTS, j]
-            before += self.tilts[0, 2] * self.found[LATE_OUTS, j] + self.tilts[0, 3] * last
-            after = self.tilts[1, 0] * first + self.tilts[1, 1] * self.found[EARLY_OUTS, j]
-            after += self.tilts[1, 2] * self.found[LATE_OUTS, j] + self.tilts[1, 3] * last
-            low, high = range_of(first, last, before, after)
+            self.tilt(OUTS, EARLY_OUTS, LATE_OUTS, ENDS, j)
+            low, high = range_of(first, last, self.slopes[0], self.slopes[1])
             if max(self.counted(j, low), self.counted(j, high)) > max(self.high[j], most):
                 return True
         return False
+
+    def tilt(self, first, early, late, last, j):
+        """Compute the slopes at both ends of the cubic through what was found at four places of the step."""
+        k: cython.int
+        for k in range(2):
+            self.slopes[k] = self.tilts[k, 0] * self.found[first, j] + self.tilts[k, 1] * self.found[early, j]
+            self.slopes[k] += self.tilts[k, 2] * self.found[late, j] + self.tilts[k, 3] * self.found[last, j]
+
+    def check_within(self, place, stage, t, to):
+        """Compute the conditions at a stage of the step."""
+        a: cython.double = self.shaking[0] + t * self.shaking[1]
+        self.phases.within(place, stage)
+        self.rows[PLACE, self.n], self.rows[PLACE, self.n + 1] = a, 1.0
+        self.check(place, a, self.shaking[2] + t * self.shaking[3], PLACE, stage, to)
 
     def look_within(self, place, stage, t, outs):
         """Compute the outputs at a stage of the step."""
@@ -450,7 +482,9 @@ class Flow:
         events: cython.int = self.phases.events(self.place)
         v: cython.double = self.shaking[2]
         rise: cython.double = self.shaking[3]
-        self.terms = CURVED if self.curved[self.place, 0] > 0 else TERMS if v == 0.0 and rise == 0.0 else TERMS + 1
+        self.terms = TERMS if v == 0.0 and rise == 0.0 else TERMS + 1
+        if self.curved[self.place, 0] + self.checked[self.place, 0] > 0:
+            self.terms = CURVED
         self.phases.bend(self.place, self.counts, series)
         for k in range(TERMS, self.terms):
             for i in range(self.states):
@@ -464,7 +498,59 @@ class Flow:
             for e in range(events):
                 series[k, self.states + e] = self.found[BEYOND, e] + (self.found[MORE, e] if k == 0 else 0.0)
                 away[e] += fabs(self.found[BEYOND, e]) if k > 0 else 0.0
+        if self.checked[self.place, 0] > 0:
+            self.fit(series, away)
         return self.terms
+
+    def fit(self, series, away):
+        """Put polynomials in the place of the conditions that are not linear."""
+        k: cython.int
+        r: cython.int
+        i: cython.int
+        row: cython.int
+        for k in range(self.checked[self.place, 0]):
+            row = self.states + self.checked[self.place, 1 + k]
+            for r in range(CURVED):
+                series[r, row] = 0.0
+        for r in range(CURVED):
+            self.check_at(series, self.nodes[r])
+            for k in range(self.checked[self.place, 0]):
+                row = self.checked[self.place, 1 + k]
+                for i in range(CURVED):
+                    series[i, self.states + row] += self.fits[i, r] * (self.found[BEYOND, row] + self.found[MORE, row])
+        for k in range(self.checked[self.place, 0]):
+            row = self.checked[self.place, 1 + k]
+            away[row] = 0.0
+            for r in range(1, CURVED):
+                away[row] += fabs(series[r, self.states + row])
+
+    def check_at(self, series, t):
+        """Compute the conditions at a place of the step, from the polynomials of the states."""
+        a: cython.double = self.shaking[0] + t * self.shaking[1]
+        v: cython.double = self.shaking[2] + t * self.shaking[3]
+        self.phases.evaluate(series, TERMS, t, self.rows[PLACE])
+        self.phases.rates(self.place, a, v, PLACE, PLACE_RATES, False)
+        self.check(self.place, a, v, PLACE, PLACE_RATES, BEYOND)
+
+    def sharpened(self, series, e, t):
+        """The place at which a condition fails, to rounding if it is not linear, from that of its polynomial."""
+        k: cython.int
+        i: cython.int
+        _turn: cython.int
+        value: cython.double
+        slope: cython.double
+        for k in range(self.checked[self.place, 0]):
+            if self.checked[self.place, 1 + k] != e:
+                continue
+            for _turn in range(TURNS):
+                self.check_at(series, t)
+                value, slope = self.found[BEYOND, e] + self.found[MORE, e], 0.0
+                for i in range(CURVED - 1, 0, -1):
+                    slope = slope * t + i * series[i, self.states + e]
+                if not slope < 0.0 or not fabs(value) < -1e-3 * slope:
+                    break
+                t = min(max(t - value / slope, 0.0), 1.0)
+        return t
 
     def complete(self, series, first):
         """Fill the series with the polynomials of the outputs, too, from a column on."""
@@ -524,6 +610,13 @@ class Flow:
                 sums[0, e] += fabs(self.found[MORE, e])
             elif order > 2 or (order == 2 and self.exact[self.place, e] == 0):
                 sums[order, e] = away[e]
+        for i in range(self.checked[self.place, 0] if order <= 2 else 0):
+            e = self.checked[self.place, 1 + i]
+            if order == 0:
+                sums[0, e] = BLUR / VANISHES * self.phases.scale(self.place, e)
+            else:
+                # The polynomial goes through values that are rounded, which counts in a short step.
+                sums[order, e] = FLAT / VANISHES * away[e] + self.phases.scale(self.place, e)
         if order == 2:
             for i in range(self.n):
                 v = self.velocities[self.place, i]

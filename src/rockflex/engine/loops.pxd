@@ -158,4 +158,5 @@ cdef class Phases:
     cdef void bend(self, int place, bint counted, double[:, ::1] series) noexcept nogil
     cdef void look(self, int place, bint outputs, (double, double) v, int k, int before, int at, int to) noexcept nogil
     cdef void observe(self, int place, double a, double a_v, int at, int rates, int to) noexcept nogil
+    cdef void check(self, int place, double a, double a_v, int at, int rates, int to) noexcept nogil
     cdef int moving(self, int place) noexcept nogil

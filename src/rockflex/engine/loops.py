@@ -467,6 +467,11 @@ class Phases:
         found: cython.p_double = cython.address(self.found[to, 0])
         cython.cast(Field, self.phases[place].field).observe(self.row(at), self.row(rates), a, a_v, found)
 
+    def check(self, place, a, a_v, at, rates, to):
+        """Replace the conditions that are not linear."""
+        found: cython.p_double = cython.address(self.found[to, 0])
+        cython.cast(Field, self.phases[place].field).conditions(self.row(at), self.row(rates), a, a_v, found)
+
 
 @cython.cfunc
 @cython.nogil

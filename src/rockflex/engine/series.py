@@ -112,6 +112,8 @@ class Series:
                 t = first_fall(self.q, zeros, self.terms - zeros, 0.0, first)
                 if t <= 1.0 - SNAP and (t < first or found < 0):
                     first, found = t, e
+        if found >= 0 and first > 0.0 and self.phases.nonlinear(self.place):
+            first = self.flow.sharpened(self.series, found, first)
         return first, found
 
     def sum_up(self, order):

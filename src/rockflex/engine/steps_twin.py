@@ -155,3 +155,7 @@ class Steps:
     def observe(self, place: int, a: float, a_v: float, at: int, rates: int, to: int) -> None:
         """Replace the outputs that are not linear."""
         self._field(place).observe_at(self._state(at), self._state(rates), a, a_v, self.found[to])
+
+    def check(self, place: int, a: float, a_v: float, at: int, rates: int, to: int) -> None:
+        """Replace the conditions that are not linear."""
+        self._field(place).conditions_at(self._state(at), self._state(rates), a, a_v, self.found[to])

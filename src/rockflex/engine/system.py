@@ -221,6 +221,9 @@ class NonlinearPhase:
     curved : dict
         Numbers of the outputs that `field` computes from their rows, each with a size, zero or positive: a peak within
         a step is looked for where the ends of the step are closer to the highest value than a quarter of that or of it.
+    curved_events : sequence of int
+        Numbers of the events whose conditions `field` computes; their rows are not used. A condition within a
+        ten-billionth of its event's scale is zero.
     """
 
     field: Field | Callable[[Array, float, float], Array]
@@ -234,6 +237,7 @@ class NonlinearPhase:
     curved: dict[int, float] = initially(default_factory=dict)
     C_v: Array | None = None
     d_v: Array | None = None
+    curved_events: Sequence[int] = ()
 
     def of(self, place: int) -> "NonlinearPhase":
         """The phase itself: there is no stack of them."""
@@ -348,6 +352,11 @@ def _checked_field(place: str, phase: NonlinearPhase, n: int, m: int, count: int
     numbers = [*phase.velocities, *phase.velocities.values()]
     if not all(0 <= each < n for each in numbers) or not all(0 <= each < m for each in phase.curved):
         raise InputError(f"{place}velocities and curved must name states and outputs that there are.")
+    if not all(0 <= each < len(phase.events) for each in phase.curved_events):
+        raise InputError(
+            f"{place}curved_events must be numbers from 0 to {len(phase.events) - 1}, but {phase.curved_events!r} was "
+            "given."
+        )
     return replace(phase, field=found, scale=scale, counted=counted)
 
 

@@ -14,9 +14,9 @@ LAST, STAGES = 12, 16  # the stage at the end of the step; number of stages
 START, END, PLACE, PLACE_RATES, LARGEST, TERM, BEFORE = range(STAGES, STAGES + 7)
 ROWS = STAGES + 7
 # Rows for what is found there: outputs at the start, the end and two places between, conditions at the start and the
-# end, rates of rows at both, and what the constant states add to the conditions.
-OUTS, ENDS, EARLY_OUTS, LATE_OUTS, BELOW, BEYOND, SLOPES, BENDS, MORE = range(9)
-FOUND = 9
+# end, rates of rows at both, and what the constant states add to the conditions; conditions at the places between.
+OUTS, ENDS, EARLY_OUTS, LATE_OUTS, BELOW, BEYOND, SLOPES, BENDS, MORE, EARLY_CHECKS, LATE_CHECKS = range(11)
+FOUND = 11
 
 
 def _rows(

@@ -53,11 +53,14 @@ from rockflex.models._named import (
     tracked_elements,
 )
 from rockflex.models._nonlinear import NonlinearModel
-from rockflex.models._nonlinear_system import key_of, nonlinear_system, with_marks
+from rockflex.models._nonlinear_ground import made_nonlinear
+from rockflex.models._nonlinear_ground_system import nonlinear_system
+from rockflex.models._nonlinear_system import key_of, with_marks
 from rockflex.models._phase import BorderedSystem, Key
 from rockflex.models._quantities import (
     HORIZONTAL,
     LEFT_OUT,
+    LIFT,
     LINEAR,
     SWAY,
     SWING,
@@ -80,6 +83,7 @@ __all__ = [
     "LEFT",
     "LEFT_OUT",
     "LEVEL",
+    "LIFT",
     "LINEAR",
     "LOADED",
     "RIGHT",
@@ -135,6 +139,7 @@ __all__ = [
     "joined",
     "key_of",
     "linear_system_of",
+    "made_nonlinear",
     "may_stack",
     "modal_displacement",
     "nonlinear_system",

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex.engine import changes_of, halvings_of, radius
-from rockflex.models._elements import CLOSED
 from rockflex.models._kept import phases_at, under_more_gravity
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME
@@ -274,7 +273,7 @@ class MotionBetween:
         middle = 0.5 * (rotation[:-1] + rotation[1:]) - ASIDE * steps * np.diff(spin)
         parts, longest = list[Part](), _longest(steps)
         for found, key in phases_at(model, states[:-1, SIDE], middle, states[:-1]):
-            if model.integrated and (key[0] != CLOSED or model.bouc_wen is not None):
+            if model.integrates(key[0]):
                 continue
             if key not in self._known:
                 self._known[key] = LinearMotion(model, key, longest)

@@ -4,24 +4,25 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex.models._element import Slider
-from rockflex.models._kept import acting_side, by_phase
+from rockflex.models._elements import hold_shares, is_held
+from rockflex.models._kept import acting_side, by_phase, held_moment
 from rockflex.models._label import RockingModel
 
 
 def element_forces(model: RockingModel, states: Array) -> Array:
     """Return the tension of every element at the states of a history in N, shape (n, E)."""
-    layout = model.layout
     found = np.zeros((states.shape[0], len(model.elements)))
     if not model.elements:
         return found
     for chosen, key, given in by_phase(model, states, acting_side(states)):
-        vector = given
-        if model.complete:
-            half = 0.5 * given[:, layout.rotation]
-            vector = given.copy()
-            vector[:, layout.rotation] = 2.0 * np.sin(half)
-            vector[:, layout.spin] *= np.cos(half)
-        found[chosen] = vector @ model.tensions(key).T
+        found[chosen] = model.stretched(given) @ model.tensions(key).T
+        if (
+            model.complete
+            and model.springs is None
+            and is_held(model.properties, model.elements, model.element_key(key))
+        ):
+            shares = hold_shares(model.properties, model.elements, key[0])
+            found[chosen] += np.outer(held_moment(model, states[chosen]), shares)
     for place, each in enumerate(model.elements):
         if isinstance(each, Slider):  # where it turns back without a stop, it would take more than F_0 to hold the base
             np.clip(found[:, place], -each.force, each.force, out=found[:, place])

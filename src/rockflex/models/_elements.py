@@ -76,6 +76,16 @@ def is_held(properties: RockingProperties, elements: tuple[Element, ...], key: K
     )
 
 
+def hold_shares(properties: RockingProperties, elements: tuple[Element, ...], side: int) -> Array:
+    """Return the tension of each element per N m that friction dampers balance while they hold the base, in 1/m, (E,).
+
+    Each takes a part in proportion to its force F_0, as at the instant in which they slide; zero for other elements.
+    """
+    arms = np.array([arm_of(properties, each, side) if isinstance(each, Slider) else 0.0 for each in elements])
+    forces = np.array([each.force if isinstance(each, Slider) else 0.0 for each in elements])
+    return side * np.sign(arms) * forces / float(forces @ np.abs(arms))
+
+
 def internal_places(elements: tuple[Element, ...]) -> dict[int, int]:
     """Return the index of the first internal variable of each element that has some, by its place."""
     ends = np.cumsum([each.n_internal for each in elements], dtype=int).tolist()

@@ -7,6 +7,8 @@ cdef class RockingField(Field):
     cdef int n, side, branch, whole, memory, n_internal, kinds_count, stops_count
     cdef bint complete, hysteretic, viscous, pulled, held
     cdef double[::1] omega2, stiffness, drag, height, mass, lever
+    cdef double[:, ::1] releases
+    cdef double grip
     cdef double offset, left, inverse, levers_sum, weight_arm, total_mass, gravity, resting
     cdef double yields, loading, slip, ratio, gamma, beta, exponent
     cdef double[:, ::1] pulls
@@ -16,6 +18,7 @@ cdef class RockingField(Field):
     cdef int[:, ::1] stop_kinds
 
     cdef double pull(self, const double *y, int which) noexcept nogil
+    cdef double imbalance(self, const double *y, const double *rates, double a, double a_v) noexcept nogil
     cdef double inertia_left(self, const double *y) noexcept nogil
     cdef inline void rates_of(self, int n, const double *y, double a, double a_v, double *out, bint counted) noexcept nogil
     cdef inline void in_contact(self, int n, const double *y, double a, double *out, bint counted) noexcept nogil

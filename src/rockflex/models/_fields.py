@@ -98,9 +98,14 @@ class RockingField(Field):
         For each of the first conditions, what the constant states add to it: whether it is a limit from below (1) or
         above (-1) of |θ|, the index of an internal variable or -1, and of the elongation per unit distance from the
         pivot a part and the factor of the internal variable.
+    releases : ndarray, shape (2, 1 + M)
+        While friction dampers hold the base at a large rotation: the sums for the moment of the elements in the phases
+        in which θ would then grow or fall, which end this one.
+    grip : float
+        While they hold it, the sum of their tensions for each N m of the moment that they balance, at a small rotation.
     """
 
-    def __init__(self, numbers, side, branch, pulls, stops):
+    def __init__(self, numbers, side, branch, pulls, stops, releases=None, grip=0.0):
         p, b = numbers.properties, numbers.bouc_wen
         self.n, self.side, self.branch = p.n_modes, side, branch
         self.complete, self.hysteretic, self.viscous = numbers.complete, b is not None, numbers.viscous
@@ -119,8 +124,9 @@ class RockingField(Field):
         self.stiffness, self.loading = self.ratio * p.omega**2, 1.0 / self.yields
         self.slip = float(p.omega[0] ** 2) * self.yields * (1.0 - self.ratio) if b is not None else 0.0
         self.whole = int(self.exponent) if float(self.exponent).is_integer() else 0
-        self.pulls, self.memory, self.n_internal = np.array(pulls), numbers.memory, pulls.shape[1] - 1
+        self.pulls, self.memory, self.n_internal = np.array(pulls), numbers.layout.memory, pulls.shape[1] - 1
         self.pulled, self.held = bool(pulls[[MOMENT, FORCE]].any()), bool(pulls[HOLD, 0])
+        self.releases, self.grip = np.zeros((2, pulls.shape[1])) if releases is None else np.array(releases), grip
         self.kinds, self.levers = np.array(numbers.kinds, dtype=np.intc), np.array(numbers.levers, dtype=float)
         self.kinds_count, self.stops_count = len(numbers.kinds), len(stops)
         self.stop_kinds = np.array([each[:2] for each in stops], dtype=np.intc).reshape(-1, 2)
@@ -337,6 +343,60 @@ class RockingField(Field):
                 fabs(y[n]) / self.yields * (1.0 + (self.gamma + fabs(self.beta)) * self.power(fabs(y[2 * n + 2])))
             )
 
+    def imbalance(self, y, rates, a, a_v):
+        """The moment about the pivot that friction dampers balance while they hold the base at a large rotation."""
+        n: cython.int = self.n
+        i: cython.int
+        sine: cython.double
+        cosine: cython.double
+        gravity: cython.double = self.gravity + a_v
+        beside: cython.double = self.total_mass * self.offset
+        total: cython.double = 0.0
+        sine, cosine = sine_and_cosine(y[2 * n])
+        for i in range(n):
+            beside -= self.mass[i] * y[i]
+            total += self.lever[i] * rates[n + i]
+        total += self.weight_arm * (a * cosine - gravity * sine) + beside * (a * sine + gravity * cosine)
+        total += self.pulls[P_STIFFNESS, 0] * sine
+        return -total - self.side * self.pull(y, P_MOMENT) * sqrt(0.5 + 0.5 * cosine)
+
+    def imbalance_along(self, states, rates, a, a_v):
+        """Return `imbalance` at many states, shape (k,)."""
+        given: cython.double[:, ::1] = states
+        moves: cython.double[:, ::1] = rates
+        across: cython.double[::1] = a
+        upwards: cython.double[::1] = a_v
+        found = np.zeros(len(states))
+        total: cython.double[::1] = found
+        k: cython.Py_ssize_t
+        for k in range(given.shape[0] if states.size else 0):
+            if cython.compiled:
+                total[k] = self.imbalance(
+                    cython.address(given[k, 0]), cython.address(moves[k, 0]), across[k], upwards[k]
+                )
+            else:
+                total[k] = self.imbalance(given[k], moves[k], across[k], upwards[k])
+        return found
+
+    def conditions(self, y, rates, a, a_v, out):
+        """Replace the conditions under which friction dampers hold the base: by how much both moments fail to turn it.
+
+        The moments are those of the phases that follow, with θ growing and falling.
+        """
+        m: cython.int
+        k: cython.int
+        upright: cython.double = cos(0.5 * y[2 * self.n])
+        own: cython.double = self.pull(y, P_MOMENT)
+        after: cython.double
+        moment: cython.double = self.imbalance(y, rates, a, a_v)
+        for k in range(2):
+            after = self.releases[k, 0] - own
+            for m in range(self.n_internal):
+                after += self.releases[k, 1 + m] * y[self.memory + m]
+            out[k] = self.side * upright * after - moment
+            if k == 1:
+                out[k] = -out[k]
+
     def observe(self, y, rates, a, a_v, out):
         """Replace the outputs that are not linear in large rotations: see `rockflex.models._quantities`."""
         n: cython.int = self.n
@@ -370,10 +430,12 @@ class RockingField(Field):
         along = across * cosine - self.weight_arm * sine
         beside = across * sine + self.weight_arm * cosine
         # An element points from its present anchor on the base to its position in contact: at θ/2 from the vertical.
-        if self.pulled or self.pulls[P_PULL, 0] != 0.0 or self.pulls[P_DRAG, 0] != 0.0:
+        if self.held or self.pulled or self.pulls[P_PULL, 0] != 0.0 or self.pulls[P_DRAG, 0] != 0.0:
             half = 0.5 * sine / upright
             coriolis = self.pull(y, P_FORCE) + 2.0 * self.pulls[P_PULL, 0] * self.side * half
             coriolis += self.pulls[P_DRAG, 0] * upright * self.side * spin
+            if self.held:
+                coriolis += self.grip / upright * self.imbalance(y, rates, a, a_v)
             aside, upwards = coriolis * half, coriolis * upright
         coriolis = 2.0 * spin * speed
         for j in range(self.kinds_count):

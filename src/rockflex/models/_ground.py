@@ -5,21 +5,33 @@ import numpy as np
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import FrictionDamper, Ground, RockingProperties, Springs
+from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._elements import elements_of
 from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._linear_model import LinearModel
 from rockflex.models._modal_model import Pose
+from rockflex.models._nonlinear_ground import made_nonlinear
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._spring_model import SpringModel
 
+TURNS = 20  # in which the lever arms of a tilted base are found
 STABLE = 1e-9  # relative: least stiffness of a base against toppling
 SAME = 1e-9  # relative to the half width: positions at the edges may be rounded
 
 
 def model_on_ground(
-    label: str, kept: RockingProperties, ground: Ground, law: ImpactLaw | None, missing_mass: bool
+    label: str,
+    kept: RockingProperties,
+    ground: Ground,
+    law: ImpactLaw | None,
+    missing_mass: bool,
+    *,
+    complete: bool = False,
+    bouc_wen: BoucWen | None = None,
 ) -> LinearModel:
     """Return the model of a structure on springs, without impact law, or of one that slides.
+
+    It is nonlinear if it is `complete`, or has the hysteresis `bouc_wen`.
 
     Raises
     ------
@@ -29,7 +41,10 @@ def model_on_ground(
     """
     if ground.springs is None:
         friction = float(np.max(np.asarray(ground.friction)))
-        return SlidingModel(label, kept, law=law or VVELSimplified(), missing_mass=missing_mass, friction=friction)
+        sliding = SlidingModel(label, kept, law=law or VVELSimplified(), missing_mass=missing_mass, friction=friction)
+        if not complete and bouc_wen is None:
+            return sliding
+        return made_nonlinear(sliding, complete=complete, bouc_wen=bouc_wen)
     friction = None
     if ground.slides:
         friction = np.broadcast_to(np.asarray(ground.friction, dtype=np.float64), ground.springs.n).copy()
@@ -39,25 +54,43 @@ def model_on_ground(
                 f"once, but {friction.tolist()} was given.",
                 field="friction",
             )
-    return SpringModel(
+    on_springs = SpringModel(
         label,
         kept,
         missing_mass=missing_mass,
         springs=ground.springs,
         inertia=kept.translational_inertia + float(ground.base_inertia or 0.0),
         friction=friction,
-        rest=pose_at_rest(label, kept, ground.springs),
+        rest=pose_at_rest(label, kept, ground.springs, complete=complete),
     )
+    if not complete and bouc_wen is None:
+        return on_springs
+    return made_nonlinear(on_springs, complete=complete, bouc_wen=bouc_wen)
 
 
-def pose_at_rest(label: str, properties: RockingProperties, springs: Springs) -> Pose:
+def pose_at_rest(label: str, properties: RockingProperties, springs: Springs, *, complete: bool = False) -> Pose:
     """Return rotation and heave of a base on springs under its weight and the initial tensions of its elements.
+
+    In a complete model the tilted structure also bends under its weight, and moments are those of lever arms x cos θ.
 
     Raises
     ------
     InputError
         If it topples.
     """
+    weight, bent = properties.l0r * GRAVITY, 0.0
+    if complete:
+        bent = float(np.sum(properties.effective_mass / properties.omega**2)) * GRAVITY**2
+    pose = _at_rest(label, properties, springs, weight + bent)
+    for _ in range(TURNS if pose.rotation and complete else 0):
+        level = float(np.cos(pose.rotation))
+        lean, heave = _at_rest(label, properties, springs, weight / level + bent)
+        pose = Pose(float(np.arcsin(lean)), heave)
+    return pose
+
+
+def _at_rest(label: str, properties: RockingProperties, springs: Springs, toppling: float) -> Pose:
+    """Return the pose at rest with a moment of the weight in N m/rad."""
     p = properties
     under = [(each.position, each.pull(each.branches[0]).force) for each in elements_of(p)]
     pulls = [(position, force) for position, force in under if position is not None]
@@ -66,7 +99,7 @@ def pose_at_rest(label: str, properties: RockingProperties, springs: Springs) ->
     for _ in range(springs.n):
         levers = np.stack((-springs.positions, np.ones(springs.n)))[:, pressed]
         stiffness = levers * springs.stiffness[pressed] @ levers.T
-        stiffness[0, 0] -= p.l0r * GRAVITY
+        stiffness[0, 0] -= toppling
         if not np.linalg.det(stiffness) > STABLE * stiffness[1, 1] * springs.rotational_stiffness:
             break
         rotation, heave = np.linalg.solve(stiffness, forces)

@@ -7,13 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex.models._elements import element_force_sums
 from rockflex.models._fields import RockingField
+from rockflex.models._ground_fields import GroundField
 from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME
-from rockflex.models._nonlinear import NonlinearModel, Numbers, numbers_of
+from rockflex.models._nonlinear import Numbers, numbers_of
 from rockflex.models._phase import Key
 from rockflex.models._quantities import LINEAR, Quantities, rows_of
+from rockflex.models._vector_fields import field_of
 
 _MAX_CODES = 2**31  # beyond which they are numbered anew, before they overflow
 
@@ -36,11 +37,12 @@ def accelerations(model: RockingModel, states: Array) -> Array:
     side, layout = acting_side(states), model.layout
     n = layout.modes
     found = np.zeros((states.shape[0], n + layout.freedoms))
-    if isinstance(model, NonlinearModel):
+    if model.integrated:
+        speeds = range(layout.spin, layout.spin + 2 * layout.freedoms, 2)
         for chosen, field in fields_at(model, numbers_of(model), states, side):
             motion, shaking = _apart(states[chosen])
             rates = field.rates_along(motion, *shaking, counted=False)
-            found[chosen] = rates[:, [*range(n, 2 * n), layout.spin]]
+            found[chosen] = rates[:, [*range(n, 2 * n), *speeds]]
         return found
     heavier = under_more_gravity(model) if states[:, RISE].any() else None
     for chosen, key, vector in by_phase(model, states, side):
@@ -60,10 +62,13 @@ def under_more_gravity(model: RockingModel) -> RockingModel:
 
 
 def rates_of(model: RockingModel, states: Array, found: Array) -> Array:
-    """Return D', D'', θ' and θ'' in the order of the state, shape (n, 2N + 2), from the accelerations."""
+    """Return D', D'', θ', θ'' and those of slip and heave in the order of the state, (n, 2N + 2b)."""
     layout = model.layout
     n = layout.modes
-    return np.column_stack((layout.velocities(states), found[:, :n], layout.of(states, layout.spin), found[:, n]))
+    rates = [layout.velocities(states), found[:, :n]]
+    for k in range(layout.freedoms):
+        rates += [layout.of(states, layout.spin + 2 * k)[:, None], found[:, n + k, None]]
+    return np.concatenate(rates, axis=1)
 
 
 def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Array:
@@ -77,8 +82,8 @@ def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Arr
         if heavier is not None:
             more = rows_of(heavier, quantities, key) - rows
             values[chosen] += states[chosen, RISE, None] * (vector @ more.T)
-    rocking = side != 0.0
-    if model.complete and rocking.any() and (quantities.kinds != LINEAR).any():
+    rocking = model.bends(side)
+    if rocking.any() and (quantities.kinds != LINEAR).any():
         rates = rates_of(model, states, accelerations(model, states))
         numbers = numbers_of(model, quantities.kinds.tolist(), quantities.levers)
         values[rocking] = observed(model, numbers, states[rocking], side[rocking], rates[rocking], values[rocking])
@@ -98,15 +103,28 @@ def observed(model: RockingModel, numbers: Numbers, states: Array, side: Array, 
 
 def fields_at(
     model: RockingModel, numbers: Numbers, states: Array, side: Array
-) -> Iterator[tuple[Bools, RockingField]]:
+) -> Iterator[tuple[Bools, RockingField | GroundField]]:
     """Yield a mask of the states of each phase, and its vector field."""
     layout = model.layout
     backwards = layout.velocities(states)[:, 0] < 0.0 if numbers.bouc_wen is not None else np.zeros(side.size, bool)
     for chosen, key in phases_at(model, side, layout.of(states, layout.rotation), states):
-        pulls = element_force_sums(model.properties, model.elements, model.element_key(key))
         for branch, part in ((1, chosen & ~backwards), (-1, chosen & backwards)):
             if part.any():
-                yield part, RockingField(numbers, key[0], branch, pulls, [])
+                yield part, field_of(model, numbers, key, branch)
+
+
+def held_moment(model: RockingModel, states: Array) -> Array:
+    """Return the moment that friction dampers balance while they hold the base at a large rotation, in N m, (n,).
+
+    Over the lever arm factor cos(θ/2) of elements; the states are those of one phase.
+    """
+    rates = rates_of(model, states, accelerations(model, states))
+    motion, (a, a_v) = _apart(states)
+    found = np.zeros(len(states))
+    for chosen, field in fields_at(model, numbers_of(model), states, states[:, SIDE]):
+        assert isinstance(field, RockingField)
+        found[chosen] = field.imbalance_along(motion[chosen], rates[chosen], a[chosen], a_v[chosen])
+    return found / np.cos(0.5 * model.layout.of(states, model.layout.rotation))
 
 
 def _apart(states: Array) -> tuple[Array, tuple[Array, Array]]:

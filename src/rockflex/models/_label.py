@@ -162,14 +162,15 @@ class Model:
         kept = properties if self.n_modes is None else properties.truncated(self.n_modes)
         self._check_missing_mass(kept)
         self._check_leaning(kept)
-        self._check_friction(kept)
         self._check_attached(kept, bouc_wen, ground)
         label = self._check_yielding(kept, bouc_wen)
         if ground is not None and not ground.rigid:
-            self._check_ground(label, ground, impact, bouc_wen)
+            self._check_ground(label, ground, impact)
             check_base(kept, ground)
             given = impact if impact is not None or ground.springs is not None else self._law(kept)
-            return model_on_ground(label, kept, ground, given, self.missing_mass)
+            return model_on_ground(
+                label, kept, ground, given, self.missing_mass, complete=self.complete, bouc_wen=bouc_wen
+            )
         law = impact if impact is not None else self._law(kept)
         linear = LinearModel(label, kept, self.lifts, law, self.missing_mass)
         if self.complete or bouc_wen is not None:
@@ -189,15 +190,6 @@ class Model:
                 f"{self.label} does not take leaning mass, whose columns are hinged and lean by small rotations. Use "
                 f"{replace(self, complete=False, closure=None).label}.",
                 field="model",
-            )
-
-    def _check_friction(self, kept: RockingProperties) -> None:
-        if self.complete and any(isinstance(each, FrictionDamper) and each.force > 0.0 for each in kept.elements):
-            raise InputError(
-                f"{self.label} does not take friction dampers: the moment on a base that they hold at a large rotation "
-                f"is not linear in the motion. Use {replace(self, complete=False, closure=None).label}, or a "
-                "YieldingDissipator with yield_force = F_0 and a stiffness far above that of the structure.",
-                field="elements",
             )
 
     def _check_attached(self, kept: RockingProperties, bouc_wen: BoucWen | None, ground: Ground | None) -> None:
@@ -223,13 +215,12 @@ class Model:
                     field="elements",
                 )
 
-    def _check_ground(self, label: str, ground: Ground, impact: ImpactLaw | None, bouc_wen: BoucWen | None) -> None:
+    def _check_ground(self, label: str, ground: Ground, impact: ImpactLaw | None) -> None:
         what = "Springs need" if ground.springs is not None else "Friction needs"
-        if not self.lifts or self.complete or bouc_wen is not None:
-            simple = replace(self, lifts=True, complete=False, closure=None, yields=False).label
+        if not self.lifts:
             raise InputError(
-                f"{what} a simplified model whose superstructure is elastic and whose base can lift, but {label} was "
-                f"given. Use {simple}, or leave the ground out.",
+                f"{what} a model whose base can lift, but {label} was given. Use {replace(self, lifts=True).label}, or "
+                "leave the ground out.",
                 field="ground",
             )
         if ground.springs is not None and impact is not None:

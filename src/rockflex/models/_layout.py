@@ -42,6 +42,9 @@ class StateLayout(NamedTuple):
     swept
         ∫ (δ'/r)² dt over the rocking since the start of the run, in rad²/s: that of cos² (θ/2) θ'² or, for small
         rotations, of θ'². Times c r² it is the energy that a viscous damper dissipates.
+    rubbed, soil, sweeps
+        Of integrated models, since the start of the run: energy lost by sliding, that lost by each spring under the
+        base, and ∫ δ'² dt of each element on springs in m²/s.
     memory, n_internal
         Index of the first internal variable of an element, and the number of all; constant during a phase.
     moving
@@ -60,6 +63,9 @@ class StateLayout(NamedTuple):
     put_in: int
     yielded: int
     swept: int
+    rubbed: int
+    soil: int
+    sweeps: int
     memory: int
     n_internal: int
     moving: int
@@ -102,8 +108,13 @@ def layout_of(
     n_internal: int = 0,
     slides: bool = False,
     heaves: bool = False,
+    springs: int = 0,
+    elements: int = 0,
 ) -> StateLayout:
-    """Return the layout of a model, internal variables last; integrated models also integrate their energies."""
+    """Return the layout of a model, internal variables last; integrated models also integrate their energies.
+
+    `springs` and `elements` are the numbers of those of an integrated model on springs.
+    """
     rotation = 2 * modes
     slip = rotation + 2 if slides else -1
     heave = rotation + 2 * (1 + slides) if heaves else -1
@@ -111,12 +122,17 @@ def layout_of(
     base = rotation, rotation + 1, slip, heave
     if not integrated:
         size = core + n_internal
-        return StateLayout(modes, *base, -1, -1, -1, -1, -1, core, n_internal, size, size)
-    memory = core + 4 + viscous
+        absent = -1, -1, -1, -1, -1, -1, -1, -1
+        return StateLayout(modes, *base, *absent, core, n_internal, size, size)
+    swept = core + 4
+    rubbed = swept + viscous
+    soil = rubbed + slides
+    sweeps = soil + springs
+    memory = sweeps + elements
     size = memory + n_internal
     moving = size if n_internal else core + 1
-    swept = core + 4 if viscous else -1
-    return StateLayout(modes, *base, core, core + 1, core + 2, core + 3, swept, memory, n_internal, moving, size)
+    counters = swept if viscous else -1, rubbed if slides else -1, soil if heaves else -1, sweeps if heaves else -1
+    return StateLayout(modes, *base, core, core + 1, core + 2, core + 3, *counters, memory, n_internal, moving, size)
 
 
 def digits_of(base: int) -> int:

@@ -324,11 +324,7 @@ class OnRigidGround(ElementBase):
         """
         model, base = self.model, self.model.element_key(key)
         p, side = model.properties, base[0]
-        moment = model.overturning_moment(key)
-        if self.slides:
-            moment = (
-                moment + (p.l0r - float(np.sum(p.effective_mass * p.effective_height))) * model.accelerations(key)[-1]
-            )
+        moment = model.contact_moment(key)
         found, weight = list[Event](), p.m_tot * model.gravity * p.half_width
         known = internal_places(model.elements)
         for turn in (RIGHT, LEFT):

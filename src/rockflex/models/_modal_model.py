@@ -12,7 +12,7 @@ from rockflex._constants import GRAVITY
 from rockflex._values import Value
 from rockflex.modal import RockingProperties, Springs
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._element import Dashpot, Element, Slider
+from rockflex.models._element import Dashpot, Element
 from rockflex.models._elements import (
     CLOSED,
     LEFT,
@@ -22,6 +22,7 @@ from rockflex.models._elements import (
     base_equations_of,
     elements_of,
     first_key,
+    hold_shares,
     internal_count,
     internal_places,
     is_held,
@@ -126,6 +127,30 @@ class ModalModel(Value):
     def attached(self) -> dict[int, Array]:
         """The elongation in m of each attached element and story, by its place: a row, shape (C,)."""
         return attached_rows(self.properties, self.layout)
+
+    def integrates(self, side: Array | int) -> Bools:
+        """Return for every side of the base whether a phase on it is integrated step by step."""
+        return np.asarray(self.integrated & ((np.asarray(side) != CLOSED) | (self.bouc_wen is not None)))
+
+    def bends(self, side: Array | int) -> Bools:
+        """Return for every side of the base whether rotations may be large, so that outputs are not linear."""
+        return np.asarray(self.complete & (np.asarray(side) != CLOSED))
+
+    def turned(self, rotation: Array | float) -> Array:
+        """Return sin θ in complete models, otherwise θ."""
+        return np.sin(rotation) if self.complete else np.asarray(rotation)
+
+    def stretched(self, vector: Array) -> Array:
+        """Return vectors of states, shape (n, C), whose θ and θ' are what elongations and their rates are linear in.
+
+        In complete models that is 2 sin(θ/2), on springs sin θ.
+        """
+        if not self.complete:
+            return vector
+        found, half = vector.copy(), 0.5 * vector[:, self.layout.rotation]
+        found[:, self.layout.rotation] = 2.0 * np.sin(half)
+        found[:, self.layout.spin] *= np.cos(half)
+        return found
 
     def start(self, side: int) -> Key:
         """Return the branches on which a run starts in contact, or as the base begins to rotate about a pivot."""
@@ -331,7 +356,7 @@ class ModalModel(Value):
     def edge_uplift(self, states: Array) -> Array:
         """Return the rise of the left and of the right edge in m, negative where they settle, shape (n, 2)."""
         rotation = self.layout.of(states, self.layout.rotation)
-        turn = np.sin(rotation) if self.complete else rotation
+        turn = self.turned(rotation)
         return 2.0 * self.properties.half_width * np.stack((np.maximum(turn, 0.0), np.maximum(-turn, 0.0)), axis=1)
 
     def heave(self, states: Array) -> Array:
@@ -416,10 +441,14 @@ class ModalModel(Value):
             return self.restoring
         return self.restoring - self.attached_forces(key, stories_only=True)[0]
 
+    def contact_moment(self, key: Key) -> Array:
+        """Return the overturning moment in a phase in which the base stands still, in N m: a row, shape (C,)."""
+        return self.overturning_moment(key)
+
     def overturning_moment(self, key: Key) -> Array:
         """Return the overturning moment of a phase (left-hand side of Eq. 24 or 16) in N m: a row, shape (C,).
 
-        That is of a base that does not rotate; attached elements are included.
+        That is of a base that neither rotates nor slides; attached elements are included.
         """
         row = self._moment_in(key).copy()
         if self.complete:
@@ -500,7 +529,7 @@ class ModalModel(Value):
         `RockingField.observe` gives the value.
         """
         row, side, p = np.zeros(self.layout.columns), key[0], self.properties
-        if self.complete and side != CLOSED:
+        if self.bends(side):
             return row
         if self.is_free(key):
             row -= side * p.m_tot * p.pivot(side).arm * self.angular_acceleration(key)
@@ -524,17 +553,13 @@ class ModalModel(Value):
         return self.tensions(key)[under].sum(axis=0)
 
     def _hold(self, key: Key, rows: Array) -> None:
-        """Add the tensions of friction dampers that hold the base: together they balance all other moments.
-
-        Each takes a part in proportion to its force F_0, as at the instant in which they slide.
-        """
+        """Add the tensions of friction dampers that hold the base: together they balance all other moments."""
+        if self.complete:  # that is not linear in the motion, see `held_moment`
+            return
         side, layout, p = key[0], self.layout, self.properties
         moment = -self.overturning_moment(key)
         others = base_equations_of(p, self.elements, key, self.gravity)
         moment[layout.rotation] -= others.stiffness[0, 0]
         moment[-1] += others.constant[0]
         moment[layout.memory : layout.memory + others.recall.size] += others.recall[0]
-        sliders = {k: each for k, each in enumerate(self.elements) if isinstance(each, Slider)}
-        capacity = sum(each.force * abs(arm_of(p, each, side)) for each in sliders.values())
-        for place, each in sliders.items():
-            rows[place] = side * np.sign(arm_of(p, each, side)) * each.force / capacity * moment
+        rows += np.outer(hold_shares(p, self.elements, side), moment)

@@ -8,7 +8,19 @@ from rockflex._arrays import Array
 from rockflex.modal import FloorModes
 from rockflex.models._elements import CLOSED
 from rockflex.models._modal_model import ModalModel
-from rockflex.models._quantities import HORIZONTAL, LEFT_OUT, LINEAR, SWAY, SWING, Quantities, Share, collected, joined
+from rockflex.models._quantities import (
+    CLIMB,
+    HORIZONTAL,
+    LEFT_OUT,
+    LIFT,
+    LINEAR,
+    SWAY,
+    SWING,
+    Quantities,
+    Share,
+    collected,
+    joined,
+)
 
 
 def quantities(model: ModalModel, names: Iterable[str]) -> Quantities:
@@ -112,14 +124,15 @@ def element_moves(model: ModalModel) -> Quantities:
     """Return δ of each of `tracked_elements` and its negative in m, less what it has in the state zero."""
     rows = _elongation_rows(model)
     shares = _shares_of(model, np.stack((rows, -rows), axis=1).reshape(-1, rows.shape[1]))
-    return Quantities.of(2 * len(rows), model.properties.n_modes, LINEAR, **shares)
+    return Quantities.of(2 * len(rows), model.properties.n_modes, LIFT if model.complete else LINEAR, **shares)
 
 
 def element_speeds(model: ModalModel) -> Quantities:
     """Return δ' of each of `tracked_elements` in m/s."""
     names = {"displacement": "velocity", "slip": "slipping", "heave": "heaving", "rotation": "swing"}
     shares = {names[name]: share for name, share in _shares_of(model, _elongation_rows(model)).items()}
-    return Quantities.of(len(tracked_elements(model)), model.properties.n_modes, LINEAR, **shares)
+    kind = CLIMB if model.complete else LINEAR
+    return Quantities.of(len(tracked_elements(model)), model.properties.n_modes, kind, **shares)
 
 
 def _elongation_rows(model: ModalModel) -> Array:

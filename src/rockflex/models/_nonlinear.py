@@ -10,6 +10,7 @@ from rockflex._constants import GRAVITY
 from rockflex.modal import RockingProperties
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._impact import ImpactLaw, VVELSimplified
+from rockflex.models._layout import StateLayout
 from rockflex.models._linear_model import LinearModel
 from rockflex.models._modal_model import ModalModel
 
@@ -66,7 +67,7 @@ class Numbers:
     viscous: bool
     gravity: float
     resting: float  # vertical reaction at rest
-    memory: int  # place of the first internal variable of an element
+    layout: StateLayout
     kinds: Sequence[int]  # of the outputs
     levers: Array
 
@@ -80,7 +81,7 @@ def numbers_of(model: ModalModel, kinds: Sequence[int] = (), levers: Array | Non
         viscous=model.layout.swept >= 0,
         gravity=model.gravity,
         resting=model.properties.resting_reaction,
-        memory=model.layout.memory,
+        layout=model.layout,
         kinds=kinds,
         levers=np.zeros((len(kinds), 2)) if levers is None else levers,
     )

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockflex._arrays import Array
 from rockflex.engine import by_rows
-from rockflex.models._elements import CLOSED, RIGHT
+from rockflex.models._elements import RIGHT
 from rockflex.models._modal_model import ModalModel
 from rockflex.models._phase import Key
 
@@ -23,6 +23,8 @@ SWAY = 1  # horizontal displacement of a point at the height levers[0]; the row 
 LEFT_OUT = 2  # the row and the masses left out: levers[0] is Σ m_i or Σ m_i h_i, levers[1] Σ m_i h_i or Σ m_i h_i²
 SWING = 3  # rate of the elongation of an element per unit distance from the pivot; the row gives θ'
 HORIZONTAL = 4  # Σ F_x (Eq. 21) including the forces of elements
+LIFT = 6  # rise of a point of a base on springs at the distance -levers[0] from the axis; the row gives the heave
+CLIMB = 7  # its rate; the row gives that of small rotations
 # By how much Σ F_z is below its value at rest (Eq. 22 with the sign of the weight corrected), including these forces.
 VERTICAL = 5
 
@@ -89,7 +91,9 @@ class Quantities:
     def levers(self) -> Array:
         """Additional coefficients of quantities that are nonlinear in large rotations, (F, 2); see above."""
         rotation, turn, ground = (self.shares[:, column] for column in (ROTATION, TURN, GROUND))
-        near = np.where(self.kinds == SWAY, rotation, np.where(self.kinds == LEFT_OUT, -ground, 0.0))
+        near = np.where(
+            (self.kinds == SWAY) | (self.kinds == LIFT), rotation, np.where(self.kinds == LEFT_OUT, -ground, 0.0)
+        )
         return np.column_stack((near, np.where(self.kinds == LEFT_OUT, -turn, 0.0)))
 
 
@@ -129,7 +133,7 @@ def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
     `RockingField.observe` adds the rest.
     """
     shares = quantities.shares
-    large = model.complete and key[0] != CLOSED
+    large = bool(model.bends(key[0]))
     if large:
         bends = quantities.kinds != LINEAR
         shares = shares.copy()
@@ -157,7 +161,7 @@ def _moving(model: ModalModel, key: Key, *, large: bool) -> Array:
     rows[ROTATION, layout.rotation] = 1.0
     rows[RIGHT_ROTATION, layout.rotation] = key[0] == RIGHT
     rows[GROUND, -2] = 1.0
-    if layout.slip >= 0:  # the base moves with the ground and slides on it
+    if layout.slip >= 0 and not large:  # the base moves with the ground and slides on it
         rows[GROUND] += model.accelerations(key)[n + 1]
     if not large:
         rows[2 * n : 3 * n] = model.modal_accelerations(key)

@@ -59,7 +59,7 @@ def spring_forces(model: RockingModel, states: Array) -> Array:
         return np.zeros((states.shape[0], 0))
     found = np.zeros((states.shape[0], model.springs.n))
     for chosen, key, vector in by_phase(model, states, states[:, SIDE]):
-        found[chosen] = vector @ model.spring_forces(key).T
+        found[chosen] = model.stretched(vector) @ model.spring_forces(key).T
     return found
 
 
@@ -74,6 +74,6 @@ def _of_large_rotations(model: RockingModel, states: Array, rates: Array) -> Rea
     numbers, moving = numbers_of(model, [HORIZONTAL, VERTICAL]), rates_of(model, states, rates)
     x, lost = observed(model, numbers, states, acting_side(states), moving, np.zeros((states.shape[0], 2))).T
     x = x + model.properties.leaning_mass * states[:, GROUND]
-    if model.layout.slip >= 0:
+    if model.layout.slip >= 0 and not model.integrated:
         x = x + model.properties.horizontal_mass * rates[:, -1]
     return Reactions(x, model.properties.resting_reaction - lost)

@@ -113,6 +113,12 @@ class SlidingModel(LinearModel):
     def _new_accelerations(self, key: Key) -> Array:
         return accelerations_of(self, key)
 
+    def contact_moment(self, key: Key) -> Array:
+        """Return the overturning moment in a phase in which the base does not rotate, which its slip adds to."""
+        p = self.properties
+        moving = p.l0r - float(np.sum(p.effective_mass * p.effective_height))
+        return self.overturning_moment(key) + moving * self.accelerations(key)[-1]
+
     def pressure(self, key: Key) -> Array:
         """Return the vertical reaction m_tot (g + s B θ'') and the tensions of the elements in N: a row, shape (C,)."""
         row = -self.lost_support(key)

@@ -131,11 +131,12 @@ class SpringModel(LinearModel):
         """Return the rise of the left and of the right edge in m, negative where they settle, shape (n, 2)."""
         p, rotation = self.properties, self.layout.of(states, self.layout.rotation)
         places = np.array([-p.pivot(-1).arm, p.pivot(1).arm])
-        return self.heave(states)[:, None] - places * rotation[:, None]
+        return self.heave(states)[:, None] - places * self.turned(rotation)[:, None]
 
     def elongations_at(self, states: Array) -> Array:
         """Return how far the base has risen at every element since it was at rest, in m, shape (n, E)."""
-        moving = states[:, HEADER : HEADER + self.layout.moving]
+        moving = states[:, HEADER : HEADER + self.layout.moving].copy()
+        moving[:, self.layout.rotation] = self.turned(moving[:, self.layout.rotation])
         rows = np.array([self.stretch(place, CLOSED) for place in range(len(self.elements))])
         return moving @ rows[:, :-2].T + rows[:, -1] if len(rows) else np.zeros((len(states), 0))
 
@@ -147,6 +148,15 @@ class SpringModel(LinearModel):
     def rotary_inertia(self, side: Array) -> Array:
         """Return the inertia about the axis of the masses in kg m², shape (n,)."""
         return np.full(side.size, self.inertia)
+
+    def stretched(self, vector: Array) -> Array:
+        """Return vectors of states whose θ and θ' are what depths, elongations and their rates are linear in."""
+        if not self.complete:
+            return vector
+        found, rotation = vector.copy(), vector[:, self.layout.rotation]
+        found[:, self.layout.rotation] = np.sin(rotation)
+        found[:, self.layout.spin] *= np.cos(rotation)
+        return found
 
     def spring_forces(self, key: Key) -> Array:
         """Return the force of each spring on the base in a phase in N, upwards: rows, shape (n, C)."""
@@ -168,16 +178,19 @@ class SpringModel(LinearModel):
         return rows
 
     def stretch(self, place: int, side: int) -> Array:
-        """Return the elongation of an element in m as a row, shape (C,): zero at rest."""
-        position = self.elements[place].position
+        """Return the elongation of an element in m as a row over `stretched` states, shape (C,): zero at rest."""
+        position, layout = self.elements[place].position, self.layout
         row = super().stretch(place, side)
         if position is not None:
-            row[self.layout.heave], row[self.layout.rotation] = 1.0, -position
-        row[-1] -= row[self.layout.rotation] * self.rest.rotation + row[self.layout.heave] * self.rest.heave
+            row[layout.heave], row[layout.rotation] = 1.0, -position
+        rest = float(self.turned(self.rest.rotation))
+        row[-1] -= row[layout.rotation] * rest + row[layout.heave] * self.rest.heave
         return row
 
     def lost_support(self, key: Key) -> Array:
         """Return the decrease of the sum of the spring forces below its value at rest, in N: a row, shape (C,)."""
+        if self.bends(key[0]):
+            return np.zeros(self.layout.columns)
         row = np.zeros(self.layout.columns) - self.spring_forces(key).sum(axis=0)
         row[-1] += self.properties.resting_reaction
         return row
@@ -236,17 +249,19 @@ class SpringModel(LinearModel):
         if state is not None:
             start[: state.size] = state
             rotation += start[layout.rotation]
-            heave = heave_at(springs, rotation, self._weight)
+            heave = heave_at(springs, float(self.turned(rotation)), self._weight)
         start[layout.rotation], start[layout.heave] = rotation, heave
-        depth = heave - springs.positions * rotation
+        turned = float(self.turned(rotation))
+        depth = heave - springs.positions * turned
         pressed = np.where(depth < 0.0, springs.stiffness, 0.0)
-        spin = start[layout.spin]
+        spin = start[layout.spin] * (np.cos(rotation) if self.complete else 1.0)
         start[layout.heave + 1] = pressed @ springs.positions / pressed.sum() * spin if spin else 0.0
         speed = start[layout.heave + 1] - springs.positions * spin
         force = -springs.stiffness * depth - springs.damping * speed
         branches = np.where(depth >= 0.0, LIFTED, np.where(force > 0.0, LOADED, RECEDING))
         kept, of_elements = list[float](), list[int]()
         moving = np.append(start[: layout.moving], (0.0, 1.0))
+        moving[layout.rotation] = turned
         for place, each in enumerate(self.elements):
             branch, remembered = each.brought(float(self.stretch(place, CLOSED) @ moving))
             of_elements.append(branch)

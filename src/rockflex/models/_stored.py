@@ -13,9 +13,10 @@ def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, A
     """Return kinetic, strain and gravity energy at the states of a history in J, each of shape (n,).
 
     Simplified models on rigid ground:
-    ½ I_θ θ'² + θ' Σ m* h* D' + ½ Σ m* D'², ½ Σ m* ω² D² and s m_tot g B θ - ½ L_0^r g θ² relative to the moving ground,
-    with a slip x plus ½ m_tot x'² + x' (L_0^r θ' + Σ m* D'). On springs the inertia is that about the axis of the
-    masses, and m_tot g z takes the place of s m_tot g B θ. For complete models those of Eqs. 6-8.
+    ½ I_θ θ'² + θ' Σ m* h* D' + ½ Σ m* D'², ½ Σ m* ω² D² and s m_tot g B θ - ½ L_0^r g θ² relative to the moving
+    ground, with a slip x plus ½ m_tot x'² + x' (L_0^r θ' + Σ m* D'). On springs the inertia is that about the axis of
+    the masses, and m_tot g z takes the place of s m_tot g B θ. For complete models those of Eqs. 6-8, with the momentum
+    of the motion relative to the base times the velocities of the base.
     """
     p, layout = model.properties, model.layout
     side, d, v = states[:, SIDE], layout.displacements(states), layout.velocities(states)
@@ -28,7 +29,17 @@ def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, A
         offset = side * _arm(model, side)
         displaced = d @ p.effective_mass
         kinetic += spin**2 * (0.5 * d**2 @ p.effective_mass - offset * displaced)
-        raised = (p.m_tot * offset - displaced) * np.sin(rotation) - 2.0 * p.l0r * np.sin(0.5 * rotation) ** 2
+        first = displaced - p.m_tot * offset  # Σ m_i u_i from the pivot
+        raised = -first * np.sin(rotation) - 2.0 * p.l0r * np.sin(0.5 * rotation) ** 2
+        # Momentum along and across the base, but for that of its own motion.
+        along, across = v @ p.effective_mass + p.l0r * spin, -first * spin
+        if layout.slip >= 0:
+            slide = layout.of(states, layout.slip + 1)
+            kinetic += slide * (0.5 * p.m_tot * slide + along * np.cos(rotation) + across * np.sin(rotation))
+        if layout.heave >= 0:
+            climb = layout.of(states, layout.heave + 1)
+            kinetic += climb * (0.5 * p.m_tot * climb + across * np.cos(rotation) - along * np.sin(rotation))
+            raised = raised + p.m_tot * layout.of(states, layout.heave)
         return kinetic, strain, model.gravity * raised
     if layout.heave >= 0:
         kinetic += 0.5 * p.m_tot * layout.of(states, layout.heave + 1) ** 2
@@ -44,7 +55,7 @@ def soil_strain(model: RockingModel, states: Array) -> Array:
         return np.zeros((states.shape[0], 0))
     layout = model.layout
     depth = layout.of(states, layout.heave)[:, None]
-    depth = depth - model.springs.positions * layout.of(states, layout.rotation)[:, None]
+    depth = depth - model.springs.positions * model.turned(layout.of(states, layout.rotation))[:, None]
     return 0.5 * model.springs.stiffness * np.minimum(depth, 0.0) ** 2
 
 

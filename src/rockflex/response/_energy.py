@@ -139,13 +139,18 @@ def energy_ledger(model: RockingModel, states: Array) -> EnergyLedger:
     work = work_between(model, states)
     damped, given, yielded = work.damped, work.ground, np.zeros(work.damped.size)
     if model.integrated:
-        integrated = (states[:-1, SIDE] != 0.0) | (model.bouc_wen is not None)
-        counted = np.diff(states[:, HEADER + model.layout.damped : HEADER + model.layout.yielded + 1], axis=0)
+        layout, integrated = model.layout, model.integrates(states[:-1, SIDE])
+        counters = np.diff(states[:, HEADER : HEADER + layout.size], axis=0)
+        counted = counters[:, layout.damped : layout.yielded + 1]
         # The counters are not advanced while contact is solved in closed form, and resume when it ends.
         damped, given, yielded = np.where(integrated, counted.T, (damped, given, yielded))
-        if model.layout.swept >= 0:
-            swept = np.diff(model.layout.of(states, model.layout.swept))
-            work = work._replace(swing=np.where(integrated, swept, work.swing))
+        if layout.swept >= 0:
+            work = work._replace(swing=np.where(integrated, counters[:, layout.swept], work.swing))
+        if layout.rubbed >= 0:
+            work = work._replace(friction=np.where(integrated, counters[:, layout.rubbed], work.friction))
+        if layout.soil >= 0:
+            soil, sweeps = counters[:, layout.soil : layout.sweeps], counters[:, layout.sweeps : layout.memory]
+            work = work._replace(soil=soil, sweeps=sweeps)
     stored, losses_of = element_energies(model, states, sweeps_of(model, states, work))
     count = len(model.properties.elements)  # stories that yield follow
     yielded += losses_of[:, count:].sum(axis=1)

@@ -45,6 +45,7 @@ from rockflex.models import (
     SpringModel,
     VVELComplete,
     VVELSimplified,
+    made_nonlinear,
 )
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History
@@ -284,10 +285,14 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     missing = _typed(scalars, "missing_mass", bool)
     law = _law(parameters)
     gravity = scalars.get("gravity", GRAVITY)
+    complete = bouc_wen = None
+    if "complete" in scalars:
+        complete, bouc_wen = _typed(scalars, "complete", bool), scalars["bouc_wen"]
+        bouc_wen = None if bouc_wen is None else BoucWen(**bouc_wen)
     if "springs.positions" in arrays:
         springs = Springs(*(arrays.get(f"springs.{name}") for name in SPRINGS))  # pyright: ignore[reportArgumentType]
         rotation, heave = _typed(scalars, "rest", list)
-        return SpringModel(
+        on_springs = SpringModel(
             scalars["model"],
             properties,
             missing_mass=missing,
@@ -297,13 +302,12 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
             friction=arrays.get("springs.friction"),
             rest=Pose(rotation, heave),
         )
+        return on_springs if complete is None else made_nonlinear(on_springs, complete=complete, bouc_wen=bouc_wen)
     if "friction" in scalars:
-        return SlidingModel(
+        sliding = SlidingModel(
             scalars["model"], properties, lifts, law, missing, gravity, _typed(scalars, "friction", float)
         )
-    if "complete" not in scalars:
+        return sliding if complete is None else made_nonlinear(sliding, complete=complete, bouc_wen=bouc_wen)
+    if complete is None:
         return LinearModel(scalars["model"], properties, lifts, law, missing, gravity)
-    bouc_wen = None if scalars["bouc_wen"] is None else BoucWen(**scalars["bouc_wen"])
-    return NonlinearModel(
-        scalars["model"], properties, lifts, law, _typed(scalars, "complete", bool), bouc_wen, missing, gravity
-    )
+    return NonlinearModel(scalars["model"], properties, lifts, law, complete, bouc_wen, missing, gravity)

@@ -25,7 +25,7 @@ from rockflex.models import (
     printed_reactions,
     reactions,
 )
-from rockflex.response._interpolation import quintic
+from rockflex.response._interpolation import freedoms_of, quintic
 
 IMPACT_WINDOW = 0.05  # s after an impact, in which the demand has short spikes
 MAX_PHASE_STEP = 0.2  # radians of the fastest mode between adjacent evaluation points
@@ -222,11 +222,9 @@ class Friction:
     def _interpolated(self, rows: Array, states: Array, rates: Array, place: float) -> Array:
         """Put polynomials into rows where the model is not linear; return the accelerations that they give."""
         layout = self._model.layout
-        n = layout.modes
-        turn, spin = HEADER + layout.rotation, HEADER + layout.spin
-        where, velocity = [*range(HEADER, HEADER + n), turn], [*range(HEADER + n, HEADER + 2 * n), spin]
+        where, velocity = freedoms_of(layout)
         value, slope, bend = quintic(states[:, where], states[:, velocity], rates, np.diff(states[:, TIME]), place)
-        integrated = (states[:-1, SIDE] != 0.0) | (self._linear is None)
+        integrated = self._model.integrates(states[:-1, SIDE])
         rows[np.ix_(integrated, where)] = value[integrated]
         rows[np.ix_(integrated, velocity)] = slope[integrated]
         rows[:, HEADER + layout.core : HEADER + layout.memory] = 0.0

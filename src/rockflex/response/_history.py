@@ -53,7 +53,9 @@ class History(Value):
         the ground (m/s²), D (m), D' (m/s), θ (rad) and θ' (rad/s). An event is two rows at the same time. A base that
         may slide adds its slip (m) and the velocity of it, one on springs its heave and the velocity of that. Nonlinear
         models have four more columns: z of Eq. 38, and the damped, input and hysteretic energy (J), which are known
-        where the motion was integrated. The last columns are the internal variables of elements that yield or slide,
+        where the motion was integrated; then come integrals for viscous dampers (∫ (δ'/r)² dt, on springs ∫ δ'² dt of
+        each element) and the energies lost by sliding and by each spring under the base.
+        The last columns are the internal variables of elements that yield or slide,
         and of the ground: what sticks and what is lifted. Stored as a copy.
 
     Raises
@@ -300,7 +302,8 @@ class History(Value):
     def element_elongation(self) -> Array:
         """Elongation of each element in m, shape (n_states, E).
 
-        r |θ| under the base, in complete models 2 r sin(|θ|/2); as in `Attachment` for others.
+        r |θ| under the base, in complete models 2 r sin(|θ|/2), on springs how far the base has risen there since it
+        was at rest; as in `Attachment` for others.
         """
         return self.model.elongations_at(self.states)[:, : len(self.model.properties.elements)]
 
@@ -371,7 +374,7 @@ class History(Value):
         model, springs = self.model, self.model.springs
         if springs is None or springs.area is None:
             raise no_area()
-        turn = model.layout.of(self.states, model.layout.rotation)[:, None]
+        turn = model.turned(model.layout.of(self.states, model.layout.rotation))[:, None]
         pushes = springs.stiffness * np.maximum(springs.positions * turn - self.heave[:, None], 0.0)
         force, p = pushes.sum(axis=1), model.properties
         middle = 0.5 * (p.pivot(1).arm - p.pivot(-1).arm)

@@ -20,6 +20,7 @@ from rockflex.models import (
     MotionBetween,
     Quantities,
     RockingModel,
+    StateLayout,
     accelerations,
 )
 from rockflex.solve import Engine
@@ -145,21 +146,26 @@ def states_at(model: RockingModel, states: Array, times: Array) -> Array:
         inside[:, HEADER:] = MotionBetween(model).intervals(states).after(which, elapsed)
     else:
         _curve(model, states, which, part, inside)
-        if model.bouc_wen is None:
-            chosen, core = before[:, SIDE] == 0.0, HEADER + model.layout.core
+        chosen, core = ~model.integrates(before[:, SIDE]), HEADER + model.layout.core
+        if chosen.any():
             moved = MotionBetween(model).intervals(states).after(which[chosen], elapsed[chosen])
             inside[chosen, HEADER:core] = moved[:, : model.layout.core]
     found[between] = inside
     return found
 
 
+def freedoms_of(layout: StateLayout) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the columns of a history with D_n, θ, the slip and the heave, and those with their velocities."""
+    n, base = layout.modes, layout.rotation + 2 * np.arange(layout.freedoms)
+    places = np.concatenate((np.arange(n), base))
+    return HEADER + places, HEADER + places + np.where(places < n, n, 1)
+
+
 def _curve(model: RockingModel, states: Array, which: NDArray[np.intp], part: Array, inside: Array) -> None:
     """Fill in the motion at a part of some intervals by polynomials between the states at their ends."""
     layout = model.layout
-    n = layout.modes
-    where = [*range(HEADER, HEADER + n), HEADER + layout.rotation]
-    speeds = [*range(HEADER + n, HEADER + 2 * n), HEADER + layout.spin]
-    rates, step = accelerations(model, states)[:, : n + 1], np.diff(states[:, TIME])[which]
+    where, speeds = freedoms_of(layout)
+    rates, step = accelerations(model, states), np.diff(states[:, TIME])[which]
     first, last = ((states[ends][:, where], states[ends][:, speeds], rates[ends]) for ends in (which, which + 1))
     inside[:, where], inside[:, speeds], _ = quintic_between(first, last, step, part[:, None])
     energies = slice(HEADER + layout.core, HEADER + layout.memory)

@@ -391,8 +391,11 @@ def resistance_on_springs(history: History) -> SpringsResistance | None:
     if model.springs is None:
         return None
     gravity = GRAVITY + history.vertical_ground_acceleration
+    level = np.cos(history.rotation) if model.complete else np.ones(history.rotation.size)  # of the lever arms
     return SpringsResistance(
-        history.spring_force @ model.springs.positions,
-        -p.l0r * gravity * history.rotation,
-        history.element_force * np.array([(each.height or 0.0) * each.cosine - each.position for each in p.elements]),
+        level * (history.spring_force @ model.springs.positions),
+        -p.l0r * gravity * model.turned(history.rotation),
+        history.element_force
+        * (np.array([(each.height or 0.0) * each.cosine - each.position for each in p.elements]))
+        * level[:, None],
     )

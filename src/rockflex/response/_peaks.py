@@ -13,6 +13,8 @@ from rockflex.modal import BaseElement, ElementLaw, FrictionDamper, Tendon, Visc
 from rockflex.models import (
     CLOSED,
     HEADER,
+    LIFT,
+    LINEAR,
     SIDE,
     Quantities,
     RockingModel,
@@ -130,7 +132,9 @@ def _edges(model: RockingModel) -> Quantities:
     p = model.properties
     right, left = p.pivot(1).arm, -p.pivot(-1).arm
     signs = np.array([1.0, -1.0, 1.0, -1.0, 0.0, 0.0])
-    return Quantities.of(len(EDGES), p.n_modes, heave=signs, rotation=[-right, right, -left, left, 1.0, -1.0])
+    found = Quantities.of(len(EDGES), p.n_modes, LIFT, heave=signs, rotation=[-right, right, -left, left, 1.0, -1.0])
+    found.kinds[4:] = LINEAR  # the rotations themselves
+    return found
 
 
 def largest_rotations(peaks: Mapping[str, Array]) -> tuple[float, float]:

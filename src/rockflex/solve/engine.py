@@ -62,11 +62,12 @@ class Stack:
         models: Sequence[RockingModel],
         quantities: Sequence[Quantities],
         base: ElementBase | None = None,
+        extremes: Quantities | None = None,
     ) -> None:
         self._first = models[0]  # of which a message speaks
         with preparing(self._first):
             if self._first.integrated:
-                self.system = nonlinear_system(self._first, quantities[0])
+                self.system = nonlinear_system(self._first, quantities[0], extremes)
             else:
                 self.system = system_of(models, quantities) if base is None else linear_system_of(base)
         self._solvers = defaultdict[float, list[Run]](list)
@@ -133,7 +134,7 @@ class Engine:
     @cached_property
     def stack(self) -> Stack:
         """The stack of the model, by itself unless it has been gathered."""
-        return Stack([self.model], [self.quantities], self.base)
+        return Stack([self.model], [self.quantities], self.base, self.extremes)
 
     @cached_property
     def shaken(self) -> Stack:
@@ -145,8 +146,9 @@ class Engine:
         """The longest free vibration until settled, s."""
         p = self.model.properties
         slowest = float(p.omega.min(initial=math.inf))
-        if self.base is not None:  # on springs it rocks more slowly
-            roots = np.linalg.eigvals(self.base.rates(self.at_rest[0])[:, :-2])
+        if self.base is not None or self.model.springs is not None:  # on springs it rocks more slowly
+            base = self.base or element_base(self.model.linear, *(Quantities.none(p.n_modes),) * 2)
+            roots = np.linalg.eigvals(base.rates(self.model.linear.initial(None)[0])[:, :-2])
             slowest = float(np.abs(roots[roots.imag > 0.0]).min(initial=slowest))
         return 2000.0 * 2.0 * math.pi / slowest + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
 

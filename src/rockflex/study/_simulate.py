@@ -143,9 +143,9 @@ def simulate(
         estimate exceeds the limit, and stopped when it reaches the limit. Work is counted, not timed, so the limit is
         the same on every machine. A typical run takes milliseconds.
     ground
-        Springs under the base, friction between base and ground, or both; for simplified models with an elastic
-        superstructure. Or a function that returns a `Ground` for the `RockingProperties` of a structure. Default: rigid
-        ground on which the base cannot slide.
+        Springs under the base, friction between base and ground, or both; for models whose base can lift. Or a
+        function that returns a `Ground` for the `RockingProperties` of a structure. Default: rigid ground on which the
+        base cannot slide.
 
     Returns
     -------

@@ -20,7 +20,7 @@ const YIELDING = [
 ];
 
 // Whether a model can stand on springs, or slide.
-export const grounded = (label) => !/fixed|-C|-BW/.test(label);
+export const grounded = (label) => !/fixed/.test(label);
 
 export const yields = (label) => label.includes("-BW");
 

@@ -1,6 +1,6 @@
 // The base of a structure: its drawing, the elements between it and the ground, and the ground itself.
 
-import { grounded } from "../choices.js";
+import { grounded, yields } from "../choices.js";
 import { h, ink, svg } from "../dom.js";
 import { coil, colorOf, nameOf, strokes } from "../drawing.js";
 import { select, tableField, trouble } from "../form.js";
@@ -161,7 +161,7 @@ export function ground(app, shown) {
   const [fields, friction] = [h("div"), h("div")];
   const element = h("fieldset", { "data-path": "ground" }, h("legend", {}, "Ground"), kind, fields,
     h("label", { class: "check" }, tick, "The base can slide (Coulomb friction)"), friction,
-    h("p", { class: "hint" }, "On springs no impact law acts, and only simplified elastic models that lift can be used; likewise if the base can slide."),
+    h("p", { class: "hint" }, "On springs no impact law acts. Models on a fixed base are left out, there and if the base can slide."),
     trouble());
 
   let chosen = ""; // a later choice replaces one that still waits for the structure
@@ -243,15 +243,14 @@ function kindOf(given) {
   return given.bed.shear_modulus !== undefined || given.bed.poisson_ratio !== undefined ? "asce41" : "winkler";
 }
 
-// The models of a state that can stand on springs or slide, or others in their place; no hysteresis.
+// The models of a state that can stand on springs or slide, or others in their place.
 export function without(state) {
   const usual = "block" in state.structure ? ["rigid"] : ["MDOF-S", "2DOF-S"];
   const left = (labels) => {
     const found = labels.filter(grounded);
     return found.length ? found : [...usual];
   };
-  return {
-    models: left(state.models), cloud: { models: left(state.cloud.models) }, design: { model: left([state.design.model])[0] },
-    bouc_wen: undefined,
-  };
+  const [models, cloud, design] = [left(state.models), left(state.cloud.models), left([state.design.model])];
+  const found = { models, cloud: { models: cloud }, design: { model: design[0] } };
+  return [...models, ...cloud, ...design].some(yields) ? found : { ...found, bouc_wen: undefined };
 }

@@ -1,0 +1,24 @@
+from collections.abc import Sequence
+from typing import Any
+
+from rockflex._arrays import Array
+from rockflex.engine import Field
+from rockflex.models._nonlinear import Numbers
+from rockflex.models._nonlinear_ground import GroundPhase
+
+GRIP: int
+PRESSURE: int
+PUSH: int
+DEPTH: int
+STRETCH: int
+SPEED: int
+
+class GroundField(Field):
+    def __init__(
+        self,
+        numbers: Numbers,
+        phase: GroundPhase,
+        stops: Sequence[tuple[int, int, tuple[float, float]]],
+        checks: Sequence[tuple[Any, ...]],
+    ) -> None: ...
+    def inertia_at(self, y: Array) -> float: ...
