@@ -610,7 +610,7 @@ class Flow:
                 sums[0, e] += fabs(self.found[MORE, e])
             elif order > 2 or (order == 2 and self.exact[self.place, e] == 0):
                 sums[order, e] = away[e]
-        for i in range(self.checked[self.place, 0] if order <= 2 else 0):
+        for i in range(self.checked[self.place, 0]):
             e = self.checked[self.place, 1 + i]
             if order == 0:
                 sums[0, e] = BLUR / VANISHES * self.phases.scale(self.place, e)

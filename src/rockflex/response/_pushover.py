@@ -261,7 +261,7 @@ class _Way:
         whole[:free, :free] = stiffness[:free, :free]
         whole[:free, free], whole[free, :free] = -self.push[:free], self.top[:free]
         found = np.linalg.solve(whole, np.append(load[:free], top))
-        return np.append(found[:free], np.zeros(int(closed))), float(found[free])
+        return np.append(found[:free], np.zeros(int(closed))).astype(float), float(found[free])
 
     def stretched(self, places: tuple[ElementState, ...], moved: Array) -> tuple[ElementState, ...]:
         """Return the elements at displacements."""
@@ -271,8 +271,8 @@ class _Way:
     def onward(self, point: _Point) -> tuple[tuple[ElementState, ...], Array, float]:
         """Return the elements as they begin to move on from a point, and the rates of D, θ and the forces."""
         places = point.places
-        for _ in range(len(places) + 1):
-            moved, force = self.solved(places, 1.0, closed=point.closed, rate=True)
+        moved, force = self.solved(places, 1.0, closed=point.closed, rate=True)
+        for _ in range(len(places)):
             ways = np.sign(np.where(np.abs(self.rows @ moved) > NEAR, self.rows @ moved, 0.0)).astype(int).tolist()
             begun = tuple(
                 start_moving(each, place, way) if way else place
@@ -281,6 +281,7 @@ class _Way:
             if begun == places:
                 break
             places = begun
+            moved, force = self.solved(places, 1.0, closed=point.closed, rate=True)
         return places, moved, force
 
     def lift(self, places: tuple[ElementState, ...], force: float) -> float:

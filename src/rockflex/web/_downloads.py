@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import tomli_w
 
 from rockflex.kinds import KINDS
-from rockflex.motion import GroundMotion, Selection, Suite, record_csv
+from rockflex.motion import GroundMotion, Selection, record_csv
 from rockflex.report.run import run_report_as_html
 from rockflex.response import UNITS_OF_GROUND, UNITS_OF_HISTORY, Response, history_columns
 from rockflex.web._earthquake import chosen_motion
@@ -204,7 +204,7 @@ def _record_csv_file(state: PageState, uploads: UploadedRecords) -> tuple[str, s
     return f"{_motion_file_name(motion)}.csv", record_csv(motion)
 
 
-def _selection(state: PageState, uploads: UploadedRecords) -> Selection[Suite]:
+def _selection(state: PageState, uploads: UploadedRecords) -> Selection:
     return SELECTIONS.of(state, uploads)[0]
 
 
