@@ -54,13 +54,8 @@ class History(Value):
         may slide adds its slip (m) and the velocity of it, one on springs its heave and the velocity of that. Nonlinear
         models have four more columns: z of Eq. 38, and the damped, input and hysteretic energy (J), which are known
         where the motion was integrated; then come integrals for viscous dampers (∫ (δ'/r)² dt, on springs ∫ δ'² dt of
-    <<<<<<< HEAD
-        each element) and the energies lost by sliding and by each spring under the base.
-        The last columns are the internal variables of elements that yield or slide,
-    =======
         each element) and the energies lost by sliding and by each spring under the base. The last columns are the
         internal variables of elements that yield or slide,
-    >>>>>>> complete
         and of the ground: what sticks and what is lifted. Stored as a copy.
 
     Raises
