@@ -65,6 +65,10 @@ def statistics() -> rf.PopulationStatistics:
     return rf.population_statistics(pairs, n_resamples=20)
 
 
+def pushed() -> rf.Pushover:
+    return rf.pushover(rf.YieldingStories(make_frame(n_stories=2, stiffness_ratio=math.inf), [1e5, 8e4], 0.05), 0.2)
+
+
 def law_of_two() -> rf.AnnualRate:
     return rf.annual_rate(rf.HazardCurve([0.1, 1.0], [1e-2, 1e-4]), rf.LognormalFragility(0.5, 0.4))
 
@@ -138,6 +142,9 @@ VALUES = {
     rf.MomentRotationOnSprings: lambda: rf.moment_rotation(
         frame(), [0.01], ground=rf.Ground(springs=rf.Springs([-0.2, 0.2], 1e9), base_inertia=1e3)
     ),
+    rf.BilinearFit: lambda: pushed().fit(),
+    rf.Pushover: lambda: pushed(),
+    rf.PushoverEvent: lambda: pushed().events[0],
     rf.Pivot: lambda: rf.Eccentric(frame(), 0.1).rocking().pivot(-1),
     rf.PopulationStatistics: statistics,
     rf.Progress: lambda: rf.Progress(3, 2, 1, 64),

@@ -283,12 +283,24 @@ class ModalModel(Value):
 
     def tension(self, place: int, key: Key) -> Array:
         """Return the tension of an element in a phase in N, for small rotations: a row, shape (C,)."""
-        each, stretch = self.elements[place], self.stretch(place, key[0])
-        pull, known = each.pull(self.element_key(key)[1 + place]), internal_places(self.elements)
+        branch = self.element_key(key)[1 + place]
+        known = self._tensions.get((place, key[0], branch))
+        if known is None:
+            known = self._tensions[place, key[0], branch] = self._tension(place, key[0], branch)
+        return known
+
+    @cached_property
+    def _tensions(self) -> dict[tuple[int, int, int], Array]:
+        return {}
+
+    def _tension(self, place: int, side: int, branch: int) -> Array:
+        each, stretch, known = self.elements[place], self.stretch(place, side), internal_places(self.elements)
+        pull = each.pull(branch)
         row = pull.stiffness * stretch + pull.damping * rate_of(stretch, self.layout)
         row[-1] += pull.force
         if place in known:
             row[self.layout.memory + known[place]] += pull.recall
+        row.setflags(write=False)
         return row
 
     def attached_forces(self, key: Key, *, stories_only: bool = False) -> tuple[Array, Array]:
@@ -301,16 +313,16 @@ class ModalModel(Value):
         forces : ndarray, shape (b, C)
             On the degrees of freedom of the base.
         """
-        layout, p = self.layout, self.properties
-        accelerations, forces = np.zeros((p.n_modes, layout.columns)), np.zeros((layout.freedoms, layout.columns))
-        base = layout.rotation + 2 * np.arange(layout.freedoms)
-        for place, row in self.attached.items():
-            if stories_only and place < len(p.elements):
-                continue
-            tension = self.tension(place, key)
-            accelerations -= np.outer(row[: p.n_modes] / p.effective_mass, tension)
-            forces -= np.outer(row[base], tension)
-        return accelerations, forces
+        first = len(self.properties.elements) if stories_only else 0
+        places = [place for place in self.attached_places if place >= first]
+        if not places:
+            layout = self.layout
+            return np.zeros((layout.modes, layout.columns)), np.zeros((layout.freedoms, layout.columns))
+        reach = np.array([self.attached[place] for place in places])
+        tensions = np.array([self.tension(place, key) for place in places])
+        of_modes = reach[:, : self.layout.modes] / self.properties.effective_mass
+        of_base = reach[:, self.layout.rotation : self.layout.core : 2]
+        return -of_modes.T @ tensions, -of_base.T @ tensions
 
     def ties(self, key: Key) -> Array:
         """Return the horizontal force of the ground on the base that ties from a height demand in N: a row, (C,)."""

@@ -29,7 +29,8 @@ MAX_CHANGES = 10_000
 REACHED, UPLIFT = -2, -1  # what happens next, in place of an element
 
 
-class PushoverEvent(NamedTuple):
+@dataclass(frozen=True)
+class PushoverEvent:
     """A change on the way of a pushover, at a displacement of the top in m and a base shear in N.
 
     `name` is ``"uplift"``, ``"story 1 yields"``, ``"element 2 yields"``, ``"element 2 breaks"`` and so on.

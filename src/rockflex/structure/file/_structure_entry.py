@@ -6,7 +6,7 @@ from dataclasses import MISSING, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeAlias, Union, get_origin, get_type_hints
 
-from pydantic import Field, create_model, model_validator
+from pydantic import Field, SerializerFunctionWrapHandler, create_model, model_serializer, model_validator
 
 from rockflex._errors import InputError
 from rockflex._files import check_regular_file, checked_file_path
@@ -92,8 +92,15 @@ class ElementTable(TomlTable):
 
     def describe(self) -> dict[str, Any]:
         """Return the given values, and the defaults of the others."""
-        attached = self.between is not None or self.height is not None
-        return self.model_dump(exclude_none=True, exclude=set() if attached else {"cosine"})
+        return self.model_dump(exclude_none=True)
+
+    @model_serializer(mode="wrap")
+    def _serialized(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Return the values; an element under the base has no direction."""
+        found: dict[str, Any] = serialize(self)
+        if self.between is None and self.height is None:
+            found.pop("cosine", None)
+        return found
 
 
 class TendonTable(ElementTable):
