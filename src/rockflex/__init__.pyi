@@ -115,6 +115,7 @@ from .plot import plot_moment_rotation as plot_moment_rotation
 from .plot import plot_moment_rotation_laws as plot_moment_rotation_laws
 from .plot import plot_motion as plot_motion
 from .plot import plot_overturning_spectrum as plot_overturning_spectrum
+from .plot import plot_pushover as plot_pushover
 from .plot import plot_rocking_spectrum as plot_rocking_spectrum
 from .plot import plot_selection as plot_selection
 from .plot import plot_spread as plot_spread

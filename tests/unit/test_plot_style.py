@@ -59,6 +59,10 @@ def cloud():
     return rf.run_cloud(structures, motions, ["2DOF-S", "3DOF-S"], scales=[0.3, 0.6, 1.0, 1.7, 3.0])
 
 
+def pushed() -> rf.Pushover:
+    return rf.pushover(rf.YieldingStories(make_frame(stiffness_ratio=float("inf")), 2e5, 0.05), 0.3)
+
+
 def ladders():
     block = rf.rigid_block(slenderness=0.2, half_diagonal=3.0)
     return rf.run_incremental(block, {"a": PULSE, "b": rf.ricker_pulse(2.5, 1.0)}, "rigid", growth=1.5)
@@ -146,6 +150,7 @@ ARGUMENTS = {
     "plot_motion": lambda: (both_components(),),
     "plot_overturning_spectrum": lambda: ({LONG: overturning(), "the same": overturning()},),
     "plot_population": lambda: (pairs(),),
+    "plot_pushover": lambda: (pushed(), pushed().fit()),
     "plot_rocking_spectrum": lambda: (spectrum(),),
     "plot_selection": lambda: (rf.load_suite("fema-p695-far-field").select(rf.ec8_spectrum(2.5, "C"), 7, (0.2, 2.0)),),
     "plot_spread": lambda: spread(),

@@ -145,3 +145,14 @@ def test_a_curve_without_yielding_has_no_fit():
         with pytest.raises(InputError) as caught:
             push.fit()
         assert caught.value.field == "top_displacement"
+
+
+def test_the_figure_shows_curve_fit_and_events():
+    push = rf.pushover(yielding(), 0.2)
+    curve, drifts = rf.plot_pushover(push, push.fit()).axes
+    line, fit, *marks = curve.get_lines()
+    np.testing.assert_allclose(line.get_ydata() * 1e3, push.base_shear)
+    assert fit.get_xdata()[1] == pytest.approx(push.fit().yield_displacement)
+    assert len(marks) == len(push.events) == 3
+    assert all(event.name in curve.texts[0].get_text() for event in push.events)
+    assert len(drifts.patches) == 3
