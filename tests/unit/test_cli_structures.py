@@ -156,11 +156,8 @@ def test_the_file_of_an_unknown_study(write):
 
 def test_unknown_table(failing):
     message = failing(toml(FRAME, "frmae"))
-    keys = (
-        "name, frame, fish_bone, wall_frame, tapered_tower, cantilever, beam, lumped, matrices, modes, properties, "
-        "block, eccentricity, tendons, elements, impact, restitution, bouc_wen, ground"
-    )
-    assert message == f": frmae is not known; there are {keys}. Did you mean frame?"
+    assert message.startswith(": frmae is not known; there are name, frame, fish_bone, ")
+    assert message.endswith(", ground. Did you mean frame?")
 
 
 @pytest.mark.parametrize(

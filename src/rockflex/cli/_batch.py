@@ -93,7 +93,7 @@ class BatchRun:
     friction: dict[str, float | None] = field(default_factory=dict[str, float | None])
     """Required friction and the time at which sliding would start, by name; empty unless requested."""
     elements: dict[str, list[float]] = field(default_factory=dict[str, list[float]])
-    """Peaks of each element between base and ground, and its energy of a run with a history, by name."""
+    """Peaks of each element, its energy of a run with a history, and what is left of each story, by name."""
 
     @cached_property
     def peaks(self) -> dict[str, Any]:
@@ -108,7 +108,7 @@ class BatchRun:
     def row(self) -> dict[str, Any]:
         """Return everything but the run time and the history, in the columns of `simulate_many`.
 
-        Columns of an element end in its number, from 1.
+        Columns of an element or a story end in its number, from 1.
         """
         head = {"motion": self.motion, "scale": self.scale, "model": self.model}
         elements = {f"{name}_{k}": each for name, values in self.elements.items() for k, each in enumerate(values, 1)}
@@ -122,6 +122,7 @@ class BatchRun:
 
 COLUMNS = tuple(name for name in PEAKS if name not in ("model", "motion", "status"))
 OF_ELEMENTS = ("max_element_force", "max_element_elongation")
+OF_STORIES = ("ductility", "residual_drift")
 SLIDING = ("required_friction", "required_friction_excluding_impacts", "sliding_time")
 
 
@@ -175,6 +176,8 @@ def _run_one_of_batch(
     if batch.properties.elements:
         names = OF_ELEMENTS if response.history is None else (*OF_ELEMENTS, "element_energy")
         elements = {name: getattr(response, name).tolist() for name in names}
+    if batch.properties.stories and response.ductility.size:
+        elements |= {name: getattr(response, name).tolist() for name in OF_STORIES}
     kept = response if batch.history else replace(response, history=None)
     return replace(made, response=kept, run_time=elapsed, friction=friction, elements=elements)
 

@@ -43,6 +43,7 @@ OF_ELEMENTS = (
     "F, E: largest force of each element, and the energy that it takes (with --out);\n"
     "θ_end: rotation at the end of the run, where it is not closed"
 )
+OF_STORIES = "μ: largest drift of a story over its yield drift; drift: what is left at rest"
 OF_BASE = {
     "slip": "slip: largest displacement of the base along the ground; x_end: where it rests",
     "edge": "edge up, down: how far an edge of the base rises above the unloaded springs, and sinks below them",
@@ -69,9 +70,9 @@ def print_run_peaks(title: str, batch: RunBatch, runs: Sequence[BatchRun], elaps
     if batch.friction is not None:
         tables.append((_sliding_columns(runs), 0))
     if elements:
-        console.print_line("\nBetween base and ground")
+        console.print_line("\nElements" if any(each.attached for each in elements) else "\nBetween base and ground")
         console.print_table(elements_table(elements))
-        tables += [(columns, 0) for columns in _element_peak_columns(runs, len(elements))]
+    tables += [(columns, 0) for columns in _numbered_columns(runs) if columns]
     for columns, n_words in tables:
         _print_columns(batch, runs, columns, n_words)
     for line in _legend(batch, runs, base):
@@ -89,6 +90,8 @@ def _legend(batch: RunBatch, runs: Sequence[BatchRun], base: Columns) -> Iterato
     yield from (said for name, said in OF_BASE.items() if any(heading.startswith(name) for heading, _ in base))
     if batch.properties.elements:
         yield OF_ELEMENTS
+    if batch.properties.stories:
+        yield OF_STORIES
     if batch.friction is not None:
         yield FRICTION.format(window=IMPACT_WINDOW, mu=batch.friction)
 
@@ -207,17 +210,19 @@ def _sliding_columns(runs: Sequence[BatchRun]) -> Columns:
     return [("μ_req", required[0]), ("μ_req [no impacts]", required[1]), ("slides at [s]", moments)]
 
 
-def _element_peak_columns(runs: Sequence[BatchRun], count: int) -> Iterator[Columns]:
-    """The peaks of each element, by its number."""
-    for name, heading in (("max_element_force", "F_{} [kN]"), ("element_energy", "E_{} [kJ]")):
-        if any(name in run.elements for run in runs):
-            yield [
-                (
-                    heading.format(k + 1),
-                    [console.number(run.elements[name][k] / 1e3 if run.elements else None) for run in runs],
-                )
-                for k in range(count)
-            ]
+def _numbered_columns(runs: Sequence[BatchRun]) -> Iterator[Columns]:
+    """The peaks of each element and each story that yields, by its number."""
+    for name, heading, unit in (
+        ("max_element_force", "F_{} [kN]", 1e3),
+        ("element_energy", "E_{} [kJ]", 1e3),
+        ("ductility", "μ_{}", 1.0),
+        ("residual_drift", "drift_{} [mm]", 1e-3),
+    ):
+        values = [run.elements.get(name) for run in runs]
+        yield [
+            (heading.format(k + 1), [console.number(None if each is None else each[k] / unit) for each in values])
+            for k in range(max((len(each) for each in values if each is not None), default=0))
+        ]
 
 
 def _motion_and_scale_cells(batch: RunBatch, run: BatchRun) -> list[str]:
@@ -270,6 +275,7 @@ UNITS = {
     "max_element_force_*": "N",
     "max_element_elongation_*": "m",
     "element_energy_*": "J",
+    "residual_drift_*": "m",
     "residual_rotation": "rad",
     "max_slip": "m",
     "residual_slip": "m",

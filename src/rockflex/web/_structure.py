@@ -12,7 +12,7 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._errors import InputError
 from rockflex._json import as_json_value
-from rockflex.modal import Ground, ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
+from rockflex.modal import PLACE, Ground, ModalProperties, Pivot, RockingProperties, adequacy, uplifted_modes
 from rockflex.structure import structure_warnings
 from rockflex.structure._from_matrices import DegreesOfFreedom
 from rockflex.structure._outline import outline_of_structure
@@ -162,7 +162,7 @@ def structure_outline_view(entry: StructureEntry, built: BuiltStructure) -> dict
         "mass": p.m_tot,
         "half_width": p.half_width,
         "eccentricity": p.eccentricity,
-        "elements": [{"kind": table.kind, "position": table.position} for table in entry.elements or []],
+        "elements": [{name: getattr(table, name) for name in ("kind", *PLACE)} for table in entry.elements or []],
     }
 
 

@@ -14,8 +14,9 @@ from rockflex._shown import shown
 from rockflex.modal import ModalProperties, RockingProperties
 from rockflex.plot._history import ResponseCurve, time_axis_limits
 from rockflex.response import History
-from rockflex.structure import CantileverWithTipMass, Eccentric, FishBone, Frame, Leaning, LumpedStructure, Restrained
+from rockflex.structure import CantileverWithTipMass, FishBone, Frame, LumpedStructure
 from rockflex.structure._outline import outline_of_structure
+from rockflex.structure._structure import ModifiedStructure
 
 MAX_FRAMES = 20_000
 RATES = {".gif": (1.0, 50.0), ".mp4": (1.0, 120.0)}
@@ -143,7 +144,7 @@ def structure_outline(history: History, structure: Any | None, place: int) -> St
 
 
 def _outline_kind(structure: Any) -> Kind:
-    while isinstance(structure, Restrained | Eccentric | Leaning):
+    while isinstance(structure, ModifiedStructure):
         structure = structure.structure
     if isinstance(structure, CantileverWithTipMass):
         return "mast"
@@ -219,6 +220,12 @@ class StructurePoses:
         """Return where the points of a vertical line at `x` of the structure are drawn in a frame, bent by its sway."""
         heights = self.outline.heights
         return self.place(frame, x + amplification * self.sway[frame], heights, amplification)
+
+    def bent_point(self, frame: int, x: float, height: float, amplification: float) -> tuple[float, float]:
+        """Return where a point of the structure at rest, in m, is drawn in a frame, bent by its sway."""
+        sway = float(np.interp(height, self.outline.heights, self.sway[frame]))
+        across, up = self.place(frame, np.array([x + amplification * sway]), np.array([height]), amplification)
+        return float(across[0]), float(up[0])
 
     def base(self, frame: int, amplification: float) -> tuple[Array, Array]:
         """Return where the left and the right edge of the base are drawn in a frame."""

@@ -13,6 +13,7 @@ from matplotlib.patches import Polygon, Rectangle
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
+from rockflex.modal import BaseElement
 from rockflex.plot import _figures as figures
 from rockflex.plot import _history as histories
 from rockflex.plot._history import PanelQuantity, ResponseCurve
@@ -31,6 +32,8 @@ SPRING, SPRING_FREE = "#64748b", "#a9b1bb"
 DARK_RED = "#b3261e"
 COLUMN_OFFSET = 0.82  # of the distance from the axis to the nearer edge, at which columns are drawn
 TENDON_REACH = 0.6  # of the height to which tendons reach
+BRACE_SHARE = 0.6  # of the half width, to either side of which the ends of a brace are drawn
+TIE_REACH = 1.15  # of the half width, where a tie is anchored
 BRACKET_REACH = 26.0  # points above the base to which other elements reach
 _MAX_WIDE_SPRINGS, _MAX_THICK_FLOORS = 4, 25  # springs that are drawn wide; stories with thick floors
 _AT_REST = "#c9ced6"
@@ -128,6 +131,8 @@ class StructureArtists:
     ) -> None:
         self._poses, self._here, self._by = poses, here, amplification
         self._elements = curve.history.model.properties.elements if poses.lifts else ()
+        floors = curve.history.model.properties.floors
+        self._floor_heights = np.zeros(0) if floors is None else floors.heights
         color = curve.style.color
         block = poses.outline.kind == "block"
         self._draw_at_rest(axes)
@@ -224,6 +229,10 @@ class StructureArtists:
         parts: dict[str, list[Array]] = {kind: [] for kind in self._element_lines}
         for element in self._elements:
             kind, x = type(element).__name__, np.array([element.position])
+            if element.attached:
+                ends = (np.array(here(end)) for end in self._ends_of_attached(element, frame))
+                parts[kind].append(np.array(list(ends)))
+                continue
             reach = TENDON_REACH * top if kind == "Tendon" else min(BRACKET_REACH / here.zoom, 0.4 * top)
             below = sunk + (0.02 * top if kind == "Tendon" else 0.0)
             start = np.concatenate(here((x, np.array([-below]))))
@@ -232,6 +241,17 @@ class StructureArtists:
             parts[kind].append(np.column_stack(lines_between_points(element_symbol_lines(kind, length), start, end)))
         for kind, lines in parts.items():
             self._element_lines[kind].set_data(*joined_polylines(lines))
+
+    def _ends_of_attached(self, element: BaseElement, frame: int) -> list[tuple[float, float]]:
+        """Return both ends of an element between floors, or of a tie to the ground beside the structure, in m."""
+        poses, half = self._poses, BRACE_SHARE * min(-self._poses.outline.left, self._poses.outline.right)
+        if element.between is not None:
+            heights = np.append(0.0, self._floor_heights)
+            levels = zip((-half, half), (float(heights[floor]) for floor in element.between), strict=True)
+            return [poses.bent_point(frame, x, level, self._by) for x, level in levels]
+        height = element.height or 0.0
+        anchor = poses.outline.left if element.cosine > 0.0 else poses.outline.right
+        return [(TIE_REACH * anchor, height), poses.bent_point(frame, 0.0, height, self._by)]
 
 
 def _animated_line(axes: Axes, color: str, width: float, *, capstyle: Any = "round", **more: Any) -> Line2D:

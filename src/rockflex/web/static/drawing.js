@@ -8,6 +8,9 @@ export const colorOf = (kind) => COLORS[kind] ?? "fuse";
 
 // "2: Viscous damper at 0.8 m".
 export function nameOf(about, each, place) {
+  const title = `${place + 1}: ${about.elements[each.kind].title}`;
+  if (each.between?.length === 2) return `${title}, floors ${each.between.join(" to ")}`;
+  if (each.height) return `${title}, tie at ${each.height} m`;
   const x = each.position ?? 0;
   return `${place + 1}: ${about.elements[each.kind].title} at ${String(Number(Number(x).toPrecision(4))).replace("-", "−")} m`;
 }

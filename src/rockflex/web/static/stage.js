@@ -161,7 +161,11 @@ class Stage {
   #elements(g, frame, to, zoom) {
     const { heights, elements } = this.view;
     const top = heights[heights.length - 1];
-    for (const { kind, position } of elements) {
+    for (const { kind, position, between, height, cosine } of elements) {
+      if (between || height) {
+        this.#attached(frame, to, { kind, between, height, cosine });
+        continue;
+      }
       const tendon = kind === "tendon";
       const sunk = frame.sprung ? this.depth / zoom : 0;
       const from = to([position, -sunk - (tendon ? 0.02 * top : 0)]);
@@ -169,6 +173,25 @@ class Stage {
       g.strokeStyle = g.fillStyle = color(colorOf(kind));
       drawBetween(g, strokes(kind, Math.hypot(end[0] - from[0], end[1] - from[1])), from, end);
     }
+  }
+
+  // A brace between floors, or a tie to the ground beside the structure.
+  #attached(frame, to, { kind, between, height, cosine }) {
+    const { heights } = this.view;
+    const [low, high] = this.edges();
+    const bent = (x, z) => {
+      const i = Math.max(1, heights.findIndex((each) => each >= z * (1 - 1e-9)));
+      const share = (z - heights[i - 1]) / (heights[i] - heights[i - 1]);
+      const sway = frame.u[i - 1] + share * (frame.u[i] - frame.u[i - 1]);
+      return frame.place(x + this.amplification * sway, z);
+    };
+    const half = 0.6 * Math.min(-low, high);
+    const ends = between
+      ? [bent(-half, heights[between[0]] ?? 0), bent(half, heights[between[1]] ?? 0)]
+      : [[1.15 * (cosine < 0 ? high : low), height], bent(0, height)];
+    const [from, end] = ends.map(to);
+    g.strokeStyle = g.fillStyle = color(colorOf(kind));
+    drawBetween(g, strokes(kind, Math.hypot(end[0] - from[0], end[1] - from[1])), from, end);
   }
 
   #blow(g, frame, to) {
