@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockflex._checks import checked_finite, checked_positive, real_or_nan
 from rockflex._errors import InputError
+from rockflex._number_format import short_number
 from rockflex._shown import shown
 
 PLACE = ("position", "between", "cosine", "height")  # the fields that say where an element acts
@@ -83,7 +84,7 @@ class Attachment:
         """Where the element acts, in words."""
         if self.between is not None:
             return "floors {} to {}".format(*self.between)
-        return f"x = {self.position:.4g} m" if self.height is None else f"z = {self.height:.4g} m"
+        return f"x = {short_number(self.position)} m" if self.height is None else f"z = {short_number(self.height)} m"
 
     def arm(self, pivot: float, side: int) -> float:
         """Return the distance in m from a pivot on a side, itself at `pivot` from the axis; zero if attached."""

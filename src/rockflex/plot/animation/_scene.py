@@ -230,8 +230,8 @@ class StructureArtists:
         for element in self._elements:
             kind, x = type(element).__name__, np.array([element.position])
             if element.attached:
-                ends = (np.array(here(end)) for end in self._ends_of_attached(element, frame))
-                parts[kind].append(np.array(list(ends)))
+                ends = np.array(self._ends_of_attached(element, frame))
+                parts[kind].append(np.column_stack(here((ends[:, 0], ends[:, 1]))))
                 continue
             reach = TENDON_REACH * top if kind == "Tendon" else min(BRACKET_REACH / here.zoom, 0.4 * top)
             below = sunk + (0.02 * top if kind == "Tendon" else 0.0)
