@@ -195,6 +195,8 @@ class ModalModel(Value):
         Everything is elastic but for elements that are broken, whose plastic stretch is NaN.
         """
         p, forces = self.properties, np.zeros(self.properties.n_modes)
+        if not self.attached:
+            return forces
         stiffness = np.diag(p.effective_mass * p.omega**2)
         for place, row in self.attached.items():
             each, r = self.elements[place], row[: p.n_modes]
