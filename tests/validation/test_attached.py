@@ -345,3 +345,11 @@ def test_what_cannot_be_combined_is_refused(elements, run):
     with pytest.raises(InputError) as caught:
         rf.simulate(rf.Restrained(tower(), elements), shaking(), **({"model": "MDOF-S"} | run))
     assert caught.value.field == "elements"
+
+
+def test_a_report_has_stories_and_places(tmp_path):
+    held = rf.Restrained(rf.YieldingStories(tower(), 200e3, 0.05), fuse(height=6.5))
+    response = rf.simulate(held, shaking(), "MDOF-S", output="history")
+    text = rf.write_report(response, tmp_path / "run.html", structure=held).read_text("utf-8")
+    assert "z = 6.5 m" in text
+    assert f"μ = {response.ductility[1]:.2f}" in text

@@ -22,6 +22,7 @@ from rockflex.modal import (
     Tendon,
     UpliftedModes,
     ViscousDamper,
+    YieldingStory,
     element_parameters,
     uplifted_modes,
 )
@@ -34,6 +35,7 @@ MAX_MODES = 4  # modes
 _MOST_UPLIFTED = 200  # modes, for which the uplifted ones are found at once
 MAX_COORDINATES = 3  # modes
 MAX_ELEMENTS = 6  # elements
+ROUNDING = 1e-9  # m: drifts that are none
 _LAW, _INITIAL = "Impact law", "Initial state"
 STATUS = {"no_uplift": "no uplift", "rocking": "rocking", "overturned": "overturned"}
 DAGGER = "†"
@@ -336,17 +338,39 @@ def ground_friction_range(model: Any) -> tuple[float, float] | None:
 
 
 def element_table(report: ReportedRuns) -> ReportTable | None:
-    """Return the elements with their largest forces and elongations in runs that lift; None if there are none."""
-    elements = report.properties.elements
-    runs = [run for run, history in zip(report.responses, report.histories, strict=True) if history.model.lifts]
-    if not elements or not runs:
+    """Return elements and stories that yield with their largest forces and elongations; None if there are none.
+
+    Elements count in runs that lift, and those away from the base and stories in all.
+    """
+    elements, stories = report.properties.elements, report.properties.stories
+    away = bool(stories) or any(each.attached for each in elements)
+    both = zip(report.responses, report.histories, strict=True)
+    runs = [run for run, history in both if history.model.lifts or away]
+    if not (elements or stories) or not runs:
         return None
     heads = [("element", ""), ("x", "m"), ("properties", ""), ("F_max", "kN"), ("δ_max", "mm"), ("state", "")]
-    rows = [_element_table_row(k, elements, runs) for k in range(min(len(elements), MAX_ELEMENTS))]
-    if len(elements) > MAX_ELEMENTS:
+    rows = [_element_table_row(k, elements, runs) for k in range(len(elements))]
+    rows += [_story_table_row(each, runs) for each in stories]
+    if len(rows) > MAX_ELEMENTS:
         blank = ReportCell("")
-        rows.append([ReportCell(f"and {len(elements) - MAX_ELEMENTS} more"), *[blank] * 5])
+        rows[MAX_ELEMENTS:] = [[ReportCell(f"and {len(rows) - MAX_ELEMENTS} more"), *[blank] * 5]]
     return ReportTable(heads, rows)
+
+
+def _story_table_row(story: YieldingStory, runs: Sequence[Response]) -> list[ReportCell]:
+    ductility = max(float(run.ductility[story.floor - 1]) for run in runs if run.ductility.size)
+    left = max((abs(float(run.residual_drift[story.floor - 1])) for run in runs if run.ductility.size), default=0.0)
+    beyond = ductility - 1.0 if ductility > 1.0 else 0.0
+    force = story.yield_force * (min(ductility, 1.0) + story.post_yield_ratio * beyond)
+    properties = f"k = {rounded_number(story.stiffness / 1e6)} MN/m, F_y = {rounded_number(story.yield_force / 1e3)} kN"
+    return [
+        ReportCell(f"story {story.floor}"),
+        ReportCell(""),
+        ReportCell(f"{properties}, post-yield ratio {story.post_yield_ratio:.4g}"),
+        value_cell(force, f"max_story_force_{story.floor}", 1e3),
+        value_cell(ductility * story.yield_force / story.stiffness, f"max_story_drift_{story.floor}", 1e-3),
+        ReportCell(f"μ = {ductility:.2f}, {rounded_number(1e3 * left if left > ROUNDING else 0.0)} mm left"),
+    ]
 
 
 def _element_table_row(place: int, elements: Sequence[BaseElement], runs: Sequence[Response]) -> list[ReportCell]:
