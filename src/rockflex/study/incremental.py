@@ -267,7 +267,7 @@ def run_incremental(
         Relative width of the boundaries.
     limit
         Name of a limit state: ``"overturning"``: |θ| reaches π/2; ``"nominal"``: it passes 0.7 atan(B/h*_1); or
-        another one of `rockflex.fragility.LIMIT_STATES`.
+        another one of ``rockflex.fragility.LIMIT_STATES``.
     progress
         As in `run_cloud`, counted in ladders: all runs of a structure, a record and a model.
 

@@ -98,7 +98,7 @@ def stripe_counts(runs: "pd.DataFrame", limit: StripeLimit = "overturning") -> "
         The table of a `StripeStudy`.
     limit
         Name of a limit state: ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)),
-        ``"tendon_yield"``, ``"uplift"``, or another one of `rockflex.fragility.LIMIT_STATES`; a rotation in rad; or a
+        ``"tendon_yield"``, ``"uplift"``, or another one of ``rockflex.fragility.LIMIT_STATES``; a rotation in rad; or a
         limit state such as ``rockflex.fragility.residual_rotation_limit_state(0.005)``.
 
     Returns
