@@ -265,14 +265,11 @@ class ModalModel(Value):
         rest; and for attached elements as in `Attachment`.
         """
         rotation = self.layout.of(states, self.layout.rotation)
-        return self._with_attached(states, self.arms(rotation) * self.stretch_per_arm(np.abs(rotation))[:, None])
-
-    def _with_attached(self, states: Array, elongations: Array) -> Array:
-        """Return elongations, shape (n, E), with those of attached elements."""
+        found = self.arms(rotation) * self.stretch_per_arm(np.abs(rotation))[:, None]
         moving = states[:, HEADER : HEADER + self.layout.moving]
         for place, row in self.attached.items():
-            elongations[:, place] = moving @ row[:-2] + row[-1]
-        return elongations
+            found[:, place] = moving @ row[:-2] + row[-1]
+        return found
 
     def stretch(self, place: int, side: int) -> Array:
         """Return the elongation of an element in m, for small rotations: a row, shape (C,)."""
