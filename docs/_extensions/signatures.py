@@ -53,7 +53,11 @@ def _written(function: Any, bound: bool) -> tuple[str, str | None] | None:
 
 def _value(default: ast.expr | None, constants: dict[str, Any]) -> ast.expr | None:
     """A default; the number itself in place of the name of a constant."""
-    value = constants.get(default.id) if isinstance(default, ast.Name) else None
+    value = None
+    if isinstance(default, ast.Name):
+        value = constants.get(default.id)
+    elif isinstance(default, ast.Attribute) and isinstance(default.value, ast.Name):  # study.WORK_LIMIT
+        value = getattr(constants.get(default.value.id), default.attr, None)
     return ast.Constant(value) if isinstance(value, int | float) else default
 
 
@@ -67,7 +71,7 @@ class _Plain(ast.NodeTransformer):
         return node if alias is None else self.visit(copy.deepcopy(alias))
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
-        return ast.Name(node.attr)  # DataFrame for pd.DataFrame
+        return self.visit_Name(ast.Name(node.attr))  # DataFrame for pd.DataFrame, Motions for study.Motions
 
     def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
         if isinstance(node.value, ast.Name) and node.value.id == "NDArray":
