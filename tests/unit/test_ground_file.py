@@ -9,7 +9,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.models import LinearModel, _label
+from rockflex.models import RockingModel, _label
 from rockflex.structure.file import TomlTable, parse_toml_table
 from rockflex.study.spec import GroundTable
 
@@ -132,7 +132,7 @@ def made(monkeypatch):
 
     def grounded(label, kept, ground, law, missing_mass, **_kind):
         grounds.append(ground)
-        return LinearModel(label, kept, True, law or rf.VVELSimplified(), missing_mass)
+        return RockingModel(label, kept, True, law or rf.VVELSimplified(), missing_mass)
 
     monkeypatch.setattr(_label, "model_on_ground", grounded)
     return grounds

@@ -15,7 +15,7 @@ import rockflex as rf
 from builders import frame_values, make_frame
 from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes
-from rockflex.models import ForgottenLaw, LinearModel, NonlinearModel
+from rockflex.models import ForgottenLaw, RockingModel
 from rockflex.motion import GroundMotion
 
 RECORD = 2.5 * np.sin(np.arange(300) * 0.1)
@@ -178,9 +178,8 @@ VALUES = {
     rf.YieldingDissipator: lambda: rf.YieldingDissipator(1e7, 1e5, 0.02, rupture_elongation=0.1),
     # not in `rockflex` itself, but in what it returns
     ForgottenLaw: lambda: ForgottenLaw("Mine()", "this", "that"),
-    LinearModel: lambda: LinearModel("MDOF-S", frame().rocking()),
     MassNormalisedModes: lambda: VALUES[rf.ModalStructure]().modes,
-    NonlinearModel: lambda: NonlinearModel("2DOF-C", frame().rocking(1), bouc_wen=rf.BoucWen(0.05)),
+    RockingModel: lambda: RockingModel("2DOF-C", frame().rocking(1), bouc_wen=rf.BoucWen(0.05), complete=True),
 }  # fmt: skip
 STUDIES = {
     rf.CloudStudy: lambda: rf.CloudStudy(**STUDY, scales=[1.0, 2.0]),
