@@ -118,6 +118,7 @@ from .plot import plot_overturning_spectrum as plot_overturning_spectrum
 from .plot import plot_pushover as plot_pushover
 from .plot import plot_rocking_spectrum as plot_rocking_spectrum
 from .plot import plot_selection as plot_selection
+from .plot import plot_set as plot_set
 from .plot import plot_spread as plot_spread
 from .plot import plot_stripes as plot_stripes
 from .plot import plot_tower as plot_tower

@@ -139,6 +139,15 @@ class Check:
         """Whether the limit is kept; None without one, and False where a record overturns and leaves no demand."""
         return None if self.ratio is None else self.ratio <= 1.0
 
+    @property
+    def in_table(self) -> tuple[float, float | None, str]:
+        """Demand, limit and unit as tables show them: in mrad, mm or kPa."""
+        size, unit = TABLE_UNITS.get(self.unit, (1.0, self.unit))
+        return self.demand / size, None if self.limit is None else self.limit / size, unit
+
+
+TABLE_UNITS = {"rad": (1e-3, "mrad"), "m": (1e-3, "mm"), "Pa": (1e3, "kPa")}
+
 
 @dataclass(frozen=True, repr=False)
 class CheckTable(HtmlTable, Value):

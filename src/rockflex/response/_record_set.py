@@ -270,7 +270,7 @@ class RecordSet(HtmlTable, Value):
             to = f"a period of {reached:.3g} s" if math.isfinite(reached) else "periods of any length"
             found.append(
                 f"The records were chosen for periods up to {self.periods[1]:.3g} s, but at the θ = {largest:.3g} rad "
-                f"that is reached rocking has {to}. Choose them for a range that ends there."
+                f"that is reached rocking has {to}. Choose them for longer periods."
             )
         shared = len(horizontal_pairs(self.motions)[0])
         if shared:
