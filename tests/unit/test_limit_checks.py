@@ -55,16 +55,24 @@ def test_a_closed_block_under_no_motion_stands_on_its_whole_base():
     assert found["bearing pressure"].demand == pytest.approx(BLOCK.m_tot * G / (4.0 * BLOCK.half_width), rel=1e-12)
 
 
-def test_the_resultant_reaches_the_edge_as_the_base_lifts():
-    """The moments of inertia and of the elements are those of the model: at uplift nothing is left of the contact."""
-    p = rf.Restrained(rf.Eccentric(FRAME, 0.1), rf.Tendon(100e3, 5e6, 0.2)).rocking()
-    strong = rf.simulate(p, PULSE, "MDOF-S")
-    first = float(strong.uplift_times[0])
-    n = round(first / PULSE.dt)
-    cut = rf.GroundMotion(PULSE.acceleration[: n + 1], PULSE.dt, "until uplift")
-    run = rf.simulate(p, cut.scaled(0.9999), "MDOF-S")
+def test_elements_pull_on_the_ground_where_they_stand():
+    """x = (F x_k + L_0 |a|)/N as the ground moves to the left."""
+    held_block = replace(BLOCK, elements=(rf.Tendon(2000e3, 1e6, 0.3),))
+    run = rf.simulate(held_block, rf.rectangular_pulse(0.5, 1.0).scaled(-1.0), "rigid")
     assert run.status == "no_uplift"
-    assert 0.0 <= rows(run, contact_ratio=0.5)["contact length"].demand < 0.05
+    place = (2000e3 * 0.3 + BLOCK.l0r * 0.5) / (BLOCK.m_tot * G + 2000e3)
+    found = rows(run, contact_ratio=0.5)["contact length"]
+    assert found.demand == pytest.approx(3.0 * (BLOCK.half_width - place) / (2.0 * BLOCK.half_width), rel=1e-12)
+
+
+def test_the_resultant_reaches_the_edge_as_the_base_lifts():
+    """On the border of uplift, M = M_r about the pivot of an eccentric base, nothing is left of the contact."""
+    p = replace(rf.Eccentric(FRAME, 0.1).rocking(), elements=(rf.Tendon(100e3, 5e6, 0.2),))
+    motions = [PULSE.scaled(sign * scale) for sign in (1.0, -1.0) for scale in np.linspace(0.05, 0.5, 46)]
+    closed = [run for run in (rf.simulate(p, each, "MDOF-S") for each in motions) if run.status == "no_uplift"]
+    lengths = [rows(run, contact_ratio=0.5)["contact length"].demand for run in closed]
+    assert len(lengths) < len(motions)  # the others lift
+    assert 0.0 <= min(lengths) < 0.1
 
 
 def test_contact_on_springs_is_that_of_its_edges():
@@ -162,6 +170,13 @@ def test_the_demand_of_a_set_is_that_of_its_rule():
             demands = [each[name].demand for each in single[:n]]
             assert found[name].demand == pytest.approx(of(demands), rel=1e-14)
     assert "6 records" in found["story drift"].note
+    bed = rf.Ground(springs=rf.winkler_bed(FRAME.half_width, 3.0, 4e7), base_inertia=1e5)
+    shares = [
+        rows(rf.simulate(FRAME, each, "2DOF-S", ground=bed), contact_ratio=0.5)["contact length"].demand
+        for each in motions[:6]
+    ]
+    found = rows(rf.simulate_set(FRAME, motions[:6], "2DOF-S", rule="ec8", ground=bed), contact_ratio=0.5)
+    assert found["contact length"].demand == min(shares) < max(shares)
 
 
 def test_a_record_that_overturns_keeps_no_limit():

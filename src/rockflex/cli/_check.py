@@ -178,9 +178,12 @@ def _print_set(found: "RecordSet") -> None:
     console.print_rows(("record", "status", *heads), rows, 2)
     console.print_line()
     rows = [
-        [DEMANDS[name].symbol, DEMANDS[name].unit]
-        + [console.number(row[column] / DEMANDS[name].size) for column in STATISTICS]
-        for name, row in statistics.iterrows()
+        [
+            DEMANDS[name].symbol,
+            DEMANDS[name].unit,
+            *(console.number(row[column] / DEMANDS[name].size) for column in STATISTICS),
+        ]
+        for name, row in zip(map(str, statistics.index), statistics.to_dict("records"), strict=True)
     ]
     console.print_rows(("demand", "unit", *STATISTICS.values()), rows, 2)
     for reason in dict.fromkeys(statistics["reason"]):

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -91,7 +92,8 @@ def plot_set(found: RecordSet, demands: Sequence[str] | None = None, *, size: Si
 
 
 def _draw_demand(axes: Axes, found: RecordSet, name: str) -> None:
-    values, fallen, row = found.peaks[name].to_numpy(float), found.fallen, found.statistics.loc[name]
+    values, fallen = found.peaks[name].to_numpy(float), found.fallen
+    row: Any = found.statistics.loc[name]
     stands = values[~fallen]
     size, unit = DEMANDS[name].size, DEMANDS[name].unit
     if unit.startswith("kN"):

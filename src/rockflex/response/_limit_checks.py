@@ -87,10 +87,12 @@ class CheckLimits:
         units = {"bearing_pressure": "Pa", "toe_stress": "Pa"}
         lengths = ("fuse_length", "breadth", "slip", "seat_width", "toe_length")
         for each in fields(self):
-            value = getattr(self, each.name)
-            if value is not None or each.default is not None:
-                unit = "m" if each.name in lengths else units.get(each.name, "")
-                object.__setattr__(self, each.name, checked_positive(each.name, value, unit))
+            value: Any = getattr(self, each.name)
+            if value is None and each.default is None:
+                continue
+            unit = "m" if each.name in lengths else units.get(each.name, "")
+            number = checked_positive(each.name, value, unit)  # pyright: ignore[reportArgumentType]
+            object.__setattr__(self, each.name, number)
         if self.contact_ratio is not None:
             checked_in_range("contact_ratio", self.contact_ratio, 0.0, math.nextafter(1.0, 2.0))
 
@@ -293,9 +295,9 @@ def _check_lifts(history: History) -> None:
 
 
 def _uplift_remark(runs: tuple[Response, ...]) -> Iterator[str]:
-    lifting = sum(run.status != "no_uplift" for run in runs)
-    if len(runs) > 1:
-        yield f"the base lifts in {lifting} of {len(runs)} records"
+    lifting, n = sum(run.status != "no_uplift" for run in runs), len(runs)
+    if n > 1:
+        yield f"the base lifts in {lifting} of {n} records"
     else:
         yield f"the base lifts, {number_with_noun(runs[0].n_impacts, 'impact')}" if lifting else "the base stays closed"
 
@@ -439,7 +441,7 @@ KINDS = (
         ),
     ),
     CheckKind("fuse strain", "", _fuse_strain, _user("fuse_strain", "fuse_length")),
-    CheckKind("rupture", "", _rupture_ratio, lambda *_: Limit(1.0, "rupture_elongation of the element")),
+    CheckKind("rupture", "", _rupture_ratio, lambda _, __: Limit(1.0, "rupture_elongation of the element")),
     CheckKind("bearing pressure", "Pa", _bearing_pressure, _user("bearing_pressure")),
     CheckKind("contact length", "", _contact_ratio, _user("contact_ratio"), at_least=True),
     CheckKind("sliding", "", _required_friction, _user("friction")),

@@ -173,7 +173,7 @@ class RecordSet(HtmlTable, Value):
     def _shown_as(self) -> dict[str, Any]:
         design = {
             f"{DEMANDS[name].symbol} [{DEMANDS[name].unit}]": float(value) / DEMANDS[name].size
-            for name, value in self.statistics["design"].items()
+            for name, value in zip(map(str, self.statistics.index), self.statistics["design"], strict=True)
         }
         return {
             "model": self.responses[0].model,

@@ -302,15 +302,22 @@ def run_report_as_html(
             *[f"{_report_tables.DAGGER} The values of a run that overturned include its fall."] * fell,
             *run_check_legend(report, coefficient, omitted=bool(left_out)),
         ],
-        limits=None
-        if limits is None
-        else limit_check_table(report.labels, [check(run, limits) for run in report.responses]),
+        limits=None if limits is None else _limits_of_runs(report, limits, left_out),
         warnings=_first_warnings_of_report([*structure_warnings(known), *_warnings_of_runs(report, left_out)]),
         notes=_joined_notes(texts),
         versions=_report_versions(),
         inputs=report_fingerprint(report, record),
     )
     return _run_report_page_as_html(page, report)
+
+
+def _limits_of_runs(report: ReportedRuns, limits: CheckLimits, omitted: Collection[str]) -> _report_tables.ReportTable:
+    """Return the checks of runs against limits, without the friction of the models in `omitted`."""
+    tables = [
+        check(run, dataclasses.replace(limits, friction=None) if label in omitted else limits)
+        for label, run in zip(report.labels, report.responses, strict=True)
+    ]
+    return limit_check_table(report.labels, tables)
 
 
 def checked_report_path(name: str, path: str | Path) -> Path:
