@@ -16,7 +16,7 @@ from rockflex.response._moment_rotation import (
 from rockflex.response._peaks import GLOBAL, Tracked, tracked_quantities
 from rockflex.response._pushover import BilinearFit, Pushover, PushoverEvent, pushover_path
 from rockflex.response._quasi_static import static_path
-from rockflex.response._record_set import DEMANDS, FRACTILE, MEDIAN, RecordSet, Rule, checked_rule
+from rockflex.response._record_set import DEMANDS, RecordSet, Rule, checked_rule
 from rockflex.response._respond import NAMES, STATUSES, columns_among, columns_of, respond
 from rockflex.response._response import (
     BALANCED,
@@ -32,10 +32,8 @@ from rockflex.response._tables import UNITS_OF_GROUND, UNITS_OF_HISTORY, ground_
 __all__ = [
     "BALANCED",
     "DEMANDS",
-    "FRACTILE",
     "GLOBAL",
     "IMPACT_WINDOW",
-    "MEDIAN",
     "NAMES",
     "PEAKS",
     "STATUSES",
