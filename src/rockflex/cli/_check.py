@@ -191,12 +191,18 @@ def _print_set(found: "RecordSet") -> None:
 
 
 def _print_checks(table: "CheckTable") -> None:
+    from rockflex.response import NO_LIMIT
+
     console.print_line()
     console.print_rows(
         ("check", "", "demand", "limit", "unit", "ratio", "source of the limit"), map(_check_cells, table.rows), 2
     )
     for name, lacks in table.missing:
-        console.print_line(f"not checked: {name}: {lacks}")
+        if not lacks.startswith(NO_LIMIT):
+            console.print_line(f"not checked: {name}: {lacks}")
+    unlimited = [f"{name} ({lacks.split()[-1]})" for name, lacks in table.missing if lacks.startswith(NO_LIMIT)]
+    if unlimited:
+        console.print_line(f"without a limit: {', '.join(unlimited)}", wrap=True)
 
 
 def _check_cells(row: "Check") -> list[str]:
@@ -204,4 +210,4 @@ def _check_cells(row: "Check") -> list[str]:
     verdict = console.StyledCell(*VERDICTS[row.ok])
     sign = "≥ " if row.at_least else ""
     return [row.name, verdict, console.number(demand), sign + console.number(limit), unit, console.number(row.ratio, 3),
-            row.source or "-"]  # fmt: skip
+            row.source or row.note]  # fmt: skip

@@ -4,7 +4,7 @@ from rockflex.response._energy import EnergyLedger
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._history import History, SampledHistory
-from rockflex.response._limit_checks import Check, CheckLimits, CheckTable, check
+from rockflex.response._limit_checks import NO_LIMIT, Check, CheckLimits, CheckTable, check
 from rockflex.response._moment_rotation import (
     MomentRotation,
     MomentRotationOnSprings,
@@ -35,6 +35,7 @@ __all__ = [
     "GLOBAL",
     "IMPACT_WINDOW",
     "NAMES",
+    "NO_LIMIT",
     "PEAKS",
     "STATUSES",
     "UNITS_OF_GROUND",

@@ -148,6 +148,7 @@ class Check:
         return self.demand / size, None if self.limit is None else self.limit / size, unit
 
 
+NO_LIMIT = "no limit: give"  # begins what a check lacks that only needs its limit
 TABLE_UNITS = {"rad": (1e-3, "mrad"), "m": (1e-3, "mm"), "Pa": (1e3, "kPa")}
 
 
@@ -253,7 +254,7 @@ def check(result: Response | RecordSet, limits: CheckLimits | None = None) -> Ch
             continue
         demand, note = design_value(demands, fallen, rule, worst_is_least=kind.at_least)
         words = () if len(runs) == 1 and not fallen.any() else (note,)
-        note = "; ".join((*words, *kind.remark(runs)))
+        note = "; ".join((*kind.remark(runs), *words))
         rows.append(Check(kind.name, demand, limit.value, kind.unit, limit.source, note, kind.at_least))
     return CheckTable(tuple(rows), tuple(missing))
 
@@ -283,7 +284,7 @@ def _user(*names: str) -> Callable[[History, CheckLimits], Limit]:
     def limit(_: History, limits: CheckLimits) -> Limit:
         for name in names:
             if getattr(limits, name) is None:
-                raise MissingQuantityError(f"no limit: give {name}" if name == names[0] else f"give {name}")
+                raise MissingQuantityError(f"{NO_LIMIT} {name}" if name == names[0] else f"give {name}")
         return Limit(getattr(limits, names[0]))
 
     return limit

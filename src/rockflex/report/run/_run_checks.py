@@ -16,7 +16,7 @@ from rockflex.report.run._report_tables import (
     value_cell,
 )
 from rockflex.report.run._reported_runs import ReportedRuns
-from rockflex.response import BALANCED, IMPACT_WINDOW, Check, CheckTable, History, Response
+from rockflex.response import BALANCED, IMPACT_WINDOW, NO_LIMIT, Check, CheckTable, History, Response
 
 NOT_COMPUTED = "not computed"
 NO_BREAK = "\u00a0"  # a space at which no line ends
@@ -245,7 +245,14 @@ def limit_check_table(labels: Sequence[str], tables: Sequence[CheckTable]) -> Re
         sign = "≥" if first.at_least else "≤"
         words = "–" if limit is None else f"{sign} {rounded_number(limit)} {unit}".rstrip().replace(" ", NO_BREAK)
         cells = [ReportCell("–") if each is None else _limit_check_cell(each) for each in found]
-        body.append([ReportCell(name), *cells, ReportCell(words), ReportCell(first.source or "–")])
+        body.append(
+            [
+                ReportCell(name),
+                *cells,
+                ReportCell(words),
+                ReportCell(first.source or (first.note if len(tables) == 1 else "–")),
+            ]
+        )
     return ReportTable(heads, body)
 
 
@@ -264,4 +271,4 @@ def _limit_check_cell(row: Check) -> ReportCell:
 
 def missing_checks_text(table: CheckTable) -> str:
     """Return what was not checked, and why, in a sentence for each reason."""
-    return "".join(f"Not checked: {name}: {lacks}. " for name, lacks in table.missing if "no limit" not in lacks)
+    return "".join(f"Not checked: {name}: {lacks}. " for name, lacks in table.missing if NO_LIMIT not in lacks)
