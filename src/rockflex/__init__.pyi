@@ -118,6 +118,7 @@ from .plot import plot_overturning_spectrum as plot_overturning_spectrum
 from .plot import plot_pushover as plot_pushover
 from .plot import plot_rocking_spectrum as plot_rocking_spectrum
 from .plot import plot_selection as plot_selection
+from .plot import plot_set as plot_set
 from .plot import plot_spread as plot_spread
 from .plot import plot_stripes as plot_stripes
 from .plot import plot_tower as plot_tower
@@ -125,6 +126,9 @@ from .plot import plot_yielding as plot_yielding
 from .plot import save_figure as save_figure
 from .report import write_report as write_report
 from .response import BilinearFit as BilinearFit
+from .response import Check as Check
+from .response import CheckLimits as CheckLimits
+from .response import CheckTable as CheckTable
 from .response import EnergyLedger as EnergyLedger
 from .response import FloorPeaks as FloorPeaks
 from .response import History as History
@@ -132,8 +136,10 @@ from .response import MomentRotation as MomentRotation
 from .response import MomentRotationOnSprings as MomentRotationOnSprings
 from .response import Pushover as Pushover
 from .response import PushoverEvent as PushoverEvent
+from .response import RecordSet as RecordSet
 from .response import Response as Response
 from .response import SampledHistory as SampledHistory
+from .response import check as check
 from .structure import Beam as Beam
 from .structure import CantileverWithTipMass as CantileverWithTipMass
 from .structure import Eccentric as Eccentric
@@ -169,6 +175,7 @@ from .study import pushover as pushover
 from .study import rocking_spectrum as rocking_spectrum
 from .study import simulate as simulate
 from .study import simulate_many as simulate_many
+from .study import simulate_set as simulate_set
 from .study.cloud import CloudStudy as CloudStudy
 from .study.cloud import run_cloud as run_cloud
 from .study.design import BestDesign as BestDesign

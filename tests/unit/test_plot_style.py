@@ -59,6 +59,11 @@ def cloud():
     return rf.run_cloud(structures, motions, ["2DOF-S", "3DOF-S"], scales=[0.3, 0.6, 1.0, 1.7, 3.0])
 
 
+@cache
+def record_set():
+    return rf.simulate_set(FRAME, {LONG: PULSE, "#2": RECORD}, "2DOF-S")
+
+
 def pushed() -> rf.Pushover:
     return rf.pushover(rf.YieldingStories(make_frame(stiffness_ratio=float("inf")), 2e5, 0.05), 0.3)
 
@@ -153,6 +158,7 @@ ARGUMENTS = {
     "plot_pushover": lambda: (pushed(), pushed().fit()),
     "plot_rocking_spectrum": lambda: (spectrum(),),
     "plot_selection": lambda: (rf.load_suite("fema-p695-far-field").select(rf.ec8_spectrum(2.5, "C"), 7, (0.2, 2.0)),),
+    "plot_set": lambda: (record_set(),),
     "plot_spread": lambda: spread(),
     "plot_stripes": lambda: (stripes(),),
     "plot_tower": lambda: (tower(),),

@@ -89,6 +89,10 @@ def best() -> rf.BestDesign:
     return rf.best_design(runs, targets, cost, n_resamples=20)
 
 
+def record_set() -> rf.RecordSet:
+    return rf.simulate_set(frame(), [motion()], "2DOF-S", periods=(0.2, 1.0))
+
+
 VALUES = {
     rf.Adequacy: lambda: rf.adequacy(frame().rocking()),
     rf.AdequacyTolerance: lambda: rf.AdequacyTolerance(base_moment=math.inf),
@@ -105,6 +109,10 @@ VALUES = {
     rf.CombinedPeaks: lambda: rf.modal_combination(frame(), motion()),
     rf.DesignCost: lambda: rf.DesignCost(1.0, 2e-6),
     rf.DesignSearch: lambda: rf.DesignSearch([1.0, 2.0], [0.0, 1.0]),
+    rf.Check: lambda: VALUES[rf.CheckTable]().rows[0],
+    rf.CheckLimits: lambda: rf.CheckLimits(friction=0.5),
+    rf.CheckTable: lambda: rf.check(response()),
+    rf.RecordSet: record_set,
     rf.Eccentric: lambda: rf.Eccentric(frame(), 0.1),
     rf.EnergyLedger: lambda: response().energy,
     rf.FishBone: lambda: rf.FishBone([3.0, 3.5], 1e3, 1e7, [1e6, math.inf], base_mass=0.0, half_width=0.5,

@@ -13,6 +13,7 @@ from rockflex.plot._loops import (
 )
 from rockflex.plot._motion import plot_motion, plot_overturning_spectrum, plot_rocking_spectrum, plot_selection
 from rockflex.plot._pushover import plot_pushover
+from rockflex.plot._record_set import plot_set
 from rockflex.plot._run_sheet import draw_record_strip, draw_run_sheet
 from rockflex.plot._structure import plot_frequency_equation, plot_frequency_ratios, plot_mode_shapes, plot_tower
 from rockflex.plot.animation import animate
@@ -42,6 +43,7 @@ __all__ = [
     "plot_pushover",
     "plot_rocking_spectrum",
     "plot_selection",
+    "plot_set",
     "plot_spread",
     "plot_stripes",
     "plot_tower",

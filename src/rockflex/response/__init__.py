@@ -4,6 +4,7 @@ from rockflex.response._energy import EnergyLedger
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._history import History, SampledHistory
+from rockflex.response._limit_checks import NO_LIMIT, Check, CheckLimits, CheckTable, check
 from rockflex.response._moment_rotation import (
     MomentRotation,
     MomentRotationOnSprings,
@@ -15,6 +16,7 @@ from rockflex.response._moment_rotation import (
 from rockflex.response._peaks import GLOBAL, Tracked, tracked_quantities
 from rockflex.response._pushover import BilinearFit, Pushover, PushoverEvent, pushover_path
 from rockflex.response._quasi_static import static_path
+from rockflex.response._record_set import DEMANDS, RecordSet, Rule, checked_rule
 from rockflex.response._respond import NAMES, STATUSES, columns_among, columns_of, respond
 from rockflex.response._response import (
     BALANCED,
@@ -29,14 +31,19 @@ from rockflex.response._tables import UNITS_OF_GROUND, UNITS_OF_HISTORY, ground_
 
 __all__ = [
     "BALANCED",
+    "DEMANDS",
     "GLOBAL",
     "IMPACT_WINDOW",
     "NAMES",
+    "NO_LIMIT",
     "PEAKS",
     "STATUSES",
     "UNITS_OF_GROUND",
     "UNITS_OF_HISTORY",
     "BilinearFit",
+    "Check",
+    "CheckLimits",
+    "CheckTable",
     "EnergyLedger",
     "FloorPeaks",
     "History",
@@ -44,9 +51,13 @@ __all__ = [
     "MomentRotationOnSprings",
     "Pushover",
     "PushoverEvent",
+    "RecordSet",
     "Response",
+    "Rule",
     "SampledHistory",
     "Tracked",
+    "check",
+    "checked_rule",
     "columns_among",
     "columns_of",
     "complete_of",

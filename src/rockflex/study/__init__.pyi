@@ -40,6 +40,7 @@ from ._run_matrix import record_facts as record_facts
 from ._run_matrix import record_groups as record_groups
 from ._simulate import simulate as simulate
 from ._simulate import simulate_many as simulate_many
+from ._simulate import simulate_set as simulate_set
 from ._spectra import OverturningScales as OverturningScales
 from ._spectra import overturning_scales as overturning_scales
 from ._spectra import overturning_spectrum as overturning_spectrum

@@ -20,8 +20,9 @@ from rockflex.motion import GroundMotion
 from rockflex.report._publication_files import inline_svg, jinja_templates_in
 from rockflex.report.run import _report_tables
 from rockflex.report.run._reported_runs import ReportedRuns, checked_reported_runs
-from rockflex.report.run._run_checks import labels_of_long_runs, run_check_legend, run_check_table
-from rockflex.response import Response, friction_coefficient, warnings_of
+from rockflex.report.run._run_checks import labels_of_long_runs, limit_check_table, run_check_legend, run_check_table
+from rockflex.report.run._set_page import set_drawing, set_report_page
+from rockflex.response import CheckLimits, RecordSet, Response, check, friction_coefficient, warnings_of
 from rockflex.structure import structure_warnings
 
 WIDTH, HEIGHT = 186.0, 272.0  # of a sheet of A4 within its margins, in mm
@@ -68,6 +69,7 @@ class RunReportPage:
     peaks: _report_tables.ReportTable
     checks: _report_tables.ReportTable
     legend: Sequence[str]
+    limits: _report_tables.ReportTable | None
     warnings: Sequence[str]
     notes: Sequence[str]
     versions: str
@@ -80,6 +82,7 @@ class RunReportPage:
         record = 8 + len(self.record.facts)
         lines = sum(line_count_of_text(f"{head} {text}") for head, text in self.lines)
         tables = line_count_of_table(self.elements) + line_count_of_table(self.peaks) + line_count_of_table(self.checks)
+        tables += line_count_of_table(self.limits)
         texts = line_count_of_text(" ".join(self.legend)) + sum(map(line_count_of_text, (*self.warnings, *self.notes)))
         return ROW * (8 + line_count_of_text(self.title) + max(structure, record) + lines + tables + texts)
 
@@ -106,10 +109,13 @@ def _run_report_page_as_html(page: RunReportPage, report: ReportedRuns) -> str:
         "sheet": Markup(inline_svg(figure_as_svg(sheet), "sheet", "Histories and loops of all models")),
         "strip": Markup(inline_svg(figure_as_svg(strip), "strip", "Ground acceleration")),
     }
+    return _page_as_html("run.html.jinja", page, **drawings)
+
+
+def _page_as_html(template: str, page: Any, **drawings: str) -> str:
     templates = jinja_templates_in(TEMPLATES)
     templates.filters |= {"symbols": _symbols_as_html, "shortened": shortened}
-    template = templates.get_template("run.html.jinja")
-    return template.render(page=page, max_letters=MAX_LETTERS, **drawings)
+    return templates.get_template(template).render(page=page, max_letters=MAX_LETTERS, **drawings)
 
 
 def _warnings_of_runs(report: ReportedRuns, omitted: Collection[str]) -> list[str]:
@@ -150,7 +156,7 @@ def _symbols_as_html(text: str) -> str:
 
 
 def write_report(
-    responses: Response | Iterable[Response],
+    responses: Response | Iterable[Response] | RecordSet,
     path: str | Path,
     *,
     structure: Any = None,
@@ -159,8 +165,12 @@ def write_report(
     date: str | Date | None = None,
     friction: float | None = None,
     notes: str | Iterable[str] = (),
+    limits: CheckLimits | None = None,
 ) -> Path:
     """Write the response of a structure to one record on one sheet of A4, as HTML that needs no other file.
+
+    Of a set of records the page has the peaks by record, their statistics, the values for design and the checks, on as
+    many sheets as it takes; `motion` and `friction` are not for it.
 
     The page has the parameters of the structure and its modes, the record, what is assumed, the histories and the loop
     of base moment and rotation of every model, their largest values, checks with their warnings, and the versions
@@ -174,7 +184,8 @@ def write_report(
     Parameters
     ----------
     responses
-        Up to six responses of one structure to one record at one scale, each with its history.
+        Up to six responses of one structure to one record at one scale, each with its history; or what `simulate_set`
+        returned.
     path
         The file to write, which ends in .html; an existing file is replaced. Missing folders are created.
     structure
@@ -191,6 +202,8 @@ def write_report(
         Coefficient of friction between base and ground, to compare with the one that each run requires.
     notes
         A text, or several, to add to the page; up to 800 letters together.
+    limits
+        Limits of `check`, whose table the page of a run then has for every model. A set has it always.
 
     Returns
     -------
@@ -202,7 +215,7 @@ def write_report(
     InputError
         If there are no responses or more than six, one has no history, they are not of one structure and one record, or
         `structure` or `motion` are not theirs; if the path is a folder or has another suffix, or cannot be written to;
-        if the friction is not positive, or the notes are too long.
+        if the friction is not positive, or the notes are too long; if a set comes with a motion or a friction.
 
     Examples
     --------
@@ -219,7 +232,14 @@ def write_report(
     """
     target = checked_report_path("path", path)
     text = run_report_as_html(
-        responses, structure=structure, motion=motion, title=title, date=date, friction=friction, notes=notes
+        responses,
+        structure=structure,
+        motion=motion,
+        title=title,
+        date=date,
+        friction=friction,
+        notes=notes,
+        limits=limits,
     )
     try:
         return write_file_atomically(target, text.encode())
@@ -230,7 +250,7 @@ def write_report(
 
 
 def run_report_as_html(
-    responses: Response | Iterable[Response],
+    responses: Response | Iterable[Response] | RecordSet,
     *,
     structure: Any = None,
     motion: GroundMotion | None = None,
@@ -239,6 +259,7 @@ def run_report_as_html(
     friction: float | None = None,
     notes: str | Iterable[str] = (),
     omitted: Collection[str] = (),
+    limits: CheckLimits | None = None,
 ) -> str:
     """Return the page of `write_report` as text; no energies and no friction of the models in `omitted`."""
     if not isinstance(title, str | None):  # pyright: ignore[reportUnnecessaryIsInstance]
@@ -246,6 +267,21 @@ def run_report_as_html(
     day = _checked_report_date(date)
     coefficient = None if friction is None else _checked_friction_coefficient(friction)
     texts = _checked_report_notes(notes)
+    if isinstance(responses, RecordSet):
+        if motion is not None or coefficient is not None:
+            raise InputError(
+                "The report of a set has its records, and the friction among its limits. Leave motion and friction "
+                "out, and give limits=CheckLimits(friction=...).",
+                field="friction" if motion is None else "motion",
+            )
+        return _page_as_html(
+            "set.html.jinja",
+            set_report_page(
+                *(responses,), structure=structure, title=title, date=day, limits=limits, notes=_joined_notes(texts),
+                versions=_report_versions(),
+            ),
+            drawing=set_drawing(responses),
+        )  # fmt: skip
     report = checked_reported_runs(responses, structure, motion)
     known = report.properties if structure is None else structure
     record, kind = _report_tables.reported_record(report), _report_tables.structure_kind_text(known)
@@ -266,12 +302,22 @@ def run_report_as_html(
             *[f"{_report_tables.DAGGER} The values of a run that overturned include its fall."] * fell,
             *run_check_legend(report, coefficient, omitted=bool(left_out)),
         ],
+        limits=None if limits is None else _limits_of_runs(report, limits, left_out),
         warnings=_first_warnings_of_report([*structure_warnings(known), *_warnings_of_runs(report, left_out)]),
         notes=_joined_notes(texts),
         versions=_report_versions(),
         inputs=report_fingerprint(report, record),
     )
     return _run_report_page_as_html(page, report)
+
+
+def _limits_of_runs(report: ReportedRuns, limits: CheckLimits, omitted: Collection[str]) -> _report_tables.ReportTable:
+    """Return the checks of runs against limits, without the friction of the models in `omitted`."""
+    tables = [
+        check(run, dataclasses.replace(limits, friction=None) if label in omitted else limits)
+        for label, run in zip(report.labels, report.responses, strict=True)
+    ]
+    return limit_check_table(report.labels, tables)
 
 
 def checked_report_path(name: str, path: str | Path) -> Path:

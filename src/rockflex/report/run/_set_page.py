@@ -1,0 +1,120 @@
+"""The report of a set of records: peaks by record, statistics, values for design, and checks against limits."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rockflex._number_format import rounded_number
+from rockflex.report._publication_files import inline_svg
+from rockflex.report.run import _report_tables
+from rockflex.report.run._report_tables import DAGGER, STATUS, ReportCell, ReportTable, value_cell
+from rockflex.report.run._reported_runs import checked_reported_runs
+from rockflex.report.run._run_checks import limit_check_table, missing_checks_text
+from rockflex.response import DEMANDS, CheckLimits, RecordSet, check
+from rockflex.structure import structure_warnings
+
+_OF_RECORDS = ("max_rotation", "max_total_top_displacement", "max_story_drift", "max_base_moment", "max_base_shear",
+               "min_vertical_reaction")  # fmt: skip
+_COLUMNS = {"mean": "mean", "worst": "worst", "median": "median", "fractile_84": "84 %", "design": "for design"}
+
+
+@dataclass(frozen=True, eq=False)
+class SetReportPage:
+    """Contents of the page of a set, in the order of the template."""
+
+    title: str
+    date: str
+    kind: str
+    facts: Sequence[_report_tables.ReportFact]
+    modes: ReportTable | None
+    lines: Sequence[tuple[str, str]]
+    model: str
+    records: ReportTable
+    fell: bool
+    statistics: ReportTable
+    reasons: Sequence[str]
+    limits: ReportTable
+    missing: str
+    warnings: Sequence[str]
+    notes: Sequence[str]
+    versions: str
+
+
+def set_report_page(
+    found: RecordSet,
+    *,
+    structure: Any,
+    title: str | None,
+    date: str,
+    limits: CheckLimits | None,
+    notes: Sequence[str],
+    versions: str,
+) -> SetReportPage:
+    """Return the contents of the page."""
+    first = checked_reported_runs(found.responses[0], structure, None)
+    known = found.properties if structure is None else structure
+    kind, n = _report_tables.structure_kind_text(known), len(found.responses)
+    checks = check(found, limits)
+    return SetReportPage(
+        title=title or f"{kind} under {n} records",
+        date=date,
+        kind=kind,
+        facts=_report_tables.structure_facts(found.properties),
+        modes=_report_tables.mode_table(found.properties),
+        lines=_report_tables.assumption_lines(first),
+        model=f"{found.responses[0].model}, {n} records",
+        records=_record_table(found),
+        fell=found.n_overturned > 0,
+        statistics=_statistics_table(found),
+        reasons=list(dict.fromkeys(found.statistics["reason"])),
+        limits=limit_check_table(["demand" if found.rule is None else "demand for design"], [checks]),
+        missing=missing_checks_text(checks),
+        warnings=[*structure_warnings(known), *found.warnings],
+        notes=notes,
+        versions=versions,
+    )
+
+
+def set_drawing(found: RecordSet) -> str:
+    """Return the figure of a set as an element of the page."""
+    from markupsafe import Markup
+
+    from rockflex.plot import figure_as_svg, plot_set
+
+    return Markup(inline_svg(figure_as_svg(plot_set(found)), "set", "Peaks of each record, and their statistics"))
+
+
+def _record_table(found: RecordSet) -> ReportTable:
+    shown = [name for name in _OF_RECORDS if name in found.statistics.index]
+    heads = [("record", ""), ("", ""), ("PGA", "m/s²"), ("factor", "")]
+    heads += [(DEMANDS[name].symbol, DEMANDS[name].unit) for name in shown]
+    rows: list[list[ReportCell]] = []
+    for motion, (_, row) in zip(found.motions, found.peaks.iterrows(), strict=True):
+        fell = row["status"] == "overturned"
+        scale = None if motion.metadata is None else motion.metadata.scale
+        rows.append(
+            [
+                ReportCell(motion.name),
+                ReportCell(STATUS[row["status"]] + (f" {DAGGER}" if fell else ""), None, "status", fell),
+                value_cell(motion.pga, "pga"),
+                value_cell(scale, "scale"),
+                *(value_cell(float(row[name]), name, DEMANDS[name].size) for name in shown),
+            ]
+        )
+    return ReportTable(heads, rows)
+
+
+def _statistics_table(found: RecordSet) -> ReportTable:
+    heads = [("demand", ""), ("unit", ""), *((words, "") for words in _COLUMNS.values())]
+    rows = [
+        [
+            ReportCell(DEMANDS[str(name)].symbol),
+            ReportCell(DEMANDS[str(name)].unit),
+            *(
+                ReportCell(rounded_number(float(row[each]) / DEMANDS[str(name)].size), float(row[each]), each)
+                for each in _COLUMNS
+            ),
+        ]
+        for name, row in found.statistics.iterrows()
+    ]
+    return ReportTable(heads, rows)
