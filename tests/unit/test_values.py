@@ -114,6 +114,8 @@ VALUES = {
     rf.Frame: frame,
     rf.FrictionDamper: lambda: rf.FrictionDamper(1e5, 0.2),
     rf.FlagShapedBar: lambda: rf.FlagShapedBar(1e8, 2e5, 0.05, 0.8),
+    rf.Steel: lambda: rf.Steel(3e8, 4e8, 0.1, 2e11),
+    rf.Strand: lambda: rf.Strand(1e-4, 2e5, 1.8e5, 2e11),
     rf.GapBar: lambda: rf.GapBar(1e8, 0.01),
     rf.MultilinearBar: lambda: rf.MultilinearBar([0.01], [1e5]),
     rf.Branch: lambda: rf.Branch(1e8),
