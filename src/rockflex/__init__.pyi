@@ -105,6 +105,7 @@ from .papers.silva_stojadinovic_2024.population.plots import plot_modal_combinat
 from .papers.silva_stojadinovic_2024.population.plots import plot_population as plot_population
 from .plot import animate as animate
 from .plot import plot_clouds as plot_clouds
+from .plot import plot_comparison as plot_comparison
 from .plot import plot_design as plot_design
 from .plot import plot_design_search as plot_design_search
 from .plot import plot_energy as plot_energy
@@ -131,6 +132,7 @@ from .plot import plot_yielding as plot_yielding
 from .plot import save_figure as save_figure
 from .report import write_report as write_report
 from .response import BilinearFit as BilinearFit
+from .response import Comparison as Comparison
 from .response import EnergyLedger as EnergyLedger
 from .response import FloorPeaks as FloorPeaks
 from .response import History as History
@@ -166,6 +168,7 @@ from .study import InitialState as InitialState
 from .study import OverturningScales as OverturningScales
 from .study import Records as Records
 from .study import SecondMode as SecondMode
+from .study import compare as compare
 from .study import frequency_ratios as frequency_ratios
 from .study import modal_combination as modal_combination
 from .study import moment_rotation as moment_rotation

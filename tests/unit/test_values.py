@@ -103,6 +103,7 @@ VALUES = {
     rf.CloudFit: lambda: rf.fit_cloud([0.1, 0.2, 0.4], [1.0, 2.0, 3.0]),
     rf.CloudFits: lambda: rf.CloudFits("a", "2DOF-S", "pgv", rf.fit_outcomes(*RUNS), None, None, 0),
     rf.CombinedPeaks: lambda: rf.modal_combination(frame(), motion()),
+    rf.Comparison: lambda: rf.compare([frame(), frame()], motion()),
     rf.DesignCost: lambda: rf.DesignCost(1.0, 2e-6),
     rf.DesignSearch: lambda: rf.DesignSearch([1.0, 2.0], [0.0, 1.0]),
     rf.Eccentric: lambda: rf.Eccentric(frame(), 0.1),

@@ -1,5 +1,6 @@
 """Responses: forces, displacements, energies and peaks from a solution."""
 
+from rockflex.response._comparison import DEMANDS, STATISTICS, Comparison
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
@@ -29,14 +30,17 @@ from rockflex.response._tables import UNITS_OF_GROUND, UNITS_OF_HISTORY, ground_
 
 __all__ = [
     "BALANCED",
+    "DEMANDS",
     "GLOBAL",
     "IMPACT_WINDOW",
     "NAMES",
     "PEAKS",
+    "STATISTICS",
     "STATUSES",
     "UNITS_OF_GROUND",
     "UNITS_OF_HISTORY",
     "BilinearFit",
+    "Comparison",
     "EnergyLedger",
     "FloorPeaks",
     "History",
