@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import SupportsIndex, TypedDict, TypeVar, Unpack
+from typing import Any, SupportsIndex, TypedDict, TypeVar, Unpack
 
 from rockflex._checks import checked_in_range, checked_positive, checked_whole_number, is_one_of
 from rockflex._errors import InputError
@@ -181,7 +181,7 @@ def strand_tendon(
         yield_force=count * one.yield_force,
         post_yield_ratio=post_yield_ratio,
         rupture_elongation=rupture,
-        **place,
+        **dict[str, Any](place),
     )
 
 
@@ -239,7 +239,7 @@ def bar_fuse(
         metal.post_yield_ratio,
         tension_only=tension_only,
         rupture_elongation=breaks * L,
-        **place,
+        **dict[str, Any](place),
     )
 
 
@@ -298,7 +298,7 @@ def u_plate_fuse(
         count * 16.0 * metal.modulus * b / (27.0 * math.pi) * (t / D) ** 3,
         count * metal.yield_strength * b * t**2 / (2.0 * D),
         post_yield_ratio,
-        **place,
+        **dict[str, Any](place),
     )
 
 

@@ -67,16 +67,17 @@ def demand_table(comparison: Comparison) -> ReportTable:
     shown = SHOWN if comparison.n_records > 1 else ("max",)
     heads = [("demand", ""), *((name, "") for name in comparison.names)]
     heads += [(f"{name} to {first}", "%") for name in others]
-    tables = [(comparison.demands(each), comparison.differences(each)) for each in shown]
+    values = [comparison.demands(each).to_dict("index") for each in shown]
+    differences = [comparison.differences(each).to_dict("index") for each in shown]
     rows: list[Sequence[ReportCell]] = []
-    for demand in map(str, tables[0][0].index):
+    for demand in map(str, values[0]):
         size, unit = demand_size(demand, comparison)
         symbol = DEMANDS[demand].symbol
         cells = [ReportCell(f"{symbol} [{unit}]" if unit else symbol)]
-        for name in comparison.names:
-            cells.append(_joined([value_cell(float(values.loc[demand, name]), demand, size) for values, _ in tables]))
-        for name in others:
-            cells.append(_joined([difference_cell(float(each.loc[demand, name])) for _, each in tables]))
+        cells += [
+            _joined([value_cell(each[demand][name], demand, size) for each in values]) for name in comparison.names
+        ]
+        cells += [_joined([difference_cell(each[demand][name]) for each in differences]) for name in others]
         rows.append(cells)
     return ReportTable(heads, rows)
 

@@ -4,11 +4,12 @@ import dataclasses
 import hashlib
 import math
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import date as Date  # noqa: N812
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -62,11 +63,13 @@ def line_count_of_table(table: _report_tables.ReportTable | None) -> int:
     return 3 + len(table.rows) * math.ceil(across / ROW_LETTERS)
 
 
-class _Sheet:
+class _Sheet(ABC):
     """How the contents of a page share one sheet with its figure."""
 
-    if TYPE_CHECKING:
-        height: float  # of all but the figure in mm, about
+    @property
+    @abstractmethod
+    def height(self) -> float:
+        """About the height in mm of all but the figure."""
 
     @property
     def scale(self) -> float:
