@@ -199,7 +199,7 @@ STUDIES = {
     rf.StripeStudy: lambda: rf.StripeStudy(**STUDY, measure="pga", levels=[1.0]),
 }
 NO_VALUES = {rf.Attachment, rf.ElementLaw, rf.StudyFolder}  # a place on the disk, held open by a process
-UNHASHABLE = {rf.BestDesign, rf.PopulationStatistics}  # they hold tables
+UNHASHABLE = {rf.BestDesign, rf.Comparison, rf.PopulationStatistics}  # they hold tables
 
 cases = pytest.mark.parametrize("make", VALUES.values(), ids=[kind.__name__ for kind in VALUES])
 
