@@ -184,6 +184,10 @@ def test_dashpots_radiate_from_the_area():
         (lambda: rf.bar_fuse(1, 0.02, 0.5, "B500B", ultimate_strain=0.001), "0.0025", "ultimate_strain"),
         (lambda: rf.u_plate_fuse(1, 0.1, 0.2, 0.1, "S355"), "below the diameter", "thickness"),
         (lambda: rf.u_plate_fuse(1, 0.1, 0.01, 0.1, "S355", post_yield_ratio=1.0), "below 1", "post_yield_ratio"),
+        (lambda: rf.Strand(0.0, 2e5, 1.8e5, 2e11), "positive", "area"),
+        (lambda: rf.Strand(1e-4, 2e5, 2.8e5, 2e11), "not exceed", "yield_force"),
+        (lambda: rf.Steel(5e8, 4e8, 0.05, 2e11), "tensile_strength", "tensile_strength"),
+        (lambda: rf.Steel(5e8, 6e8, 0.002, 2e11), "0.0025", "ultimate_strain"),
         (lambda: rf.gazetas_bed(1.0, 100.0, **SOIL), "units", "breadth"),
         (lambda: rf.gazetas_bed(1.0, 1.0, 3e7, 0.6), "0 to 0.5", "poisson_ratio"),
         (lambda: rf.gazetas_bed(1.0, 1.0, **SOIL, n=2, end_zone=0.1), "more than two", "end_zone"),
@@ -206,3 +210,18 @@ def test_an_unknown_steel_in_a_file(tmp_path):
         rf.read_structure(path)
     path.write_text(path.read_text().replace("S999", "S355"))
     assert rf.read_structure(path).elements == (rf.bar_fuse(1, 0.02, 0.5, "S355"),)
+
+
+def test_random_devices_in_a_study():
+    known = {"n_stories": 2, "story_height": 3.0, "story_mass": 40e3, "base_mass": 40e3, "stiffness_ratio": 1.0}
+    known |= {"period": 0.5, "aspect_ratio": 8.0, "damping_ratio": 0.02}
+    fuse = {"kind": "bar_fuse", "n": 2, "diameter": "= d", "length": 0.5, "steel": "B500B", "position": "= half_width"}
+    study = rf.MonteCarloStudy(
+        count=2,
+        variables={"d": {"uniform": [0.018, 0.024]}},
+        structure={"frame": known, "elements": [fuse]},
+        records={"suites": ["el-centro-1940"]},
+    )
+    (made,) = study.structure_of(1).elements
+    assert 0.018**2 < made.yield_force / (2 * 500e6 * math.pi / 4.0) < 0.024**2
+    assert made.position == pytest.approx(study.structure_of(1).half_width, rel=1e-15)

@@ -23,6 +23,17 @@ class Place(TypedDict, total=False):
     height: float | None
 
 
+def _checked_ultimate_strain(given: float, yields: float) -> float:
+    strain = checked_positive("ultimate_strain", given, "")
+    if strain <= yields:
+        raise InputError(
+            f"ultimate_strain must be beyond the strain at yield, {yields:.4g}, but {shown(given)} was given. 5 % is "
+            "0.05.",
+            field="ultimate_strain",
+        )
+    return strain
+
+
 @dataclass(frozen=True)
 class Strand:
     """A seven-wire prestressing strand, by the values that its standard guarantees.
@@ -50,6 +61,16 @@ class Strand:
     breaking_force: float
     yield_force: float
     modulus: float
+
+    def __post_init__(self) -> None:
+        for name, unit in (("area", "m²"), ("breaking_force", "N"), ("yield_force", "N"), ("modulus", "N/m²")):
+            vars(self)[name] = checked_positive(name, getattr(self, name), unit)
+        if self.yield_force > self.breaking_force:
+            raise InputError(
+                f"yield_force must not exceed breaking_force, {self.breaking_force:g} N, but {self.yield_force:g} N was "
+                "given.",
+                field="yield_force",
+            )
 
 
 STRANDS: dict[str, Strand] = {
@@ -88,6 +109,18 @@ class Steel:
     tensile_strength: float
     ultimate_strain: float
     modulus: float
+
+    def __post_init__(self) -> None:
+        for name in ("yield_strength", "tensile_strength", "modulus"):
+            vars(self)[name] = checked_positive(name, getattr(self, name), "N/m²")
+        yields = self.yield_strength / self.modulus
+        vars(self)["ultimate_strain"] = _checked_ultimate_strain(self.ultimate_strain, yields)
+        if not 0.0 <= self.post_yield_ratio < 1.0:
+            raise InputError(
+                f"tensile_strength must be from yield_strength, {self.yield_strength:g} N/m², to below the elastic line, "
+                f"but {self.tensile_strength:g} N/m² was given.",
+                field="tensile_strength",
+            )
 
     @property
     def post_yield_ratio(self) -> float:
@@ -300,17 +333,6 @@ def u_plate_fuse(
         post_yield_ratio,
         **dict[str, Any](place),
     )
-
-
-def _checked_ultimate_strain(given: float, yields: float) -> float:
-    strain = checked_positive("ultimate_strain", given, "")
-    if strain <= yields:
-        raise InputError(
-            f"ultimate_strain must be beyond the strain at yield, {yields:.4g}, but {shown(given)} was given. 5 % is "
-            "0.05.",
-            field="ultimate_strain",
-        )
-    return strain
 
 
 def _named(name: str, given: str | T, kind: type[T], catalogue: Mapping[str, T]) -> T:
