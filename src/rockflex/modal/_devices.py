@@ -49,6 +49,11 @@ class Strand:
     modulus : float
         E in N/m²: of EN 1992-1-1, 3.3.6(3), or AASHTO LRFD 5.4.4.2.
 
+    Raises
+    ------
+    InputError
+        If a value is outside its range.
+
     Examples
     --------
     >>> import rockflex as rf
@@ -67,8 +72,8 @@ class Strand:
             vars(self)[name] = checked_positive(name, getattr(self, name), unit)
         if self.yield_force > self.breaking_force:
             raise InputError(
-                f"yield_force must not exceed breaking_force, {self.breaking_force:g} N, but {self.yield_force:g} N was "
-                "given.",
+                f"yield_force must not exceed breaking_force, {self.breaking_force:g} N, but {self.yield_force:g} N "
+                "was given.",
                 field="yield_force",
             )
 
@@ -97,6 +102,11 @@ class Steel:
     modulus : float
         E in N/m².
 
+    Raises
+    ------
+    InputError
+        If a value is outside its range.
+
     Examples
     --------
     >>> import rockflex as rf
@@ -117,8 +127,8 @@ class Steel:
         vars(self)["ultimate_strain"] = _checked_ultimate_strain(self.ultimate_strain, yields)
         if not 0.0 <= self.post_yield_ratio < 1.0:
             raise InputError(
-                f"tensile_strength must be from yield_strength, {self.yield_strength:g} N/m², to below the elastic line, "
-                f"but {self.tensile_strength:g} N/m² was given.",
+                f"tensile_strength must be from yield_strength, {self.yield_strength:g} N/m², to below the elastic "
+                f"line, but {self.tensile_strength:g} N/m² was given.",
                 field="tensile_strength",
             )
 
