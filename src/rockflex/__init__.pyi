@@ -45,16 +45,22 @@ from .modal import PinnedBeam as PinnedBeam
 from .modal import Pivot as Pivot
 from .modal import RockingProperties as RockingProperties
 from .modal import Springs as Springs
+from .modal import Steel as Steel
+from .modal import Strand as Strand
 from .modal import Tendon as Tendon
 from .modal import UpliftedModes as UpliftedModes
 from .modal import ViscousDamper as ViscousDamper
 from .modal import YieldingDissipator as YieldingDissipator
 from .modal import adequacy as adequacy
 from .modal import asce41_bed as asce41_bed
+from .modal import bar_fuse as bar_fuse
 from .modal import frequency_equation as frequency_equation
+from .modal import gazetas_bed as gazetas_bed
 from .modal import modal_properties as modal_properties
 from .modal import pinned_beam as pinned_beam
 from .modal import rocking_properties as rocking_properties
+from .modal import strand_tendon as strand_tendon
+from .modal import u_plate_fuse as u_plate_fuse
 from .modal import uplifted_modes as uplifted_modes
 from .modal import winkler_bed as winkler_bed
 from .models import BoucWen as BoucWen
@@ -99,6 +105,7 @@ from .papers.silva_stojadinovic_2024.population.plots import plot_modal_combinat
 from .papers.silva_stojadinovic_2024.population.plots import plot_population as plot_population
 from .plot import animate as animate
 from .plot import plot_clouds as plot_clouds
+from .plot import plot_comparison as plot_comparison
 from .plot import plot_design as plot_design
 from .plot import plot_design_search as plot_design_search
 from .plot import plot_energy as plot_energy
@@ -129,6 +136,7 @@ from .response import BilinearFit as BilinearFit
 from .response import Check as Check
 from .response import CheckLimits as CheckLimits
 from .response import CheckTable as CheckTable
+from .response import Comparison as Comparison
 from .response import EnergyLedger as EnergyLedger
 from .response import FloorPeaks as FloorPeaks
 from .response import History as History
@@ -166,6 +174,7 @@ from .study import InitialState as InitialState
 from .study import OverturningScales as OverturningScales
 from .study import Records as Records
 from .study import SecondMode as SecondMode
+from .study import compare as compare
 from .study import frequency_ratios as frequency_ratios
 from .study import modal_combination as modal_combination
 from .study import moment_rotation as moment_rotation

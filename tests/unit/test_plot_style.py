@@ -144,6 +144,7 @@ ARGUMENTS = {
     "plot_fragility": lambda: (cloud(),),
     "plot_frequency_equation": lambda: ({LONG: FRAME, "#2": make_frame(aspect_ratio=5.0)},),
     "plot_frequency_ratios": lambda: (ratios(),),
+    "plot_comparison": lambda: (rf.compare({LONG: FRAME, "other": make_frame(period=0.6)}, RECORD),),
     "plot_history": lambda: (responses(),),
     "plot_hysteresis": lambda: (yielding(),),
     "plot_ida": lambda: (ladders(),),

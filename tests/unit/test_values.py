@@ -107,6 +107,7 @@ VALUES = {
     rf.CloudFit: lambda: rf.fit_cloud([0.1, 0.2, 0.4], [1.0, 2.0, 3.0]),
     rf.CloudFits: lambda: rf.CloudFits("a", "2DOF-S", "pgv", rf.fit_outcomes(*RUNS), None, None, 0),
     rf.CombinedPeaks: lambda: rf.modal_combination(frame(), motion()),
+    rf.Comparison: lambda: rf.compare([frame(), frame()], motion()),
     rf.DesignCost: lambda: rf.DesignCost(1.0, 2e-6),
     rf.DesignSearch: lambda: rf.DesignSearch([1.0, 2.0], [0.0, 1.0]),
     rf.Check: lambda: VALUES[rf.CheckTable]().rows[0],
@@ -122,6 +123,8 @@ VALUES = {
     rf.Frame: frame,
     rf.FrictionDamper: lambda: rf.FrictionDamper(1e5, 0.2),
     rf.FlagShapedBar: lambda: rf.FlagShapedBar(1e8, 2e5, 0.05, 0.8),
+    rf.Steel: lambda: rf.Steel(3e8, 4e8, 0.1, 2e11),
+    rf.Strand: lambda: rf.Strand(1e-4, 2e5, 1.8e5, 2e11),
     rf.GapBar: lambda: rf.GapBar(1e8, 0.01),
     rf.MultilinearBar: lambda: rf.MultilinearBar([0.01], [1e5]),
     rf.Branch: lambda: rf.Branch(1e8),
@@ -203,7 +206,7 @@ STUDIES = {
     rf.StripeStudy: lambda: rf.StripeStudy(**STUDY, measure="pga", levels=[1.0]),
 }
 NO_VALUES = {rf.Attachment, rf.ElementLaw, rf.StudyFolder}  # a place on the disk, held open by a process
-UNHASHABLE = {rf.BestDesign, rf.PopulationStatistics}  # they hold tables
+UNHASHABLE = {rf.BestDesign, rf.Comparison, rf.PopulationStatistics}  # they hold tables
 
 cases = pytest.mark.parametrize("make", VALUES.values(), ids=[kind.__name__ for kind in VALUES])
 

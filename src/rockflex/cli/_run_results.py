@@ -343,11 +343,11 @@ def _history_tables(batch: RunBatch, responses: Sequence[Response]) -> "Iterator
 _COMMAND, _FAILURE = 400, 200  # letters
 
 
-def checked_path_of_report(path: Path, *, force: bool) -> Path:
+def checked_path_of_report(path: Path, *, force: bool, flag: str = "--report") -> Path:
     """Return the path of a report, before anything is simulated."""
-    page = checked_report_path("--report", path)
+    page = checked_report_path(flag, path)
     if page.exists() and not force:
-        raise InputError(f"--report {page} exists. Give another name, or --force to replace it.")
+        raise InputError(f"{flag} {page} exists. Give another name, or --force to replace it.")
     return page
 
 

@@ -1,5 +1,6 @@
 """Figures of results; matplotlib is imported here and nowhere else."""
 
+from rockflex.plot._comparison import draw_alternatives, plot_comparison
 from rockflex.plot._design import plot_design, plot_design_search
 from rockflex.plot._figures import figure_as_svg, save_figure
 from rockflex.plot._fragility import plot_clouds, plot_fragility, plot_ida, plot_stripes
@@ -20,10 +21,12 @@ from rockflex.plot.animation import animate
 
 __all__ = [
     "animate",
+    "draw_alternatives",
     "draw_record_strip",
     "draw_run_sheet",
     "figure_as_svg",
     "plot_clouds",
+    "plot_comparison",
     "plot_design",
     "plot_design_search",
     "plot_energy",

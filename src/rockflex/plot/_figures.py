@@ -101,6 +101,15 @@ class LineStyle:
 _DASHES = ("-", (0, (6, 2)), (0, (1, 1)), (0, (6, 1, 1, 1, 1, 1)))
 LINE_STYLES = tuple(LineStyle(color, dashes) for dashes in _DASHES for color in (PURPLE, ORANGE, SKY))
 """Line styles of models without a fixed style, the most distinct first; blue is left to reference lines."""
+ALTERNATIVE_STYLES = tuple(
+    LineStyle(color, dashes)
+    for color, dashes in zip(
+        (BLACK, RED, GREEN, PURPLE, ORANGE, SKY),
+        ("-", (0, (6, 2)), (0, (1, 1)), (0, (6, 1, 1, 1)), (0, (3, 1)), (0, (6, 1, 1, 1, 1, 1))),
+        strict=True,
+    )
+)
+"""Line styles of alternatives, which colours and dashes tell apart."""
 
 
 Size = Literal["column", "page"] | tuple[float, float]

@@ -1,5 +1,6 @@
 """Responses: forces, displacements, energies and peaks from a solution."""
 
+from rockflex.response._comparison import COMPARED_DEMANDS, STATISTICS, Comparison
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
@@ -31,12 +32,14 @@ from rockflex.response._tables import UNITS_OF_GROUND, UNITS_OF_HISTORY, ground_
 
 __all__ = [
     "BALANCED",
+    "COMPARED_DEMANDS",
     "DEMANDS",
     "GLOBAL",
     "IMPACT_WINDOW",
     "NAMES",
     "NO_LIMIT",
     "PEAKS",
+    "STATISTICS",
     "STATUSES",
     "UNITS_OF_GROUND",
     "UNITS_OF_HISTORY",
@@ -44,6 +47,7 @@ __all__ = [
     "Check",
     "CheckLimits",
     "CheckTable",
+    "Comparison",
     "EnergyLedger",
     "FloorPeaks",
     "History",

@@ -26,7 +26,7 @@ from rockflex._schema import (
     one_for_each,
 )
 from rockflex._shown import shown
-from rockflex.modal import Ground, RockingProperties, Springs, asce41_bed, winkler_bed
+from rockflex.modal import Ground, RockingProperties, Springs, asce41_bed, gazetas_bed, winkler_bed
 from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, VVELSimplified, parse_model
 from rockflex.motion import MEASURES, OnError, Suite, Vertical, load_suite, read_suite
 from rockflex.structure.file import StructureEntry, TomlTable, toml_problem_sentences
@@ -129,7 +129,7 @@ class SpringsTable(TomlTable):
 
 
 class SpringBedTable(SpringBedKeys, TomlTable):
-    """The arguments of `winkler_bed` or, with a shear modulus, of `asce41_bed`, for the width of the structure."""
+    """The arguments of `winkler_bed` or, with a shear modulus, of `asce41_bed` or `gazetas_bed`, for a structure."""
 
     damping: Annotated[
         float | None, SchemaKey("the damping coefficient of all springs together", "N s/m", low=0.0, high=1e15)
@@ -141,16 +141,38 @@ class SpringBedTable(SpringBedKeys, TomlTable):
     end_ratio: Annotated[
         float | None, SchemaKey("the stiffness of the end zones over that of the rest", low=1e-3, high=1e3)
     ] = None
+    method: Annotated[
+        Literal["asce41", "gazetas"] | None,
+        SchemaKey('"asce41" or "gazetas", for a shear modulus (default: ASCE 41)', form=PLAIN),
+    ] = None
+    density: Annotated[
+        float | None,
+        SchemaKey("the density of the soil, for dashpots that radiate, with Gazetas", "kg/m³", low=1.0, high=1e4),
+    ] = None
 
     def under(self, properties: RockingProperties) -> Springs:
         """Return the bed under a structure."""
         where: dict[str, Any] = {"n": self.n, "damping": self.damping or 0.0, "eccentricity": properties.eccentricity}
         zones = {"end_zone": self.end_zone, "end_ratio": self.end_ratio}
         ends: dict[str, Any] = {name: value for name, value in zones.items() if value is not None}
+        if self.density is not None and self.method != "gazetas":
+            raise InputError('density is for method = "gazetas". Leave it out, or give the method.', field="density")
         if self.subgrade_modulus is not None:
             if self.shear_modulus is not None or self.poisson_ratio is not None:
                 _refuse_both("subgrade_modulus", "the shear_modulus and poisson_ratio")
+            if self.method is not None:
+                _refuse_both("method", "the subgrade_modulus")
             bed = winkler_bed(properties.half_width, self.breadth, self.subgrade_modulus, **where, **ends)
+        elif self.shear_modulus is not None and self.poisson_ratio is not None and self.method == "gazetas":
+            for name in ("end_ratio", "damping"):
+                if getattr(self, name) is not None:
+                    _refuse_both(name, 'the method "gazetas", which gives it')
+            if self.density is not None and self.heave_damping_ratio is not None:
+                _refuse_both("density", "the heave_damping_ratio")
+            size = properties.half_width, self.breadth
+            more: dict[str, Any] = {"end_zone": self.end_zone, "density": self.density}
+            more |= {"n": self.n, "eccentricity": properties.eccentricity}
+            bed = gazetas_bed(*size, self.shear_modulus, self.poisson_ratio, **more)
         elif self.shear_modulus is not None and self.poisson_ratio is not None:
             if ends:
                 _refuse_both(next(iter(ends)), "the shear_modulus, whose end zones are those of ASCE 41")

@@ -4,11 +4,12 @@ import dataclasses
 import hashlib
 import math
 import re
-from collections.abc import Collection, Iterable, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date as Date  # noqa: N812
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -19,10 +20,26 @@ from rockflex._versions import package_versions
 from rockflex.motion import GroundMotion
 from rockflex.report._publication_files import inline_svg, jinja_templates_in
 from rockflex.report.run import _report_tables
+from rockflex.report.run._comparison_tables import (
+    SHOWN,
+    alternatives_table,
+    demand_table,
+    model_line,
+    reported_alternatives,
+)
 from rockflex.report.run._reported_runs import ReportedRuns, checked_reported_runs
 from rockflex.report.run._run_checks import labels_of_long_runs, limit_check_table, run_check_legend, run_check_table
-from rockflex.report.run._set_page import set_drawing, set_report_page
-from rockflex.response import CheckLimits, RecordSet, Response, check, friction_coefficient, warnings_of
+from rockflex.report.run._set_page import SetReportPage, set_drawing, set_report_page
+from rockflex.response import (
+    STATISTICS,
+    CheckLimits,
+    Comparison,
+    RecordSet,
+    Response,
+    check,
+    friction_coefficient,
+    warnings_of,
+)
 from rockflex.structure import structure_warnings
 
 WIDTH, HEIGHT = 186.0, 272.0  # of a sheet of A4 within its margins, in mm
@@ -35,6 +52,8 @@ MAX_LETTERS = {"title": 110, "name": 70, "source": 110, "warning": 400}  # lette
 MAX_WARNINGS = 4  # texts
 _MAX_NOTE_LINES = 6  # of more, each does not have a line of its own
 _STRIP = (65.0, 22.0)  # mm
+_OUTLINES = 48.0  # height in mm of the structures of a comparison
+_CELL_LETTERS = 60  # in a line of its elements
 _SUBSCRIPT, _SUPERSCRIPT = re.compile(r"([^\W\d_]\*?)_([\w*–]+)"), re.compile(r"\^(−?\d+)")
 SUFFIXES = (".html", ".htm")
 MAX_NOTES = 800  # letters of all notes
@@ -54,9 +73,31 @@ def line_count_of_table(table: _report_tables.ReportTable | None) -> int:
     return 3 + len(table.rows) * math.ceil(across / ROW_LETTERS)
 
 
+class _Sheet(ABC):
+    """How the contents of a page share one sheet with its figure."""
+
+    @property
+    @abstractmethod
+    def height(self) -> float:
+        """About the height in mm of all but the figure."""
+
+    @property
+    def scale(self) -> float:
+        """Size of everything on the sheet: 1, or less to make room for all texts."""
+        return min(1.0, max(MIN_SCALE, HEIGHT / (self.height + FIGURE_HEIGHTS[0])))
+
+    @property
+    def figure_height(self) -> float:
+        """Height in mm for which the figure is drawn, before it is scaled."""
+        low, high = FIGURE_HEIGHTS
+        return min(max(HEIGHT / self.scale - self.height, low), high)
+
+
 @dataclass(frozen=True, eq=False)
-class RunReportPage:
+class RunReportPage(_Sheet):
     """Contents of a page, in the order of the template."""
+
+    template: ClassVar[str] = "run.html.jinja"
 
     title: str
     date: str
@@ -86,36 +127,56 @@ class RunReportPage:
         texts = line_count_of_text(" ".join(self.legend)) + sum(map(line_count_of_text, (*self.warnings, *self.notes)))
         return ROW * (8 + line_count_of_text(self.title) + max(structure, record) + lines + tables + texts)
 
-    @property
-    def scale(self) -> float:
-        """Size of everything on the sheet: 1, or less to make room for all texts."""
-        return min(1.0, max(MIN_SCALE, HEIGHT / (self.height + FIGURE_HEIGHTS[0])))
+
+@dataclass(frozen=True, eq=False)
+class ComparisonPage(_Sheet):
+    """Contents of the page of a comparison, in the order of the template."""
+
+    template: ClassVar[str] = "comparison.html.jinja"
+
+    title: str
+    date: str
+    several: bool  # records
+    records: str
+    alternatives: _report_tables.ReportTable
+    lines: Sequence[tuple[str, str]]
+    demands: _report_tables.ReportTable
+    record: _report_tables.ReportedRecord
+    warnings: Sequence[str]
+    notes: Sequence[str]
+    versions: str
 
     @property
-    def figure_height(self) -> float:
-        """Height in mm for which the figure is drawn, before it is scaled."""
-        low, high = FIGURE_HEIGHTS
-        return min(max(HEIGHT / self.scale - self.height, low), high)
+    def height(self) -> float:
+        """About the height in mm of all but the figure."""
+        lines = sum(line_count_of_text(f"{head} {text}") for head, text in self.lines)
+        rows = sum(max(math.ceil(len(cell.text) / _CELL_LETTERS) for cell in row) for row in self.alternatives.rows)
+        texts = sum(map(line_count_of_text, (*self.warnings, *self.notes)))
+        return _OUTLINES + _STRIP[1] + ROW * (15 + rows + lines + 1.2 * len(self.demands.rows) + texts)
 
 
-def _run_report_page_as_html(page: RunReportPage, report: ReportedRuns) -> str:
-    from markupsafe import Markup
-
-    from rockflex.plot import draw_record_strip, draw_run_sheet, figure_as_svg
+def _run_report_page_as_html(page: RunReportPage | ComparisonPage, report: ReportedRuns, **more: Any) -> str:
+    from rockflex.plot import draw_record_strip, draw_run_sheet
 
     sheet = draw_run_sheet(report.responses, report.labels, width=WIDTH / page.scale, height=page.figure_height)
     strip = draw_record_strip(page.record.time, page.record.acceleration, width=_STRIP[0], height=_STRIP[1])
     drawings = {
-        "sheet": Markup(inline_svg(figure_as_svg(sheet), "sheet", "Histories and loops of all models")),
-        "strip": Markup(inline_svg(figure_as_svg(strip), "strip", "Ground acceleration")),
+        "sheet": (sheet, "Histories and loops of all models"),
+        "strip": (strip, "Ground acceleration"),
+        **more,
     }
-    return _page_as_html("run.html.jinja", page, **drawings)
+    return _page_as_html(page, drawings)
 
 
-def _page_as_html(template: str, page: Any, **drawings: str) -> str:
+def _page_as_html(page: RunReportPage | ComparisonPage | SetReportPage, drawings: Mapping[str, tuple[Any, str]]) -> str:
+    from markupsafe import Markup
+
+    from rockflex.plot import figure_as_svg
+
+    found = {stem: Markup(inline_svg(figure_as_svg(figure), stem, label)) for stem, (figure, label) in drawings.items()}
     templates = jinja_templates_in(TEMPLATES)
     templates.filters |= {"symbols": _symbols_as_html, "shortened": shortened}
-    return templates.get_template(template).render(page=page, max_letters=MAX_LETTERS, **drawings)
+    return templates.get_template(page.template).render(page=page, max_letters=MAX_LETTERS, **found)
 
 
 def _warnings_of_runs(report: ReportedRuns, omitted: Collection[str]) -> list[str]:
@@ -156,7 +217,7 @@ def _symbols_as_html(text: str) -> str:
 
 
 def write_report(
-    responses: Response | Iterable[Response] | RecordSet,
+    responses: Response | Iterable[Response] | RecordSet | Comparison,
     path: str | Path,
     *,
     structure: Any = None,
@@ -185,7 +246,8 @@ def write_report(
     ----------
     responses
         Up to six responses of one structure to one record at one scale, each with its history; or what `simulate_set`
-        returned.
+        returned. Or a `Comparison`: then the page has all alternatives as they rock, their demands with the
+        differences, statistics over several records, and the histories under the governing one.
     path
         The file to write, which ends in .html; an existing file is replaced. Missing folders are created.
     structure
@@ -231,16 +293,23 @@ def write_report(
     'report.html'
     """
     target = checked_report_path("path", path)
-    text = run_report_as_html(
-        responses,
-        structure=structure,
-        motion=motion,
-        title=title,
-        date=date,
-        friction=friction,
-        notes=notes,
-        limits=limits,
-    )
+    if isinstance(responses, Comparison):
+        given = {"structure": structure, "motion": motion, "friction": friction, "limits": limits}
+        unused = next((name for name, value in given.items() if value is not None), None)
+        if unused is not None:
+            raise InputError(f"A report of a comparison takes no {unused}. Leave it out.", field=unused)
+        text = comparison_report_as_html(responses, title=title, date=date, notes=notes)
+    else:
+        text = run_report_as_html(
+            responses,
+            structure=structure,
+            motion=motion,
+            title=title,
+            date=date,
+            friction=friction,
+            notes=notes,
+            limits=limits,
+        )
     try:
         return write_file_atomically(target, text.encode())
     except OSError as error:
@@ -262,8 +331,7 @@ def run_report_as_html(
     limits: CheckLimits | None = None,
 ) -> str:
     """Return the page of `write_report` as text; no energies and no friction of the models in `omitted`."""
-    if not isinstance(title, str | None):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise InputError(f"title must be a text, but {shown(title)} was given.", field="title")
+    heading = _checked_report_title(title)
     day = _checked_report_date(date)
     coefficient = None if friction is None else _checked_friction_coefficient(friction)
     texts = _checked_report_notes(notes)
@@ -274,21 +342,23 @@ def run_report_as_html(
                 "out, and give limits=CheckLimits(friction=...).",
                 field="friction" if motion is None else "motion",
             )
-        return _page_as_html(
-            "set.html.jinja",
-            set_report_page(
-                *(responses,), structure=structure, title=title, date=day, limits=limits, notes=_joined_notes(texts),
-                versions=_report_versions(),
-            ),
-            drawing=set_drawing(responses),
-        )  # fmt: skip
+        page = set_report_page(
+            responses,
+            structure=structure,
+            title=heading,
+            date=day,
+            limits=limits,
+            notes=_joined_notes(texts),
+            versions=_report_versions(),
+        )
+        return _page_as_html(page, {"drawing": set_drawing(responses)})
     report = checked_reported_runs(responses, structure, motion)
     known = report.properties if structure is None else structure
     record, kind = _report_tables.reported_record(report), _report_tables.structure_kind_text(known)
     left_out = labels_of_long_runs(report).union(omitted)
     fell = any(run.status == "overturned" for run in report.responses)
     page = RunReportPage(
-        title=shortened(title or f"{kind} under {record.name or 'a ground motion'}", MAX_LETTERS["title"]),
+        title=shortened(heading or f"{kind} under {record.name or 'a ground motion'}", MAX_LETTERS["title"]),
         date=day,
         kind=kind,
         facts=_report_tables.structure_facts(report.properties),
@@ -320,6 +390,42 @@ def _limits_of_runs(report: ReportedRuns, limits: CheckLimits, omitted: Collecti
     return limit_check_table(report.labels, tables)
 
 
+def comparison_report_as_html(
+    comparison: Comparison,
+    *,
+    title: str | None = None,
+    date: str | Date | None = None,
+    notes: str | Iterable[str] = (),
+) -> str:
+    """Return the page of `write_report` of a comparison as text."""
+    from rockflex.plot import draw_alternatives
+
+    report = reported_alternatives(comparison)
+    record = _report_tables.reported_record(report)
+    records, several = number_with_noun(comparison.n_records, "record"), comparison.n_records > 1
+    usual = f"{', '.join(comparison.names)} under {records if several else record.name or 'a ground motion'}"
+    fell = [
+        f"{name} overturned under {n} of {records}"
+        for name, n in zip(comparison.names, comparison.overturned, strict=True)
+        if n
+    ]
+    page = ComparisonPage(
+        title=shortened(_checked_report_title(title) or usual, MAX_LETTERS["title"]),
+        date=_checked_report_date(date),
+        several=several,
+        records=f"of {records}: {' / '.join(STATISTICS[each] for each in SHOWN)}" if several else "",
+        alternatives=alternatives_table(comparison),
+        lines=[model_line(comparison), *_report_tables.assumption_lines(report)],
+        demands=demand_table(comparison),
+        record=record,
+        warnings=_first_warnings_of_report([*fell, *_warnings_of_runs(report, ())]),
+        notes=_joined_notes(_checked_report_notes(notes)),
+        versions=_report_versions(),
+    )
+    outlines = draw_alternatives(comparison, width=WIDTH, height=_OUTLINES)
+    return _run_report_page_as_html(page, report, outlines=(outlines, "The alternatives as they rock"))
+
+
 def checked_report_path(name: str, path: str | Path) -> Path:
     """Return the path of a report."""
     target = checked_file_path(name, path)
@@ -334,6 +440,12 @@ def checked_report_path(name: str, path: str | Path) -> Path:
             field="path",
         )
     return target
+
+
+def _checked_report_title(title: Any) -> str | None:
+    if isinstance(title, str | None):
+        return title
+    raise InputError(f"title must be a text, but {shown(title)} was given.", field="title")
 
 
 def _checked_report_date(date: Any) -> str:

@@ -2,10 +2,9 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from rockflex._number_format import rounded_number
-from rockflex.report._publication_files import inline_svg
 from rockflex.report.run import _report_tables
 from rockflex.report.run._report_tables import DAGGER, STATUS, ReportCell, ReportTable, value_cell
 from rockflex.report.run._reported_runs import checked_reported_runs
@@ -21,6 +20,8 @@ _COLUMNS = {"mean": "mean", "worst": "worst", "median": "median", "fractile_84":
 @dataclass(frozen=True, eq=False)
 class SetReportPage:
     """Contents of the page of a set, in the order of the template."""
+
+    template: ClassVar[str] = "set.html.jinja"
 
     title: str
     date: str
@@ -75,13 +76,11 @@ def set_report_page(
     )
 
 
-def set_drawing(found: RecordSet) -> str:
-    """Return the figure of a set as an element of the page."""
-    from markupsafe import Markup
+def set_drawing(found: RecordSet) -> tuple[Any, str]:
+    """Return the figure of a set, and what it shows."""
+    from rockflex.plot import plot_set
 
-    from rockflex.plot import figure_as_svg, plot_set
-
-    return Markup(inline_svg(figure_as_svg(plot_set(found)), "set", "Peaks of each record, and their statistics"))
+    return plot_set(found), "Peaks of each record, and their statistics"
 
 
 def _record_table(found: RecordSet) -> ReportTable:

@@ -70,6 +70,9 @@ const NEW_ELEMENTS = {
   yielding_dissipator: { position: 0, stiffness: 5e7, yield_force: 1e5 },
   viscous_damper: { position: 0, coefficient: 5e5 },
   friction_damper: { position: 0, force: 5e4 },
+  strand_tendon: { position: 0, n: 4, strand: "Y1860S7-15.7", length: 15, prestress: 0.5 },
+  bar_fuse: { position: 0, n: 1, diameter: 0.02, length: 0.5, steel: "B500B" },
+  u_plate_fuse: { position: 0, n: 1, width: 0.1, thickness: 0.01, diameter: 0.1, steel: "S355" },
   flag_shaped_bar: { position: 0, stiffness: 5e7, yield_force: 1e5, post_yield_ratio: 0.05, flag_depth: 0.8 },
   gap_bar: { position: 0, stiffness: 5e7, gap: 0.005 },
   multilinear_bar: { position: 0, elongations: [0.005, 0.02], forces: [1e5, 2e5] },
@@ -144,7 +147,7 @@ const KINDS = [
   ["", "rigid"], ["springs", "springs"], ["winkler", "bed, by subgrade modulus"],
   ["asce41", "bed of ASCE 41, by shear modulus"],
 ];
-const WITHOUT = { winkler: ["shear_modulus", "poisson_ratio"], asce41: ["subgrade_modulus", "end_zone", "end_ratio"] };
+const WITHOUT = { winkler: ["shear_modulus", "poisson_ratio", "method", "density"], asce41: ["subgrade_modulus", "end_zone", "end_ratio"] };
 const [FRICTION, DAMPING, SETTLEMENT, GRAVITY] = [0.5, 0.3, 0.005, 9.81]; // of new springs, and m and m/s²
 const USUAL = { mass: 2e5, half_width: 1 }; // kg and m of a structure that cannot be built yet
 const round = (value) => Number(value.toPrecision(2));
