@@ -134,6 +134,8 @@ from .response import Pushover as Pushover
 from .response import PushoverEvent as PushoverEvent
 from .response import Response as Response
 from .response import SampledHistory as SampledHistory
+from .response import to_matlab as to_matlab
+from .response import to_netcdf as to_netcdf
 from .structure import Beam as Beam
 from .structure import CantileverWithTipMass as CantileverWithTipMass
 from .structure import Eccentric as Eccentric

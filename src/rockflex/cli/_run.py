@@ -1,6 +1,6 @@
 """``rockflex run``: one structure under ground motions, by several models side by side."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -53,6 +53,10 @@ def run(
     json: options.Json = False,
     out: options.Out = None,
     figures: options.Figures = 4,
+    form: Annotated[
+        Literal["csv", "mat", "nc"],
+        typer.Option("--format", help="Histories in --out: CSV, MATLAB, or NetCDF (needs the extra xarray)."),
+    ] = "csv",
     force: options.ForceBoth = False,
     report: options.Report = None,
     friction: options.Friction = None,
@@ -109,7 +113,7 @@ def run(
         "runs": [{**item.row(), "run_time": item.run_time, "warnings": list(item.warnings)} for item in runs],
     }
     if out is not None:
-        write_run_results(out, document, batch, runs, figures=figures, force=force)
+        write_run_results(out, document, batch, runs, figures=figures, form=form, force=force)
     if json:
         typer.echo(output.to_json(document))
     else:

@@ -1,6 +1,7 @@
 """Responses: forces, displacements, energies and peaks from a solution."""
 
 from rockflex.response._energy import EnergyLedger
+from rockflex.response._exports import to_matlab, to_netcdf
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._history import History, SampledHistory
@@ -25,7 +26,7 @@ from rockflex.response._response import (
     warnings_of,
     warnings_of_energy,
 )
-from rockflex.response._tables import UNITS_OF_GROUND, UNITS_OF_HISTORY, ground_columns, history_columns
+from rockflex.response._tables import RESULT_UNITS, UNITS_OF_GROUND, UNITS_OF_HISTORY, ground_columns, history_columns
 
 __all__ = [
     "BALANCED",
@@ -33,6 +34,7 @@ __all__ = [
     "IMPACT_WINDOW",
     "NAMES",
     "PEAKS",
+    "RESULT_UNITS",
     "STATUSES",
     "UNITS_OF_GROUND",
     "UNITS_OF_HISTORY",
@@ -60,6 +62,8 @@ __all__ = [
     "resistance_on_springs",
     "respond",
     "static_path",
+    "to_matlab",
+    "to_netcdf",
     "tracked_quantities",
     "warnings_of",
     "warnings_of_energy",
