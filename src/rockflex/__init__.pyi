@@ -98,6 +98,7 @@ from .papers.silva_stojadinovic_2024.population.plots import plot_agreement as p
 from .papers.silva_stojadinovic_2024.population.plots import plot_modal_combination as plot_modal_combination
 from .papers.silva_stojadinovic_2024.population.plots import plot_population as plot_population
 from .plot import animate as animate
+from .plot import figure_style as figure_style
 from .plot import plot_clouds as plot_clouds
 from .plot import plot_design as plot_design
 from .plot import plot_design_search as plot_design_search
