@@ -320,7 +320,7 @@ def test_values_out_of_range(one, tmp_path):
 
 def test_paths_that_are_no_page(one, tmp_path):
     refused("path", "folder", one, tmp_path)
-    refused("path", ".html", one, tmp_path / "r.pdf")
+    refused("path", ".html", one, tmp_path / "r.txt")
     refused("path", ".html", one, tmp_path / "r")
     (tmp_path / "file").write_text("x")
     refused("path", "Cannot write to", one, tmp_path / "file" / "r.html")

@@ -363,8 +363,10 @@ def check_one_run_for_report(batch: RunBatch) -> None:
         )
 
 
-def write_report_of_run(page: Path, loaded: LoadedStructure, batch: RunBatch, runs: Sequence[BatchRun]) -> None:
-    """Write the report of a batch of one motion at one scale."""
+def write_report_of_run(
+    page: Path, loaded: LoadedStructure, batch: RunBatch, runs: Sequence[BatchRun], head: dict[str, Any]
+) -> None:
+    """Write the report of a batch of one motion at one scale; `head` replaces what the structure file says."""
     motion, scale = batch.motions[0], batch.scales[0]
     times = "" if scale == 1.0 else f" × {scale:g}"
     failed = [f"{run.model} could not be solved: {shortened(run.error, _FAILURE)}" for run in runs if run.error]
@@ -373,11 +375,12 @@ def write_report_of_run(page: Path, loaded: LoadedStructure, batch: RunBatch, ru
         page,
         structure=loaded.built,
         motion=motion,
-        title=f"{loaded.name} under {motion.name or 'a ground motion'}{times}",
         friction=batch.friction,
         notes=[*failed[:1], *_typed_command()],
+        **{"title": f"{loaded.name} under {motion.name or 'a ground motion'}{times}", **loaded.report, **head},
     )
-    console.print_remark(f"Written to {page}; any browser prints it on one sheet of A4")
+    prints = "; any browser prints it on one sheet of A4" if page.suffix.lower().startswith(".htm") else ""
+    console.print_remark(f"Written to {page}{prints}")
 
 
 def _typed_command() -> list[str]:

@@ -1,7 +1,7 @@
 """Figures of results; matplotlib is imported here and nowhere else."""
 
 from rockflex.plot._design import plot_design, plot_design_search
-from rockflex.plot._figures import figure_as_svg, figure_style, save_figure
+from rockflex.plot._figures import figure_as_png, figure_as_svg, figure_style, save_figure
 from rockflex.plot._fragility import plot_clouds, plot_fragility, plot_ida, plot_stripes
 from rockflex.plot._history import plot_energy, plot_footing, plot_history, plot_spread
 from rockflex.plot._loops import (
@@ -21,6 +21,7 @@ __all__ = [
     "animate",
     "draw_record_strip",
     "draw_run_sheet",
+    "figure_as_png",
     "figure_as_svg",
     "figure_style",
     "plot_clouds",

@@ -462,6 +462,11 @@ def figure_as_svg(figure: Figure) -> str:
     return _figure_file_content(figure, ".svg").decode()
 
 
+def figure_as_png(figure: Figure) -> bytes:
+    """Return a figure as the content of a PNG file."""
+    return _figure_file_content(figure, ".png")
+
+
 def _figure_file_content(figure: Figure, suffix: str) -> bytes:
     content = io.BytesIO()
     with styled():

@@ -19,6 +19,8 @@ from rockflex._versions import package_versions
 from rockflex.motion import GroundMotion
 from rockflex.report._publication_files import inline_svg, jinja_templates_in
 from rockflex.report.run import _report_tables
+from rockflex.report.run._report_appendix import ReportAppendix, report_appendix
+from rockflex.report.run._report_files import chromium, page_as_pdf, report_as_word, word_module
 from rockflex.report.run._reported_runs import ReportedRuns, checked_reported_runs
 from rockflex.report.run._run_checks import labels_of_long_runs, run_check_legend, run_check_table
 from rockflex.response import Response, friction_coefficient, warnings_of
@@ -33,9 +35,10 @@ TEMPLATES = Path(__file__).parent / "templates"
 MAX_LETTERS = {"title": 110, "name": 70, "source": 110, "warning": 400}  # letters
 MAX_WARNINGS = 4  # texts
 _MAX_NOTE_LINES = 6  # of more, each does not have a line of its own
+_FEW = 4  # elements, whose loops are readable in half a sheet
 _STRIP = (65.0, 22.0)  # mm
 _SUBSCRIPT, _SUPERSCRIPT = re.compile(r"([^\W\d_]\*?)_([\w*–]+)"), re.compile(r"\^(−?\d+)")
-SUFFIXES = (".html", ".htm")
+SUFFIXES = (".html", ".htm", ".pdf", ".docx")
 MAX_NOTES = 800  # letters of all notes
 
 
@@ -59,6 +62,8 @@ class RunReportPage:
 
     title: str
     date: str
+    author: str
+    heads: Sequence[tuple[str, str]]  # project, author and checker, as far as they are given
     kind: str
     facts: Sequence[_report_tables.ReportFact]
     modes: _report_tables.ReportTable | None
@@ -72,6 +77,7 @@ class RunReportPage:
     notes: Sequence[str]
     versions: str
     inputs: str
+    appendix: ReportAppendix
 
     @property
     def height(self) -> float:
@@ -81,7 +87,9 @@ class RunReportPage:
         lines = sum(line_count_of_text(f"{head} {text}") for head, text in self.lines)
         tables = line_count_of_table(self.elements) + line_count_of_table(self.peaks) + line_count_of_table(self.checks)
         texts = line_count_of_text(" ".join(self.legend)) + sum(map(line_count_of_text, (*self.warnings, *self.notes)))
-        return ROW * (8 + line_count_of_text(self.title) + max(structure, record) + lines + tables + texts)
+        return ROW * (
+            8 + bool(self.heads) + line_count_of_text(self.title) + max(structure, record) + lines + tables + texts
+        )
 
     @property
     def scale(self) -> float:
@@ -98,18 +106,30 @@ class RunReportPage:
 def _run_report_page_as_html(page: RunReportPage, report: ReportedRuns) -> str:
     from markupsafe import Markup
 
-    from rockflex.plot import draw_record_strip, draw_run_sheet, figure_as_svg
+    from rockflex.plot import figure_as_svg
 
-    sheet = draw_run_sheet(report.responses, report.labels, width=WIDTH / page.scale, height=page.figure_height)
-    strip = draw_record_strip(page.record.time, page.record.acceleration, width=_STRIP[0], height=_STRIP[1])
-    drawings = {
-        "sheet": Markup(inline_svg(figure_as_svg(sheet), "sheet", "Histories and loops of all models")),
-        "strip": Markup(inline_svg(figure_as_svg(strip), "strip", "Ground acceleration")),
-    }
+    strip, sheet, *loops = [
+        (label, Markup(inline_svg(figure_as_svg(figure), stem, label)))
+        for stem, (label, figure) in _figures_of_report(page, report).items()
+    ]
     templates = jinja_templates_in(TEMPLATES)
     templates.filters |= {"symbols": _symbols_as_html, "shortened": shortened}
     template = templates.get_template("run.html.jinja")
-    return template.render(page=page, max_letters=MAX_LETTERS, **drawings)
+    return template.render(page=page, max_letters=MAX_LETTERS, sheet=sheet[1], strip=strip[1], loops=loops)
+
+
+def _figures_of_report(page: RunReportPage, report: ReportedRuns) -> dict[str, tuple[str, Any]]:
+    """Return what each figure shows, and the figure, by a short name: the record, the runs, and loops of elements."""
+    from rockflex.plot import draw_record_strip, draw_run_sheet, plot_loops
+
+    record, height = page.record, page.figure_height
+    strip = draw_record_strip(record.time, record.acceleration, width=_STRIP[0], height=_STRIP[1])
+    sheet = draw_run_sheet(report.responses, report.labels, width=WIDTH / page.scale, height=height)
+    found = {"strip": ("Ground acceleration", strip), "sheet": ("Histories and loops of all models", sheet)}
+    for place, (label, run) in enumerate(page.appendix.loops):
+        size = "page" if len(report.properties.elements) > _FEW else (7.2, 4.2)  # of which a sheet has room for two
+        found[f"loops{place}"] = (f"Loops of base and elements, {label}", plot_loops(run, title="", size=size))
+    return found
 
 
 def _warnings_of_runs(report: ReportedRuns, omitted: Collection[str]) -> list[str]:
@@ -159,12 +179,18 @@ def write_report(
     date: str | Date | None = None,
     friction: float | None = None,
     notes: str | Iterable[str] = (),
+    project: str = "",
+    author: str = "",
+    checker: str = "",
+    appendix: bool = False,
 ) -> Path:
-    """Write the response of a structure to one record on one sheet of A4, as HTML that needs no other file.
+    """Write the response of a structure to one record on one sheet of A4: HTML that needs no other file, PDF or DOCX.
 
     The page has the parameters of the structure and its modes, the record, what is assumed, the histories and the loop
     of base moment and rotation of every model, their largest values, checks with their warnings, and the versions
-    that computed them. Any browser prints it on exactly one sheet.
+    that computed them. Any browser prints it on exactly one sheet. A PDF is that page, printed by Chromium, Chrome or
+    Edge, found on the path or named by the environment variable ``ROCKFLEX_BROWSER``. A document of Word has the same
+    contents, on as many sheets as they take; it needs the extra ``rockflex[docx]``.
 
     The checks compare the rotation with the nominal limit of overturning, 0.7 atan(B/h*_1) (Section 3.3), the vertical
     reaction with zero, the friction that each run requires (Eqs. 20-22) with `friction`, the forces of tendons with
@@ -176,7 +202,7 @@ def write_report(
     responses
         Up to six responses of one structure to one record at one scale, each with its history.
     path
-        The file to write, which ends in .html; an existing file is replaced. Missing folders are created.
+        The file to write, which ends in .html, .pdf or .docx; an existing one is replaced. Missing folders are created.
     structure
         The structure, or its `RockingProperties`: it gives the page its kind, and all of its modes. Default: the
         properties of the response with the most modes.
@@ -191,6 +217,11 @@ def write_report(
         Coefficient of friction between base and ground, to compare with the one that each run requires.
     notes
         A text, or several, to add to the page; up to 800 letters together.
+    project, author, checker
+        Texts for a line below the heading.
+    appendix
+        Whether further sheets follow: cross-sections with their material, if the structure has any, and the loops of
+        base and elements of every run that lifts.
 
     Returns
     -------
@@ -202,7 +233,8 @@ def write_report(
     InputError
         If there are no responses or more than six, one has no history, they are not of one structure and one record, or
         `structure` or `motion` are not theirs; if the path is a folder or has another suffix, or cannot be written to;
-        if the friction is not positive, or the notes are too long.
+        if the friction is not positive, or the notes are too long; if there is no browser for a PDF, or python-docx is
+        not installed.
 
     Examples
     --------
@@ -218,18 +250,31 @@ def write_report(
     'report.html'
     """
     target = checked_report_path("path", path)
-    text = run_report_as_html(
-        responses, structure=structure, motion=motion, title=title, date=date, friction=friction, notes=notes
-    )
+    given: dict[str, Any] = {"structure": structure, "motion": motion, "title": title, "date": date, "notes": notes}
+    given |= {"friction": friction, "project": project, "author": author, "checker": checker, "appendix": appendix}
+    page, report = _run_report_page(responses, **given)
+    if target.suffix.lower() == ".docx":
+        from rockflex.plot import figure_as_png
+
+        drawings = [(label, figure_as_png(figure)) for label, figure in _figures_of_report(page, report).values()]
+        content = report_as_word(page, drawings)
+    else:
+        text = _run_report_page_as_html(page, report)
+        content = page_as_pdf(text) if target.suffix.lower() == ".pdf" else text.encode()
     try:
-        return write_file_atomically(target, text.encode())
+        return write_file_atomically(target, content)
     except OSError as error:
         raise InputError(
             f"Cannot write to {target}: {error.strerror or error}. Give a path that can be written to.", field="path"
         ) from error
 
 
-def run_report_as_html(
+def run_report_as_html(responses: Response | Iterable[Response], **options: Any) -> str:
+    """Return the page of `write_report` with these options as text; no energies and no friction of models `omitted`."""
+    return _run_report_page_as_html(*_run_report_page(responses, **options))
+
+
+def _run_report_page(
     responses: Response | Iterable[Response],
     *,
     structure: Any = None,
@@ -239,10 +284,19 @@ def run_report_as_html(
     friction: float | None = None,
     notes: str | Iterable[str] = (),
     omitted: Collection[str] = (),
-) -> str:
-    """Return the page of `write_report` as text; no energies and no friction of the models in `omitted`."""
+    project: str = "",
+    author: str = "",
+    checker: str = "",
+    appendix: bool = False,
+) -> tuple[RunReportPage, ReportedRuns]:
+    """Return the contents of a report, and its runs."""
     if not isinstance(title, str | None):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise InputError(f"title must be a text, but {shown(title)} was given.", field="title")
+    named = {"Project": project, "Author": author, "Checked by": checker}
+    for name, text in zip(("project", "author", "checker"), named.values(), strict=True):
+        if not isinstance(text, str):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise InputError(f"{name} must be a text, but {shown(text)} was given.", field=name)
+    heads = [(name, shortened(text, MAX_LETTERS["name"])) for name, text in named.items() if text]
     day = _checked_report_date(date)
     coefficient = None if friction is None else _checked_friction_coefficient(friction)
     texts = _checked_report_notes(notes)
@@ -254,6 +308,8 @@ def run_report_as_html(
     page = RunReportPage(
         title=shortened(title or f"{kind} under {record.name or 'a ground motion'}", MAX_LETTERS["title"]),
         date=day,
+        author=author,
+        heads=heads,
         kind=kind,
         facts=_report_tables.structure_facts(report.properties),
         modes=_report_tables.mode_table(report.properties),
@@ -270,8 +326,9 @@ def run_report_as_html(
         notes=_joined_notes(texts),
         versions=_report_versions(),
         inputs=report_fingerprint(report, record),
+        appendix=report_appendix(report) if appendix else ReportAppendix(None, ()),
     )
-    return _run_report_page_as_html(page, report)
+    return page, report
 
 
 def checked_report_path(name: str, path: str | Path) -> Path:
@@ -283,10 +340,13 @@ def checked_report_path(name: str, path: str | Path) -> Path:
         )
     if target.suffix.lower() not in SUFFIXES:
         raise InputError(
-            f"A report is a page of HTML, but the {name} {shown(str(target))} ends in {shown(target.suffix)}. Let it "
-            "end in .html; a browser prints the page, also as PDF.",
+            f"A report is a page of HTML, a PDF or a document of Word, but the {name} {shown(str(target))} ends in "
+            f"{shown(target.suffix)}. Let it end in .html, .pdf or .docx.",
             field="path",
         )
+    needed = {".pdf": chromium, ".docx": word_module}.get(target.suffix.lower())
+    if needed is not None:
+        needed()  # raises where it is missing, before anything is computed
     return target
 
 
