@@ -370,6 +370,8 @@ def write_report_of_run(
     motion, scale = batch.motions[0], batch.scales[0]
     times = "" if scale == 1.0 else f" × {scale:g}"
     failed = [f"{run.model} could not be solved: {shortened(run.error, _FAILURE)}" for run in runs if run.error]
+    title = f"{loaded.name} under {motion.name or 'a ground motion'}{times}"
+    given: dict[str, Any] = {"title": title, **loaded.report, **head}
     write_report(
         [run.response for run in runs if run.response is not None],
         page,
@@ -377,7 +379,7 @@ def write_report_of_run(
         motion=motion,
         friction=batch.friction,
         notes=[*failed[:1], *_typed_command()],
-        **{"title": f"{loaded.name} under {motion.name or 'a ground motion'}{times}", **loaded.report, **head},
+        **given,
     )
     prints = "; any browser prints it on one sheet of A4" if page.suffix.lower().startswith(".htm") else ""
     console.print_remark(f"Written to {page}{prints}")

@@ -65,7 +65,8 @@ def write_matlab(path: str | Path, model: str | None, variables: Sequence[Variab
     for what, of in told.items():
         content[what] = {name: of(each) for name, each in zip(names, variables, strict=True)}
     file = io.BytesIO()
-    savemat(file, content, long_field_names=True, do_compression=True, oned_as="column")
+    to: Any = file  # its annotation has paths only
+    savemat(to, content, long_field_names=True, do_compression=True, oned_as="column")
     # The header of 116 bytes tells the time and the machine, for which equal results would differ.
     head = b"MATLAB 5.0 MAT-file, written by rockflex".ljust(116)
     return write_file_atomically(target, head + file.getvalue()[116:])
