@@ -101,7 +101,7 @@ def _element_kind(element: BaseElement) -> str:
 FLAGS = flags_of_tables(FrameFlags)
 
 
-class ReportTable(ReportKeys, TomlTable):
+class ReportHeadTable(ReportKeys, TomlTable):
     """The head of a report, and whether further sheets follow."""
 
     appendix: Annotated[
@@ -112,7 +112,7 @@ class ReportTable(ReportKeys, TomlTable):
 class StructureFile(RunOptionKeys, StructureEntry):
     """A structure file: one structure, optionally a name and elements, and options of ``rockflex run``."""
 
-    report: Annotated[ReportTable | None, SchemaKey("a table", form=PLAIN)] = None
+    report: Annotated[ReportHeadTable | None, SchemaKey("a table", form=PLAIN)] = None
 
 
 @dataclass(frozen=True)
