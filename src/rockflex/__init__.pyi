@@ -104,6 +104,7 @@ from .papers.silva_stojadinovic_2024.population.plots import plot_agreement as p
 from .papers.silva_stojadinovic_2024.population.plots import plot_modal_combination as plot_modal_combination
 from .papers.silva_stojadinovic_2024.population.plots import plot_population as plot_population
 from .plot import animate as animate
+from .plot import figure_style as figure_style
 from .plot import plot_clouds as plot_clouds
 from .plot import plot_comparison as plot_comparison
 from .plot import plot_design as plot_design
@@ -148,6 +149,8 @@ from .response import RecordSet as RecordSet
 from .response import Response as Response
 from .response import SampledHistory as SampledHistory
 from .response import check as check
+from .response import to_matlab as to_matlab
+from .response import to_netcdf as to_netcdf
 from .structure import Beam as Beam
 from .structure import CantileverWithTipMass as CantileverWithTipMass
 from .structure import Eccentric as Eccentric

@@ -228,7 +228,7 @@ def test_the_command_tells_statistics_of_several_records(files):
         (["a.toml", "el-centro-1940"], "2 to 6"),
         (["a.toml", "a.toml", "el-centro-1940"], "twice"),
         (["a.toml", "b.toml"], "No ground motion"),
-        (["a.toml", "b.toml", "el-centro-1940", "--out", "x.pdf"], "--out"),
+        (["a.toml", "b.toml", "el-centro-1940", "--out", "x.txt"], "--out"),
         (["a.toml", "b.toml", "el-centro-1940", "--model", "XDOF"], "XDOF"),
     ],
 )

@@ -11,7 +11,7 @@ from rockflex import __version__
 from rockflex._errors import InputError, SolverError
 from rockflex.cli import _animate, _check, _compare, _modes, _motion, _reproduce, _run, _select, _study
 from rockflex.cli import _console as console
-from rockflex.cli._options import FrameCommand, RunCommand
+from rockflex.cli._options import FrameCommand, ReportCommand, RunCommand
 from rockflex.kinds import KINDS
 
 SERVE_EPILOG = """[bold]Examples[/bold]
@@ -95,7 +95,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-app.command("run", cls=RunCommand, epilog=_run.EPILOG, no_args_is_help=True)(_run.run)
+app.command("run", cls=ReportCommand, epilog=_run.EPILOG, no_args_is_help=True)(_run.run)
 app.command("check", cls=RunCommand, epilog=_check.EPILOG, no_args_is_help=True)(_check.check)
 app.command("compare", cls=_compare.CompareCommand, epilog=_compare.EPILOG, no_args_is_help=True)(_compare.compare)
 app.command("animate", cls=RunCommand, epilog=_animate.EPILOG, no_args_is_help=True)(_animate.animate)

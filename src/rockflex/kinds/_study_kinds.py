@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rockflex._errors import InputError, SolverError
 from rockflex._registry import Catalogue
@@ -413,9 +413,7 @@ def _figures_design(spec: Document, runs: Runs, _: str, __: Remark) -> Figures:
 
     if "search" in spec:
         best = best_design(runs, *stored_design_search(spec))
-        themes: dict[str, Literal["light", "dark"]] = {"design_search": "light", "design_search_dark": "dark"}
-        for name, theme in themes.items():
-            yield name, lambda theme=theme: plot.plot_design_search(best, theme=theme)
+        yield "design_search", lambda: plot.plot_design_search(best)
         return
     targets = [target for _, _, target, _ in stored_design_limits(spec)]
     for target, (limit, table) in zip(targets, design_tables_by_limit(runs, spec), strict=True):

@@ -2,6 +2,7 @@
 
 from rockflex.response._comparison import COMPARED_DEMANDS, STATISTICS, Comparison
 from rockflex.response._energy import EnergyLedger
+from rockflex.response._exports import to_matlab, to_netcdf
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._history import History, SampledHistory
@@ -28,7 +29,7 @@ from rockflex.response._response import (
     warnings_of,
     warnings_of_energy,
 )
-from rockflex.response._tables import UNITS_OF_GROUND, UNITS_OF_HISTORY, ground_columns, history_columns
+from rockflex.response._tables import RESULT_UNITS, UNITS_OF_GROUND, UNITS_OF_HISTORY, ground_columns, history_columns
 
 __all__ = [
     "BALANCED",
@@ -39,6 +40,7 @@ __all__ = [
     "NAMES",
     "NO_LIMIT",
     "PEAKS",
+    "RESULT_UNITS",
     "STATISTICS",
     "STATUSES",
     "UNITS_OF_GROUND",
@@ -75,6 +77,8 @@ __all__ = [
     "resistance_on_springs",
     "respond",
     "static_path",
+    "to_matlab",
+    "to_netcdf",
     "tracked_quantities",
     "warnings_of",
     "warnings_of_energy",

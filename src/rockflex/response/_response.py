@@ -105,9 +105,10 @@ class Response(HtmlTable, Value):
     `element_elongation`, `element_energy`, `slip`, `slip_velocity`, `heave`, `edge_uplift`, `spring_force`,
     `soil_pressure`, `bearing_pressure`, `uplifted`, `vertical_ground_acceleration`, `tendon_force`,
     `horizontal_reaction`, `vertical_reaction`, `friction_demand`, `required_friction`,
-    `required_friction_excluding_impacts()`, `sliding_time()`, `energy`, `to_frame()`, `to_xarray()`, `at()`,
-    `resample()`, `floor_motion()`, `floor_spectrum()` and `settled_rotation()`; see `History`. A response with peaks
-    only has none of them: `hasattr` returns False, and accessing one raises an `InputError`.
+    `required_friction_excluding_impacts()`, `sliding_time()`, `energy`, `to_frame()`, `to_xarray()`,
+    `to_matlab()`, `to_netcdf()`, `at()`, `resample()`, `floor_motion()`, `floor_spectrum()` and `settled_rotation()`;
+    see `History`. A response with peaks only has none of them: `hasattr` returns False, and accessing one raises an
+    `InputError`.
 
     Parameters
     ----------
@@ -288,6 +289,8 @@ class Response(HtmlTable, Value):
     energy = _OfHistory[EnergyLedger]()
     to_frame = _OfHistory[Callable[..., Any]]()
     to_xarray = _OfHistory[Callable[..., Any]]()
+    to_matlab = _OfHistory[Callable[..., Path]]()
+    to_netcdf = _OfHistory[Callable[..., Path]]()
     floor_motion = _OfHistory[Callable[..., GroundMotion]]()
     settled_rotation = _OfHistory[Callable[..., float]]()
     floor_spectrum = _OfHistory[Callable[..., Any]]()

@@ -5,10 +5,12 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from rockflex._number_format import rounded_number
+from rockflex._shown import shortened
 from rockflex.report.run import _report_tables
 from rockflex.report.run._report_tables import DAGGER, STATUS, ReportCell, ReportTable, value_cell
 from rockflex.report.run._reported_runs import checked_reported_runs
 from rockflex.report.run._run_checks import limit_check_table, missing_checks_text
+from rockflex.report.run._sheet import MAX_LETTERS, Block, Drawing, Figures, ReportPage, ReportTexts
 from rockflex.response import DEMANDS, CheckLimits, RecordSet, check
 from rockflex.structure import structure_warnings
 
@@ -17,14 +19,12 @@ _OF_RECORDS = ("max_rotation", "max_total_top_displacement", "max_story_drift", 
 _COLUMNS = {"mean": "mean", "worst": "worst", "median": "median", "fractile_84": "84 %", "design": "for design"}
 
 
-@dataclass(frozen=True, eq=False)
-class SetReportPage:
-    """Contents of the page of a set, in the order of the template."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SetPage(ReportPage):
+    """The page of a set of records, on as many sheets as it takes."""
 
     template: ClassVar[str] = "set.html.jinja"
 
-    title: str
-    date: str
     kind: str
     facts: Sequence[_report_tables.ReportFact]
     modes: ReportTable | None
@@ -36,29 +36,34 @@ class SetReportPage:
     reasons: Sequence[str]
     limits: ReportTable
     missing: str
-    warnings: Sequence[str]
-    notes: Sequence[str]
-    versions: str
+
+    @property
+    def sections(self) -> list[tuple[str, Sequence[Block]]]:
+        """The contents with their headings, one below the other as in a document."""
+        ground = [("Base and ground", [self.lines])] if self.lines else []
+        fell = [f"{DAGGER} The values of a record that overturns include its fall."] * self.fell
+        return [
+            (f"Structure: {self.kind}", [self.facts, self.modes]),
+            *ground,
+            (f"Records: {self.model}", [self.records, *fell, Drawing("peaks")]),
+            ("Values for design", [self.statistics, *(f"For design: {reason}." for reason in self.reasons)]),
+            ("Checks", [self.limits, self.missing]),
+        ]
 
 
-def set_report_page(
-    found: RecordSet,
-    *,
-    structure: Any,
-    title: str | None,
-    date: str,
-    limits: CheckLimits | None,
-    notes: Sequence[str],
-    versions: str,
-) -> SetReportPage:
-    """Return the contents of the page."""
+def set_page(
+    found: RecordSet, texts: ReportTexts, *, structure: Any = None, limits: CheckLimits | None = None
+) -> tuple[SetPage, Figures]:
+    """Return the page of a set of records, and its figure."""
+    from rockflex.plot import plot_set
+
     first = checked_reported_runs(found.responses[0], structure, None)
     known = found.properties if structure is None else structure
     kind, n = _report_tables.structure_kind_text(known), len(found.responses)
     checks = check(found, limits)
-    return SetReportPage(
-        title=title or f"{kind} under {n} records",
-        date=date,
+    page = SetPage(
+        title=shortened(texts.title or f"{kind} under {n} records", MAX_LETTERS["title"]),
+        texts=texts,
         kind=kind,
         facts=_report_tables.structure_facts(found.properties),
         modes=_report_tables.mode_table(found.properties),
@@ -71,16 +76,8 @@ def set_report_page(
         limits=limit_check_table(["demand" if found.rule is None else "demand for design"], [checks]),
         missing=missing_checks_text(checks),
         warnings=[*structure_warnings(known), *found.warnings],
-        notes=notes,
-        versions=versions,
     )
-
-
-def set_drawing(found: RecordSet) -> tuple[Any, str]:
-    """Return the figure of a set, and what it shows."""
-    from rockflex.plot import plot_set
-
-    return plot_set(found), "Peaks of each record, and their statistics"
+    return page, {"peaks": ("Peaks of each record, and their statistics", plot_set(found))}
 
 
 def _record_table(found: RecordSet) -> ReportTable:

@@ -64,7 +64,7 @@ _ELEMENT_KIND = SchemaKey(
     ", ".join(f'"{kind}"' for kind in _ELEMENT_KINDS[:-1]) + f' or "{_ELEMENT_KINDS[-1]}"', form=PLAIN
 )
 _TABLE_KEY = SchemaKey("a table", form=PLAIN)
-_RUN_KEYS = ("impact", "restitution", "bouc_wen", "ground")  # only for `rockflex run`
+_RUN_KEYS = ("impact", "restitution", "bouc_wen", "ground", "report")  # only for `rockflex run`
 
 
 class ElementTable(TomlTable):
@@ -514,8 +514,8 @@ def read_structure(path: str | Path) -> Built:
     Parameters
     ----------
     path
-        The file. The keys ``impact``, ``restitution``, ``[bouc_wen]`` and ``[ground]`` are for ``rockflex run`` and are
-        ignored; in Python they are arguments of `simulate`.
+        The file. The keys ``impact``, ``restitution``, ``[bouc_wen]``, ``[ground]`` and ``[report]`` are for ``rockflex
+        run`` and are ignored; in Python they are arguments of `simulate` and `write_report`.
 
     Returns
     -------

@@ -1,20 +1,102 @@
-"""Tables of the page of a comparison: the alternatives, and their demands with the differences."""
+"""The page of a comparison: the alternatives as they rock, and their demands with the differences."""
 
 import math
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 from rockflex._constants import GRAVITY
 from rockflex._number_format import moment_unit
+from rockflex._shown import number_with_noun, shortened
 from rockflex.modal import RockingProperties
 from rockflex.report.run import _report_tables
-from rockflex.report.run._report_tables import ReportCell, ReportTable, value_cell
+from rockflex.report.run._report_tables import ReportCell, ReportedRecord, ReportTable, value_cell
 from rockflex.report.run._reported_runs import ReportedRuns
-from rockflex.response import COMPARED_DEMANDS, Comparison, History
+from rockflex.report.run._run_page import figures_of_runs, warnings_of_runs
+from rockflex.report.run._sheet import (
+    MAX_LETTERS,
+    ROW,
+    STRIP,
+    WIDTH,
+    Block,
+    Drawing,
+    Figures,
+    OneSheet,
+    ReportTexts,
+    first_warnings,
+    line_count_of_text,
+)
+from rockflex.response import COMPARED_DEMANDS, STATISTICS, Comparison, History
 
 SHOWN = ("median", "p84")  # of the statistics, under several records
 _SIZES = {"rad": (1e-3, "mrad"), "m": (1e-3, "mm"), "N": (1e3, "kN"), "m/s²": (GRAVITY, "g")}
+
+
+_OUTLINES = 48.0  # height in mm of the structures
+_CELL_LETTERS = 60  # in a line of their elements
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ComparisonPage(OneSheet):
+    """The page of a comparison."""
+
+    template: ClassVar[str] = "comparison.html.jinja"
+
+    several: bool  # records
+    records: str
+    alternatives: ReportTable
+    lines: Sequence[tuple[str, str]]
+    demands: ReportTable
+    record: ReportedRecord
+
+    @property
+    def height(self) -> float:
+        """About the height in mm of all but the figure."""
+        lines = sum(line_count_of_text(f"{head} {text}") for head, text in self.lines)
+        rows = sum(max(math.ceil(len(cell.text) / _CELL_LETTERS) for cell in row) for row in self.alternatives.rows)
+        texts = bool(self.texts.heads) + sum(map(line_count_of_text, (*self.warnings, *self.texts.notes)))
+        return _OUTLINES + STRIP[1] + ROW * (15 + rows + lines + 1.2 * len(self.demands.rows) + texts)
+
+    @property
+    def sections(self) -> list[tuple[str, Sequence[Block]]]:
+        """The contents with their headings, one below the other as in a document."""
+        return [
+            ("Alternatives", [Drawing("outlines"), self.alternatives, self.lines]),
+            (" ".join(("Demands", self.records)).strip(), [self.demands]),
+            (
+                f"{'Governing record' if self.several else 'Record'}: {self.record.name}",
+                [Drawing("strip", 0.5), self.record.facts, Drawing("sheet")],
+            ),
+        ]
+
+
+def comparison_page(comparison: Comparison, texts: ReportTexts) -> tuple[ComparisonPage, Figures]:
+    """Return the page of a comparison, and its figures."""
+    from rockflex.plot import draw_alternatives
+
+    report = reported_alternatives(comparison)
+    record = _report_tables.reported_record(report)
+    records, several = number_with_noun(comparison.n_records, "record"), comparison.n_records > 1
+    usual = f"{', '.join(comparison.names)} under {records if several else record.name or 'a ground motion'}"
+    fell = [
+        f"{name} overturned under {n} of {records}"
+        for name, n in zip(comparison.names, comparison.overturned, strict=True)
+        if n
+    ]
+    page = ComparisonPage(
+        title=shortened(texts.title or usual, MAX_LETTERS["title"]),
+        texts=texts,
+        several=several,
+        records=f"of {records}: {' / '.join(STATISTICS[each] for each in SHOWN)}" if several else "",
+        alternatives=alternatives_table(comparison),
+        lines=[model_line(comparison), *_report_tables.assumption_lines(report)],
+        demands=demand_table(comparison),
+        record=record,
+        warnings=first_warnings([*fell, *warnings_of_runs(report, ())]),
+    )
+    outlines = draw_alternatives(comparison, width=WIDTH, height=_OUTLINES)
+    return page, {"outlines": ("The alternatives as they rock", outlines), **figures_of_runs(page, record, report)}
 
 
 def reported_alternatives(comparison: Comparison) -> ReportedRuns:
