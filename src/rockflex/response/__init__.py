@@ -15,7 +15,17 @@ from rockflex.response._moment_rotation import (
 from rockflex.response._peaks import GLOBAL, Tracked, tracked_quantities
 from rockflex.response._pushover import BilinearFit, Pushover, PushoverEvent, pushover_path
 from rockflex.response._quasi_static import static_path
-from rockflex.response._respond import NAMES, STATUSES, columns_among, columns_of, respond
+from rockflex.response._respond import (
+    BY_STORY,
+    MAX_OF_STORIES,
+    NAMES,
+    STATUSES,
+    columns_among,
+    columns_of,
+    missing_values,
+    respond,
+    story_results,
+)
 from rockflex.response._response import (
     BALANCED,
     PEAKS,
@@ -29,8 +39,10 @@ from rockflex.response._tables import UNITS_OF_GROUND, UNITS_OF_HISTORY, ground_
 
 __all__ = [
     "BALANCED",
+    "BY_STORY",
     "GLOBAL",
     "IMPACT_WINDOW",
+    "MAX_OF_STORIES",
     "NAMES",
     "PEAKS",
     "STATUSES",
@@ -56,10 +68,12 @@ __all__ = [
     "history_columns",
     "large_resistance",
     "leaves_range",
+    "missing_values",
     "pushover_path",
     "resistance_on_springs",
     "respond",
     "static_path",
+    "story_results",
     "tracked_quantities",
     "warnings_of",
     "warnings_of_energy",

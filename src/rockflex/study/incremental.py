@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from rockflex._checks import checked_in_range, checked_positive
 from rockflex._errors import InputError
-from rockflex.fragility import OVERTURNING, limit_state_named
+from rockflex.fragility import OVERTURNING, check_limit_columns, limit_state_named
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import scalable_measure
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, Structures
@@ -141,7 +141,8 @@ class IncrementalStudy(StructuresStudySpec):
     growth: float = Field(1.15, description="each factor over the one before, a number above 1")
     tolerance: float = Field(0.01, description="the relative width to which bisection narrows a boundary, a number")
     limit: Annotated[str, validator_of_check(limit_state_named)] = Field(
-        "overturning", description='the name of a limit state, such as "overturning" (|θ| = π/2)'
+        "overturning",
+        description='the name of a limit state, such as "overturning" (|θ| = π/2), or "max_ductility > 4"',
     )
 
     @model_validator(mode="after")
@@ -179,6 +180,7 @@ class IncrementalPlan(CrossPlan):
         )
         self._most = most
         super().__init__(matrix, 1, max(1, runs_per_chunk // most))
+        check_limit_columns([limit_state_named(limit)], self.columns)
 
     def scale(self, structure: int, record: int, level: int) -> float:  # noqa: ARG002
         """Return the first factor of every ladder."""
@@ -267,7 +269,8 @@ def run_incremental(
         Relative width of the boundaries.
     limit
         Name of a limit state: ``"overturning"``: |θ| reaches π/2; ``"nominal"``: it passes 0.7 atan(B/h*_1); or
-        another one of ``rockflex.fragility.LIMIT_STATES``.
+        another one of ``rockflex.fragility.LIMIT_STATES``; or a demand with its bound, such as
+        ``"max_ductility > 4"``. A run that overturns exceeds them all.
     progress
         As in `run_cloud`, counted in ladders: all runs of a structure, a record and a model.
 
@@ -296,7 +299,6 @@ def run_incremental(
     matrix = study_matrix(
         structures, motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground
     )
-    limit_state_named(limit)
     steps = ScaleSteps(smallest_scale, largest_scale, growth, tolerance)
     return run_plan(IncrementalPlan(matrix, steps, limit, 64), workers, progress)
 

@@ -12,6 +12,7 @@ from rockflex._errors import InputError
 from rockflex._schema import PLAIN, SchemaKey
 from rockflex.modal import Ground, RockingProperties
 from rockflex.motion import Suite, scalable_measures
+from rockflex.response import MAX_OF_STORIES
 from rockflex.structure.file import StructureEntry, TomlTable, parse_toml_table, toml_key_label
 from rockflex.study._arguments import checked_scale_factors, rocking_properties_of
 from rockflex.study._plan import ChunkedPlan
@@ -23,19 +24,28 @@ from rockflex.study._random_variables import (
     names_in_formula,
     uniform_draws,
 )
-from rockflex.study._result_tables import RESULTS, Columns, Row, Table, columns_of_kind, joined_tables
+from rockflex.study._result_tables import (
+    RESULTS,
+    Columns,
+    Row,
+    Table,
+    columns_of_kind,
+    joined_tables,
+    story_columns,
+)
 from rockflex.study._run_matrix import StudyMatrix, results_of_matrix_runs
 from rockflex.study.cloud import Factors
-from rockflex.study.spec import GroundTable, RunsStudySpec
+from rockflex.study.spec import GroundTable, LimitKeys, RunsStudySpec
 
 ELEMENT_KEYS = ("tendons", "elements")
+LATER_KEYS = (*ELEMENT_KEYS, "stories")  # what may depend on the facts of the structure
 FACTS = {
     "weight": "the weight m_tot g of the structure in N",
     "weight_moment": "the moment m_tot g B of the weight in N m",
     "half_width": "the half width B of the base in m",
     "l0r_g": "the moment L_0^r g of the weight, a radian, in N m",
 }
-"""Properties that formulas of tendons, elements and the ground may use besides the variables."""
+"""Properties that formulas of tendons, elements, stories and the ground may use besides the variables."""
 
 Place = tuple[str | int, ...]
 
@@ -68,7 +78,7 @@ class RandomPopulation:
             *_formulas_in_structure_entry(structure, ("structure",)),
             *_formulas_in_structure_entry(ground, ("ground",)),
         ):
-            label, held = toml_key_label(place), place[0] == "ground" or place[1] in ELEMENT_KEYS
+            label, held = toml_key_label(place), place[0] == "ground" or place[1] in LATER_KEYS
             try:
                 needed = names_in_formula(formula)
             except InputError as error:
@@ -76,24 +86,23 @@ class RandomPopulation:
             if not held and (early := sorted(needed & FACTS.keys())):
                 raise InputError(
                     f"{label}: {early[0]} is known only after the structure is built, so only formulas of elements, "
-                    "tendons and the ground may use it."
+                    "tendons, stories and the ground may use it."
                 )
             check_formula_names_known(label, needed, variables.kinds | (FACTS if held else {}))
 
     def entry(self, values: Mapping[str, float]) -> StructureEntry:
-        """Return the structure without tendons and elements for values of the variables."""
+        """Return the structure without tendons, elements and yielding stories for values of the variables."""
         return _checked_random_structure(
-            {key: value for key, value in self._structure.items() if key not in ELEMENT_KEYS}, values
+            {key: value for key, value in self._structure.items() if key not in LATER_KEYS}, values
         )
 
     def build(self, values: Mapping[str, float]) -> RockingProperties:
         """Return the structure for values of the variables."""
         free = rocking_properties_of(self.entry(values).build(self._folder))
-        if not any(self._structure.get(key) for key in ELEMENT_KEYS):
+        if not any(self._structure.get(key) for key in LATER_KEYS):
             return free
-        return rocking_properties_of(
-            _checked_random_structure(self._structure, {**values, **random_structure_facts(free)}).hold(free)
-        )
+        whole = _checked_random_structure(self._structure, {**values, **random_structure_facts(free)})
+        return rocking_properties_of(whole.build(self._folder) if whole.stories else whole.hold(free))
 
     def ground_under(self, properties: RockingProperties, values: Mapping[str, float]) -> Ground | None:
         """Return the ground under a structure for values of the variables."""
@@ -163,18 +172,19 @@ _COLUMNS = (
     *(measure.name for measure in scalable_measures()),
     "status",
     *RESULTS,
+    *MAX_OF_STORIES,
 )
 
 
-class MonteCarloStudy(RunsStudySpec):
+class MonteCarloStudy(LimitKeys, RunsStudySpec):
     """Random structures under all records, or under some that are drawn for each structure.
 
     `variables` are distributions (`uniform`, `log_uniform`, `whole`, `normal`, `lognormal` or `one_of`), formulas of
     other variables, and numbers. `structure` is a structure as a file describes it; any number in it may be a formula,
     a text that begins with "=": numbers, names of variables, + - * / **, parentheses, min, max, sqrt, exp and log.
-    `ground` is the ground as a file describes it, and may have formulas too. Formulas of tendons, elements and the
-    ground may also use `weight` (m_tot g, N), `weight_moment` (m_tot g B, N m), `half_width` (B, m) and `l0r_g`
-    (L_0^r g, N m), so that strengths can be shares of the weight.
+    `ground` is the ground as a file describes it, and may have formulas too. Formulas of tendons, elements, stories
+    that yield and the ground may also use `weight` (m_tot g, N), `weight_moment` (m_tot g B, N m), `half_width` (B, m)
+    and `l0r_g` (L_0^r g, N m), so that strengths can be shares of the weight.
 
     The table has one row per run, structures outermost, then records, models and scales. Its columns are those of
     `run_cloud`, with the name of the study as `structure`; `number`, which counts the structures from 0; each variable;
@@ -281,7 +291,9 @@ class MonteCarloStudy(RunsStudySpec):
             If a variable or a formula is wrong, none of the first structures can be built, a record cannot be read, or
             fewer records are there than are to be drawn.
         """
-        return MonteCarloPlan(self, self.records.load(self._folder))
+        plan = MonteCarloPlan(self, self.records.load(self._folder))
+        self.check_limits(plan.columns)
+        return plan
 
 
 class MonteCarloPlan(ChunkedPlan):
@@ -326,7 +338,8 @@ class MonteCarloPlan(ChunkedPlan):
     @property
     def columns(self) -> Columns:
         """Columns of every chunk's table."""
-        head, *rest = self.matrix.columns.items()
+        by_story = story_columns(self.matrix.structures).keys() - set(MAX_OF_STORIES)  # their number may be random
+        head, *rest = ((name, kind) for name, kind in self.matrix.columns.items() if name not in by_story)
         drawn = dict.fromkeys(self.population.variables.kinds, float)
         of_structure = dict.fromkeys(FACTS, float) | columns_of_kind(OF_STRUCTURE, float)
         return dict([head]) | {"number": int} | drawn | of_structure | dict(rest)

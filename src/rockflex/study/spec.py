@@ -1,7 +1,7 @@
 """The specification of a study in a file: the keys that all kinds share."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -26,6 +26,7 @@ from rockflex._schema import (
     one_for_each,
 )
 from rockflex._shown import shown
+from rockflex.fragility import check_limit_columns, limit_state_of
 from rockflex.modal import Ground, RockingProperties, Springs, asce41_bed, winkler_bed
 from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, VVELSimplified, parse_model
 from rockflex.motion import MEASURES, OnError, Suite, Vertical, load_suite, read_suite
@@ -351,6 +352,22 @@ FreeVibration = Annotated[
     Field(description='the free vibration after the record, a number in s or "settle"'),
     validator_of_check(free_vibration_time),
 ]
+
+
+class LimitKeys(TomlTable):
+    """The limits whose fragility curves the report of a study has."""
+
+    limits: Annotated[
+        list[float | str] | None, validator_of_check(lambda given: [limit_state_of(each) for each in given or ()])
+    ] = Field(
+        None,
+        description='a list of limits to report, such as [0.02, "uplift", "max_ductility > 4"] (default: the usual '
+        "ones of such a study)",
+    )
+
+    def check_limits(self, columns: Container[str]) -> None:
+        """Raise an InputError if a limit is on a demand that the table will not have."""
+        check_limit_columns(map(limit_state_of, self.limits or ()), columns)
 
 
 class StudySpec(TomlTable):

@@ -10,7 +10,7 @@ from rockflex._checks import checked_in_range, checked_positive
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.fragility import HazardCurve
+from rockflex.fragility import HazardCurve, check_limit_columns
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.structure.file import StructureEntry, TomlTable
@@ -255,7 +255,8 @@ class DesignStudy(StructuresStudySpec):
         for design in designs:
             for limit in self.limits:
                 try:
-                    design_limit_state(limit, design.properties.nominal_overturning_rotation)
+                    state = design_limit_state(limit, design.properties.nominal_overturning_rotation)
+                    check_limit_columns([state], matrix.columns)
                 except InputError as error:
                     raise InputError(f"{design.name}: {error}") from error
         return DesignPlan(matrix, designs, self.scales, self.runs_per_chunk)
