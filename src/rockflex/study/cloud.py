@@ -42,7 +42,7 @@ class CloudStudy(LimitKeys, StructuresStudySpec):
     """Cloud analysis (Silva & Stojadinović 2024, Section 3.2).
 
     The table has one row per run, structures outermost, then records, models and scales. Its columns are those of
-    `run_cloud`.
+    `run_cloud`, whose structures, motions, models, impact law, hysteresis, ground and demands it takes, too.
 
     Examples
     --------
