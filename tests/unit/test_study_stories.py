@@ -88,6 +88,8 @@ def test_incremental_analyses_and_stripes_of_a_ductility():
     beyond = (runs["max_ductility"] > 4.0) | (runs["status"] == "overturned")
     assert runs["overturned"].tolist() == beyond.tolist()
     assert (rf.incremental_capacities(runs, "pga")["capacity"] > 0.0).all()
+    turned = rf.run_incremental(YIELDS, SUITE[:1], smallest_scale=0.5, growth=2.0, tolerance=0.2, limit=0.01)
+    assert turned["overturned"].tolist() == (turned["max_rotation"] > 0.01).tolist()
     stripes = rf.run_study(rf.StripeStudy(structures=[ENTRY], records=RECORDS, levels=[0.2, 0.6]))
     counts = rf.stripe_counts(stripes, "max_ductility > 4")
     assert counts["n_exceeding"].tolist() == [

@@ -174,32 +174,6 @@ TENDON_YIELD = LimitState(
 LIMIT_STATES = Catalogue[LimitState]((UPLIFT, ROCKING, NOMINAL, TENDON_YIELD, OVERTURNING), "limit_states")
 
 
-def limit_state_named(name: str) -> LimitState:
-    """Return the limit state of a name, also of one that another package registers, or of a demand and its bound.
-
-    Raises
-    ------
-    InputError
-        If there is none.
-
-    Examples
-    --------
-    >>> from rockflex.fragility import limit_state_named
-    >>> limit_state_named("overturning").rotation
-    '|θ| = π/2'
-    """
-    found = LIMIT_STATES.get(name) if isinstance(name, str) else None  # pyright: ignore[reportUnnecessaryIsInstance]
-    found = found or bounded_demand(name)
-    if found is None:
-        words = ", ".join(f'"{each}"' for each in LIMIT_STATES)
-        raise InputError(
-            f'limit must be one of {words}, or a demand with its bound, such as "max_ductility > 4", but '
-            f"{shown(name)} was given.",
-            field="limit",
-        )
-    return found
-
-
 def bounded_demand(limit: object) -> LimitState | None:
     """Return the limit state of a text such as "max_ductility > 4"; None of anything else.
 
@@ -224,12 +198,23 @@ def bounded_demand(limit: object) -> LimitState | None:
 
 
 def limit_state_of(limit: str | float | LimitState) -> LimitState:
-    """Return the limit state of a name, of a demand with its bound, or of a rotation in rad.
+    """Return the limit state of a name, also of one that another package registers, of a demand or of a rotation.
+
+    Parameters
+    ----------
+    limit
+        One of `LIMIT_STATES`; a demand with its bound, such as ``"max_ductility > 4"``; or a rotation in rad.
 
     Raises
     ------
     InputError
         If it is none of these.
+
+    Examples
+    --------
+    >>> from rockflex.fragility import limit_state_of
+    >>> limit_state_of("overturning").rotation
+    '|θ| = π/2'
     """
     if isinstance(limit, LimitState):
         return limit
@@ -239,8 +224,8 @@ def limit_state_of(limit: str | float | LimitState) -> LimitState:
     if state is None:
         words = ", ".join(f'"{each}"' for each in LIMIT_STATES)
         raise InputError(
-            f'limit must be {words}, a demand with its bound such as "max_ductility > 4", a LimitState or a rotation '
-            f"in rad, but {shown(limit)} was given.",
+            f'limit must be one of {words}, a demand with its bound such as "max_ductility > 4", a LimitState or a '
+            f"rotation in rad, but {shown(limit)} was given.",
             field="limit",
         )
     return state

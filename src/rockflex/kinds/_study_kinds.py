@@ -186,7 +186,7 @@ CLOUD = StudyKind(
 
 def _report_incremental(study: Any, runs: Runs, found: StudyFindings) -> None:
     from rockflex._cases import runs_by_case
-    from rockflex.fragility import fit_capacities, limit_state_named
+    from rockflex.fragility import fit_capacities, limit_state_of
     from rockflex.motion import MEASURES
     from rockflex.study.incremental import incremental_capacities
 
@@ -208,7 +208,7 @@ def _report_incremental(study: Any, runs: Runs, found: StudyFindings) -> None:
                     "β": fit and fit.beta,
                 }
             )
-    found.tables[f"Capacities to {limit_state_named(study.limit).rotation}, lognormal"] = rows
+    found.tables[f"Capacities to {limit_state_of(study.limit).rotation}, lognormal"] = rows
 
 
 def _figures_incremental(_: Document, runs: Runs, measure: str, __: Remark) -> Figures:
