@@ -19,7 +19,17 @@ from rockflex.response._peaks import GLOBAL, Tracked, tracked_quantities
 from rockflex.response._pushover import BilinearFit, Pushover, PushoverEvent, pushover_path
 from rockflex.response._quasi_static import static_path
 from rockflex.response._record_set import DEMANDS, RecordSet, Rule, checked_rule
-from rockflex.response._respond import NAMES, STATUSES, columns_among, columns_of, respond
+from rockflex.response._respond import (
+    BY_STORY,
+    MAX_OF_STORIES,
+    NAMES,
+    STATUSES,
+    columns_among,
+    columns_of,
+    missing_values,
+    respond,
+    story_results,
+)
 from rockflex.response._response import (
     BALANCED,
     PEAKS,
@@ -33,10 +43,12 @@ from rockflex.response._tables import RESULT_UNITS, UNITS_OF_GROUND, UNITS_OF_HI
 
 __all__ = [
     "BALANCED",
+    "BY_STORY",
     "COMPARED_DEMANDS",
     "DEMANDS",
     "GLOBAL",
     "IMPACT_WINDOW",
+    "MAX_OF_STORIES",
     "NAMES",
     "NO_LIMIT",
     "PEAKS",
@@ -73,10 +85,12 @@ __all__ = [
     "history_columns",
     "large_resistance",
     "leaves_range",
+    "missing_values",
     "pushover_path",
     "resistance_on_springs",
     "respond",
     "static_path",
+    "story_results",
     "to_matlab",
     "to_netcdf",
     "tracked_quantities",

@@ -1,9 +1,12 @@
 """Warnings: forces that ground or tendons cannot provide, rotations beyond a model's range, unbalanced energies."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Generic, Self, TypeVar, overload
+
+import numpy as np
 
 from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError, MissingQuantityError
@@ -187,6 +190,8 @@ class Response(HtmlTable, Value):
     residual_drift
         Drift of each story in m at rest after the run, with what yielded as it is and everything else elastic, shape
         (N_floors,), or (0,).
+    residual_drift_ratio
+        The same over the height of the story, shape (N_floors,), or (0,).
     floors
         Floor peaks if the structure has floors and ``output="history"`` was requested; otherwise None.
     history
@@ -244,6 +249,7 @@ class Response(HtmlTable, Value):
     remaining_prestress: Array
     ductility: Array
     residual_drift: Array
+    residual_drift_ratio: Array
     floors: FloorPeaks | None = None
     history: History | None = None
 
@@ -323,6 +329,16 @@ class Response(HtmlTable, Value):
             return () if self.history is None else warnings_of_energy(self.history.energy.closing_error)
         except InputError:  # too fast for the sampling: no energies
             return ()
+
+    @property
+    def max_ductility(self) -> float:
+        """Largest `ductility` of a story; NaN if no story can yield."""
+        return float(self.ductility.max()) if self.ductility.size else math.nan
+
+    @property
+    def max_residual_drift_ratio(self) -> float:
+        """Largest |`residual_drift_ratio`| of a story; NaN if no story can yield."""
+        return float(np.abs(self.residual_drift_ratio).max()) if self.residual_drift_ratio.size else math.nan
 
     def peaks(self) -> dict[str, Any]:
         """Return every scalar by its name, for a table row or a JSON object."""

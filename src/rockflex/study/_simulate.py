@@ -242,7 +242,8 @@ def simulate_many(
         mapping, else its index), `motion` (name), `scale`, `model`, `status`, `error`, then every scalar of `Response`
         by its name, in SI units. A run that cannot be solved, or whose model has more modes than its structure, has a
         message in `error`. Its other results are missing: NaN, or NA in the columns of counts (Int64) and flags
-        (boolean).
+        (boolean). If stories of a structure yield: `max_ductility` and `max_residual_drift_ratio` of all stories, and
+        `ductility_1`, `residual_drift_1` (m), ... of each from the bottom, NaN for structures without.
 
     Raises
     ------
@@ -301,8 +302,9 @@ def simulate_many(
     refused = [error for error in found.failures.values() if isinstance(error, WorkLimitError)]
     if len(refused) == total:
         raise refused[0]
+    stories = {name: float for name in found.columns if name not in RESULTS and name != "status"}
     results = arrow_table(
-        {**found.columns, "error": found.errors}, {"status": STATUSES, "error": str, **RESULTS}, found.failed
+        {**found.columns, "error": found.errors}, {"status": STATUSES, "error": str, **RESULTS, **stories}, found.failed
     )
 
     import pandas as pd
