@@ -11,7 +11,7 @@ import rockflex as rf
 from builders import make_frame
 from rockflex.models import RockingModel, _label
 from rockflex.structure.file import TomlTable, parse_toml_table
-from rockflex.study.spec import GroundTable
+from rockflex.study._ground_tables import GroundTable
 
 FRAME = make_frame(n_stories=2, period=0.5, aspect_ratio=8.0)
 PROPERTIES = FRAME.rocking()

@@ -10,7 +10,7 @@ import rockflex as rf
 from builders import make_frame
 from rockflex._json import as_json_value
 from rockflex.structure.file import ELEMENTS
-from rockflex.study.spec import GroundTable
+from rockflex.study._ground_tables import GroundTable
 from rockflex.web._forms import PRESETS
 
 pytestmark = pytest.mark.web

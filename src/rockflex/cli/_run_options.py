@@ -23,7 +23,8 @@ from rockflex.study import (
     ground_under_structure,
     yielding_model_labels,
 )
-from rockflex.study.spec import GroundTable, RunOptionKeys, impact_law_name
+from rockflex.study._ground_tables import GroundTable
+from rockflex.study.spec import RunOptionKeys, impact_law_name
 
 _INERTIA = {"base_inertia", "mat_mass"}
 _FIELDS = {f"ground.{name}": (name, flag) for name, flag in flags_of_tables(GroundSchema).items()} | {

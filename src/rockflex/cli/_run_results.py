@@ -21,7 +21,7 @@ from rockflex.motion import MEASURES, GroundMotion
 from rockflex.report.run import MAX_RUNS, checked_report_path, write_report
 from rockflex.response import IMPACT_WINDOW, RESULT_UNITS, Response, history_columns, to_matlab, to_netcdf
 from rockflex.study import ground_under_structure
-from rockflex.study.spec import GroundTable, SpringBedTable, SpringsTable
+from rockflex.study._ground_tables import GroundTable, SpringBedTable, SpringsTable
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -192,7 +192,8 @@ class Model:
         what = what or ("stories that yield" if kept.stories else "")
         if what and (self.complete or bouc_wen is not None):
             simple = replace(self, complete=False, closure=None, yields=False).label
-            raise InputError(f"{self.label} does not take {what}. Use {simple}.", field=field_)
+            use = f"Use {simple}" + (", and leave bouc_wen out." if bouc_wen is not None else ".")
+            raise InputError(f"No complete model and none with Bouc-Wen hysteresis takes {what}. {use}", field=field_)
         for each in attached:
             if isinstance(each, FrictionDamper) and each.force > 0.0:
                 raise InputError(

@@ -20,6 +20,7 @@ from rockflex.study._arguments import (
     ground_under_structure,
     rocking_properties_of,
 )
+from rockflex.study._ground_tables import GroundTable
 from rockflex.study._objects import object_checksum
 from rockflex.study._plan import ChunkedPlan
 from rockflex.study._random_variables import (
@@ -41,7 +42,7 @@ from rockflex.study._result_tables import (
 )
 from rockflex.study._run_matrix import StudyMatrix, results_of_matrix_runs
 from rockflex.study.cloud import Factors
-from rockflex.study.spec import GroundTable, LimitKeys, RunsStudySpec
+from rockflex.study.spec import LimitKeys, RunsStudySpec
 
 ELEMENT_KEYS = ("tendons", "elements")
 LATER_KEYS = (*ELEMENT_KEYS, "stories")  # what may depend on the facts of the structure

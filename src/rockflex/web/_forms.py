@@ -20,7 +20,8 @@ from rockflex.structure.file import (
     members_of_annotation,
     schema_key_of_field,
 )
-from rockflex.study.spec import BoucWenTable, GroundTable
+from rockflex.study._ground_tables import GroundTable
+from rockflex.study.spec import BoucWenTable
 
 
 def _preset_frame(number: int, period: float, aspect_ratio: float, stiffness_ratio: float) -> dict[str, Any]:

@@ -12,9 +12,9 @@ from rockflex.modal import BaseElement, element_parameters
 from rockflex.structure import LumpedMasses, Section
 from rockflex.structure.file import StructureEntry
 from rockflex.study import yielding_model_labels
+from rockflex.study._ground_tables import GroundTable, SpringBedTable, SpringsTable
 from rockflex.study.cloud import CloudStudy
 from rockflex.study.design import DesignStudy
-from rockflex.study.spec import GroundTable, SpringBedTable, SpringsTable
 from rockflex.web._earthquake import PULSES
 from rockflex.web._selection import (
     RECORDS_FOLDER,

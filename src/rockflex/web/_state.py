@@ -14,7 +14,8 @@ from rockflex.modal import Ground
 from rockflex.motion import Combination, IntensityMeasure, scalable_measures
 from rockflex.structure.file import StructureEntry, TomlTable, toml_problem_place
 from rockflex.study import RunOptions, yielding_model_labels
-from rockflex.study.spec import BoucWenTable, GroundTable, RunOptionKeys
+from rockflex.study._ground_tables import GroundTable
+from rockflex.study.spec import BoucWenTable, RunOptionKeys
 from rockflex.web._limits import (
     MAX_MODELS,
     RUN_WORK_LIMIT,

@@ -18,7 +18,7 @@ from rockflex.structure._from_matrices import DegreesOfFreedom
 from rockflex.structure._outline import outline_of_structure
 from rockflex.structure.file import Structure, StructureEntry, StructureTable, TomlTable
 from rockflex.structure.file._structure_tables import MatricesTable, ModesTable
-from rockflex.study.spec import GroundTable
+from rockflex.study._ground_tables import GroundTable
 from rockflex.web._refusal import Refusal, errors_as_refusals
 
 MAX_SPRINGS_DRAWN = 9  # springs of a drawing, at most

@@ -7,16 +7,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import date as Date  # noqa: N812
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 from rockflex._errors import InputError
 from rockflex._shown import number_with_noun, shortened, shown
 from rockflex._versions import package_versions
 from rockflex.report._publication_files import inline_svg, jinja_templates_in
 from rockflex.report.run._report_tables import ReportFact, ReportTable
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 WIDTH, HEIGHT = 186.0, 272.0  # of a sheet of A4 within its margins, in mm
 FIGURE_HEIGHTS = (58.0, 160.0)  # least and largest height of the figure in mm
@@ -39,7 +36,7 @@ class Drawing(NamedTuple):
     share: float = 1.0  # of the width
 
 
-Figures = Mapping[str, tuple[str, "Figure"]]  # by a short name: what a figure shows, and the figure
+Figures = Mapping[str, tuple[str, Any]]  # by a short name: what a figure shows, and the figure of matplotlib
 Block = ReportTable | Sequence[ReportFact] | Sequence[tuple[str, str]] | Drawing | str | None
 
 
