@@ -242,7 +242,7 @@ def test_ida_of_records_that_never_overturn(ladders):
     assert not lines(left, "_overturned")
     assert not lines(right, "_fit")
     assert notes(right)[0].splitlines() == [
-        "8 records, 8 never overturned",
+        "8 records, 8 never reached the limit",
         "0 with resurrections",
         "1 run failed",
     ]
@@ -269,7 +269,7 @@ def test_censored_records_count_as_long_as_they_stood(ladders):
     drawn_at = np.column_stack(line.get_data())[1:]
     np.testing.assert_allclose(drawn_at, [step for step in steps if step[0] in drawn_at[:, 0]])
     assert drawn_at[-1, 1] == pytest.approx(steps[-1][1])
-    assert notes(right)[0].startswith("8 records, 2 never overturned")
+    assert notes(right)[0].startswith("8 records, 2 never reached the limit")
 
 
 def test_stripes_with_their_curve(stripes):

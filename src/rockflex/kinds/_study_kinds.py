@@ -202,7 +202,7 @@ def _report_incremental(study: Any, runs: Runs, found: StudyFindings) -> None:
                     "model": model,
                     "measure": measure.label,
                     "records": len(each),
-                    "never overturned": int(each["censored"].sum()),
+                    "limit never reached": int(each["censored"].sum()),
                     "resurrections": int(each["resurrections"].sum()),
                     "median [SI]": fit and fit.median,
                     "β": fit and fit.beta,

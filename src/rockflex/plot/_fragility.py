@@ -317,7 +317,7 @@ def plot_ida(
     Curves are interrupted where a run overturns, by the limit of the study; the first such run is a red cross at the
     top. Runs that do not overturn at a larger scale than one that did ("resurrections", Vamvatsikos & Cornell 2002)
     are open symbols. The right panel has the fraction of overturned records as steps (the Kaplan-Meier estimate if
-    some never overturned), and the lognormal curve of `fit_capacities` with its band, by recording.
+    some never reached the limit), and the lognormal curve of `fit_capacities` with its band, by recording.
 
     Parameters
     ----------
@@ -433,11 +433,11 @@ def _draw_ida_capacities(axes: Axes, rows: "pd.DataFrame", confidence: float | N
     reached, censored = rows["capacity"].to_numpy(dtype=float), rows["censored"].to_numpy(dtype=bool)
     lines = [number_with_noun(len(rows), "record")]
     if censored.any():
-        lines[0] += f", {int(censored.sum())} never overturned"
+        lines[0] += f", {int(censored.sum())} never reached the limit"
     if not censored.all():
         from scipy.stats import CensoredData, ecdf
 
-        # Records that never overturned are censored.
+        # Records that never reached the limit are censored.
         estimate = ecdf(CensoredData(uncensored=reached[~censored], right=reached[censored])).cdf
         at, fraction = np.append(0.0, estimate.quantiles), np.append(0.0, estimate.probabilities)
         axes.step(at, fraction, where="post", color=BLACK, linewidth=0.9, label="_ecdf")
