@@ -12,6 +12,7 @@ import pytest
 import rockflex
 
 WITHOUT = {
+    "Check": "a row of a CheckTable",
     "FloorModes": "a part of RockingProperties, as its floors",
     "FloorPeaks": "a part of Response, as its floors",
 }
