@@ -78,7 +78,7 @@ def field_of(
     checks
         Conditions that are not linear, see `GroundField`.
     """
-    ground = model.ground_phase(key, branch)
+    ground = model.ground_phase(key, branch) if model.integrated else None
     if ground is not None:
         return GroundField(numbers, ground, list(stops), list(checks))
     p, elements = model.properties, model.elements
