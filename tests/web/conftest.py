@@ -287,7 +287,8 @@ def visit(browser: Any, server: str) -> Iterator[Any]:
     def new(link: str = "/", **options: Any) -> Visitor:
         usual = {"viewport": {"width": 1280, "height": 900}, "reduced_motion": "reduce"}
         context = browser.new_context(**{**usual, **options})
-        context.add_init_script(f"for (const task of {TASKS}) localStorage.setItem('rockflex-open-' + task, true)")
+        unfold = f"for (const task of {TASKS}) localStorage.setItem('rockflex-open-' + task, true)"
+        context.add_init_script(f"if (location.protocol === 'http:') {unfold}")
         contexts.append(context)
         page = context.new_page()
         page.set_default_timeout(180_000)

@@ -57,6 +57,7 @@ def test_elements_of_all_kinds_are_added_changed_and_removed(visitor) -> None:
         "m => [...document.querySelectorAll('dd[data-value]')].some((e) => Number(e.dataset.value) === m)",
         arg=expected.pivot(1).resisting_moment,
     )
+    visitor.wait_for_results()
     assert page.locator("#base").get_attribute("aria-label").count(";") == len(kinds) - 1
     # An element of another kind keeps what both have.
     row = page.locator('details[data-path="structure.elements.1"]')

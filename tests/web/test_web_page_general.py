@@ -76,15 +76,15 @@ def test_a_damaged_link_is_told(visit, link, hash_, text) -> None:
 def test_two_visitors_do_not_see_each_other(visit) -> None:
     one, other = visit(), visit()
     one.page.wait_for_selector("#adequacy")
-    one.fill("structure.name", "<b>Mine</b>")
-    one.page.wait_for_function("() => document.querySelector('.results h2').textContent === '<b>Mine</b>'")
+    one.fill("structure.name", "<b>Own</b>")
+    one.page.wait_for_function("() => document.querySelector('.results h2').textContent === '<b>Own</b>'")
     one.tab("earthquake")
     one.fill("scale", "3")
     other.page.reload()
     other.page.wait_for_selector("#adequacy")
     assert other.state()["structure"]["name"] == "Bridge pier"
     assert other.state()["scale"] == 2.0
-    assert "Mine" not in other.page.content()
+    assert "Own" not in other.page.locator("main").inner_text()
 
 
 def test_tabs_and_buttons_by_the_keyboard(visitor) -> None:

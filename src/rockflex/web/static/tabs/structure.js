@@ -165,6 +165,7 @@ export default function structureTab(app) {
   const load = latest(async () => {
     const fast = quick;
     const asked = app.state.structure;
+    if (!fast) results.classList.add("stale");
     const answer = await app.ask("/api/structure", element, fast ? { quick: true } : {});
     if (!answer) return;
     shown.set(answer.run, asked);
