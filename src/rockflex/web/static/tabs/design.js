@@ -41,7 +41,7 @@ export default function designTab(app) {
     label: "Median base moment over half width", yLabel: "M_b [kN m]", xLabel: WIDTH, height: 190, zero: true, xName: "B [m]",
   });
   const keys = h("div");
-  const verdict = h("div", { class: "answer", id: "width", role: "status" }, "Press Search to find how wide the base must be.");
+  const verdict = h("div", { class: "answer", id: "width", role: "status" }, "A quick look is computed first. Press Search to find how wide the base must be.");
   const remarks = new Remarks();
   const table = h("div", { class: "scroll", id: "designs" });
   const drawing = h("div", { hidden: true }, keys, chart.element,
@@ -54,6 +54,7 @@ export default function designTab(app) {
   const results = h("div", { class: "results" }, verdict, drawing);
   const study = new Study(app, "design", {
     verb: "Search", results, show,
+    example: () => ({ widths: 4, tendons: choice().tendons.slice(0, 1), scales: choice().scales.slice(-1) }),
     key: () => JSON.stringify([assumed(app.state, [choice().model]), recordsOf(app.state, choice().suites), RUNS.map((name) => choice()[name])]),
   });
   const element = h("div", { class: "columns" },
