@@ -180,3 +180,16 @@ def test_leaning_masses_and_stories_that_yield(visitor) -> None:
     visitor.page.get_by_label("Kind", exact=True).select_option("block")
     visitor.page.wait_for_function("() => 'block' in rockflexPage.state.structure")
     assert visitor.page.locator('[data-path="structure.stories"]').count() == 0
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("tab", ["structure", "earthquake", "response", "fragility", "design"])
+def test_axe_finds_nothing(visit, link, tab, scheme) -> None:
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="no axe: install rockflex[dev]").Axe()
+    ground = {"mat_mass": 2e5, "springs": {"stiffness": 2e9}, "friction": 0.5}
+    state = {"structure": as_json_value(FUSES), "ground": ground, "models": ["MDOF-S", "2DOF-S"], "tab": tab}
+    visitor = visit(link(state), color_scheme=scheme)
+    visitor.page.wait_for_load_state("networkidle")
+    visitor.wait_for_results()
+    found = axe.run(visitor.page).response["violations"]
+    assert [(each["id"], [node["html"][:120] for node in each["nodes"]]) for each in found] == []

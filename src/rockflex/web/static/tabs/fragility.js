@@ -2,7 +2,7 @@
 
 import { Chart } from "../chart.js";
 import { axisOf, measuresOf, models } from "../choices.js";
-import { h, number, tableOf } from "../dom.js";
+import { h, number, scrolled, tableOf } from "../dom.js";
 import { select } from "../form.js";
 import { assumed, choices, recordsOf, Remarks, Study } from "../jobs.js";
 import { legend, look } from "../marks.js";
@@ -31,7 +31,7 @@ export default function fragilityTab(app) {
   });
   const keys = h("div");
   const remarks = new Remarks();
-  const table = h("div", { class: "scroll", id: "fits" });
+  const table = scrolled("Fits", { id: "fits" });
   const drawing = h("div", { hidden: true },
     h("h2", {}, "Fragility curves"), keys, curves.element,
     h("p", { class: "hint" }, "Lines: fitted curves; bands: their confidence; circles: observed fraction in groups of runs ",

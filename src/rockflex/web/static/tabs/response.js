@@ -3,7 +3,7 @@
 import { bracket } from "../axes.js";
 import { overTime } from "../chart.js";
 import { yields } from "../choices.js";
-import { decode, h, latest, number, symbol, tableOf } from "../dom.js";
+import { decode, h, latest, number, scrolled, symbol, tableOf } from "../dom.js";
 import { select, slider } from "../form.js";
 import { making } from "../jobs.js";
 import { legend, looks } from "../marks.js";
@@ -59,7 +59,7 @@ export default function responseTab(app) {
     draw();
   });
   const keys = h("div", { id: "keys" });
-  const peaks = h("div", { class: "scroll", id: "peaks" });
+  const peaks = scrolled("Largest values", { id: "peaks" });
   const verdict = h("p", { class: "answer", id: "verdict", role: "status" });
   const warned = h("div", { class: "warning", id: "warnings", role: "alert", hidden: true });
   const results = h("div", { class: "results" }, verdict, warned, keys, seen, charts.map((chart) => chart.element),

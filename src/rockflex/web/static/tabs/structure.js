@@ -1,7 +1,7 @@
 // Structure: a drawing that moves and is a form, the whole form folded by task, modes, and how many of them are needed.
 
 import { attempt, send } from "../api.js";
-import { clone, h, ink, latest, number, svg, symbol, tableOf, tooLarge } from "../dom.js";
+import { clone, h, ink, latest, number, scrolled, svg, symbol, tableOf, tooLarge } from "../dom.js";
 import { drawing, kindOf } from "../drawn.js";
 import { field, fileBox, folded, select, tableField, tableGroup, trouble } from "../form.js";
 import { base, elements, ground, without } from "./base.js";
@@ -422,6 +422,6 @@ function table(view) {
     value(m.period), value(m.effective_mass), percent(m.mass_share), value(m.effective_height), percent(m.damping),
     m.uplifted.flatMap((each) => [value(each.period), percent(each.damping)])));
   return h("div", {},
-    h("div", { class: "scroll" }, tableOf(head, rows, { id: "modes" })),
+    scrolled("Modes", {}, tableOf(head, rows, { id: "modes" })),
     view.modes.length > ROWS ? h("p", { class: "hint" }, `and ${view.modes.length - ROWS} more`) : null);
 }
