@@ -42,7 +42,7 @@ export function measures(structure, view, kinds) {
   }
   if (HEIGHTS[kind] && !values.z && !values.lumped_masses)
     found.H = { value: H, set: (v) => into(scaled([HEIGHTS[kind], "aspect_ratio"], v / H)) };
-  if (values.period !== undefined) found.T = { value: T, set: (v) => into({ period: v }) };
+  if (values.period !== undefined) found.T = { value: T, set: (v) => into({ period: times(values.period, v / T) }) }; // masses that lean make T longer than the field
   else if (T && STIFFNESSES.some((name) => name in values)) found.T = { value: T, set: (v) => into(scaled(STIFFNESSES, (T / v) ** 2)) };
   return found;
 }
@@ -77,7 +77,7 @@ function handles(app, view, wanted) {
       } });
   });
   if (stood.length < 9) stood.forEach((x, i) => found.push({
-    name: `spring ${i}`, label: `Position of spring ${i + 1}`, value: x, range: within, at: [x, 0], down: places.includes(x) ? 34 : 17,
+    name: `spring ${i}`, label: `Position of spring ${i + 1}`, value: x, range: within, at: [x, 0], down: places.length ? 34 : 17,
     next: (v) => ({ ground: { springs: { positions: moved(stood, i, v) } } }),
   }));
   return found;

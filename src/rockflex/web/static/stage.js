@@ -168,6 +168,12 @@ class Stage {
       stroke(whole(right), 2.4);
       const width = heights.length > 25 ? 1 : 3.2;
       for (let i = 1; i < heights.length; i++) stroke([at(left, i), at(right, i)], width);
+      if (this.view.leaning) {
+        // A column beside it, on a hinge, which the floors hold upright.
+        const beside = heights.map((z, i) => [1.2 * right + at(right, i)[0], z]);
+        stroke([[2.2 * right, 0], ...beside.slice(1)], 1.6);
+        for (let i = 1; i < heights.length; i++) stroke([at(right, i), beside[i]], 0.8);
+      }
       return;
     }
     stroke(whole(0), ["cantilever", "beam", "properties"].includes(kind) ? 5 : 7);
@@ -184,7 +190,7 @@ class Stage {
     const top = heights[heights.length - 1];
     for (const { kind, position, between, height, cosine } of elements) {
       if (between || height) {
-        this.#attached(frame, to, { kind, between, height, cosine });
+        this.#attached(g, frame, to, { kind, between, height, cosine });
         continue;
       }
       const tendon = kind === "tendon";
@@ -197,7 +203,7 @@ class Stage {
   }
 
   // A brace between floors, or a tie to the ground beside the structure.
-  #attached(frame, to, { kind, between, height, cosine }) {
+  #attached(g, frame, to, { kind, between, height, cosine }) {
     const { heights } = this.view;
     const [low, high] = this.edges();
     const bent = (x, z) => {
@@ -207,9 +213,9 @@ class Stage {
       return frame.place(x + this.amplification * sway, z);
     };
     const half = 0.6 * Math.min(-low, high);
-    const ends = between
-      ? [bent(-half, heights[between[0]] ?? 0), bent(half, heights[between[1]] ?? 0)]
-      : [[1.15 * (cosine < 0 ? high : low), height], bent(0, height)];
+    const [side, lean] = [cosine < 0 ? 1 : -1, Math.sqrt(1 - cosine ** 2) / Math.abs(cosine)];
+    const anchor = lean > 0.05 ? [(side * height) / lean, 0] : [2.5 * side * Math.max(-low, high), height]; // or at an abutment
+    const ends = between ? [bent(-half, heights[between[0]] ?? 0), bent(half, heights[between[1]] ?? 0)] : [anchor, bent(0, height)];
     const [from, end] = ends.map(to);
     g.strokeStyle = g.fillStyle = color(colorOf(kind));
     drawBetween(g, strokes(kind, Math.hypot(end[0] - from[0], end[1] - from[1])), from, end);
