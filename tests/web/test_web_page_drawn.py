@@ -193,3 +193,38 @@ def test_axe_finds_nothing(visit, link, tab, scheme) -> None:
     visitor.wait_for_results()
     found = axe.run(visitor.page).response["violations"]
     assert [(each["id"], [node["html"][:120] for node in each["nodes"]]) for each in found] == []
+
+
+def test_braces_ties_and_leaning_columns_are_drawn(visit, link) -> None:
+    held = [
+        {"kind": "yielding_dissipator", "stiffness": 5e7, "yield_force": 1e5, "between": [0, 2], "cosine": 0.8},
+        {"kind": "tendon", "height": 9.0, "initial_force": 1e5, "stiffness": 5e6, "cosine": -0.6},
+    ]
+    frame = as_json_value(PRESETS[0]["structure"])
+    colors = """() => {
+      const { canvas, height } = rockflexDrawn.player.stage;
+      const g = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", { willReadFrequently: true });
+      g.drawImage(canvas, 0, 0);
+      const { data } = g.getImageData(0, 0, canvas.width, canvas.height);
+      const count = (name) => {
+        const tone = getComputedStyle(document.documentElement).getPropertyValue(name).trim().slice(1);
+        const wanted = tone.match(/../g).map((part) => parseInt(part, 16));
+        let n = 0;
+        for (let i = 0; i < data.length; i += 4) n += wanted.every((value, k) => Math.abs(value - data[i + k]) < 40);
+        return n;
+      };
+      return [count("--fuse"), count("--tendons"), count("--structure")];
+    }"""
+    found = []
+    for more in ({}, {"elements": held}, {"elements": held, "leaning_masses": 2e4}):
+        visitor = visit(link({"structure": frame | more}))
+        visitor.page.wait_for_function("() => globalThis.rockflexDrawn?.view()")
+        visitor.page.evaluate("rockflexDrawn.player.move(0)")
+        found.append(visitor.page.evaluate(colors))
+    assert found[0][0] < 20  # edges of other lines
+    assert found[1][0] > 100
+    assert found[1][1] > found[0][1] + 100
+    assert found[2][2] > found[1][2] + 100
+    assert visitor.page.locator(".handle").evaluate_all("all => all.map((each) => each.dataset.handle)") == ["B", "H"]
+    visitor.respond()
+    assert visitor.page.locator("#elements tbody tr").count() == 2

@@ -387,10 +387,8 @@ def _answer_about_page() -> dict[str, Any]:
         "file": limits.MAX_FILE_BYTES,
         "files": limits.MAX_FOLDER_FILES,
         "folder": limits.MAX_FOLDER_BYTES,
-        "freedoms": limits.MAX_FREEDOMS,
         "duration": limits.MAX_DURATION,
         "models": limits.MAX_MODELS,
-        "runs": limits.MAX_STUDY_RUNS,
         "elements": limits.MAX_ELEMENTS,
     }
     first = PageState.model_validate(FIRST)

@@ -97,7 +97,6 @@ def _form_field(name: str, field: FieldInfo) -> dict[str, Any]:
         "default": None if hasattr(default, "model_fields") else default,
         "low": key.low,
         "high": key.high,
-        "infinite": key.high == math.inf,
         "fields": None if inner is None else _form_fields(inner),
     }
 

@@ -111,7 +111,8 @@ SKETCH = "2DOF-S"  # the model that is fast enough to follow a handle that is dr
 def sketch_view(state: PageState, uploads: UploadedRecords, *, quick: bool) -> dict[str, Any]:
     """Return how the first model that lifts moves, and what a fixed base under the same record would do.
 
-    A `quick` one, and one that would take long, has one mode. Where no run is possible, a note says why. The fixed base stands on rigid ground.
+    A `quick` one, and one that would take long, has one mode. Where no run is possible, a note says why. The fixed base
+    stands on rigid ground.
     """
     built = build_page_structure(state.structure)
     p = built.properties
@@ -168,8 +169,6 @@ def response_view(
     return as_json_value(
         {
             **structure_outline_view(state.structure, built),
-            "motion": motion.name,
-            "duration": motion.duration,
             "nominal": p.nominal_overturning_rotation,
             "models": curves,
             "ground": ground_view(ground_under_page_structure(state.ground, p), p),
@@ -212,7 +211,6 @@ def _response_curves(
         "warnings": warnings_of(response.model, response.peaks()),  # the energies of one model only are computed
         "lifts": history.model.lifts,
         "fall_time": _overturning_time(history),
-        "uplift_times": history.uplift_times[:MAX_EVENT_NODES],
         "impact_times": history.impact_times[:MAX_EVENT_NODES],
         "t": pack_array_as_base64(history.time[kept]),
         **{name: pack_array_as_base64(getattr(history, name)[kept]) for name in CURVES},
@@ -242,9 +240,7 @@ def base_motion_curves(history: History) -> dict[str, Array]:
     return curves
 
 
-def _thinned_history_nodes(
-    history: History, pulled: Array | None, base: list[Array], points: int
-) -> NDArray[np.intp]:
+def _thinned_history_nodes(history: History, pulled: Array | None, base: list[Array], points: int) -> NDArray[np.intp]:
     """Return the nodes that are sent: the extremes of every interval, and both sides of the events.
 
     `pulled` is the force of an element in N, if one is drawn, and `base` how the base moves on its ground.

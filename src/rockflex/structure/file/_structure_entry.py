@@ -266,7 +266,7 @@ class _OwnStructures(TomlTable):
     ] = None
     stories: Annotated[
         StoriesTable | None,
-        SchemaKey("a table", label="Stories that yield", form=PLAIN, page="the shear at which stories yield, if they do"),
+        SchemaKey("a table", label="Stories that yield", form=PLAIN, page="the shear at which they yield"),
     ] = None
     eccentricity: Eccentricity = None
     tendons: Annotated[

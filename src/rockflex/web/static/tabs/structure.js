@@ -79,8 +79,7 @@ export default function structureTab(app) {
   const options = runs(app, () => null);
   const facts = h("div");
   const more = folded("modes", "Modes, masses, and which model to use", facts);
-  const results = h("div", { class: "results" }, more,
-    app.next("response", "Next: see forces and energies over time."));
+  const results = h("div", { class: "results" }, more, app.next("response", "Next: see forces and energies over time."));
   const element = h("div", { class: "columns first" }, shown.player.element,
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       h("fieldset", {}, preset, shown.quick.element, h("p", { class: "error foot", role: "alert" })),
@@ -161,6 +160,7 @@ export default function structureTab(app) {
     put(next, anew);
   }
 
+  results.append(app.downloads(element, [["report", "Report (HTML)"], ["modes", "Modes (SVG)"], ["structure", "Structure (TOML)"]]));
   let quick = false; // whether the drawing alone is needed
   const load = latest(async () => {
     const fast = quick;
@@ -200,7 +200,6 @@ export default function structureTab(app) {
       view.ground?.facts.length ? h("h2", {}, "Springs under the base") : "",
       view.ground?.facts.length ? h("dl", { class: "values", id: "springs" }, view.ground.facts.map(parameter)) : "",
       table(view),
-      app.downloads(element, [["modes", "Modes (SVG)"], ["structure", "Structure (TOML)"]]),
     ];
   }
 
