@@ -124,6 +124,16 @@ def test_springs_are_dragged_in_pairs(visit, link) -> None:
     assert visitor.page.locator('[data-path="ground.springs.positions"] input').input_value() == f"{left:g}, {right:g}"
 
 
+@pytest.mark.parametrize("tab", ["structure", "response"])
+def test_on_a_phone_the_drawing_stays_in_sight(visit, link, tab) -> None:
+    visitor = visit(link({"structure": as_json_value(PIER), "tab": tab}), viewport={"width": 420, "height": 860})
+    page = visitor.page
+    page.wait_for_selector(".pinned canvas")
+    page.evaluate("scrollTo(0, 900)")
+    assert page.evaluate("scrollY") == 900
+    assert page.locator(".pinned").bounding_box()["y"] == 0.0
+
+
 @pytest.mark.parametrize("place", range(len(PRESETS)))
 def test_what_is_dragged_alone_changes(client, visit, link, place) -> None:
     """Of every structure that the page has: width and height as wanted, and the others as they were."""
