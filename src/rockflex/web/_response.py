@@ -116,13 +116,13 @@ def sketch_view(state: PageState, uploads: UploadedRecords, *, quick: bool) -> d
     """
     built = build_page_structure(state.structure)
     p = built.properties
+    ground = ground_under_page_structure(state.ground, p)
     lifting = next((label for label in state.models if parse_model(label).lifts), "MDOF-S" if p.n_modes else "rigid")
     labels = [lifting, "fixed"] if p.n_modes else [lifting]
     simpler = [SKETCH, "1DOF-fixed"] if p.n_modes and not parse_model(lifting).yields and not p.stories else labels
     found = list[Response]()
     try:
         motion = chosen_motion(state.record, uploads).scaled(state.scale)
-        ground = ground_under_page_structure(state.ground, p)
 
         def case(label: str, *, main: bool) -> PreparedCase:
             with errors_as_refusals("models", f"{label}: "):
