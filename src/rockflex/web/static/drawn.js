@@ -235,8 +235,12 @@ function few(app, shown, settle) {
     const view = shown();
     const { record: now, scale: by } = app.state;
     const chosen = now.source === "suite" ? `${now.suite}|${now.name}` : now.source;
-    const other = known.some(([value]) => value === chosen) ? [] : [[chosen, now.source === "suite" ? now.name : "your own record"]];
-    record.setOptions([...other, ...known, ["more", "others: suites, pulses, your files …"]], chosen);
+    if (record.dataset.listed !== `${known.length} ${chosen}`) { // not at every move of a handle
+      const other = known.some(([value]) => value === chosen) ? [] : [[chosen, now.source === "suite" ? now.name : "your own record"]];
+      record.setOptions([...other, ...known, ["more", "others: suites, pulses, your files …"]], chosen);
+      record.dataset.listed = `${known.length} ${chosen}`;
+    }
+    record.setValue(chosen);
     scale.setValue(by);
     const found = view ? measures(view.of, view, app.about.kinds) : {};
     for (const [name, each] of Object.entries(fields)) {

@@ -250,12 +250,13 @@ export function ground(app, shown) {
   let drawn = null;
   element.refresh = () => {
     const { ground: given } = app.state;
-    const key = JSON.stringify([kindOf(given), given?.friction !== undefined, given?.springs?.positions]);
+    const key = JSON.stringify([kindOf(given), given?.friction !== undefined]);
     const [, title] = KINDS.find(([name]) => name === kindOf(given));
     element.querySelector("summary").textContent = `Ground: ${title}${given?.friction === undefined ? "" : ", can slide"}`;
-    if (key === drawn) return;
+    if (key !== drawn) form();
     drawn = key;
-    form();
+    const box = fields.querySelector('[data-path="ground.springs.positions"] input'); // springs can be dragged
+    if (box && box !== document.activeElement) box.value = [given.springs.positions ?? []].flat().join(", ");
   };
   return element;
 }
