@@ -84,9 +84,9 @@ def test_a_warning_is_seen(visit, link) -> None:
 
 @pytest.mark.web
 @pytest.mark.parametrize("tab", ["structure", "earthquake", "response", "fragility", "design"])
-def test_a_tab_on_paper(visit, tab) -> None:
+def test_a_tab_on_paper(visit, link, client, tab) -> None:
     pypdf = pytest.importorskip("pypdf", reason="pages are read by pypdf, of rockflex[dev]")
-    visitor = visit(color_scheme="dark")
+    visitor = visit(link(client.state()), color_scheme="dark")
     page = visitor.page
     visitor.tab(tab)
     if tab == "response":
