@@ -7,6 +7,8 @@ INSTALLED := $(VENV)/.installed
 READY  := $(VENV)/.ready
 # OpenQuake and Pelicun, whose requirements would take the packages of the others back to older versions.
 RISK   := $(VENV)-risk
+# The oldest versions that pyproject.toml allows.
+LOWEST := $(VENV)-lowest
 # Python compiles a module at its first import; pip would compile thousands that are never imported.
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 # The engine is compiled by the tools in .venv, which also compile it anew at the next import after a change.
@@ -19,8 +21,12 @@ export AR := $(abspath $(BIN))/python -m ziglang ar
 TOOLS += ziglang
 endif
 WORKERS ?= 2
+# A file of each layer, and of each library.
+LOWEST_TESTS := engine unit/test_structure_file.py unit/test_motion_readers.py unit/test_motion_targets.py \
+	unit/test_response_history.py unit/test_response_exports.py unit/test_study_cloud.py unit/test_study_run.py \
+	unit/test_fragility_lognormal.py unit/test_plot_history.py unit/test_run_report.py unit/test_cli_run.py
 
-.PHONY: demo figures test test-portable test-sanitized check lint types docs validate bench records clean help
+.PHONY: demo figures test test-portable test-sanitized test-lowest check lint types docs validate bench records clean help
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' Makefile | sed -E 's/:[^#]*## */\t/' | expand -t 15
@@ -63,6 +69,17 @@ test-sanitized: $(READY)  ## the engine and runs of all models with every index 
 		UBSAN_OPTIONS=halt_on_error=1 $(BIN)/python -m pytest -p no:xdist tests/engine \
 		tests/unit/test_solve_batch.py tests/validation/test_same_bits.py
 
+$(LOWEST)/bin/uv:
+	$(PYTHON) -m venv $(LOWEST)
+	$(LOWEST)/bin/python -m pip install --quiet --disable-pip-version-check uv
+
+test-lowest: export VIRTUAL_ENV := $(abspath $(LOWEST))
+test-lowest: $(LOWEST)/bin/uv  ## quick tests of every layer with the oldest versions of what the package needs
+	$(LOWEST)/bin/uv pip install --quiet --resolution lowest-direct --reinstall-package rockflex .
+	$(LOWEST)/bin/uv pip install --quiet 'pytest>=8.2' 'hypothesis>=6.100' 'cython>=3.1' mpmath tomli-w
+	$(LOWEST)/bin/python -m pytest -p no:cacheprovider -W default::DeprecationWarning -m "not slow and not web" \
+		$(addprefix tests/,$(LOWEST_TESTS))
+
 check: lint types $(READY)  ## lint, types and the quick tests, before each commit
 	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow and not web"
 
@@ -100,5 +117,5 @@ records: $(READY)  ## regenerate the embedded records from the packages that shi
 	$(BIN)/python scripts/convert_records.py
 
 clean:  ## remove everything that the targets created
-	rm -rf $(VENV) $(RISK) out build dist .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(RISK) $(LOWEST) out build dist .pytest_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

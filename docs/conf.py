@@ -25,7 +25,7 @@ extensions = [
     "figures",
     "signatures",
 ]
-exclude_patterns = ["_build", "_extensions", "_templates", "gallery/*.py", "gallery/*.ipynb"]
+exclude_patterns = ["_build", "_extensions", "_templates", "joss", "gallery/*.py", "gallery/*.ipynb"]
 templates_path = ["_templates"]
 nitpicky = True
 

@@ -8,7 +8,7 @@ import numpy as np
 import rockflex as rf
 from rockflex.models import element_force_sums
 from rockflex.models._fields import RockingField
-from rockflex.models._nonlinear import numbers_of
+from rockflex.models._vector_fields import numbers_of
 
 # Structure #1 of Table 1 of Silva & Stojadinović (2024): five stories that shear, T_1 = 1 s, h*_1/B = 10.
 STRUCTURE_1: dict[str, Any] = {

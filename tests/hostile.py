@@ -1,5 +1,6 @@
 """Hostile arguments: what calls are made with, one argument at a time replaced by something it cannot be."""
 
+import dataclasses
 import math
 from collections.abc import Callable, Iterator
 from datetime import date
@@ -280,6 +281,16 @@ def studies() -> Calls:
     return {
         "simulate": (rf.simulate, {"structure": structure, "motion": motion, **RUN, **SHAKEN}),
         "simulate_many": (rf.simulate_many, given | SHAKEN | MANY | {"output": "peaks", "initial": None}),
+        "simulate_set": (
+            rf.simulate_set,
+            {"structure": structure, "motions": motion, "model": "2DOF-S", "rule": None, "periods": (0.2, 1.0),
+             "initial": None, "workers": 1, **SHAKEN},
+        ),
+        "check": (rf.check, {"result": rf.simulate(structure, motion), "limits": rf.CheckLimits()}),
+        "CheckLimits": (
+            rf.CheckLimits,
+            {each.name: 0.5 for each in dataclasses.fields(rf.CheckLimits)},
+        ),
         "run_cloud": (rf.run_cloud, given | SHAKEN | MANY | {"friction": False}),
         "run_incremental": (rf.run_incremental, given | SHAKEN | LADDER | {"workers": 1}),
         "run_design": (

@@ -152,6 +152,27 @@ class InitialStateKeys:
     ] = None
 
 
+class ReportKeys:
+    """What the head of a report says."""
+
+    title: Annotated[
+        str | None, SchemaKey("the heading of the report, in quotes", form=PLAIN, flag="report_title", metavar="TEXT")
+    ] = None
+    project: Annotated[
+        str | None, SchemaKey("the project, in quotes", form=PLAIN, flag="report_project", metavar="TEXT")
+    ] = None
+    author: Annotated[
+        str | None, SchemaKey("the author, in quotes", form=PLAIN, flag="report_author", metavar="TEXT")
+    ] = None
+    checker: Annotated[
+        str | None, SchemaKey("who checked it, in quotes", form=PLAIN, flag="report_checker", metavar="TEXT")
+    ] = None
+    date: Annotated[
+        str | None,
+        SchemaKey("the date, in quotes", form=PLAIN, flag="report_date", metavar="TEXT", hint="Default: today."),
+    ] = None
+
+
 BaseMass = Annotated[float, SchemaKey("the mass of the base", "kg", low=0.0, high=1e12)]
 Period = Annotated[float, SchemaKey("the first period on a fixed base", "s", low=0.01, high=60.0)]
 AspectRatio = Annotated[

@@ -96,6 +96,7 @@ MAX_LINES_OF_ONE_TOPIC = 900  # of a module that is one class, or figures of one
 ONE_TOPIC = {
     "rockflex.response._history",
     "rockflex.engine.flow",
+    "rockflex.models._rocking_model",
     *(f"rockflex.plot._{each}" for each in ("fragility", "history", "loops")),
 }
 

@@ -7,7 +7,7 @@ import pytest
 
 import rockflex as rf
 from builders import NO_MODES, frame_values
-from rockflex.models import LinearModel, Model, accelerations, acting_side, parse_model, reactions
+from rockflex.models import Model, accelerations, acting_side, parse_model, reactions
 from rockflex.response import respond, tracked_quantities
 from rockflex.solve import Engine
 from twins import impact_laws
@@ -144,7 +144,7 @@ def test_a_structure_whose_tendons_balance_the_weight_is_near_the_one_just_besid
     for share in (1.0, 0.985):
         tied = rf.Restrained(frame, rf.Tendon(1e3, share * stiffness)).rocking()
         model = Model(1).of(tied)
-        assert isinstance(model, LinearModel)
+        assert not model.integrated
         ends.append(run(model, horizontal, dt, vertical))
     assert ends[0].max_rotation == pytest.approx(ends[1].max_rotation, rel=0.05)
     assert ends[0].energy.closing_error < 1e-9

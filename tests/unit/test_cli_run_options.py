@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 import rockflex as rf
 from builders import make_frame
 from rockflex.cli import _batch, app
-from rockflex.models import LinearModel, _label
+from rockflex.models import RockingModel, _label
 from rockflex.study import PreparedCase
 
 STRUCTURE = str(Path(rf.__file__).parents[2] / "examples" / "structure_1.toml")
@@ -229,7 +229,7 @@ def made(monkeypatch):
 
     def grounded(label, kept, ground, law, missing_mass, **_kind):
         grounds.append(ground)
-        return LinearModel(label, kept, True, law or rf.VVELSimplified(), missing_mass)
+        return RockingModel(label, kept, True, law or rf.VVELSimplified(), missing_mass)
 
     monkeypatch.setattr(_label, "model_on_ground", grounded)
     return grounds

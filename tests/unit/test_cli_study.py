@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+from PIL import Image
 from typer.testing import CliRunner
 
 import rockflex as rf
@@ -379,6 +380,21 @@ def test_figures_replace_nothing_unless_told_to(tmp_path):
         assert refused.exit_code == 2
         assert refused.stderr.strip() == f"Error: {message}"
     assert not Path(folder / "figures").exists()
+
+
+def test_figures_of_a_size_and_a_theme(tmp_path):
+    folder = kept(tmp_path, "stripes")
+    for size, width in (("column", 3.5), ("120x60", 120 / 25.4)):
+        done = invoke_figures(folder, "--size", size, "--theme", "dark", "--force")
+        assert done.exit_code == 0, done.stderr
+        with Image.open(folder / "figures" / "stripes.png") as drawn:
+            assert drawn.width == pytest.approx(200 * width, abs=1)
+            assert sum(drawn.convert("RGB").getpixel((0, 0))) < 100
+    for flag, given in (("--size", "wide"), ("--size", "0x60"), ("--theme", "night")):
+        refused = invoke_figures(folder, flag, given, "--force")
+        assert refused.exit_code == 2
+        assert flag[2:] in refused.stderr
+        assert "was given" in refused.stderr
 
 
 def test_figures_of_no_study(tmp_path):

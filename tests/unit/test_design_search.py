@@ -528,7 +528,7 @@ def test_a_search_is_run_kept_told_and_drawn(tmp_path, level, hazard):
     figures = invoke("figures", kept)
     assert figures.exit_code == 0, figures.stderr
     names = sorted(path.name for path in (kept / "figures").iterdir())
-    assert names == ["design_search.png", "design_search_dark.png", "summary.json"]
+    assert names == ["design_search.png", "summary.json"]
 
 
 # The figure
@@ -553,21 +553,6 @@ def test_a_search_is_drawn(found):
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.texts][:2] == [each.label for each in found.requirements]
     assert f"{found.governs} governs" in legend.get_title().get_text()
-
-
-def test_themes_differ(found, tmp_path):
-    light, dark = (drawn(rf.plot_design_search(found, theme=theme)) for theme in ("light", "dark"))
-    assert sum(light.get_facecolor()[:3]) == 3.0
-    assert sum(dark.get_facecolor()[:3]) < 0.5
-    for figure, bright in ((light, False), (dark, True)):
-        for axes in figure.axes:
-            for tick in axes.xaxis.get_ticklabels():
-                from matplotlib.colors import to_rgb
-
-                assert (sum(to_rgb(tick.get_color())) > 1.5) == bright
-    with pytest.raises(rf.InputError) as caught:
-        rf.plot_design_search(found, theme="night")
-    assert str(caught.value) == 'theme must be "light" or "dark", but \'night\' was given.'
 
 
 def test_a_search_that_found_nothing_is_drawn(folder):

@@ -9,7 +9,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.models import LinearModel, _label
+from rockflex.models import RockingModel, _label
 from rockflex.structure.file import TomlTable, parse_toml_table
 from rockflex.study.spec import GroundTable
 
@@ -63,7 +63,22 @@ def test_a_bed_with_the_ends_of_asce_41():
     assert under(text + "\nheave_damping_ratio = 0.3").springs == rf.asce41_bed(B, 3.0, 2e7, 0.35).damped(0.3, MASS)
 
 
+def test_a_bed_with_the_stiffness_of_gazetas():
+    text = "[ground]\nbase_inertia = 3e4\n[ground.bed]\nbreadth = 3.0\nshear_modulus = 2e7\npoisson_ratio = 0.35\n"
+    aside = rf.Eccentric(FRAME, 0.1).rocking()
+    for properties in (PROPERTIES, aside):
+        soil, e = (properties.half_width, 3.0, 2e7, 0.35), properties.eccentricity
+        bed = under(text + 'method = "gazetas"', properties).springs
+        assert bed == rf.gazetas_bed(*soil, eccentricity=e)
+        two = under(text + 'method = "gazetas"\nn = 2\ndensity = 1.9e3', properties).springs
+        assert two == rf.gazetas_bed(*soil, n=2, density=1.9e3, eccentricity=e)
+    zone = under(text + 'method = "gazetas"\nend_zone = 0.2\nheave_damping_ratio = 0.3').springs
+    assert zone == rf.gazetas_bed(B, 3.0, 2e7, 0.35, end_zone=0.2).damped(0.3, MASS)
+    assert under(text + 'method = "asce41"').springs == rf.asce41_bed(B, 3.0, 2e7, 0.35)
+
+
 BED = "[ground]\nbase_inertia = 3e4\n[ground.bed]\nbreadth = 3.0\n"
+GAZETAS = BED + 'shear_modulus = 2e7\npoisson_ratio = 0.3\nmethod = "gazetas"\n'
 SPRINGS = "[ground]\nbase_inertia = 3e4\n[ground.springs]\nstiffness = 4e8\n"
 
 
@@ -93,6 +108,11 @@ SPRINGS = "[ground]\nbase_inertia = 3e4\n[ground.springs]\nstiffness = 4e8\n"
          "shear_modulus and poisson_ratio. Leave one of them out.", "ground.bed.subgrade_modulus"),
         (BED + "shear_modulus = 2e7\npoisson_ratio = 0.3\nend_ratio = 2.0", "[ground.bed]: end_ratio was given besides "
          "the shear_modulus, whose end zones are those of ASCE 41. Leave one of them out.", "ground.bed.end_ratio"),
+        (GAZETAS.replace("gazetas", "asce41") + "density = 2e3", "[ground.bed]: density is for", "ground.bed.density"),
+        (GAZETAS + "end_ratio = 2.0", "[ground.bed]: end_ratio was given besides", "ground.bed.end_ratio"),
+        (GAZETAS + "damping = 1e6", "[ground.bed]: damping was given besides", "ground.bed.damping"),
+        (GAZETAS + "density = 2e3\nheave_damping_ratio = 0.1", "[ground.bed]: density was", "ground.bed.density"),
+        (BED + "subgrade_modulus = 4e7\nmethod = 'gazetas'", "[ground.bed]: method was given", "ground.bed.method"),
         (BED + "subgrade_modulus = -4e7", "[ground.bed]: subgrade_modulus", "ground.bed.subgrade_modulus"),
     ],
 )  # fmt: skip
@@ -132,7 +152,7 @@ def made(monkeypatch):
 
     def grounded(label, kept, ground, law, missing_mass, **_kind):
         grounds.append(ground)
-        return LinearModel(label, kept, True, law or rf.VVELSimplified(), missing_mass)
+        return RockingModel(label, kept, True, law or rf.VVELSimplified(), missing_mass)
 
     monkeypatch.setattr(_label, "model_on_ground", grounded)
     return grounds

@@ -162,13 +162,6 @@ def test_the_simplified_field_is_the_linear_model():
             assert rates[3] == pytest.approx(float(linear.angular_acceleration(key) @ vector), rel=1e-9)
 
 
-def test_a_model_made_of_its_own_is_complete():
-    from rockflex.models import NonlinearModel
-
-    model = NonlinearModel("mine", pair(1, complete=True)[0].properties)
-    assert (model.lifts, model.complete, model.bouc_wen, model.law.keeps[:3]) == (True, True, None, "the")
-
-
 @pytest.mark.parametrize(("n", "complete", "spring"), CASES)
 @pytest.mark.parametrize("side", [1, -1, 0])
 def test_many_states_in_one_call(n, complete, spring, side):

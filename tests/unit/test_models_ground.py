@@ -7,7 +7,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.models import LinearModel, _label
+from rockflex.models import RockingModel, _label
 
 FRAME = make_frame(n_stories=2, period=0.5, aspect_ratio=8.0)
 PROPERTIES = FRAME.rocking()
@@ -26,7 +26,7 @@ def made(monkeypatch):
 
     def grounded(label, kept, ground, law, missing_mass, **_kind):
         calls.append((label, ground, law))
-        return LinearModel(label, kept, True, law or rf.VVELSimplified(), missing_mass)
+        return RockingModel(label, kept, True, law or rf.VVELSimplified(), missing_mass)
 
     monkeypatch.setattr(_label, "model_on_ground", grounded)
     return calls

@@ -8,7 +8,7 @@ import pytest
 
 from builders import make_frame
 from rockflex import ImpactLaw, InputError, Restitution, VVELComplete, VVELSimplified
-from rockflex.models import ForgottenLaw, NonlinearModel, Quantities, SidedRestitution, nonlinear_system
+from rockflex.models import ForgottenLaw, Quantities, RockingModel, SidedRestitution, nonlinear_system
 from rockflex.models._landing import velocities_after
 
 FRAME = make_frame(n_stories=4, base_mass=60e3, stiffness_ratio=0.125, period=0.6, aspect_ratio=6.0)
@@ -61,7 +61,7 @@ def landed(law, p, state):
 
 def applied(law, p, state, onward=1.0):
     """What a model makes of a state at an impact, under ground that drives the rotation on or, if -1, back."""
-    model, n = NonlinearModel("mine", p, law=law), p.n_modes
+    model, n = RockingModel("mine", p, law=law, complete=True), p.n_modes
     phase = nonlinear_system(model, Quantities.none(n)).phase(model.start(1 if state[-1] < 0.0 else -1))
     (impact,) = (event for event in phase.events if event.name == "impact")
     full = np.concatenate((state, np.zeros(model.layout.size - state.size)))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from builders import make_frame
-from rockflex.models import LinearModel, Model, Quantities, system_of
+from rockflex.models import Model, Quantities, RockingModel, system_of
 
 GRAVITY = 9.81
 
@@ -74,4 +74,4 @@ def test_with_all_modes_the_free_inertia_is_that_of_the_half_width():
     # Σ m* h*² = Σ m h² then, so that m_tot B² is left of I_θ.
     p = model(4).properties
     for side in (1, -1):
-        assert LinearModel("MDOF-S", p).free_inertia(side) == pytest.approx(p.m_tot * p.half_width**2, rel=1e-9)
+        assert RockingModel("MDOF-S", p).free_inertia(side) == pytest.approx(p.m_tot * p.half_width**2, rel=1e-9)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from builders import make_frame, vector_field
-from rockflex.models import SWAY, NonlinearModel
+from rockflex.models import SWAY, RockingModel
 
 SMALL, SMALLER = math.pi / 4, 0.125  # rad: up to which there are series
 ROTATIONS = np.concatenate(
@@ -21,7 +21,7 @@ ROTATIONS = np.concatenate(
 
 def sines_and_cosines(rotations):
     """Of a point 1 m above the middle of a base whose edge is there, and of one displaced by 1 m."""
-    model = NonlinearModel("rigid-C", make_frame().rocking().truncated(0))
+    model = RockingModel("rigid-C", make_frame().rocking().truncated(0), complete=True)
     field = vector_field(model, 0, kinds=[SWAY, SWAY], levers=np.array([[1.0, 0.0], [0.0, 0.0]]))
     motion, still = np.zeros((rotations.size, model.layout.size)), np.zeros(rotations.size)
     motion[:, model.layout.rotation] = rotations

@@ -11,7 +11,7 @@ from scipy.linalg import expm
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.models import GROUND, HEADER, RISE, SIDE, TIME, Model, MotionBetween, NonlinearModel, accelerations
+from rockflex.models import GROUND, HEADER, RISE, SIDE, TIME, Model, MotionBetween, RockingModel, accelerations
 from rockflex.models._kept import _codes
 from twins.exact import Exact
 from twins.frame import frame_properties
@@ -159,7 +159,7 @@ def test_the_fastest_of_all_phases(name):
     size, (model, contact), (_, rocking) = 2 * FRAMES[name][0] + 2, twin_of(name, 0), twin_of(name, 1)
     expected = max(np.abs(np.linalg.eigvals(each[:size, :size])).max() for each in (contact, rocking))
     assert MotionBetween(model).fastest == pytest.approx(expected, rel=1e-9)
-    complete = NonlinearModel(model.label, model.properties)
+    complete = RockingModel(model.label, model.properties, complete=True)
     assert MotionBetween(complete).fastest == pytest.approx(expected, rel=1e-9)
 
 

@@ -12,7 +12,7 @@ import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
-from matplotlib.colors import to_hex
+from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
@@ -57,6 +57,11 @@ def cloud():
     motions = {str(a): rf.ricker_pulse(2.5, a) for a in (0.5, 0.8, 1.2)}
     structures = {LONG: FRAME, "#2": make_frame(period=0.6)}
     return rf.run_cloud(structures, motions, ["2DOF-S", "3DOF-S"], scales=[0.3, 0.6, 1.0, 1.7, 3.0])
+
+
+@cache
+def record_set():
+    return rf.simulate_set(FRAME, {LONG: PULSE, "#2": RECORD}, "2DOF-S")
 
 
 def pushed() -> rf.Pushover:
@@ -139,6 +144,7 @@ ARGUMENTS = {
     "plot_fragility": lambda: (cloud(),),
     "plot_frequency_equation": lambda: ({LONG: FRAME, "#2": make_frame(aspect_ratio=5.0)},),
     "plot_frequency_ratios": lambda: (ratios(),),
+    "plot_comparison": lambda: (rf.compare({LONG: FRAME, "other": make_frame(period=0.6)}, RECORD),),
     "plot_history": lambda: (responses(),),
     "plot_hysteresis": lambda: (yielding(),),
     "plot_ida": lambda: (ladders(),),
@@ -153,6 +159,7 @@ ARGUMENTS = {
     "plot_pushover": lambda: (pushed(), pushed().fit()),
     "plot_rocking_spectrum": lambda: (spectrum(),),
     "plot_selection": lambda: (rf.load_suite("fema-p695-far-field").select(rf.ec8_spectrum(2.5, "C"), 7, (0.2, 2.0)),),
+    "plot_set": lambda: (record_set(),),
     "plot_spread": lambda: spread(),
     "plot_stripes": lambda: (stripes(),),
     "plot_tower": lambda: (tower(),),
@@ -207,7 +214,7 @@ def test_in_a_column_no_text_runs_into_another_or_off_the_figure(name, given, mo
     assert figure.get_size_inches()[0] == 3.5
     texts = written(figure, monkeypatch)
     assert texts
-    assert min(text.get_fontsize() for text in figure.findobj(Text) if text.get_text().strip()) >= 5.5
+    assert min(text.get_fontsize() for text in figure.findobj(Text) if text.get_text().strip()) >= 7.0
     room = figure.bbox.padded(1.5)
     assert [text for text, box in texts if not (room.contains(*box.min) and room.contains(*box.max))] == []
     assert [(a, b) for (a, p), (b, q) in combinations(texts, 2) if overlaps(p, q)] == []
@@ -274,6 +281,63 @@ def test_on_a_dark_background_black_turns_into_the_colour_of_the_text():
         figure = rf.plot_motion(PULSE)
     assert to_hex(figure.axes[0].get_facecolor()) == "#000000"
     assert to_hex(figure.axes[0].get_lines()[0].get_color()) == "#ffffff"
+
+
+@pytest.mark.parametrize("name", ARGUMENTS)
+def test_in_every_theme_what_is_written_stands_out(name, given):
+    for theme, bright in (("dark", True), ("journal", False)):
+        with rf.figure_style(theme):
+            figure = getattr(rf, name)(*given(name))
+        figure.draw_without_rendering()
+        assert (sum(to_rgb(figure.get_facecolor())) < 0.5) == bright
+        grounds = {sum(to_rgb(axes.get_facecolor())) / 3.0 for axes in figure.axes if axes.patch.get_visible()}
+        assert all((ground < 0.5) == bright for ground in grounds)
+        ticks = [label for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) for label in axis.get_ticklabels()]
+        words = [text for text in (*ticks, *figure.findobj(Text)) if text.get_text().strip() and text.get_visible()]
+        assert words
+        darkest = "#14181d" if bright else "#ffffff"
+        faint = {(text.get_text(), text.get_color()) for text in words if contrast(text.get_color(), darkest) < 1.9}
+        assert faint == set()
+
+
+def contrast(one, other):
+    """The ratio of contrast of two colours, as WCAG 2 defines it: from 1 to 21."""
+
+    def luminance(color):
+        parts = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(color)]
+        return np.dot([0.2126, 0.7152, 0.0722], parts)
+
+    low, high = sorted(luminance(color) + 0.05 for color in (one, other))
+    return high / low
+
+
+def test_a_block_of_a_style_and_a_size_of_one_figure():
+    with rf.figure_style("journal", "column"):
+        one, other = rf.plot_motion(PULSE), rf.plot_motion(PULSE, size="page")
+        with rf.figure_style("dark"):
+            inner = rf.plot_motion(PULSE)
+    after = rf.plot_motion(PULSE)
+    assert [each.get_size_inches()[0] for each in (one, other, inner, after)] == [3.5, 7.2, 7.2, 7.2]
+    grids = [each.axes[0].xaxis.get_gridlines()[0].get_visible() for each in (one, other, inner, after)]
+    assert grids == [False, False, True, True]
+    assert sizes(other) == pytest.approx([8.0, 8.0, 64 / 9, 64 / 9])
+    assert to_hex(inner.axes[0].get_lines()[0].get_color()) == "#d7dbe0"
+
+
+def test_open_symbols_stay_open_on_dark_ground(given):
+    with rf.figure_style("dark"):
+        figure = rf.plot_design_search(*given("plot_design_search"))
+    lines = {line.get_label(): line for line in figure.legends[0].get_lines()}
+    assert lines["run, does not"].get_markerfacecolor() == "none"
+    assert to_hex(lines["run, meets all targets"].get_markerfacecolor()) == "#d7dbe0"
+
+
+def test_another_theme_is_refused():
+    with pytest.raises(rf.InputError, match="'light', 'dark', 'journal', but 'night' was given") as caught:
+        rf.figure_style("night").__enter__()
+    assert caught.value.field == "theme"
+    with pytest.raises(rf.InputError, match="size must be"), rf.figure_style(size="high"):
+        pass
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ import pytest
 import rockflex as rf
 from builders import make_frame
 from rockflex._constants import GRAVITY
-from rockflex.models import ForgottenLaw, NonlinearModel, SidedRestitution
+from rockflex.models import ForgottenLaw, RockingModel, SidedRestitution
 from rockflex.study import PreparedCase
 
 MOTION = rf.GroundMotion(rf.load_suite("el-centro-1940")[0].acceleration[60:210] * 2.5, 0.02, name="El Centro, début")
@@ -93,8 +93,7 @@ def assert_same(back, run):
     one, other = back.history.model, run.history.model
     assert type(one) is type(other)
     assert (one.label, one.lifts) == (other.label, other.lifts)
-    if isinstance(other, NonlinearModel):
-        assert (one.complete, one.bouc_wen) == (other.complete, other.bouc_wen)
+    assert (one.complete, one.bouc_wen, one.integrated) == (other.complete, other.bouc_wen, other.integrated)
 
 
 @pytest.mark.parametrize(("structure", "model", "options"), RUNS.values(), ids=RUNS)
@@ -417,11 +416,11 @@ def test_a_run_of_elements_that_balanced_the_weight_is_read_as_it_was_written(tm
     """Once such simplified models were integrated, and their states hold energies, too."""
     p = FRAME.rocking()
     held = rf.Restrained(FRAME, [rf.Tendon(1e5, p.l0r * GRAVITY / p.half_width**2, yield_force=1e9), *more]).rocking()
-    model = NonlinearModel("MDOF-S", held, complete=False)
+    model = RockingModel("MDOF-S", held, stepwise=True)
     run = PreparedCase(model, history=True, floors=True).run(MOTION)
     back = rf.Response.load(run.save(tmp_path / "run"))
     assert_same(back, run)
-    assert isinstance(back.history.model, NonlinearModel)
+    assert back.history.model.integrated
     assert back.n_impacts > 3
     assert back.energy.closing_error < 1e-9
     assert back.settled_rotation() == pytest.approx(run.settled_rotation(), abs=1e-12)

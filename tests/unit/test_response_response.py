@@ -38,6 +38,8 @@ METHODS = (
     "resample",
     "to_frame",
     "to_xarray",
+    "to_matlab",
+    "to_netcdf",
     "floor_motion",
     "floor_spectrum",
     "settled_rotation",

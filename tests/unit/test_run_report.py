@@ -320,7 +320,7 @@ def test_values_out_of_range(one, tmp_path):
 
 def test_paths_that_are_no_page(one, tmp_path):
     refused("path", "folder", one, tmp_path)
-    refused("path", ".html", one, tmp_path / "r.pdf")
+    refused("path", ".html", one, tmp_path / "r.txt")
     refused("path", ".html", one, tmp_path / "r")
     (tmp_path / "file").write_text("x")
     refused("path", "Cannot write to", one, tmp_path / "file" / "r.html")
@@ -483,7 +483,7 @@ def test_the_hash_tells_inputs_apart(monkeypatch):
     ]
 
     # Figures, which are the same whatever the hash is, take the time.
-    monkeypatch.setattr(_report_page, "_run_report_page_as_html", lambda page, _: page.inputs)
+    monkeypatch.setattr(_report_page, "page_as_html", lambda page, _: page.inputs)
 
     def hashes(run, motion):
         return [_report_page.run_report_as_html(run, motion=each) for each in (None, motion)]

@@ -12,6 +12,7 @@ from pydantic import ValidationError
 
 import rockflex as rf
 from builders import PROPERTIES, frame_values
+from rockflex.modal import PLACE
 from rockflex.structure.file import ELEMENTS, KINDS, StructureEntry, TomlTable, parse_toml_table, schema_key_of_field
 
 EXAMPLES = Path(rf.__file__).parents[2] / "examples"
@@ -268,6 +269,33 @@ ARGUMENTS = {
     },
     "viscous_damper": {"position": -0.6, "coefficient": 3e5},
     "friction_damper": {"position": 0.1, "force": 1e5},
+    "strand_tendon": {
+        "position": 0.2,
+        "n": 4,
+        "strand": "Y1860S7-15.7",
+        "length": 12.0,
+        "prestress": 0.5,
+        "post_yield_ratio": 0.02,
+        "ultimate_strain": 0.02,
+    },
+    "bar_fuse": {
+        "position": 0.5,
+        "n": 2,
+        "diameter": 0.02,
+        "length": 0.5,
+        "steel": "B500B",
+        "tension_only": True,
+        "ultimate_strain": 0.04,
+    },
+    "u_plate_fuse": {
+        "position": -0.5,
+        "n": 4,
+        "width": 0.12,
+        "thickness": 0.012,
+        "diameter": 0.12,
+        "steel": "S355",
+        "post_yield_ratio": 0.02,
+    },
     "flag_shaped_bar": {
         "position": 0.2,
         "stiffness": 1e8,
@@ -284,6 +312,9 @@ CLASSES = {
     "yielding_dissipator": rf.YieldingDissipator,
     "viscous_damper": rf.ViscousDamper,
     "friction_damper": rf.FrictionDamper,
+    "strand_tendon": rf.strand_tendon,
+    "bar_fuse": rf.bar_fuse,
+    "u_plate_fuse": rf.u_plate_fuse,
     "flag_shaped_bar": rf.FlagShapedBar,
     "gap_bar": rf.GapBar,
     "multilinear_bar": rf.MultilinearBar,
@@ -298,8 +329,12 @@ def element(kind, **changes):
 def test_keys_of_elements_are_the_arguments_of_their_classes(write):
     assert {kind: table.makes for kind, table in ELEMENTS.items()} == CLASSES
     for kind, table in ELEMENTS.items():
-        assert {"kind", *signature(CLASSES[kind]).parameters} == set(table.model_fields)
-        for name, parameter in signature(CLASSES[kind]).parameters.items():
+        parameters = dict(signature(CLASSES[kind]).parameters)
+        if parameters.pop("place", None):  # of functions: those of the element that they return
+            returned = signature(signature(CLASSES[kind]).return_annotation).parameters
+            parameters |= {name: returned[name] for name in PLACE}
+        assert {"kind", *parameters} == set(table.model_fields)
+        for name, parameter in parameters.items():
             field = table.model_fields[name]
             assert parameter.default is parameter.empty if field.is_required() else parameter.default == field.default
     built = rf.read_structure(write(text("frame", FRAME) + "".join(map(element, ELEMENTS))))

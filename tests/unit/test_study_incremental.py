@@ -232,7 +232,7 @@ def test_stripes_are_single_runs_and_counted():
 def test_stripe_messages():
     with pytest.raises(rf.InputError, match="levels must be one or more positive numbers, but"):
         stripes(levels=[1.0, -1.0]).plan()
-    with pytest.raises(rf.InputError, match=r'limit must be "uplift", .*, a LimitState or a rotation'):
+    with pytest.raises(rf.InputError, match=r'limit must be one of "uplift", .*, a LimitState or a rotation'):
         stripe_counts(run_plan(stripes().plan()), "far")
     with pytest.raises(rf.InputError, match="limit must be a positive, finite number in rad"):
         stripe_counts(run_plan(stripes().plan()), -1.0)

@@ -15,7 +15,7 @@ import rockflex as rf
 from builders import frame_values, make_frame
 from rockflex._values import Value
 from rockflex.modal import MassNormalisedModes
-from rockflex.models import ForgottenLaw, LinearModel, NonlinearModel
+from rockflex.models import ForgottenLaw, RockingModel
 from rockflex.motion import GroundMotion
 
 RECORD = 2.5 * np.sin(np.arange(300) * 0.1)
@@ -89,6 +89,10 @@ def best() -> rf.BestDesign:
     return rf.best_design(runs, targets, cost, n_resamples=20)
 
 
+def record_set() -> rf.RecordSet:
+    return rf.simulate_set(frame(), [motion()], "2DOF-S", periods=(0.2, 1.0))
+
+
 VALUES = {
     rf.Adequacy: lambda: rf.adequacy(frame().rocking()),
     rf.AdequacyTolerance: lambda: rf.AdequacyTolerance(base_moment=math.inf),
@@ -103,8 +107,13 @@ VALUES = {
     rf.CloudFit: lambda: rf.fit_cloud([0.1, 0.2, 0.4], [1.0, 2.0, 3.0]),
     rf.CloudFits: lambda: rf.CloudFits("a", "2DOF-S", "pgv", rf.fit_outcomes(*RUNS), None, None, 0),
     rf.CombinedPeaks: lambda: rf.modal_combination(frame(), motion()),
+    rf.Comparison: lambda: rf.compare([frame(), frame()], motion()),
     rf.DesignCost: lambda: rf.DesignCost(1.0, 2e-6),
     rf.DesignSearch: lambda: rf.DesignSearch([1.0, 2.0], [0.0, 1.0]),
+    rf.Check: lambda: VALUES[rf.CheckTable]().rows[0],
+    rf.CheckLimits: lambda: rf.CheckLimits(friction=0.5),
+    rf.CheckTable: lambda: rf.check(response()),
+    rf.RecordSet: record_set,
     rf.Eccentric: lambda: rf.Eccentric(frame(), 0.1),
     rf.EnergyLedger: lambda: response().energy,
     rf.FishBone: lambda: rf.FishBone([3.0, 3.5], 1e3, 1e7, [1e6, math.inf], base_mass=0.0, half_width=0.5,
@@ -114,6 +123,8 @@ VALUES = {
     rf.Frame: frame,
     rf.FrictionDamper: lambda: rf.FrictionDamper(1e5, 0.2),
     rf.FlagShapedBar: lambda: rf.FlagShapedBar(1e8, 2e5, 0.05, 0.8),
+    rf.Steel: lambda: rf.Steel(3e8, 4e8, 0.1, 2e11),
+    rf.Strand: lambda: rf.Strand(1e-4, 2e5, 1.8e5, 2e11),
     rf.GapBar: lambda: rf.GapBar(1e8, 0.01),
     rf.MultilinearBar: lambda: rf.MultilinearBar([0.01], [1e5]),
     rf.Branch: lambda: rf.Branch(1e8),
@@ -178,9 +189,8 @@ VALUES = {
     rf.YieldingDissipator: lambda: rf.YieldingDissipator(1e7, 1e5, 0.02, rupture_elongation=0.1),
     # not in `rockflex` itself, but in what it returns
     ForgottenLaw: lambda: ForgottenLaw("Mine()", "this", "that"),
-    LinearModel: lambda: LinearModel("MDOF-S", frame().rocking()),
     MassNormalisedModes: lambda: VALUES[rf.ModalStructure]().modes,
-    NonlinearModel: lambda: NonlinearModel("2DOF-C", frame().rocking(1), bouc_wen=rf.BoucWen(0.05)),
+    RockingModel: lambda: RockingModel("2DOF-C", frame().rocking(1), bouc_wen=rf.BoucWen(0.05), complete=True),
 }  # fmt: skip
 STUDIES = {
     rf.CloudStudy: lambda: rf.CloudStudy(**STUDY, scales=[1.0, 2.0]),
@@ -196,7 +206,7 @@ STUDIES = {
     rf.StripeStudy: lambda: rf.StripeStudy(**STUDY, measure="pga", levels=[1.0]),
 }
 NO_VALUES = {rf.Attachment, rf.ElementLaw, rf.StudyFolder}  # a place on the disk, held open by a process
-UNHASHABLE = {rf.BestDesign, rf.PopulationStatistics}  # they hold tables
+UNHASHABLE = {rf.BestDesign, rf.Comparison, rf.PopulationStatistics}  # they hold tables
 
 cases = pytest.mark.parametrize("make", VALUES.values(), ids=[kind.__name__ for kind in VALUES])
 

@@ -10,20 +10,20 @@ import sympy as sp
 
 from builders import vector_field
 from rockflex import RockingProperties
-from rockflex.models import NonlinearModel, accelerations, reactions
+from rockflex.models import RockingModel, accelerations, reactions
 from twins.lagrange import GRAVITY, GROUND, derived, lumped, orthogonal
 
 
 def right_hand_side(properties, side, a, state):
     """(D'', θ'') of the complete model from [D, D', θ, θ'] on a side: what is under test."""
-    model, n = NonlinearModel("MDOF-C", properties), properties.n_modes
+    model, n = RockingModel("MDOF-C", properties, complete=True), properties.n_modes
     rates = vector_field(model, side).rates_at(np.append(state, np.zeros(model.layout.size - state.size)), a, 0.0)
     return rates[n : 2 * n], rates[2 * n + 1]
 
 
 def ground_forces(properties, side, a, state):
     """(F_x, F_z) that the ground gives the base, in N: what is under test."""
-    model = NonlinearModel("MDOF-C", properties)
+    model = RockingModel("MDOF-C", properties, complete=True)
     nodes = np.array([[0.0, side, a, 0.0, *state, *np.zeros(model.layout.size - state.size)]])
     forces = reactions(model, nodes, accelerations(model, nodes))
     return np.array([forces.horizontal[0], forces.vertical[0]])

@@ -22,6 +22,7 @@ from references import absolute_damping, reference
 from speed import speeds
 from springs import DAMPED_GROUND, PARALLEL_GROUND, STIFF_GROUND, compare, explained, speeds_on_springs
 from stepping import Scheme, march, settle
+from yielding import stories, yielding
 
 try:
     load_opensees()
@@ -119,6 +120,29 @@ def test_damping_by_stiffness_agrees_modal_damping_is_another(prototype):
     (explained,) = simplified(prototype, pulse(), case, ("modal", 0.02), like_opensees=True)
     assert modal.rotation > 0.1
     assert explained.rotation < 5e-4
+
+
+@needs_opensees
+def test_stories_that_yield_under_leaning_mass_converge_with_the_contact_s_stiffness():
+    # Average acceleration errs by the square of the step, contact by the inverse of its stiffness.
+    soft, stiff = yielding(pulse(), [(1e11, 5e-4), (1e13, 2e-4)])
+    assert (stiff.ductility > 1.2).all()
+    assert stiff.excursion.rotation < 2e-4
+    assert stiff.excursion.rotation < 0.1 * soft.excursion.rotation
+    assert stiff.excursion.top < 5e-4
+    assert stiff.drift < 5e-4
+    assert abs(stiff.excursion.uplift) < 1e-4
+    assert abs(stiff.excursion.impact) < 1e-4
+    # Hinged columns that carry the leaning weight add P-Δ of the drifts and their push on the floors.
+    (columns,) = yielding(pulse(), [(1e13, 5e-4)], columns=True)
+    assert 0.01 < columns.excursion.rotation < 0.1
+    assert columns.drift < 0.3
+
+
+def test_the_stories_compared_are_those_of_the_prototype():
+    structure = stories()
+    assert structure.rocking().leaning_mass == 100e3
+    assert structure.rocking().m_tot == SHEAR.frame().rocking().m_tot
 
 
 @needs_opensees

@@ -11,7 +11,7 @@ import pytest
 
 import rockflex as rf
 from builders import frame_values
-from rockflex.models import LinearModel, _label
+from rockflex.models import RockingModel, _label
 from rockflex.structure.file import StructureEntry
 from rockflex.web import _downloads
 from rockflex.web._downloads import download_file
@@ -195,7 +195,7 @@ def made(monkeypatch):
 
     def grounded(label, kept, ground, law, missing_mass, **_kind):
         grounds.append(ground)
-        return LinearModel(label, kept, True, law or rf.VVELSimplified(), missing_mass)
+        return RockingModel(label, kept, True, law or rf.VVELSimplified(), missing_mass)
 
     monkeypatch.setattr(_label, "model_on_ground", grounded)
     return grounds

@@ -38,12 +38,19 @@ def hermite(time: Float, values: Float, rates: Float, at: Float) -> Float:
     return left * (1.0 - u) ** 2 + right * u**2
 
 
-def reference(structure: rf.LumpedStructure | rf.Frame, model: str, shaking: rf.GroundMotion) -> Reference:
-    """First excursion in rockflex. Samples of the motion are divided to 1 ms or less, so that cubics are accurate."""
-    finer = max(1, round(shaking.dt / 0.001))
-    times = np.arange((shaking.acceleration.size - 1) * finer + 1) / finer
+def finer(shaking: rf.GroundMotion) -> rf.GroundMotion:
+    """Divide the samples of a motion to 1 ms or less, so that cubics between states are accurate."""
+    parts = max(1, round(shaking.dt / 0.001))
+    times = np.arange((shaking.acceleration.size - 1) * parts + 1) / parts
     fine = np.interp(times, np.arange(shaking.acceleration.size), shaking.acceleration)
-    response = rf.simulate(structure, rf.GroundMotion(fine, shaking.dt / finer), model)
+    return rf.GroundMotion(fine, shaking.dt / parts)
+
+
+def reference(
+    structure: rf.LumpedStructure | rf.Frame | rf.YieldingStories, model: str, shaking: rf.GroundMotion
+) -> Reference:
+    """First excursion in rockflex."""
+    response = rf.simulate(structure, finer(shaking), model)
     ordinates = structure.rocking().top_ordinate
     top, rate = response.modal_displacement @ ordinates, response.modal_velocity @ ordinates
 

@@ -24,6 +24,7 @@ from rich.console import Console
 from rich.table import Table
 from speed import speeds
 from springs import DAMPED_GROUND, PARALLEL_GROUND, STIFF_GROUND, compare, explained, speeds_on_springs
+from yielding import yielding
 
 import rockflex as rf
 
@@ -53,6 +54,7 @@ def main() -> None:
         first_excursions(console, shaking, folder),
         impacts(console, record, folder),
     ]
+    yielding_stories(console, shaking)
     springs(console, record, shaking)
     times(console)
     console.print("\n".join(f"wrote {path}" for path in written))
@@ -102,6 +104,19 @@ def first_excursions(console: Console, shaking: rf.GroundMotion, folder: Path) -
             )
         console.print()
     return excursion_figure(PROTOTYPES, shaking, tables, folder / "first_excursion.png")
+
+
+def yielding_stories(console: Console, shaking: rf.GroundMotion) -> None:
+    """Part (b), with stories that yield and leaning mass."""
+    rows = {"the same equations": yielding(shaking, GRID), "hinged columns": yielding(shaking, GRID[-1:], columns=True)}
+    table = excursion_table(
+        "#1, stories that yield", {name: [each.excursion for each in row] for name, row in rows.items()}
+    )
+    console.print(table)
+    for name, row in rows.items():
+        drifts = ", ".join(f"{each.drift:.1e}" for each in row)
+        console.print(f"{name}: largest difference of the story drifts, over their peaks: {drifts}")
+    console.print(f"ductilities: {', '.join(f'{each:.2f}' for each in rows['hinged columns'][0].ductility)}\n")
 
 
 def references(

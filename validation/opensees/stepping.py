@@ -35,6 +35,7 @@ class Run:
     rotation: Float  # θ in rad
     lift: Float  # of the left and right corner, m; (n, 2)
     top_displacement: Float  # relative to the rotated base, for small rotations, in m
+    story_drift: Float  # relative to the rotated base, m; (n, 5)
     story_shear: Float  # of the columns, N; (n, 5)
     seconds: float  # spent in analyze
 
@@ -112,10 +113,11 @@ def march(
         base, floors, members = (np.loadtxt(file) for file in files[:3])
         lift = np.loadtxt(files[3])[:, 1:] if corners else base[:, 1:2] + np.outer(base[:, 2], [-width, width])
     rotation = -base[:, 2]
-    top = floors[:, -1] - HEIGHTS[-1] * rotation
+    bent = floors[:, 1:] - np.outer(rotation, HEIGHTS)
+    drift = np.diff(bent, axis=1, prepend=0.0)
     # The force at the upper end of a column pushes the floor back; its local y points against x.
     shear = members[:, 1:].reshape(-1, N_STORIES, 6)[:, :, 1]
-    return Run(base[:, 0], rotation, lift, top, shear, seconds)
+    return Run(base[:, 0], rotation, lift, bent[:, -1], drift, shear, seconds)
 
 
 def _succeed(code: int, what: str) -> None:

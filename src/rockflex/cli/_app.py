@@ -9,9 +9,9 @@ from typer.core import TyperGroup
 
 from rockflex import __version__
 from rockflex._errors import InputError, SolverError
-from rockflex.cli import _animate, _modes, _motion, _reproduce, _run, _select, _study
+from rockflex.cli import _animate, _check, _compare, _modes, _motion, _reproduce, _run, _select, _study
 from rockflex.cli import _console as console
-from rockflex.cli._options import FrameCommand, RunCommand
+from rockflex.cli._options import FrameCommand, ReportCommand, RunCommand
 from rockflex.kinds import KINDS
 
 SERVE_EPILOG = """[bold]Examples[/bold]
@@ -53,6 +53,10 @@ rockflex modes structure.toml
 
 rockflex run structure.toml el-centro-1940 --model 2DOF-S,MDOF-S --scale 1.5 --out results
 
+rockflex check structure.toml chosen --rule ec8 --limits limits.toml
+
+rockflex compare a.toml b.toml fema-p695-far-field --out compared.html
+
 rockflex cloud study.toml --out study
 
 rockflex figures study
@@ -61,8 +65,8 @@ rockflex reproduce --out out/paper
 
 [bold]Exit codes[/bold]
 
-0: done; 1: a run could not be solved (in a study only with --strict, which also counts fits that fail); 2: an input
-cannot be used; 130: stopped by Ctrl-C."""
+0: done; 1: a run could not be solved (in a study only with --strict, which also counts fits that fail), and with
+check --strict a limit is exceeded; 2: an input cannot be used; 130: stopped by Ctrl-C."""
 
 
 class RockflexCommands(TyperGroup):
@@ -91,7 +95,9 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-app.command("run", cls=RunCommand, epilog=_run.EPILOG, no_args_is_help=True)(_run.run)
+app.command("run", cls=ReportCommand, epilog=_run.EPILOG, no_args_is_help=True)(_run.run)
+app.command("check", cls=RunCommand, epilog=_check.EPILOG, no_args_is_help=True)(_check.check)
+app.command("compare", cls=_compare.CompareCommand, epilog=_compare.EPILOG, no_args_is_help=True)(_compare.compare)
 app.command("animate", cls=RunCommand, epilog=_animate.EPILOG, no_args_is_help=True)(_animate.animate)
 app.command("modes", cls=FrameCommand, epilog=_modes.EPILOG, no_args_is_help=True)(_modes.modes)
 app.command("motion", epilog=_motion.EPILOG)(_motion.motion)

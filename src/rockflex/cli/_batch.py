@@ -27,7 +27,7 @@ from rockflex.cli._structures import LoadedStructure, load_structure, split_stru
 from rockflex.modal import RockingProperties
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion, OnError
-from rockflex.response import PEAKS, Response, friction_coefficient
+from rockflex.response import BY_STORY, PEAKS, Response, friction_coefficient, story_results
 from rockflex.solve import WorkLimitError
 from rockflex.study import (
     PreparedCase,
@@ -112,7 +112,16 @@ class BatchRun:
         """
         head = {"motion": self.motion, "scale": self.scale, "model": self.model}
         elements = {f"{name}_{k}": each for name, values in self.elements.items() for k, each in enumerate(values, 1)}
-        return {**head, "status": self.status, "error": self.error, **self.peaks, **self.friction, **elements}
+        stories = {} if self.response is None else story_results(self.response)
+        return {
+            **head,
+            "status": self.status,
+            "error": self.error,
+            **self.peaks,
+            **self.friction,
+            **elements,
+            **stories,
+        }
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -122,7 +131,6 @@ class BatchRun:
 
 COLUMNS = tuple(name for name in PEAKS if name not in ("model", "motion", "status"))
 OF_ELEMENTS = ("max_element_force", "max_element_elongation")
-OF_STORIES = ("ductility", "residual_drift")
 SLIDING = ("required_friction", "required_friction_excluding_impacts", "sliding_time")
 
 
@@ -177,7 +185,7 @@ def _run_one_of_batch(
         names = OF_ELEMENTS if response.history is None else (*OF_ELEMENTS, "element_energy")
         elements = {name: getattr(response, name).tolist() for name in names}
     if batch.properties.stories and response.ductility.size:
-        elements |= {name: getattr(response, name).tolist() for name in OF_STORIES}
+        elements |= {name: getattr(response, name).tolist() for name in BY_STORY}
     kept = response if batch.history else replace(response, history=None)
     return replace(made, response=kept, run_time=elapsed, friction=friction, elements=elements)
 

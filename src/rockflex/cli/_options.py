@@ -17,6 +17,7 @@ from rockflex._schema import (
     GroundKeys,
     ImpactKeys,
     InitialStateKeys,
+    ReportKeys,
     SchemaKey,
     SpringBedKeys,
     command_line_flag,
@@ -79,6 +80,12 @@ class RunCommand(FrameCommand):
         GROUND: (GroundKeys, SpringBedKeys),
         FRAME: (FrameFlags,),
     }
+
+
+class ReportCommand(RunCommand):
+    """A command that also writes a report."""
+
+    panels: ClassVar[dict[str, tuple[type, ...]]] = {"Head of the report": (ReportKeys,), **RunCommand.panels}
 
 
 def flag_values(ctx: typer.Context, table: type) -> dict[str, Any]:
@@ -230,7 +237,10 @@ ForceBoth = Annotated[
 Report = Annotated[
     Path | None,
     option(
-        "--report", "FILE.html", "Write a report on one sheet of A4, of one motion at one scale.", show_default=False
+        "--report",
+        "FILE.html|pdf|docx",
+        "Write a report on one sheet of A4, of one motion at one scale: as HTML, printed by Chromium, or for Word.",
+        show_default=False,
     ),
 ]
 Figures = Annotated[

@@ -1,9 +1,11 @@
 """``rockflex run``: one structure under ground motions, by several models side by side."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
 
+from rockflex._errors import InputError
+from rockflex._schema import ReportKeys
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
@@ -53,8 +55,15 @@ def run(
     json: options.Json = False,
     out: options.Out = None,
     figures: options.Figures = 4,
+    form: Annotated[
+        Literal["csv", "mat", "nc"],
+        typer.Option("--format", help="Histories in --out: CSV, MATLAB, or NetCDF (needs the extra xarray)."),
+    ] = "csv",
     force: options.ForceBoth = False,
     report: options.Report = None,
+    report_appendix: Annotated[
+        bool, typer.Option("--report-appendix", help="Add cross-sections and loops of elements to the report.")
+    ] = False,
     friction: options.Friction = None,
     units: options.Units = None,
     dt: options.Dt = None,
@@ -68,7 +77,7 @@ def run(
     from time import perf_counter
 
     from rockflex.cli._batch import FLAGS, RunArguments, prepare_batch, run_batch
-    from rockflex.cli._options import naming_flags_in_errors
+    from rockflex.cli._options import flag_values, naming_flags_in_errors
     from rockflex.cli._run_results import (
         UNITS,
         check_one_run_for_report,
@@ -82,6 +91,9 @@ def run(
     from rockflex.cli._structures import describe_rocking_properties
 
     output.check_folder(out, force=force and (out is not None or report is None))
+    head = flag_values(context, ReportKeys) | ({"appendix": True} if report_appendix else {})
+    if head and report is None:
+        raise InputError(f"The {', '.join(head)} of a report was given without --report FILE.")
     page = None if report is None else checked_path_of_report(report, force=force)
     asked = RunArguments(
         arguments=arguments or [], structure=structure, motion=motion, model=model, scale=scale,
@@ -109,7 +121,7 @@ def run(
         "runs": [{**item.row(), "run_time": item.run_time, "warnings": list(item.warnings)} for item in runs],
     }
     if out is not None:
-        write_run_results(out, document, batch, runs, figures=figures, force=force)
+        write_run_results(out, document, batch, runs, figures=figures, form=form, force=force)
     if json:
         typer.echo(output.to_json(document))
     else:
@@ -118,6 +130,6 @@ def run(
     print_run_warnings(runs)
     failed = print_failed_runs(runs)
     if page is not None:
-        write_report_of_run(page, loaded, batch, runs)
+        write_report_of_run(page, loaded, batch, runs, head)
     if failed and strict:
         raise typer.Exit(1)

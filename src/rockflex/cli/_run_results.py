@@ -19,7 +19,7 @@ from rockflex.cli._structures import LoadedStructure, elements_table
 from rockflex.fragility import NOMINAL
 from rockflex.motion import MEASURES, GroundMotion
 from rockflex.report.run import MAX_RUNS, checked_report_path, write_report
-from rockflex.response import IMPACT_WINDOW, Response, history_columns
+from rockflex.response import IMPACT_WINDOW, RESULT_UNITS, Response, history_columns, to_matlab, to_netcdf
 from rockflex.study import ground_under_structure
 from rockflex.study.spec import GroundTable, SpringBedTable, SpringsTable
 
@@ -257,31 +257,10 @@ def _units_of_keys(place: str, table: type) -> dict[str, str]:
 
 UNITS = {
     "dt": "s",
-    "duration": "s",
     "pga": MEASURES["pga"].unit,
     "elapsed": "s",
     "run_time": "s",
-    "end_time": "s",
-    "time_of_max_*": "s",
-    "max_rotation": "rad",
-    "time_of_min_*": "s",
-    "max_top_displacement": "m",
-    "max_total_top_displacement": "m",
-    "max_base_moment": "N m",
-    "max_base_shear": "N",
-    "max_horizontal_reaction": "N",
-    "min_vertical_reaction": "N",
-    "max_tendon_force": "N",
-    "max_element_force_*": "N",
-    "max_element_elongation_*": "m",
-    "element_energy_*": "J",
-    "residual_drift_*": "m",
-    "residual_rotation": "rad",
-    "max_slip": "m",
-    "residual_slip": "m",
-    "max_edge_uplift": "m",
-    "max_edge_settlement": "m",
-    "sliding_time": "s",
+    **RESULT_UNITS,
     "impact.shortest_excursion": "s",
     "bouc_wen.yield_displacement": "m",
     "initial_rotation": "rad",
@@ -292,22 +271,32 @@ UNITS = {
 
 
 def write_run_results(
-    folder: Path, document: dict[str, Any], batch: RunBatch, runs: Sequence[BatchRun], *, figures: int, force: bool
+    folder: Path,
+    document: dict[str, Any],
+    batch: RunBatch,
+    runs: Sequence[BatchRun],
+    *,
+    figures: int,
+    form: str,
+    force: bool,
 ) -> None:
-    """Write results.csv, summary.json and, of up to `figures` motions, one CSV file and one figure for each motion."""
+    """Write results.csv, summary.json and, of up to `figures` motions, histories and one figure for each motion.
+
+    Histories are one CSV file for each motion, or one file of another format for each motion and model.
+    """
     import pandas as pd
 
     histories = batch.history and len(batch.motions) * len(batch.scales) <= figures
     with output.staged_folder(folder, document, force=force) as stage:
         pd.DataFrame([run.row() for run in runs]).to_csv(stage / "results.csv", index=False, lineterminator="\n")
         if histories:
-            _write_histories(stage, batch, runs)
+            _write_histories(stage, batch, runs, form)
     console.print_remark(
         f"Written to {folder}" + ("" if histories else "; no histories and figures of more than --figures motions")
     )
 
 
-def _write_histories(stage: Path, batch: RunBatch, runs: Sequence[BatchRun]) -> None:
+def _write_histories(stage: Path, batch: RunBatch, runs: Sequence[BatchRun], form: str) -> None:
     import pandas as pd
 
     from rockflex.plot import plot_history, save_figure
@@ -319,8 +308,13 @@ def _write_histories(stage: Path, batch: RunBatch, runs: Sequence[BatchRun]) -> 
         responses = [run.response for run in members if run.response is not None]
         if not responses:
             continue
-        table = pd.concat(list(_history_tables(batch, responses)))
-        table.to_csv(stage / f"{stem}.csv", index=False, lineterminator="\n")
+        if form == "csv":
+            table = pd.concat(list(_history_tables(batch, responses)))
+            table.to_csv(stage / f"{stem}.csv", index=False, lineterminator="\n")
+        else:
+            write = {"mat": to_matlab, "nc": to_netcdf}[form]
+            for response in responses:
+                write(response, stage / f"{stem}-{response.model}.{form}")
         title = None if scale == 1.0 else f"{motion} × {scale:g}"
         labels = [response.model for response in responses]
         save_figure(plot_history(responses, labels=labels, title=title), stage / f"{stem}.png")
@@ -343,11 +337,11 @@ def _history_tables(batch: RunBatch, responses: Sequence[Response]) -> "Iterator
 _COMMAND, _FAILURE = 400, 200  # letters
 
 
-def checked_path_of_report(path: Path, *, force: bool) -> Path:
+def checked_path_of_report(path: Path, *, force: bool, flag: str = "--report") -> Path:
     """Return the path of a report, before anything is simulated."""
-    page = checked_report_path("--report", path)
+    page = checked_report_path(flag, path)
     if page.exists() and not force:
-        raise InputError(f"--report {page} exists. Give another name, or --force to replace it.")
+        raise InputError(f"{flag} {page} exists. Give another name, or --force to replace it.")
     return page
 
 
@@ -369,21 +363,26 @@ def check_one_run_for_report(batch: RunBatch) -> None:
         )
 
 
-def write_report_of_run(page: Path, loaded: LoadedStructure, batch: RunBatch, runs: Sequence[BatchRun]) -> None:
-    """Write the report of a batch of one motion at one scale."""
+def write_report_of_run(
+    page: Path, loaded: LoadedStructure, batch: RunBatch, runs: Sequence[BatchRun], head: dict[str, Any]
+) -> None:
+    """Write the report of a batch of one motion at one scale; `head` replaces what the structure file says."""
     motion, scale = batch.motions[0], batch.scales[0]
     times = "" if scale == 1.0 else f" × {scale:g}"
     failed = [f"{run.model} could not be solved: {shortened(run.error, _FAILURE)}" for run in runs if run.error]
+    title = f"{loaded.name} under {motion.name or 'a ground motion'}{times}"
+    given: dict[str, Any] = {"title": title, **loaded.report, **head}
     write_report(
         [run.response for run in runs if run.response is not None],
         page,
         structure=loaded.built,
         motion=motion,
-        title=f"{loaded.name} under {motion.name or 'a ground motion'}{times}",
         friction=batch.friction,
         notes=[*failed[:1], *_typed_command()],
+        **given,
     )
-    console.print_remark(f"Written to {page}; any browser prints it on one sheet of A4")
+    prints = "; any browser prints it on one sheet of A4" if page.suffix.lower().startswith(".htm") else ""
+    console.print_remark(f"Written to {page}{prints}")
 
 
 def _typed_command() -> list[str]:

@@ -4,10 +4,10 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from rockflex._errors import InputError
-from rockflex._schema import FrameFlags, FrameKeys
+from rockflex._schema import PLAIN, FrameFlags, FrameKeys, ReportKeys, SchemaKey
 from rockflex._shown import number_with_noun
 from rockflex.cli import _console as console
 from rockflex.cli._options import flags_of_tables, naming_flags_in_errors
@@ -27,6 +27,7 @@ from rockflex.structure.file import (
     KINDS,
     Built,
     StructureEntry,
+    TomlTable,
     build_structure_in_file,
     parse_toml_table,
     read_toml_file,
@@ -100,8 +101,18 @@ def _element_kind(element: BaseElement) -> str:
 FLAGS = flags_of_tables(FrameFlags)
 
 
+class ReportHeadTable(ReportKeys, TomlTable):
+    """The head of a report, and whether further sheets follow."""
+
+    appendix: Annotated[
+        bool, SchemaKey("whether cross-sections and loops of elements follow", form="true or false: {}")
+    ] = False
+
+
 class StructureFile(RunOptionKeys, StructureEntry):
     """A structure file: one structure, optionally a name and elements, and options of ``rockflex run``."""
+
+    report: Annotated[ReportHeadTable | None, SchemaKey("a table", form=PLAIN)] = None
 
 
 @dataclass(frozen=True)
@@ -115,6 +126,8 @@ class LoadedStructure:
     run_options: dict[str, Any] = field(default_factory=dict[str, Any])
     """`impact`, `restitution`, `bouc_wen` and `ground`, as far as the file has them."""
     file: Path | None = None
+    report: dict[str, Any] = field(default_factory=dict[str, Any])
+    """The values of ``[report]``."""
 
     @property
     def properties(self) -> RockingProperties:
@@ -179,7 +192,9 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
     document = parse_toml_table(StructureFile, content, str(file))
     run_options = document.model_dump(include=set(RunOptionKeys.model_fields), exclude_unset=True)
     built = build_structure_in_file(file, document)
-    return LoadedStructure(document.name or file.stem, document.kind, document.describe(), built, run_options, file)
+    head = {} if document.report is None else document.report.model_dump(exclude_none=True)
+    name = document.name or file.stem
+    return LoadedStructure(name, document.kind, document.describe(), built, run_options, file, head)
 
 
 def _study_in_place_of_structure(file: Path, name: object) -> InputError:

@@ -256,7 +256,7 @@ rockflex cloud study.toml --out results
 
 rockflex figures results
 
-rockflex figures results --measure sa_t1 --format pdf --out manuscript"""
+rockflex figures results --measure sa_t1 --format pdf --theme journal --size column --out manuscript"""
 
 FORMATS = ("png", "svg", "pdf")
 *OTHERS, LAST = (kind.name for kind in KINDS.values() if kind.measured)
@@ -275,6 +275,13 @@ def figures(
         ),
     ] = None,
     form: Annotated[str, options.option("--format", "|".join(FORMATS), "Format of the files.")] = "png",
+    size: Annotated[
+        str | None,
+        options.option(
+            "--size", "SIZE", "column (89 mm wide), page (183 mm), or WxH in mm, such as 85x60. Default: as it suits."
+        ),
+    ] = None,
+    theme: Annotated[str, options.option("--theme", "light|dark|journal", "Colours, grid and letters.")] = "light",
     force: options.Force = False,
 ) -> None:
     """Draw the results of a study: fragility curves, clouds, capacities, designs, or the agreement of models."""
@@ -301,10 +308,11 @@ def figures(
         "parts": study.n_chunks,
         "missing_parts": missing,
     }
-    from rockflex.plot import save_figure
+    from rockflex.plot import figure_style, save_figure
 
     undrawn: list[str] = []
-    with output.staged_folder(target, document, force=force) as stage:
+    style = figure_style(theme, _figure_size(size))  # pyright: ignore[reportArgumentType]
+    with style, output.staged_folder(target, document, force=force) as stage:
         for stem, draw in kind.figures(study.spec, table, measure or "pgv", console.print_remark):
             try:
                 save_figure(draw(), stage / f"{stem}.{form}")
@@ -315,3 +323,16 @@ def figures(
     for reason in undrawn:
         console.print_remark(f"No figure {reason}")
     console.print_remark(f"Written to {target}")
+
+
+def _figure_size(given: str | None) -> Any:
+    """Return the size of figures as the plot functions take it, in inches."""
+    if given is None or given in ("column", "page"):
+        return given
+    try:
+        width, height = (float(each) / 25.4 for each in given.split("x"))
+    except ValueError as error:
+        raise InputError(
+            f"--size must be column, page, or width and height in mm such as 85x60, but {shown(given)} was given."
+        ) from error
+    return width, height

@@ -41,6 +41,8 @@ class CloudFits(HtmlTable, Value):
         not known.
     n_failed : int
         Runs that could not be solved; the fits exclude them.
+    ductility : CloudFit or None
+        The same for the largest ductility of stories that yield; None without such stories.
 
     Examples
     --------
@@ -60,6 +62,7 @@ class CloudFits(HtmlTable, Value):
     top_displacement: CloudFit | None
     total_top_displacement: CloudFit | None
     n_failed: int
+    ductility: CloudFit | None = None
 
     def __repr__(self) -> str:
         return (
@@ -75,6 +78,7 @@ class CloudFits(HtmlTable, Value):
             "measure": self.measure,
             **self.outcomes._shown_as(),  # pyright: ignore[reportPrivateUsage]
             **{name: None if fit is None else describe_power_law(fit, "m") for name, fit in tops.items()},
+            **({} if self.ductility is None else {"ductility": describe_power_law(self.ductility, "")}),
             "failed": self.n_failed,
         }
 
@@ -160,13 +164,14 @@ def _fits_of_cloud_case(
     groups = recordings_of_runs(solved)
     damping = measure_damping_of_runs(solved, measure)
     outcomes = fit_outcomes(im, rotation, fallen, groups, uplifted=lifts, threshold=threshold, damping=damping)
-    relative, total = (
-        _displacement_fit(im, solved[name].to_numpy(dtype=float), rocks, groups) for name in DISPLACEMENTS
+    relative, total, ductility = (
+        _peak_fit(im, solved[name].to_numpy(dtype=float), rocks, groups) if name in solved else None
+        for name in (*DISPLACEMENTS, "max_ductility")
     )
-    return CloudFits(structure, model, measure, outcomes, relative, total, len(group) - len(solved))
+    return CloudFits(structure, model, measure, outcomes, relative, total, len(group) - len(solved), ductility)
 
 
-def _displacement_fit(im: Array, values: Array, rocked: Bools, groups: "pd.Series[Any] | None") -> CloudFit | None:
+def _peak_fit(im: Array, values: Array, rocked: Bools, groups: "pd.Series[Any] | None") -> CloudFit | None:
     """The fit of the runs that rocked, or None if it fails."""
     try:
         return fit_cloud(im[rocked], values[rocked], None if groups is None else groups[rocked])

@@ -1,14 +1,15 @@
 """Limit states of a run, and the observed fractions of runs beyond them."""
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Container, Iterable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
+from rockflex._checks import checked_positive
 from rockflex._errors import InputError
 from rockflex._registry import Catalogue
 from rockflex._shown import shown
@@ -37,6 +38,8 @@ class LimitState:
         Largest rotation |θ| in rad; NaN if the limit depends on the structure or is not on this rotation.
     bound : str
         The rotation in text; empty if the label states it.
+    column : str
+        Column of the demand; empty if the limit is on none that a table may lack.
 
     Examples
     --------
@@ -53,6 +56,7 @@ class LimitState:
     exceeded: Callable[[Any], Any]
     threshold: float = math.nan
     bound: str = ""
+    column: str = ""
 
     @property
     def rotation(self) -> str:
@@ -82,6 +86,40 @@ def rotation_limit_state(rotation: float, name: str = "rotation", label: str = "
     )
 
 
+DEMAND_SYMBOLS = {
+    "max_ductility": r"μ_{\mathrm{max}}",
+    "max_residual_drift_ratio": r"(Δ_{\mathrm{res}}/h)_{\mathrm{max}}",
+}
+
+
+def demand_limit_state(column: str, bound: float) -> LimitState:
+    """Return the limit state of the magnitude of a demand: a number that a table of runs has in a column.
+
+    In files and wherever a limit is a name it is written as ``"max_ductility > 4"``.
+
+    Examples
+    --------
+    >>> from rockflex.fragility import demand_limit_state
+    >>> demand_limit_state("max_ductility", 4.0).label
+    'max_ductility > 4'
+    >>> bool(demand_limit_state("max_ductility", 4.0).exceeded({"max_ductility": 5.2, "status": "rocking"}))
+    True
+    """
+
+    def exceeded(runs: Any) -> Any:
+        if column not in runs:
+            raise InputError(
+                f"The runs have no column {column}. Tables of studies have residual_rotation if a structure has "
+                "dissipators, dampers or yielding tendons, and max_ductility and max_residual_drift_ratio if its "
+                "stories yield."
+            )
+        return (abs(runs[column]) > bound) | _overturned_runs(runs)
+
+    text = f"{column} > {bound:g}"
+    symbol = (DEMAND_SYMBOLS.get(column) or rf"\mathrm{{{column}}}".replace("_", r"\_")) + f">{bound:g}"
+    return LimitState(name=column, label=text, symbol=symbol, exceeded=exceeded, column=column)
+
+
 def residual_rotation_limit_state(rotation: float) -> LimitState:
     """Return the limit state of a residual rotation in rad, of either sign.
 
@@ -93,17 +131,9 @@ def residual_rotation_limit_state(rotation: float) -> LimitState:
     >>> bool(residual_rotation_limit_state(0.005).exceeded({"residual_rotation": -0.007, "status": "rocking"}))
     True
     """
-
-    def exceeded(runs: Any) -> Any:
-        if "residual_rotation" not in runs:
-            raise InputError(
-                "The runs have no column residual_rotation. Tables of studies have it if a structure has dissipators, "
-                "dampers or yielding tendons, and those of simulate_many always do."
-            )
-        return (abs(runs["residual_rotation"]) > rotation) | _overturned_runs(runs)
-
     symbol = rf"|θ_{{\mathrm{{res}}}}|>{rotation:g}\ \mathrm{{rad}}"
-    return LimitState(name="residual", label=f"residual {rotation:g} rad", symbol=symbol, exceeded=exceeded)
+    of_demand = demand_limit_state("residual_rotation", rotation)
+    return replace(of_demand, name="residual", label=f"residual {rotation:g} rad", symbol=symbol)
 
 
 UPLIFT = LimitState(
@@ -144,25 +174,73 @@ TENDON_YIELD = LimitState(
 LIMIT_STATES = Catalogue[LimitState]((UPLIFT, ROCKING, NOMINAL, TENDON_YIELD, OVERTURNING), "limit_states")
 
 
-def limit_state_named(name: str) -> LimitState:
-    """Return the limit state of a name, also of one that another package registers.
+def bounded_demand(limit: object) -> LimitState | None:
+    """Return the limit state of a text such as "max_ductility > 4"; None of anything else.
 
     Raises
     ------
     InputError
-        If there is none.
+        If the bound is no number, or negative.
+    """
+    words = limit.split() if isinstance(limit, str) else []
+    if len(words) != 3 or words[1] != ">" or not words[0].isidentifier():
+        return None
+    try:
+        bound = float(words[2])
+    except ValueError:
+        bound = math.nan
+    if not (math.isfinite(bound) and bound >= 0.0):
+        raise InputError(
+            f"limit: the bound of {words[0]} must be zero or a positive number, but {shown(limit)} was given.",
+            field="limit",
+        )
+    return demand_limit_state(words[0], bound)
+
+
+def limit_state_of(limit: str | float | LimitState) -> LimitState:
+    """Return the limit state of a name, also of one that another package registers, of a demand or of a rotation.
+
+    Parameters
+    ----------
+    limit
+        One of `LIMIT_STATES`; a demand with its bound, such as ``"max_ductility > 4"``; or a rotation in rad.
+
+    Raises
+    ------
+    InputError
+        If it is none of these.
 
     Examples
     --------
-    >>> from rockflex.fragility import limit_state_named
-    >>> limit_state_named("overturning").rotation
+    >>> from rockflex.fragility import limit_state_of
+    >>> limit_state_of("overturning").rotation
     '|θ| = π/2'
     """
-    found = LIMIT_STATES.get(name) if isinstance(name, str) else None  # pyright: ignore[reportUnnecessaryIsInstance]
-    if found is None:
+    if isinstance(limit, LimitState):
+        return limit
+    if not isinstance(limit, str):
+        return rotation_limit_state(checked_positive("limit", limit, "rad"))
+    state = LIMIT_STATES.get(limit) or bounded_demand(limit)
+    if state is None:
         words = ", ".join(f'"{each}"' for each in LIMIT_STATES)
-        raise InputError(f"limit must be one of {words}, but {shown(name)} was given.", field="limit")
-    return found
+        raise InputError(
+            f'limit must be one of {words}, a demand with its bound such as "max_ductility > 4", a LimitState or a '
+            f"rotation in rad, but {shown(limit)} was given.",
+            field="limit",
+        )
+    return state
+
+
+def check_limit_columns(limits: Iterable[LimitState], columns: Container[str]) -> None:
+    """Raise an InputError if a limit is on a demand that a study has no column for."""
+    for each in limits:
+        if each.column and each.column not in columns:
+            raise InputError(
+                f"limit {each.label}: the study has no column {each.column}. Tables have max_ductility and "
+                "max_residual_drift_ratio if stories of a structure yield, and residual_rotation if it has "
+                "dissipators, dampers or yielding tendons.",
+                field="limit",
+            )
 
 
 def limit_state_label(limit: float | str) -> str:

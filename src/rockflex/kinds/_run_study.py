@@ -92,7 +92,7 @@ def run_study(
     Parameters
     ----------
     study
-        A `CloudStudy`, an `IncrementalStudy` or another kind, or the path of its TOML file.
+        A `CloudStudy`, an `IncrementalStudy` or another kind, of tables or of objects; or the path of its TOML file.
     folder
         Where the study is stored, as ``spec.json``, ``manifest.json`` and ``parts/*.parquet``. An existing folder of
         this study is resumed; completed parts are skipped. With None nothing is stored.

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rockflex._errors import InputError, SolverError
 from rockflex._registry import Catalogue
@@ -85,7 +85,7 @@ class StudyKind:
         return getattr(import_module(package), name)
 
 
-def _report_cloud(_: Any, runs: Runs, found: StudyFindings) -> None:
+def _report_cloud(study: Any, runs: Runs, found: StudyFindings) -> None:
     """Count the outcomes, and fit the regressions."""
     from rockflex._cases import runs_by_case
     from rockflex.fragility import OVERTURNING, ROCKING, LogisticFit, fit_each_cloud
@@ -121,6 +121,30 @@ def _report_cloud(_: Any, runs: Runs, found: StudyFindings) -> None:
             {**name, "y": "u_top relative to the base", **_cloud_line_row(fit and fit.top_displacement)},
             {**name, "y": "u_top in total", **_cloud_line_row(fit and fit.total_top_displacement)},
         ]
+        if "max_ductility" in group and group["max_ductility"].notna().any():
+            lines.append({**name, "y": "μ_max of the stories", **_cloud_line_row(fit and fit.ductility)})
+    _report_limits(study, runs, found)
+
+
+def _report_limits(study: Any, runs: Runs, found: StudyFindings) -> None:
+    """Fit a logistic curve to the runs beyond each limit of the study."""
+    from rockflex._cases import runs_by_case
+    from rockflex.fragility import LogisticFit, fit_logistic, limit_state_of
+    from rockflex.motion import MEASURES
+
+    pgv, rows = MEASURES["pgv"], list[Row]()
+    for state in map(limit_state_of, study.limits or ()):
+        for structure, model, group in runs_by_case(runs[runs["status"].notna()]):
+            beyond = state.exceeded(group).fillna(False).to_numpy(dtype=bool)
+            row: Row = {"limit": state.label, "structure": structure, "model": model}
+            row["beyond"] = f"{beyond.sum()}/{len(group)}"
+            curve: LogisticFit | None = None
+            if beyond.any() and not beyond.all():
+                what = f"{structure} with {model}, {state.label}"
+                curve = found.fitted(lambda group=group, beyond=beyond: fit_logistic(group[pgv.name], beyond), what)
+            rows.append(row | {"median": curve and curve.median, "spread [-]": curve and curve.dispersion})
+    if rows:
+        found.tables[f"P(limit) by logistic regression on log {pgv.label}, with overturned runs ({pgv.unit})"] = rows
 
 
 def _cloud_line_row(fit: "CloudFit | None") -> dict[str, Any]:
@@ -145,6 +169,8 @@ def _figures_cloud(_: Document, runs: Runs, measure: str, remark: Remark) -> Fig
     yield "top_displacement", lambda: plot.plot_clouds(runs, "max_top_displacement", measure)
     if runs["max_total_top_displacement"].notna().any():
         yield "total_top_displacement", lambda: plot.plot_clouds(runs, "max_total_top_displacement", measure)
+    if "max_ductility" in runs and runs["max_ductility"].notna().any():
+        yield "ductility", lambda: plot.plot_clouds(runs, "max_ductility", measure)
 
 
 CLOUD = StudyKind(
@@ -160,7 +186,7 @@ CLOUD = StudyKind(
 
 def _report_incremental(study: Any, runs: Runs, found: StudyFindings) -> None:
     from rockflex._cases import runs_by_case
-    from rockflex.fragility import LIMIT_STATES, fit_capacities
+    from rockflex.fragility import fit_capacities, limit_state_of
     from rockflex.motion import MEASURES
     from rockflex.study.incremental import incremental_capacities
 
@@ -182,7 +208,7 @@ def _report_incremental(study: Any, runs: Runs, found: StudyFindings) -> None:
                     "β": fit and fit.beta,
                 }
             )
-    found.tables[f"Capacities to {LIMIT_STATES[study.limit].rotation}, lognormal"] = rows
+    found.tables[f"Capacities to {limit_state_of(study.limit).rotation}, lognormal"] = rows
 
 
 def _figures_incremental(_: Document, runs: Runs, measure: str, __: Remark) -> Figures:
@@ -204,12 +230,13 @@ INCREMENTAL = StudyKind(
 
 def _report_stripes(study: Any, runs: Runs, found: StudyFindings) -> None:
     from rockflex._cases import runs_by_case
-    from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, UPLIFT, fit_stripes
+    from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, UPLIFT, fit_stripes, limit_state_of
     from rockflex.study.stripes import stripe_counts
 
     counts = found.tables[f"Runs beyond the limit at each level of {study.measure}"] = []
     fits = found.tables[f"Fragility by maximum likelihood, lognormal in {study.measure}"] = []
-    for limit in (UPLIFT, NOMINAL, OVERTURNING, *LIMIT_STATES.added.values()):
+    usual = (UPLIFT, NOMINAL, OVERTURNING, *LIMIT_STATES.added.values())
+    for limit in map(limit_state_of, study.limits or usual):
         exceeding = found.fitted(lambda limit=limit: stripe_counts(runs, limit), limit.label)
         for structure, model, each in runs_by_case(exceeding) if exceeding is not None else ():
             stripes = each["level"], each["n_exceeding"], each["n_total"]
@@ -223,7 +250,10 @@ def _report_stripes(study: Any, runs: Runs, found: StudyFindings) -> None:
 def _figures_stripes(spec: Document, runs: Runs, _: str, __: Remark) -> Figures:
     from rockflex import plot
 
-    yield "stripes", lambda: plot.plot_stripes(runs, measure=spec["measure"])
+    limits = spec.get("limits") or ["overturning"]
+    for place, limit in enumerate(limits, start=1):
+        stem = "stripes" if len(limits) == 1 else f"stripes_{place}"
+        yield stem, lambda limit=limit: plot.plot_stripes(runs, limit, measure=spec["measure"])
 
 
 STRIPES = StudyKind(
@@ -413,9 +443,7 @@ def _figures_design(spec: Document, runs: Runs, _: str, __: Remark) -> Figures:
 
     if "search" in spec:
         best = best_design(runs, *stored_design_search(spec))
-        themes: dict[str, Literal["light", "dark"]] = {"design_search": "light", "design_search_dark": "dark"}
-        for name, theme in themes.items():
-            yield name, lambda theme=theme: plot.plot_design_search(best, theme=theme)
+        yield "design_search", lambda: plot.plot_design_search(best)
         return
     targets = [target for _, _, target, _ in stored_design_limits(spec)]
     for target, (limit, table) in zip(targets, design_tables_by_limit(runs, spec), strict=True):

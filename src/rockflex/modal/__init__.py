@@ -3,6 +3,7 @@
 from rockflex.modal._adequacy import Adequacy, AdequacyTolerance, adequacy
 from rockflex.modal._analysis import FloorModes, ModalProperties, modal_properties
 from rockflex.modal._attachment import PLACE, Attachment, YieldingStory, element_parameters
+from rockflex.modal._devices import STEELS, STRANDS, Steel, Strand, bar_fuse, strand_tendon, u_plate_fuse
 from rockflex.modal._element_law import Branch, BranchEnd, ElementLaw, slow_path
 from rockflex.modal._elements import (
     BaseElement,
@@ -13,7 +14,7 @@ from rockflex.modal._elements import (
     base_element_tuple,
     initial_force,
 )
-from rockflex.modal._ground import Ground, Springs, asce41_bed, winkler_bed
+from rockflex.modal._ground import Ground, Springs, asce41_bed, gazetas_bed, winkler_bed
 from rockflex.modal._law_bars import BARS, FlagShapedBar, GapBar, MultilinearBar
 from rockflex.modal._participation import MassNormalisedModes, excited_mode_indices, rocking_properties
 from rockflex.modal._pivot import Pivot
@@ -23,6 +24,8 @@ from rockflex.modal._uplifted import PinnedBeam, UpliftedModes, frequency_equati
 __all__ = [
     "BARS",
     "PLACE",
+    "STEELS",
+    "STRANDS",
     "Adequacy",
     "AdequacyTolerance",
     "Attachment",
@@ -42,6 +45,8 @@ __all__ = [
     "Pivot",
     "RockingProperties",
     "Springs",
+    "Steel",
+    "Strand",
     "Tendon",
     "UpliftedModes",
     "ViscousDamper",
@@ -49,15 +54,19 @@ __all__ = [
     "YieldingStory",
     "adequacy",
     "asce41_bed",
+    "bar_fuse",
     "base_element_tuple",
     "element_parameters",
     "excited_mode_indices",
     "frequency_equation",
+    "gazetas_bed",
     "initial_force",
     "modal_properties",
     "pinned_beam",
     "rocking_properties",
     "slow_path",
+    "strand_tendon",
+    "u_plate_fuse",
     "uplifted_modes",
     "winkler_bed",
 ]

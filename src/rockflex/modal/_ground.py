@@ -416,11 +416,7 @@ def asce41_bed(
     B = checked_positive("half_width", half_width, "m")
     across = checked_positive("breadth", breadth, "m")
     modulus = checked_positive("shear_modulus", shear_modulus, "N/m²")
-    poisson = real_or_nan(poisson_ratio)
-    if not 0.0 <= poisson <= 0.5:
-        raise InputError(
-            f"poisson_ratio must be from 0 to 0.5, but {shown(poisson_ratio)} was given.", field="poisson_ratio"
-        )
+    poisson = _checked_poisson_ratio(poisson_ratio)
     zone = across / 6.0
     if zone >= B:
         raise InputError(
@@ -438,6 +434,111 @@ def asce41_bed(
         end_ratio=_END_STIFFNESS / _MIDDLE_STIFFNESS,
         eccentricity=eccentricity,
     )
+
+
+def gazetas_bed(
+    half_width: float,
+    breadth: float,
+    shear_modulus: float,
+    poisson_ratio: float,
+    *,
+    density: float | None = None,
+    n: int = 20,
+    end_zone: float | None = None,
+    eccentricity: float = 0.0,
+) -> Springs:
+    """Return springs with the stiffness of a rigid rectangular footing on an elastic half-space (Gazetas 1991).
+
+    With the half length L and half width l of the footing, L >= l, and its second moment I of area (Gazetas 1991, J.
+    Geotech. Eng. 117(9), 1363-1381; NIST GCR 12-917-21, Table 2-2a):
+
+    K_z = 2 G L/(1 - ν) [0.73 + 1.54 (l/L)^0.75], in rotation along the length
+    K_θ = 3 G/(1 - ν) I^0.75 (L/l)^0.15, and across it K_θ = G/(1 - ν) I^0.75 (L/l)^0.25 (2.4 + 0.5 l/L).
+
+    A rigid footing presses the ground under its edges most, so K_θ is much larger than that of a uniform bed. Two
+    springs, n = 2, stand at ± (K_θ/K_z)^0.5 from the middle, and have both stiffnesses. A bed of more springs has K_z
+    per area between its end zones and in these as much as K_θ requires (NIST GCR 12-917-21, Chapter 2); in heave it
+    is then stiffer than K_z. So are two springs where they would stand beyond the edges: they are put there. K_θ is
+    right in all of them.
+
+    Parameters
+    ----------
+    half_width
+        Half-width B of the base in m.
+    breadth
+        Dimension of the base perpendicular to the plane of rocking in m; from 1/20 to below 20 of the width 2B.
+    shear_modulus
+        Effective shear modulus G of the soil in N/m², at the strains of the earthquake.
+    poisson_ratio
+        ν of the soil, from 0 to 0.5.
+    density
+        ρ of the soil in kg/m³, for dashpots: ρ V_La per area with V_La = 3.4 (G/ρ)^0.5/(π (1 - ν)) (Gazetas 1991). This
+        is the radiation of waves in heave. In rotation of a base that stays on the ground it is the limit for high
+        frequencies; at those of buildings far less is radiated. Default: no dashpots.
+    n
+        Number of springs, 2 to 200.
+    end_zone
+        Length of the stiffer zone at either end in m, with n > 2. Default: 0.3 B.
+    eccentricity
+        Distance of the axis of the masses to the right of the middle of the base in m, as in `Eccentric`.
+
+    Returns
+    -------
+    Springs
+        With positions from the axis of the masses, and the area that each spring supports. Embedment, layers, and the
+        change of stiffness with frequency are left out.
+
+    Raises
+    ------
+    InputError
+        If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> two = rf.gazetas_bed(half_width=1.5, breadth=2.0, shear_modulus=30e6, poisson_ratio=0.3, n=2)
+    >>> two.positions.round(3), round(two.total_stiffness / 1e6), round(two.rotational_stiffness / 1e6)
+    (array([-1.326,  1.326]), 240, 422)
+    """
+    B = checked_positive("half_width", half_width, "m")
+    across = checked_positive("breadth", breadth, "m")
+    checked_in_range(
+        "breadth/(2 half_width)", across / (2.0 * B), 0.05, 20.0, field="breadth", hint="Check their units, m."
+    )
+    modulus = checked_positive("shear_modulus", shear_modulus, "N/m²")
+    poisson = _checked_poisson_ratio(poisson_ratio)
+    L, l = max(B, across / 2.0), min(B, across / 2.0)  # noqa: E741
+    inertia = across * (2.0 * B) ** 3 / 12.0
+    shape = 3.0 * (L / l) ** 0.15 if L == B else (L / l) ** 0.25 * (2.4 + 0.5 * l / L)
+    heave = 2.0 * modulus * L / (1.0 - poisson) * (0.73 + 1.54 * (l / L) ** 0.75)
+    rotation = modulus / (1.0 - poisson) * inertia**0.75 * shape
+    if checked_whole_number("n", n, 2, _MAX_SPRINGS) == 2:
+        if end_zone is not None:
+            raise InputError(
+                "end_zone is for a bed of more than two springs. Leave it out, or give n.", field="end_zone"
+            )
+        arm = min(math.sqrt(rotation / heave), B)
+        stiffness, area = rotation / (2.0 * arm**2), across * B
+        springs = Springs([-arm - eccentricity, arm - eccentricity], stiffness, 0.0, area)
+    else:
+        zone = 0.3 * B if end_zone is None else checked_positive("end_zone", end_zone, "m")
+        even = winkler_bed(B, across, heave / (2.0 * B * across), n=n, end_zone=zone, eccentricity=eccentricity)
+        share = even.stiffness * (even.positions + eccentricity) ** 2
+        ends = np.abs(even.positions + eccentricity) > B - zone
+        ratio = (rotation - share[~ends].sum()) / share[ends].sum()
+        springs = Springs(even.positions, even.stiffness * np.where(ends, ratio, 1.0), 0.0, even.area)
+    if density is None or springs.area is None:
+        return springs
+    soil = checked_positive("density", density, "kg/m³")
+    wave = 3.4 * math.sqrt(modulus / soil) / (math.pi * (1.0 - poisson))
+    return Springs(springs.positions, springs.stiffness, soil * wave * springs.area, springs.area)
+
+
+def _checked_poisson_ratio(given: float) -> float:
+    poisson = real_or_nan(given)
+    if not 0.0 <= poisson <= 0.5:
+        raise InputError(f"poisson_ratio must be from 0 to 0.5, but {shown(given)} was given.", field="poisson_ratio")
+    return poisson
 
 
 def _spring_strip_edges(B: float, zone: float, n: int) -> Array:

@@ -1,5 +1,6 @@
 """Models of a structure on a base that may uplift."""
 
+from rockflex.models._base_motion import horizontal_reaction
 from rockflex.models._between import LinearMotion, MotionBetween, Part, Shaking, inside
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._element import Element, Slider
@@ -36,12 +37,10 @@ from rockflex.models._kept import (
     under_more_gravity,
     values_of,
 )
-from rockflex.models._label import Model, RockingModel, parse_model
+from rockflex.models._label import Model, parse_model
 from rockflex.models._landing import GainsEnergyError
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout
-from rockflex.models._linear_model import LinearModel, horizontal_reaction
 from rockflex.models._linear_system import ElementBase, element_base, linear_system_of
-from rockflex.models._modal_model import LEVEL, Pose
 from rockflex.models._named import (
     element_moves,
     element_speeds,
@@ -52,8 +51,6 @@ from rockflex.models._named import (
     rotation_rate_by_side,
     tracked_elements,
 )
-from rockflex.models._nonlinear import NonlinearModel
-from rockflex.models._nonlinear_ground import made_nonlinear
 from rockflex.models._nonlinear_ground_system import nonlinear_system
 from rockflex.models._nonlinear_system import key_of, with_marks
 from rockflex.models._phase import BorderedSystem, Key
@@ -70,6 +67,7 @@ from rockflex.models._quantities import (
     rows_of,
 )
 from rockflex.models._reactions import Reactions, printed_reactions, reactions, spring_forces
+from rockflex.models._rocking_model import LEVEL, Pose, RockingModel
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._spring_model import LOADED, SpringModel
 from rockflex.models._stored import floor_accelerations, soil_strain, stored_energies
@@ -102,11 +100,9 @@ __all__ = [
     "GainsEnergyError",
     "ImpactLaw",
     "Key",
-    "LinearModel",
     "LinearMotion",
     "Model",
     "MotionBetween",
-    "NonlinearModel",
     "Part",
     "Pose",
     "Quantities",
@@ -139,7 +135,6 @@ __all__ = [
     "joined",
     "key_of",
     "linear_system_of",
-    "made_nonlinear",
     "may_stack",
     "modal_displacement",
     "nonlinear_system",

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array, Bools
 from rockflex.engine import changes_of, halvings_of, radius
 from rockflex.models._kept import phases_at, under_more_gravity
-from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME
 from rockflex.models._phase import Key
+from rockflex.models._rocking_model import RockingModel
 
 TURN = 2.0  # rad that a mode may turn within one power series
 REST = 0.5  # rad that it turns at most in what is left of an interval after the exponentials

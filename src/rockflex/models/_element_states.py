@@ -6,7 +6,7 @@ from rockflex._arrays import Array
 from rockflex.models._element import Slider
 from rockflex.models._elements import hold_shares, is_held
 from rockflex.models._kept import acting_side, by_phase, held_moment
-from rockflex.models._label import RockingModel
+from rockflex.models._rocking_model import RockingModel
 
 
 def element_forces(model: RockingModel, states: Array) -> Array:

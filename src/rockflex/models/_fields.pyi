@@ -2,7 +2,7 @@ from collections.abc import Callable, Sequence
 
 from rockflex._arrays import Array
 from rockflex.engine import Field, Jump
-from rockflex.models._nonlinear import Numbers
+from rockflex.models._vector_fields import Numbers
 
 class RockingField(Field):
     def __init__(

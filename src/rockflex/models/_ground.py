@@ -8,9 +8,7 @@ from rockflex.modal import FrictionDamper, Ground, RockingProperties, Springs
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._elements import elements_of
 from rockflex.models._impact import ImpactLaw, VVELSimplified
-from rockflex.models._linear_model import LinearModel
-from rockflex.models._modal_model import Pose
-from rockflex.models._nonlinear_ground import made_nonlinear
+from rockflex.models._rocking_model import Pose, RockingModel
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._spring_model import SpringModel
 
@@ -28,7 +26,7 @@ def model_on_ground(
     *,
     complete: bool = False,
     bouc_wen: BoucWen | None = None,
-) -> LinearModel:
+) -> RockingModel:
     """Return the model of a structure on springs, without impact law, or of one that slides.
 
     It is nonlinear if it is `complete`, or has the hysteresis `bouc_wen`.
@@ -41,10 +39,15 @@ def model_on_ground(
     """
     if ground.springs is None:
         friction = float(np.max(np.asarray(ground.friction)))
-        sliding = SlidingModel(label, kept, law=law or VVELSimplified(), missing_mass=missing_mass, friction=friction)
-        if not complete and bouc_wen is None:
-            return sliding
-        return made_nonlinear(sliding, complete=complete, bouc_wen=bouc_wen)
+        return SlidingModel(
+            label,
+            kept,
+            law=law or VVELSimplified(),
+            missing_mass=missing_mass,
+            friction=friction,
+            complete=complete,
+            bouc_wen=bouc_wen,
+        )
     friction = None
     if ground.slides:
         friction = np.broadcast_to(np.asarray(ground.friction, dtype=np.float64), ground.springs.n).copy()
@@ -54,7 +57,7 @@ def model_on_ground(
                 f"once, but {friction.tolist()} was given.",
                 field="friction",
             )
-    on_springs = SpringModel(
+    return SpringModel(
         label,
         kept,
         missing_mass=missing_mass,
@@ -62,10 +65,9 @@ def model_on_ground(
         inertia=kept.translational_inertia + float(ground.base_inertia or 0.0),
         friction=friction,
         rest=pose_at_rest(label, kept, ground.springs, complete=complete),
+        complete=complete,
+        bouc_wen=bouc_wen,
     )
-    if not complete and bouc_wen is None:
-        return on_springs
-    return made_nonlinear(on_springs, complete=complete, bouc_wen=bouc_wen)
 
 
 def pose_at_rest(label: str, properties: RockingProperties, springs: Springs, *, complete: bool = False) -> Pose:

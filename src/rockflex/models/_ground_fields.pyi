@@ -3,8 +3,8 @@ from typing import Any
 
 from rockflex._arrays import Array
 from rockflex.engine import Field
-from rockflex.models._nonlinear import Numbers
-from rockflex.models._nonlinear_ground import GroundPhase
+from rockflex.models._phase import GroundPhase
+from rockflex.models._vector_fields import Numbers
 
 GRIP: int
 PRESSURE: int

@@ -9,12 +9,11 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array, Bools
 from rockflex.models._fields import RockingField
 from rockflex.models._ground_fields import GroundField
-from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME
-from rockflex.models._nonlinear import Numbers, numbers_of
 from rockflex.models._phase import Key
 from rockflex.models._quantities import LINEAR, Quantities, rows_of
-from rockflex.models._vector_fields import field_of
+from rockflex.models._rocking_model import RockingModel
+from rockflex.models._vector_fields import Numbers, field_of, numbers_of
 
 _MAX_CODES = 2**31  # beyond which they are numbered anew, before they overflow
 

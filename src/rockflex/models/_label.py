@@ -14,10 +14,7 @@ from rockflex.modal import FrictionDamper, Ground, RockingProperties, initial_fo
 from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._ground import check_base, model_on_ground
 from rockflex.models._impact import ImpactLaw, VVELComplete, VVELSimplified, housner
-from rockflex.models._linear_model import LinearModel
-from rockflex.models._nonlinear import NonlinearModel
-
-RockingModel = LinearModel | NonlinearModel
+from rockflex.models._rocking_model import RockingModel
 
 _PATTERN = re.compile(
     r"(?:(?P<count>[1-9][0-9]{0,5})|(?P<all>M))DOF-(?P<kind>S|C|fixed)(?:-(?P<closure>SI|E))?(?P<yields>-BW)?(?P<missing>-R)?"
@@ -172,10 +169,7 @@ class Model:
                 label, kept, ground, given, self.missing_mass, complete=self.complete, bouc_wen=bouc_wen
             )
         law = impact if impact is not None else self._law(kept)
-        linear = LinearModel(label, kept, self.lifts, law, self.missing_mass)
-        if self.complete or bouc_wen is not None:
-            return NonlinearModel(label, kept, self.lifts, law, self.complete, bouc_wen, self.missing_mass)
-        return linear
+        return RockingModel(label, kept, self.lifts, law, self.missing_mass, complete=self.complete, bouc_wen=bouc_wen)
 
     def _check_missing_mass(self, kept: RockingProperties) -> None:
         if self.missing_mass and kept.base_mass is None:

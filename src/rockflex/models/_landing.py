@@ -12,8 +12,8 @@ from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models._elements import CLOSED, RIGHT
 from rockflex.models._impact import ImpactLaw, Restitution, SidedRestitution
-from rockflex.models._modal_model import ModalModel
 from rockflex.models._phase import Key
+from rockflex.models._rocking_model import RockingModel
 
 GAIN = 1e-9  # relative gain of energy in an impact that is attributed to rounding
 
@@ -22,13 +22,13 @@ class GainsEnergyError(SolverError):
     """An impact law returns more energy than there was."""
 
 
-def gains_energy(model: ModalModel) -> GainsEnergyError:
+def gains_energy(model: RockingModel) -> GainsEnergyError:
     """Return the error of a model whose impact law returns energy."""
     return GainsEnergyError(f"The impact law {shown(model.law)} returns energy.")
 
 
 def landing_of(
-    model: ModalModel,
+    model: RockingModel,
     side: int,
     keys: Mapping[int, Key],
     inertia: Callable[[int, Array], float],

@@ -9,6 +9,7 @@ import numpy as np
 
 from rockflex._arrays import Array, Integers
 from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System
+from rockflex.models._base_motion import horizontal_reaction
 from rockflex.models._elements import (
     CLOSED,
     LEFT,
@@ -24,11 +25,10 @@ from rockflex.models._elements import (
     turning_way,
 )
 from rockflex.models._impact import Restitution, VVELSimplified
-from rockflex.models._label import RockingModel
 from rockflex.models._landing import landing_of, sided, turn_by_rows
-from rockflex.models._linear_model import horizontal_reaction
 from rockflex.models._phase import Key
 from rockflex.models._quantities import Quantities, rows_of
+from rockflex.models._rocking_model import RockingModel
 from rockflex.models._sliding import LOST, STICK, SlidingModel
 from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, SpringModel
 

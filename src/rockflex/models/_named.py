@@ -7,7 +7,6 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex.modal import FloorModes
 from rockflex.models._elements import CLOSED
-from rockflex.models._modal_model import ModalModel
 from rockflex.models._quantities import (
     CLIMB,
     HORIZONTAL,
@@ -21,9 +20,10 @@ from rockflex.models._quantities import (
     collected,
     joined,
 )
+from rockflex.models._rocking_model import RockingModel
 
 
-def quantities(model: ModalModel, names: Iterable[str]) -> Quantities:
+def quantities(model: RockingModel, names: Iterable[str]) -> Quantities:
     """Return scalar quantities of the whole structure by name.
 
     `top_displacement` (m); `base_moment` (N m) and `base_shear` (N) of the elastic forces, or of those of Eq. 37,
@@ -33,20 +33,20 @@ def quantities(model: ModalModel, names: Iterable[str]) -> Quantities:
     return collected(model.properties.n_modes, [_WHOLE[name](model) for name in names])
 
 
-def _top_displacement(model: ModalModel) -> Share:
+def _top_displacement(model: RockingModel) -> Share:
     return LINEAR, {"displacement": model.properties.top_ordinate}
 
 
-def _base_moment(model: ModalModel) -> Share:
+def _base_moment(model: RockingModel) -> Share:
     p = model.properties
     return _base_force(model, p.effective_mass * p.effective_height, 1)
 
 
-def _base_shear(model: ModalModel) -> Share:
+def _base_shear(model: RockingModel) -> Share:
     return _base_force(model, model.properties.effective_mass, 0)
 
 
-def _base_force(model: ModalModel, masses: Array, moment: int) -> Share:
+def _base_force(model: RockingModel, masses: Array, moment: int) -> Share:
     """Return Σ m* h*^k ω² D minus Σ m_i h_i^k (a + h_i θ'') of the masses left out, which move with the base."""
     if not model.missing_mass:
         return LINEAR, {"restoring": masses}
@@ -54,24 +54,24 @@ def _base_force(model: ModalModel, masses: Array, moment: int) -> Share:
     return LEFT_OUT, {"restoring": masses, "ground": -left[moment], "turn": -left[moment + 1]}
 
 
-def _total_top_displacement(model: ModalModel) -> Share:
+def _total_top_displacement(model: RockingModel) -> Share:
     p = model.properties
     if not p.top_height:
         return LINEAR, {}
     return SWAY, {"displacement": p.top_ordinate, "rotation": p.top_height, "slip": 1.0}
 
 
-def _horizontal_reaction(model: ModalModel) -> Share:
+def _horizontal_reaction(model: RockingModel) -> Share:
     """ΣF_x = (m_tot + Σ l) a + L_0^r θ'' + Σ m* D'', and what ties from a height pull."""
     p = model.properties
     return HORIZONTAL, {"acceleration": p.effective_mass, "turn": p.l0r, "ground": p.horizontal_mass, "ties": 1.0}
 
 
-def _slip(_model: ModalModel) -> Share:
+def _slip(_model: RockingModel) -> Share:
     return LINEAR, {"slip": 1.0}
 
 
-_WHOLE: dict[str, Callable[[ModalModel], Share]] = {
+_WHOLE: dict[str, Callable[[RockingModel], Share]] = {
     "top_displacement": _top_displacement,
     "base_moment": _base_moment,
     "base_shear": _base_shear,
@@ -81,7 +81,7 @@ _WHOLE: dict[str, Callable[[ModalModel], Share]] = {
 }
 
 
-def floor_quantities(model: ModalModel, floors: FloorModes, names: Iterable[str]) -> Quantities:
+def floor_quantities(model: RockingModel, floors: FloorModes, names: Iterable[str]) -> Quantities:
     """Return quantities of the floors by name, N_floors each.
 
     `story_drift` (m): displacement of a floor minus that of the floor below, relative to the rotated base.
@@ -100,19 +100,19 @@ def floor_quantities(model: ModalModel, floors: FloorModes, names: Iterable[str]
     return joined([Quantities.of(count, n, kinds.get(name, LINEAR), **shapes[name]) for name in names])
 
 
-def modal_displacement(model: ModalModel, mode: int) -> Quantities:
+def modal_displacement(model: RockingModel, mode: int) -> Quantities:
     """Return D in m of one mode, counted from 0."""
     share = np.zeros(model.properties.n_modes)
     share[mode] = 1.0
     return Quantities.of(1, share.size, displacement=share)
 
 
-def rotation_by_side(model: ModalModel) -> Quantities:
+def rotation_by_side(model: RockingModel) -> Quantities:
     """Return the rotation to the right in rad (zero while rotated to the left), and likewise to the left."""
     return Quantities.of(2, model.properties.n_modes, rotation=[0.0, 1.0], right=[1.0, -1.0])
 
 
-def tracked_elements(model: ModalModel) -> tuple[int, ...]:
+def tracked_elements(model: RockingModel) -> tuple[int, ...]:
     """Return the places of elements whose elongation does not follow from the rotation: attached ones and stories.
 
     On springs that is every element.
@@ -120,14 +120,14 @@ def tracked_elements(model: ModalModel) -> tuple[int, ...]:
     return model.attached_places if model.springs is None else tuple(range(len(model.elements)))
 
 
-def element_moves(model: ModalModel) -> Quantities:
+def element_moves(model: RockingModel) -> Quantities:
     """Return δ of each of `tracked_elements` and its negative in m, less what it has in the state zero."""
     rows = _elongation_rows(model)
     shares = _shares_of(model, np.stack((rows, -rows), axis=1).reshape(-1, rows.shape[1]))
     return Quantities.of(2 * len(rows), model.properties.n_modes, LIFT if model.complete else LINEAR, **shares)
 
 
-def element_speeds(model: ModalModel) -> Quantities:
+def element_speeds(model: RockingModel) -> Quantities:
     """Return δ' of each of `tracked_elements` in m/s."""
     names = {"displacement": "velocity", "slip": "slipping", "heave": "heaving", "rotation": "swing"}
     shares = {names[name]: share for name, share in _shares_of(model, _elongation_rows(model)).items()}
@@ -135,19 +135,19 @@ def element_speeds(model: ModalModel) -> Quantities:
     return Quantities.of(len(tracked_elements(model)), model.properties.n_modes, kind, **shares)
 
 
-def _elongation_rows(model: ModalModel) -> Array:
+def _elongation_rows(model: RockingModel) -> Array:
     places = tracked_elements(model)
     return np.array([model.stretch(place, CLOSED) for place in places]).reshape(len(places), -1)
 
 
-def _shares_of(model: ModalModel, rows: Array) -> dict[str, Array]:
+def _shares_of(model: RockingModel, rows: Array) -> dict[str, Array]:
     layout = model.layout
     found = {"displacement": rows[:, : layout.modes], "rotation": rows[:, layout.rotation]}
     shifts = {"slip": layout.slip, "heave": layout.heave}
     return found | {name: rows[:, place] for name, place in shifts.items() if place >= 0}
 
 
-def rotation_rate_by_side(model: ModalModel) -> Quantities:
+def rotation_rate_by_side(model: RockingModel) -> Quantities:
     """Return δ'/r, the rate of an element's elongation per unit distance from the pivot, in rad/s, to each side.
 
     That is θ' for small rotations; zero while rotated to the other side. It is one quantity if the sides do not differ.

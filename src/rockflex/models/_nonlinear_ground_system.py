@@ -7,16 +7,15 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex.engine import Event, StateLayout, System
+from rockflex.models._base_motion import horizontal_reaction
 from rockflex.models._elements import CLOSED, QUARTER_TURN, internal_places, marks_of
 from rockflex.models._ground_fields import DEPTH, GRIP, PRESSURE, PUSH, SPEED, STRETCH
-from rockflex.models._label import RockingModel
-from rockflex.models._linear_model import horizontal_reaction
-from rockflex.models._nonlinear_ground import NonlinearSlidingModel, NonlinearSpringModel, on_ground
 from rockflex.models._nonlinear_system import Check, Rocks, key_of, own_key
 from rockflex.models._phase import Key
 from rockflex.models._quantities import Quantities, joined
+from rockflex.models._rocking_model import RockingModel
 from rockflex.models._sliding import LOST, STICK, SlidingModel
-from rockflex.models._spring_model import LIFTED, LOADED, RECEDING
+from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, SpringModel
 
 Jump = Callable[[Array, float, float], tuple[Array, Key]]
 
@@ -31,7 +30,7 @@ def nonlinear_system(model: RockingModel, quantities: Quantities, extremes: Quan
     parts = {f"state {k}": 1 for k in range(layout.size)}
     names = ("rotation", *(f"quantity {k}" for k in range(len(quantities))))
     names += (*(f"extreme {k}" for k in range(len(most))), "loss of support")
-    kind = Rocks if on_ground(model) is None else Stands if model.springs is not None else Slides
+    kind = Stands if isinstance(model, SpringModel) else Slides if isinstance(model, SlidingModel) else Rocks
     phases = kind(model, joined((quantities, most)))
     return System(
         StateLayout(**parts), names, phases.phase, key_of(model, model.start(CLOSED)), names[1 + len(quantities) :]
@@ -41,7 +40,7 @@ def nonlinear_system(model: RockingModel, quantities: Quantities, extremes: Quan
 class Slides(Rocks):
     """The phases of a model that slides on rigid ground."""
 
-    model: NonlinearSlidingModel
+    model: SlidingModel
 
     def slips(self, key: Key, first: int) -> tuple[list[Check], tuple[Event, ...]]:
         """The base begins to slide, ends it, or loses its pressure on the ground (Coulomb)."""
@@ -94,7 +93,7 @@ class Slides(Rocks):
 class Stands(Rocks):
     """The phases of a model on springs."""
 
-    model: NonlinearSpringModel
+    model: SpringModel
 
     def ends_of(self, key: Key) -> tuple[list[Any], list[Check], tuple[Event, ...]]:
         """Limits of the rotation, of which there are none, conditions that are not linear, and all events."""

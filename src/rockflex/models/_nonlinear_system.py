@@ -28,12 +28,11 @@ from rockflex.models._elements import (
 from rockflex.models._fields import Change, Landing, Reversal, RockingField
 from rockflex.models._ground_fields import GroundField
 from rockflex.models._impact import Restitution, VVELComplete, VVELSimplified
-from rockflex.models._label import RockingModel
 from rockflex.models._landing import gains_energy, landing_of, shortest_excursion, sided
-from rockflex.models._nonlinear import numbers_of
 from rockflex.models._phase import Key
 from rockflex.models._quantities import LINEAR, VERTICAL, Quantities, rows_of
-from rockflex.models._vector_fields import field_of
+from rockflex.models._rocking_model import RockingModel
+from rockflex.models._vector_fields import field_of, numbers_of
 
 TREMOR = 0.01  # m/s²: the error of a step is relative to the response to it, or to a larger motion so far
 LIGHT = 0.05  # of the vertical reaction at rest: the least size of the loss of support

@@ -110,3 +110,48 @@ class BorderedSystem:
     drive: Array
     recall: Array
     freed: Bools
+
+
+@dataclass(frozen=True, eq=False)
+class GroundPhase:
+    """What moves and what acts in a phase of a base that slides or stands on springs.
+
+    Attributes
+    ----------
+    side
+        The pivot, 1 right, -1 left; 0 in contact and on springs.
+    branch
+        Sign of the velocity of a hysteretic spring.
+    turns
+        Whether the base rotates.
+    way
+        Sign of the velocity of the slip; 0 if it sticks.
+    pressed
+        Whether the ground has a pressure to rub against; on rigid ground.
+    offset, inertia
+        Position of the pivot to the right of the axis of the masses in m, and rotary inertia about it in kg m²; on
+        springs about the axis itself.
+    friction
+        Coulomb's coefficient on rigid ground.
+    pulls : ndarray, shape (7, 1 + M)
+        Sums over the elements of a base on rigid ground, see `element_force_sums`.
+    springs : ndarray, shape (n_springs, 5)
+        Position in m, stiffness, coefficient of the dashpot, friction, and 1 if it is loaded, -1 if it recedes.
+    elements : ndarray, shape (E, 6)
+        On springs: position, k, c, f and g of the tension k δ + c δ' + f + g m, and δ at z = θ = 0 in m.
+    recalled
+        On springs: places of the internal variables m in the state, -1 where there are none.
+    """
+
+    side: int
+    branch: int
+    turns: bool
+    way: int
+    pressed: bool
+    offset: float
+    inertia: float
+    friction: float
+    pulls: Array
+    springs: Array
+    elements: Array
+    recalled: tuple[int, ...] = ()

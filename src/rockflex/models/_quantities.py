@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from rockflex._arrays import Array
 from rockflex.engine import by_rows
 from rockflex.models._elements import RIGHT
-from rockflex.models._modal_model import ModalModel
 from rockflex.models._phase import Key
+from rockflex.models._rocking_model import RockingModel
 
 # Kinds of quantities (Silva & Stojadinović 2024, Eqs. 3-22). In contact, and always in the simplified models, each is a
 # linear row over the motion. While a complete model rocks, displacements are nonlinear in the rotation, and forces
@@ -126,7 +126,7 @@ def joined(parts: Sequence[Quantities]) -> Quantities:
     return Quantities(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
-def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
+def rows_of(model: RockingModel, quantities: Quantities, key: Key) -> Array:
     """Return the rows of the quantities in one phase, shape (F, C).
 
     While a complete model rocks, the row of a nonlinear quantity contains only its displacements and forces;
@@ -150,7 +150,7 @@ def rows_of(model: ModalModel, quantities: Quantities, key: Key) -> Array:
     return rows
 
 
-def _moving(model: ModalModel, key: Key, *, large: bool) -> Array:
+def _moving(model: RockingModel, key: Key, *, large: bool) -> Array:
     """Return the rows, in one phase, that `Quantities.shares` multiply, (4 N + 5, C); no accelerations if `large`."""
     n, layout = model.properties.n_modes, model.layout
     rows = np.zeros((len(OF_MODES) * n + len(OF_BASE), layout.columns))

@@ -11,10 +11,10 @@ from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.models._element_states import element_forces
 from rockflex.models._kept import acting_side, by_phase, observed, rates_of
-from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, RISE, SIDE
-from rockflex.models._nonlinear import numbers_of
 from rockflex.models._quantities import HORIZONTAL, VERTICAL
+from rockflex.models._rocking_model import RockingModel
+from rockflex.models._vector_fields import numbers_of
 
 
 class Reactions(NamedTuple):

@@ -1,6 +1,6 @@
 """The simplified models on rigid ground on which they may slide, with Coulomb friction."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -8,46 +8,39 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array
-from rockflex._constants import GRAVITY
-from rockflex.modal import RockingProperties
-from rockflex.models._elements import CLOSED, base_equations_of, internal_count
-from rockflex.models._impact import ImpactLaw, VVELSimplified
-from rockflex.models._layout import HEADER, StateLayout, codes_for, layout_of
-from rockflex.models._linear_model import LinearModel, accelerations_of, bordered_system_of
-from rockflex.models._phase import BaseEquations, BorderedSystem, Key
+from rockflex.models._base_motion import accelerations_of, bordered_system_of
+from rockflex.models._elements import CLOSED, base_equations_of, element_force_sums
+from rockflex.models._layout import HEADER, StateLayout, codes_for
+from rockflex.models._phase import BaseEquations, BorderedSystem, GroundPhase, Key
+from rockflex.models._rocking_model import RockingModel
 
 STICK = 0  # the last branch of a key: it sticks, slips to the right (1) or left (-1), or does so without friction (±2)
 LOST = 2  # magnitude of the branch on which the ground has no pressure to rub against
 
 
 @dataclass(frozen=True, eq=False)
-class SlidingModel(LinearModel):
+class SlidingModel(RockingModel):
     """N modes on a base that may uplift and slide: nine phases of contact and rocking, of sticking and slipping.
 
     An impact keeps all horizontal velocities, also that of the base. The last internal variable of the state tells
-    whether, and to which side, the base slips.
+    whether, and to which side, the base slips. In complete and yielding models the vertical reaction that friction acts
+    on is that of all terms; elements slide along with the base, so that their inclination puts no horizontal force on
+    the ground; and the velocities relative to the base change by the impact law while the base keeps its own.
 
     Parameters
     ----------
-    label, properties, lifts, law, missing_mass, gravity
-        As in `LinearModel`.
+    label, properties, lifts, law, missing_mass, gravity, complete, bouc_wen
+        As in `RockingModel`.
     friction
         Coulomb's coefficient between base and ground.
     """
 
-    label: str
-    properties: RockingProperties
-    lifts: bool = True
-    law: ImpactLaw = field(default_factory=VVELSimplified)
-    missing_mass: bool = False
-    gravity: float = GRAVITY
     friction: float = np.inf
 
     @cached_property
     def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Layout of the state vector."""
-        n_internal = internal_count(self.elements) + codes_for(len(self.attached_places), self.code_base) + 1
-        return layout_of(self.properties.n_modes, n_internal=n_internal, slides=True)
+        return self._layout(codes_for(len(self.attached_places), self.code_base) + 1, slides=True)
 
     @property
     def ground_parameters(self) -> dict[str, Any]:
@@ -124,3 +117,21 @@ class SlidingModel(LinearModel):
         row = -self.lost_support(key)
         row[-1] += self.properties.resting_reaction
         return row
+
+    def ground_phase(self, key: Key, branch: int) -> GroundPhase:
+        """Return what moves and what acts in a phase."""
+        p, side, slip = self.properties, key[0], key[-1]
+        pivot = p.pivot(side or 1)
+        return GroundPhase(
+            side=side,
+            branch=branch,
+            turns=side != CLOSED,
+            way=int(np.sign(slip)),
+            pressed=slip != STICK and abs(slip) != LOST,
+            offset=side * pivot.arm,
+            inertia=pivot.i_theta,
+            friction=self.friction,
+            pulls=element_force_sums(p, self.elements, self.element_key(key)),
+            springs=np.zeros((0, 5)),
+            elements=np.zeros((0, 6)),
+        )

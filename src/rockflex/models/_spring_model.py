@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
 from rockflex._constants import GRAVITY
-from rockflex.modal import RockingProperties, Springs
-from rockflex.models._elements import CLOSED, internal_count
-from rockflex.models._impact import ImpactLaw, VVELSimplified
-from rockflex.models._layout import HEADER, SIDE, TIME, StateLayout, code_of, codes_for, decoded, layout_of
-from rockflex.models._linear_model import LinearModel, accelerations_of, bordered_system_of
-from rockflex.models._modal_model import LEVEL, Pose
-from rockflex.models._phase import BaseEquations, BorderedSystem, Key
+from rockflex.modal import Springs
+from rockflex.models._base_motion import accelerations_of, bordered_system_of
+from rockflex.models._elements import CLOSED, SUMS, internal_count, internal_places
+from rockflex.models._layout import HEADER, SIDE, TIME, StateLayout, code_of, codes_for, decoded
+from rockflex.models._phase import BaseEquations, BorderedSystem, GroundPhase, Key
+from rockflex.models._rocking_model import LEVEL, Pose, RockingModel
 
 # Branches of a spring. RECEDING: still compressed, but unloaded, since its dashpot would have to pull the base.
 LOADED, LIFTED, RECEDING = 0, 1, 2
@@ -24,16 +23,20 @@ STICK = 0  # the branch of the slip; 1 and -1: it slips to the right or left
 
 
 @dataclass(frozen=True, eq=False)
-class SpringModel(LinearModel):
+class SpringModel(RockingModel):
     """N modes on a base on springs and dashpots that cannot pull: no impact law, and flight as one more phase.
 
     A key has the side, always 0, the branches of the springs, that of the slip, and those of the elements. The state
     keeps them as the last internal variables.
 
+    In complete and yielding models springs and elements stand upright and travel with the base: the depth of a spring
+    is z - x sin θ, and its force has the lever arm x cos θ about the point where the axis of the masses meets the base.
+    So has an element. That point is held by the ground, or slides against the friction of all springs.
+
     Parameters
     ----------
-    label, properties, lifts, law, missing_mass, gravity
-        As in `LinearModel`; the law is not used.
+    label, properties, lifts, law, missing_mass, gravity, complete, bouc_wen
+        As in `RockingModel`; the law is not used.
     springs
         The springs.
     inertia
@@ -44,22 +47,23 @@ class SpringModel(LinearModel):
         Rotation and heave under the weight, from which the elements are stretched.
     """
 
-    label: str
-    properties: RockingProperties
-    lifts: bool = True
-    law: ImpactLaw = field(default_factory=VVELSimplified)
-    missing_mass: bool = False
-    gravity: float = GRAVITY
     springs: Springs = field(kw_only=True)  # pyright: ignore[reportIncompatibleVariableOverride]
     inertia: float = field(kw_only=True)
     friction: Array | None = None
-    rest: Pose = LEVEL
+    rest: Pose = LEVEL  # pyright: ignore[reportIncompatibleVariableOverride]
 
     @cached_property
     def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Layout of the state vector."""
-        n_internal = internal_count(self.elements) + codes_for(self._key_size, self.code_base)
-        return layout_of(self.properties.n_modes, n_internal=n_internal, slides=self.friction is not None, heaves=True)
+        return self._layout(codes_for(self._key_size, self.code_base), slides=self.friction is not None, heaves=True)
+
+    def integrates(self, side: Array | int) -> Bools:
+        """Return for every side whether its phases are integrated step by step: all of them or none."""
+        return np.full(np.shape(side), self.integrated)
+
+    def bends(self, side: Array | int) -> Bools:
+        """Return for every side whether rotations may be large."""
+        return np.full(np.shape(side), self.complete)
 
     @property
     def ground_parameters(self) -> dict[str, Any]:
@@ -246,7 +250,11 @@ class SpringModel(LinearModel):
         layout, springs = self.layout, self.springs
         start = np.zeros(layout.size)
         rotation, heave = self.rest
-        if state is not None:
+        if state is None:
+            start[: layout.modes], bent = self.leaning()
+            if layout.hysteresis >= 0:
+                start[layout.hysteresis] = bent
+        else:
             start[: state.size] = state
             rotation += start[layout.rotation]
             heave = heave_at(springs, float(self.turned(rotation)), self._weight)
@@ -270,6 +278,14 @@ class SpringModel(LinearModel):
         start[layout.memory :] = (*kept, *self.marks(key))
         return key, start
 
+    def leaning(self) -> tuple[Array, float]:
+        """Return D in m, and z of a hysteretic spring, at rest: the weight bends a structure whose base is tilted."""
+        p = self.properties
+        if not self.complete:
+            return np.zeros(p.n_modes), 0.0
+        bent = GRAVITY * np.sin(self.rest.rotation) / p.omega**2
+        return bent, 0.0 if self.bouc_wen is None else float(bent[0]) / self.bouc_wen.yield_displacement
+
     def marks(self, key: Key) -> tuple[float, ...]:
         """Return the last internal variables of the state, which tell all branches."""
         return code_of(key[1:], self.code_base)
@@ -281,6 +297,31 @@ class SpringModel(LinearModel):
 
     def _new_accelerations(self, key: Key) -> Array:
         return accelerations_of(self, key)
+
+    def ground_phase(self, key: Key, branch: int) -> GroundPhase:
+        """Return what moves and what acts in a phase."""
+        n, springs = self.springs.n, self.springs
+        friction = np.zeros(n) if self.friction is None else self.friction
+        acts = [{LOADED: 1.0, RECEDING: -1.0}.get(branch, 0.0) for branch in key[1 : n + 1]]
+        known, recalled, rows = internal_places(self.elements), list[int](), np.zeros((len(self.elements), 6))
+        for place, (each, taken) in enumerate(zip(self.elements, self.element_key(key)[1:], strict=True)):
+            pull, stretch = each.pull(taken), self.stretch(place, CLOSED)
+            rows[place] = each.position, pull.stiffness, pull.damping, pull.force, pull.recall, stretch[-1]
+            recalled.append(self.layout.memory + known[place] if place in known else -1)
+        return GroundPhase(
+            side=CLOSED,
+            branch=branch,
+            turns=True,
+            way=key[n + 1],
+            pressed=True,
+            offset=0.0,
+            inertia=self.inertia,
+            friction=0.0,
+            pulls=np.zeros((SUMS, 1)),
+            springs=np.column_stack((springs.positions, springs.stiffness, springs.damping, friction, acts)),
+            elements=rows,
+            recalled=tuple(recalled),
+        )
 
 
 def heave_at(springs: Springs, rotation: float, weight: float) -> float:

@@ -5,8 +5,8 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex.modal import FloorModes
 from rockflex.models._kept import accelerations, acting_side
-from rockflex.models._label import RockingModel
 from rockflex.models._layout import GROUND, SIDE
+from rockflex.models._rocking_model import RockingModel
 
 
 def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, Array]:

@@ -10,10 +10,10 @@ from rockflex._constants import GRAVITY
 from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System, by_rows
 from rockflex.models._elements import CLOSED, LEFT, QUARTER_TURN, RIGHT
 from rockflex.models._impact import Restitution, VVELSimplified
-from rockflex.models._label import RockingModel
 from rockflex.models._landing import landing_of, sided, turn_by_rows
 from rockflex.models._phase import Key
 from rockflex.models._quantities import GROUND, RIGHT_ROTATION, ROTATION, TURN, Quantities
+from rockflex.models._rocking_model import RockingModel
 
 SMALL, LARGE = 1e-30, 1e30  # of numbers in SI units that certainly do not overflow
 CONTACT, ALONE = (CLOSED,), {RIGHT: (RIGHT,), LEFT: (LEFT,)}

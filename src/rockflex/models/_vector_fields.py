@@ -1,21 +1,54 @@
-"""The vector field of a phase of a model."""
+"""The vector fields of phases of nonlinear models, complete (Eqs. 13-16, 26-29) and yielding (Eqs. 37-38)."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from rockflex._arrays import Array
+from rockflex.modal import RockingProperties
+from rockflex.models._bouc_wen import BoucWen
 from rockflex.models._elements import LEFT, MOMENT, RIGHT, element_force_sums, hold_shares, is_held, set_off
 from rockflex.models._fields import RockingField
 from rockflex.models._ground_fields import GroundField
-from rockflex.models._modal_model import ModalModel
-from rockflex.models._nonlinear import Numbers
-from rockflex.models._nonlinear_ground import on_ground
+from rockflex.models._layout import StateLayout
 from rockflex.models._phase import Key
+from rockflex.models._rocking_model import RockingModel
+
+
+@dataclass(frozen=True, eq=False)
+class Numbers:
+    """What a vector field knows of a model."""
+
+    properties: RockingProperties
+    bouc_wen: BoucWen | None
+    complete: bool
+    viscous: bool
+    gravity: float
+    resting: float  # vertical reaction at rest
+    layout: StateLayout
+    kinds: Sequence[int]  # of the outputs
+    levers: Array
+
+
+def numbers_of(model: RockingModel, kinds: Sequence[int] = (), levers: Array | None = None) -> Numbers:
+    """Return what the vector field of a model knows, with outputs of these kinds, each with two levers."""
+    return Numbers(
+        properties=model.properties,
+        bouc_wen=model.bouc_wen,
+        complete=model.complete,
+        viscous=model.layout.swept >= 0,
+        gravity=model.gravity,
+        resting=model.properties.resting_reaction,
+        layout=model.layout,
+        kinds=kinds,
+        levers=np.zeros((len(kinds), 2)) if levers is None else levers,
+    )
 
 
 def field_of(
-    model: ModalModel,
+    model: RockingModel,
     numbers: Numbers,
     key: Key,
     branch: int,
@@ -37,9 +70,9 @@ def field_of(
     checks
         Conditions that are not linear, see `GroundField`.
     """
-    slides = on_ground(model)
-    if slides is not None:
-        return GroundField(numbers, slides.ground_phase(key, branch), list(stops), list(checks))
+    ground = model.ground_phase(key, branch)
+    if ground is not None:
+        return GroundField(numbers, ground, list(stops), list(checks))
     p, elements = model.properties, model.elements
     branches = model.element_key(key)
     pulls = element_force_sums(p, elements, branches)

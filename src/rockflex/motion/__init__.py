@@ -29,6 +29,7 @@ from rockflex.motion._recordings import (
     RotatedSpectrum,
     StationRecord,
     group_stations,
+    horizontal_pairs,
     recording_names,
     rotated_spectrum,
 )
@@ -67,6 +68,7 @@ __all__ = [
     "ec8_spectrum",
     "group_stations",
     "half_sine_pulse",
+    "horizontal_pairs",
     "is_vertical_component",
     "load_suite",
     "mavroeidis_papageorgiou_pulse",

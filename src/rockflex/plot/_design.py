@@ -1,7 +1,7 @@
 """Designs: exceedance over the half width of the base, and the least cost of a search."""
 
 import math
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
 import numpy as np
@@ -10,10 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rockflex._arrays import Array, Bools
-from rockflex._checks import checked_instance, is_one_of
+from rockflex._checks import checked_instance
 from rockflex._errors import InputError
 from rockflex._number_format import short_number, unit_with_prefix
-from rockflex._shown import shown
 from rockflex.fragility import OVERTURNED, OVERTURNING, nominal_rotation_symbol, rotation_limit_state
 from rockflex.plot import _figures as figures
 from rockflex.plot import _study_tables as tables
@@ -224,9 +223,7 @@ class _DesignVariableAxis:
         return table[self.column].to_numpy(float) / self.divisor
 
 
-def plot_design_search(
-    found: BestDesign, *, theme: Literal["light", "dark"] = "light", size: Size | None = None
-) -> Figure:
+def plot_design_search(found: BestDesign, *, size: Size | None = None) -> Figure:
     """Plot the least cost over the width, and the trade-off of prestress against dissipators at the best width.
 
     Left: the least cost at which all targets are met, as predicted by `trade_off`, in the colour of the limit that
@@ -239,8 +236,6 @@ def plot_design_search(
     ----------
     found
         What `best_design` returned.
-    theme
-        ``"light"`` or ``"dark"``.
     size
         ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
 
@@ -252,7 +247,7 @@ def plot_design_search(
     Raises
     ------
     InputError
-        If the theme is unknown, or too few designs have probabilities of all limits; or the size is unknown.
+        If too few designs have probabilities of all limits, or the size is unknown.
 
     Examples
     --------
@@ -269,21 +264,17 @@ def plot_design_search(
     ['half width $B$ [m]', 'half width $B$ [m]']
     """
     checked_instance("found", found, BestDesign)
-    if not is_one_of(theme, figures.THEMES):
-        raise InputError(f'theme must be "light" or "dark", but {shown(theme)} was given.')
     between = InterpolatedMargins.of(found)
     varied = [*between.given]
     labels = [each.label for each in found.requirements]
     styles = figures.assign_distinct(labels, figures.recoloured_line_styles(_SEARCH_STYLES), "requirements")
-    with figures.styled(theme, size=size):
+    with figures.styled(size):
         count = min(len(varied), 2)
         figure = figures.new(7.2 if count > 1 else 4.2, 0.9 + 3.0 * count if figures.is_narrow() else 3.9)
         panels: list[Axes] = list(np.atleast_1d(figure.subplots(*((count, 1) if figures.is_narrow() else (1, count)))))
         _draw_design_costs(panels[0], found, varied[0], styles)
         if len(varied) > 1:
             _draw_design_plane(panels[1], found, between, (varied[-2], varied[-1]), styles)
-        for axes in panels:
-            axes.tick_params(colors=_design_text_color(), grid_color=mpl.rcParams["grid.color"])
         handles = [Line2D([], [], **style.look, label=figures.literal(label)) for label, style in styles.items()]
         for name, face in (("run, meets all targets", _design_text_color()), ("run, does not", "none")):
             handles.append(

@@ -17,10 +17,11 @@ from matplotlib import rc_context, rcParams, rcParamsDefault
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backend_bases import RendererBase
-from matplotlib.colors import is_color_like, to_hex, to_rgb
+from matplotlib.colors import is_color_like, to_hex, to_rgb, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from rockflex._checks import is_one_of
 from rockflex._errors import InputError
 from rockflex._files import checked_file_path, write_file_atomically
 from rockflex._shown import shown
@@ -74,7 +75,10 @@ _DARK: dict[Any, Any] = _STYLE | {
     "xtick.color": _INK,
     "ytick.color": _INK,
 }
-THEMES = {"light": _STYLE, "dark": _DARK}
+# Black on white without a grid, in the letters that journals ask for.
+_JOURNAL: dict[Any, Any] = _STYLE | {"axes.grid": False, "axes.linewidth": 0.5}
+Theme = Literal["light", "dark", "journal"]
+THEMES: dict[str, dict[Any, Any]] = {"light": _STYLE, "dark": _DARK, "journal": _JOURNAL}
 _LOCK = RLock()
 # A date in the file would make equal figures differ.
 _UNDATED: dict[str, dict[str, Any]] = {".png": {}, ".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
@@ -101,6 +105,15 @@ class LineStyle:
 _DASHES = ("-", (0, (6, 2)), (0, (1, 1)), (0, (6, 1, 1, 1, 1, 1)))
 LINE_STYLES = tuple(LineStyle(color, dashes) for dashes in _DASHES for color in (PURPLE, ORANGE, SKY))
 """Line styles of models without a fixed style, the most distinct first; blue is left to reference lines."""
+ALTERNATIVE_STYLES = tuple(
+    LineStyle(color, dashes)
+    for color, dashes in zip(
+        (BLACK, RED, GREEN, PURPLE, ORANGE, SKY),
+        ("-", (0, (6, 2)), (0, (1, 1)), (0, (6, 1, 1, 1)), (0, (3, 1)), (0, (6, 1, 1, 1, 1, 1))),
+        strict=True,
+    )
+)
+"""Line styles of alternatives, which colours and dashes tell apart."""
 
 
 Size = Literal["column", "page"] | tuple[float, float]
@@ -108,21 +121,62 @@ Size = Literal["column", "page"] | tuple[float, float]
 
 _WIDTHS = {"column": 3.5, "page": 7.2}  # inches
 _NARROW = 4.6  # inches of width below which panels are stacked
-_COLUMN_FONT = 8.0
+_COLUMN_FONT, _LEAST_FONT = 8.0, 7.0  # as journals ask
 _FONT_SIZES = ("font.size", "axes.labelsize", "axes.titlesize", "legend.fontsize", "xtick.labelsize", "ytick.labelsize")
 _SAVED = ("savefig.bbox", "svg.hashsalt", "pdf.fonttype", "path.simplify")  # so that equal figures give equal files
 _DARK_BRIGHTNESS = 0.5  # brightness of a background on which ink is dark
 
+_CHOSEN: ContextVar[tuple[Theme, Size | None]] = ContextVar("chosen", default=("light", None))
 _SIZE: ContextVar[tuple[float, float | None] | None] = ContextVar("size", default=None)
 _DRAWN: ContextVar[list[Figure] | None] = ContextVar("drawn", default=None)
 
 
 @contextmanager
-def styled(theme: str = "light", size: Size | None = None) -> Generator[None, None, None]:
+def figure_style(theme: Theme = "light", size: Size | None = None) -> Generator[None, None, None]:
+    """Draw all figures of a block in a theme and a size; a function's own `size` comes first.
+
+    What is set in matplotlib's ``rcParams`` is kept.
+
+    Parameters
+    ----------
+    theme
+        ``"light"``; ``"dark"``, for screens and slides; or ``"journal"``: letters of 8 points, thin axes, no grid.
+    size
+        ``"column"`` or ``"page"`` (3.5 or 7.2 in wide), or width and height in inches. Default: what suits the panels.
+
+    Raises
+    ------
+    InputError
+        If there is no such theme or size.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> with rf.figure_style("journal", "column"):
+    ...     figure = rf.plot_motion(rf.ricker_pulse(4.0, 0.6))
+    >>> float(figure.get_size_inches()[0])
+    3.5
+    """
+    if not is_one_of(theme, THEMES):
+        raise InputError(
+            f"theme must be one of {', '.join(map(repr, THEMES))}, but {shown(theme)} was given.", field="theme"
+        )
+    _figure_size_in_inches(size)
+    token = _CHOSEN.set((theme, size))
+    try:
+        yield
+    finally:
+        _CHOSEN.reset(token)
+
+
+@contextmanager
+def styled(size: Size | None = None) -> Generator[None, None, None]:
     """Apply the style while a figure is drawn; matplotlib's settings are global, so one thread at a time."""
-    inches = _figure_size_in_inches(size)
+    theme, usual_size = _CHOSEN.get()
+    inches = _figure_size_in_inches(usual_size if size is None else size)
     with _LOCK:
-        usual = _FONT if inches is None or inches[0] >= _NARROW else _COLUMN_FONT
+        small = theme == "journal" or (inches is not None and inches[0] < _NARROW)
+        usual = _COLUMN_FONT if small else _FONT
         font = rcParams["font.size"] if _is_style_set_by_caller("font.size") else usual
         lines, marks = (
             rcParams[name] if _is_style_set_by_caller(name) else None
@@ -143,8 +197,10 @@ def styled(theme: str = "light", size: Size | None = None) -> Generator[None, No
                 _DRAWN.reset(tokens[1])
             for figure in figures:
                 _rescale_lines(figure, lines, marks)
-                if theme == "light" and sum(to_rgb(rcParams["axes.facecolor"])) / 3.0 < _DARK_BRIGHTNESS:
+                if sum(to_rgb(rcParams["axes.facecolor"])) / 3.0 < _DARK_BRIGHTNESS:
                     _invert_figure_colors(figure)
+                for text in figure.findobj(Text) if small and font == usual else ():
+                    text.set_fontsize(max(text.get_fontsize(), _LEAST_FONT))  # pyright: ignore
                 if inches is not None or font != _FONT:
                     _wrap_figure_texts(figure)
 
@@ -210,7 +266,7 @@ def new(width: float, height: float) -> Figure:
     if asked is not None:
         width, height = asked[0], asked[1] or height
     figure = NotebookFigure(figsize=(width, height), layout="constrained")
-    figure.settings = {name: rcParams[name] for name in _STYLE}
+    figure.settings = {name: rcParams[name] for name in _DARK}
     drawn = _DRAWN.get()
     if drawn is not None:
         drawn.append(figure)
@@ -312,7 +368,7 @@ def _invert_figure_colors(figure: Figure) -> None:
             color: Any = getattr(artist, f"get_{name}", lambda: None)()
             if np.shape(color) == (1, 4):  # of all parts of a band
                 color = color[0]
-            new = turned.get(to_hex(color)) if is_color_like(color) else None
+            new = turned.get(to_hex(color)) if is_color_like(color) and to_rgba(color)[3] else None  # "none" is black
             if new is not None:
                 getattr(artist, f"set_{name}")(new)
 
@@ -413,6 +469,11 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
 def figure_as_svg(figure: Figure) -> str:
     """Return a figure as the text of an SVG file."""
     return _figure_file_content(figure, ".svg").decode()
+
+
+def figure_as_png(figure: Figure) -> bytes:
+    """Return a figure as the content of a PNG file."""
+    return _figure_file_content(figure, ".png")
 
 
 def _figure_file_content(figure: Figure, suffix: str) -> bytes:

@@ -36,6 +36,7 @@ _QUANTITIES = {
     "max_rotation": r"$θ_{\mathrm{max}}$ [rad]",
     "max_top_displacement": r"$u_{\mathrm{top,max}}$, relative to the base [m]",
     "max_total_top_displacement": r"total $u_{\mathrm{top,max}}$ [m]",
+    "max_ductility": r"$μ_{\mathrm{max}}$ of the stories",
 }
 _TINY = 6.75
 _ROW = 0.056  # of the panel, from row to row of the numbers in it
@@ -221,8 +222,7 @@ def plot_stripes(
     runs
         The table of a stripe study.
     limit
-        ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)), ``"tendon_yield"``, ``"uplift"``, a
-        rotation in rad, or a limit state such as ``rockflex.fragility.residual_rotation_limit_state(0.005)``.
+        As in `stripe_counts`: ``"overturning"``, a rotation in rad, ``"max_ductility > 4"``, ...
     measure
         Name of the measure of the levels, such as ``"pgv"``, for the axis; it is not in the table.
     confidence
@@ -256,7 +256,7 @@ def plot_stripes(
     """
     needed = ("structure", "model", "level", "status", "max_rotation", "nominal_overturning")
     tables.check_table_columns(runs, needed, "the table of a stripe study")
-    from rockflex.study.stripes import stripe_counts, stripe_limit_state
+    from rockflex.study.stripes import stripe_counts
 
     counts = stripe_counts(runs, limit)
     if not len(counts):
@@ -265,7 +265,7 @@ def plot_stripes(
     names = tables.names_in_column(runs["structure"])
     end = 1.1 * float(counts["level"].max())
     with figures.styled(size=size):
-        event = stripe_limit_state(limit).symbol
+        event = fragility.limit_state_of(limit).symbol
         y = f"$P({event})$" if ">" in event else f"P({event})"
         figure, panels = tables.structure_panels(names, 3, 2.1, tables.measure_axis_name(measure), y)
         for axes, name in zip(panels, names, strict=True):
@@ -297,10 +297,8 @@ def plot_stripes(
 
 
 def _fit_of_stripes(runs: "pd.DataFrame", limit: "StripeLimit") -> fragility.LognormalFragility | None:
-    from rockflex.study.stripes import stripe_limit_state
-
     solved = runs[runs["status"].notna()]
-    exceeded = stripe_limit_state(limit).exceeded(solved).astype(bool)
+    exceeded = fragility.limit_state_of(limit).exceeded(solved).astype(bool)
     try:
         return fragility.fit_stripes(
             solved["level"], exceeded, np.ones(len(solved)), fragility.recordings_of_runs(solved)
@@ -472,7 +470,9 @@ class _PlottedCloud(NamedTuple):
 
 def plot_clouds(
     runs: "pd.DataFrame",
-    quantity: Literal["max_rotation", "max_top_displacement", "max_total_top_displacement"] = "max_rotation",
+    quantity: Literal[
+        "max_rotation", "max_top_displacement", "max_total_top_displacement", "max_ductility"
+    ] = "max_rotation",
     measure: str = "pgv",
     *,
     threshold: float = fragility.ROCKED,
@@ -492,8 +492,8 @@ def plot_clouds(
     runs
         The table of a cloud study, such as `run_cloud` returns.
     quantity
-        ``"max_rotation"`` (Fig. 6), ``"max_top_displacement"`` (Fig. 7, relative to the base) or
-        ``"max_total_top_displacement"`` (relative to the ground).
+        ``"max_rotation"`` (Fig. 6), ``"max_top_displacement"`` (Fig. 7, relative to the base),
+        ``"max_total_top_displacement"`` (relative to the ground) or, of stories that yield, ``"max_ductility"``.
     measure
         Column of the intensity measure.
     threshold
@@ -528,7 +528,7 @@ def plot_clouds(
         raise InputError(f"quantity must be one of {', '.join(_QUANTITIES)}, but {shown(quantity)} was given.")
     import pandas as pd
 
-    tables.check_table_columns(runs, ("structure", "model", "status", measure), "what run_cloud returned")
+    tables.check_table_columns(runs, ("structure", "model", "status", measure, quantity), "what run_cloud returned")
     clouds = _plotted_clouds(runs, quantity, measure, threshold, nominal=nominal)
     styles = tables.model_lines_and_symbols(tables.names_in_column(cloud.model for cloud in clouds))
     names = tables.names_in_column(cloud.structure for cloud in clouds)

@@ -160,8 +160,14 @@ def _response_labels(responses: list[Response], labels: Sequence[str] | None) ->
 
 
 def _response_line_styles(histories: list[History]) -> list[LineStyle]:
-    """Line styles of Silva & Stojadinović 2024, Fig. 15, for fixed base, most modes, one and two, and others."""
+    """Line styles of Silva & Stojadinović 2024, Fig. 15, for fixed base, most modes, one and two, and others.
+
+    Where a model occurs twice, as in a comparison of alternatives, all differ in their dashes, too.
+    """
     max_modes = max((h.model.properties.n_modes for h in histories if h.model.lifts), default=0)
+    labels = [history.model.label for history in histories]
+    if len(set(labels)) < len(labels) <= len(figures.ALTERNATIVE_STYLES):
+        return figures.recoloured_line_styles(figures.ALTERNATIVE_STYLES[: len(histories)])
     wanted = [_usual_line_style(history, max_modes) for history in histories]
     spare, styles = [style for style in figures.LINE_STYLES if style not in wanted], list[LineStyle]()
     for own in wanted:

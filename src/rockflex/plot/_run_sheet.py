@@ -37,7 +37,8 @@ def draw_run_sheet(
     InputError
         If there are no responses or too many, or one has no history.
     """
-    curves = histories.response_curves(responses, labels)
+    names = None if labels is None else [figures.literal(label) for label in labels]
+    curves = histories.response_curves(responses, names)
     lifting = [curve for curve in curves if curve.lifts]
     loops = [curve for curve in lifting if curve.history.model.properties.n_modes]
     quantities = histories.panel_quantities(_run_sheet_panels(curves, height))
@@ -104,7 +105,9 @@ def _run_sheet_panels(curves: list[ResponseCurve], height: float) -> list[str]:
 
 def _short_axis_label(label: str, room: float) -> str:
     """Return the label of an axis, without its qualifier where the panel is lower than `room` mm."""
-    return label if room > _MIN_PANEL_MM else label.replace(", total", "").replace(", relative", "")
+    if room > _MIN_PANEL_MM:
+        return label
+    return label.replace(", total", "").replace(", relative", "").replace("rise of ", "")
 
 
 def _draw_moment_rotation_loops(axes: Axes, curves: list[ResponseCurve], mark: str) -> None:

@@ -1,9 +1,12 @@
 """Responses: forces, displacements, energies and peaks from a solution."""
 
+from rockflex.response._comparison import COMPARED_DEMANDS, STATISTICS, Comparison
 from rockflex.response._energy import EnergyLedger
+from rockflex.response._exports import to_matlab, to_netcdf
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._history import History, SampledHistory
+from rockflex.response._limit_checks import NO_LIMIT, Check, CheckLimits, CheckTable, check
 from rockflex.response._moment_rotation import (
     MomentRotation,
     MomentRotationOnSprings,
@@ -15,7 +18,18 @@ from rockflex.response._moment_rotation import (
 from rockflex.response._peaks import GLOBAL, Tracked, tracked_quantities
 from rockflex.response._pushover import BilinearFit, Pushover, PushoverEvent, pushover_path
 from rockflex.response._quasi_static import static_path
-from rockflex.response._respond import NAMES, STATUSES, columns_among, columns_of, respond
+from rockflex.response._record_set import DEMANDS, RecordSet, Rule, checked_rule
+from rockflex.response._respond import (
+    BY_STORY,
+    MAX_OF_STORIES,
+    NAMES,
+    STATUSES,
+    columns_among,
+    columns_of,
+    missing_values,
+    respond,
+    story_results,
+)
 from rockflex.response._response import (
     BALANCED,
     PEAKS,
@@ -25,18 +39,29 @@ from rockflex.response._response import (
     warnings_of,
     warnings_of_energy,
 )
-from rockflex.response._tables import UNITS_OF_GROUND, UNITS_OF_HISTORY, ground_columns, history_columns
+from rockflex.response._tables import RESULT_UNITS, UNITS_OF_GROUND, UNITS_OF_HISTORY, ground_columns, history_columns
 
 __all__ = [
     "BALANCED",
+    "BY_STORY",
+    "COMPARED_DEMANDS",
+    "DEMANDS",
     "GLOBAL",
     "IMPACT_WINDOW",
+    "MAX_OF_STORIES",
     "NAMES",
+    "NO_LIMIT",
     "PEAKS",
+    "RESULT_UNITS",
+    "STATISTICS",
     "STATUSES",
     "UNITS_OF_GROUND",
     "UNITS_OF_HISTORY",
     "BilinearFit",
+    "Check",
+    "CheckLimits",
+    "CheckTable",
+    "Comparison",
     "EnergyLedger",
     "FloorPeaks",
     "History",
@@ -44,9 +69,13 @@ __all__ = [
     "MomentRotationOnSprings",
     "Pushover",
     "PushoverEvent",
+    "RecordSet",
     "Response",
+    "Rule",
     "SampledHistory",
     "Tracked",
+    "check",
+    "checked_rule",
     "columns_among",
     "columns_of",
     "complete_of",
@@ -56,10 +85,14 @@ __all__ = [
     "history_columns",
     "large_resistance",
     "leaves_range",
+    "missing_values",
     "pushover_path",
     "resistance_on_springs",
     "respond",
     "static_path",
+    "story_results",
+    "to_matlab",
+    "to_netcdf",
     "tracked_quantities",
     "warnings_of",
     "warnings_of_energy",

@@ -35,8 +35,6 @@ from rockflex.models import (
     BoucWen,
     ForgottenLaw,
     ImpactLaw,
-    LinearModel,
-    NonlinearModel,
     Pose,
     Restitution,
     RockingModel,
@@ -45,7 +43,6 @@ from rockflex.models import (
     SpringModel,
     VVELComplete,
     VVELSimplified,
-    made_nonlinear,
 )
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History
@@ -285,14 +282,16 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     missing = _typed(scalars, "missing_mass", bool)
     law = _law(parameters)
     gravity = scalars.get("gravity", GRAVITY)
-    complete = bouc_wen = None
+    nonlinear = dict[str, Any]()
     if "complete" in scalars:
-        complete, bouc_wen = _typed(scalars, "complete", bool), scalars["bouc_wen"]
-        bouc_wen = None if bouc_wen is None else BoucWen(**bouc_wen)
+        bouc_wen = scalars["bouc_wen"]
+        nonlinear["complete"] = _typed(scalars, "complete", bool)
+        nonlinear["bouc_wen"] = None if bouc_wen is None else BoucWen(**bouc_wen)
+        nonlinear["stepwise"] = not nonlinear["complete"] and bouc_wen is None
     if "springs.positions" in arrays:
         springs = Springs(*(arrays.get(f"springs.{name}") for name in SPRINGS))  # pyright: ignore[reportArgumentType]
         rotation, heave = _typed(scalars, "rest", list)
-        on_springs = SpringModel(
+        return SpringModel(
             scalars["model"],
             properties,
             missing_mass=missing,
@@ -301,13 +300,9 @@ def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
             inertia=_typed(scalars, "inertia", float),
             friction=arrays.get("springs.friction"),
             rest=Pose(rotation, heave),
+            **nonlinear,
         )
-        return on_springs if complete is None else made_nonlinear(on_springs, complete=complete, bouc_wen=bouc_wen)
+    known = scalars["model"], properties, lifts, law, missing, gravity
     if "friction" in scalars:
-        sliding = SlidingModel(
-            scalars["model"], properties, lifts, law, missing, gravity, _typed(scalars, "friction", float)
-        )
-        return sliding if complete is None else made_nonlinear(sliding, complete=complete, bouc_wen=bouc_wen)
-    if complete is None:
-        return LinearModel(scalars["model"], properties, lifts, law, missing, gravity)
-    return NonlinearModel(scalars["model"], properties, lifts, law, complete, bouc_wen, missing, gravity)
+        return SlidingModel(*known, friction=_typed(scalars, "friction", float), **nonlinear)
+    return RockingModel(*known, **nonlinear)

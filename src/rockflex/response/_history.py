@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, SupportsIndex
 
 import numpy as np
@@ -27,6 +28,7 @@ from rockflex.models import (
 )
 from rockflex.motion import GroundMotion
 from rockflex.response._energy import EnergyLedger, energy_ledger
+from rockflex.response._export_files import history_variables, write_matlab, write_netcdf
 from rockflex.response._floors import floor_histories, floor_motion
 from rockflex.response._friction import IMPACT_WINDOW, Friction
 from rockflex.response._interpolation import even_instants, instants, only_of_run, settled_rotation, states_at
@@ -565,6 +567,14 @@ class History(Value):
             If xarray is not installed, there is no such quantity, or the structure has no floors.
         """
         return dataset_of(self, quantities)
+
+    def to_matlab(self, path: str | Path, quantities: Sequence[str] | None = None) -> Path:
+        """Write the history as a file of MATLAB; see `rockflex.to_matlab`."""
+        return write_matlab(path, self.model.label, history_variables(self, quantities))
+
+    def to_netcdf(self, path: str | Path, quantities: Sequence[str] | None = None) -> Path:
+        """Write the history as a NetCDF file; see `rockflex.to_netcdf`."""
+        return write_netcdf(path, self.model.label, history_variables(self, quantities))
 
     @cached_property
     def _global(self) -> dict[str, Array]:

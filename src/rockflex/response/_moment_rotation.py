@@ -290,12 +290,7 @@ class MomentRotationOnSprings(StaticPath):
     @property
     def contact_length(self) -> Array:
         """Length of the base in m below the level at which the springs are unloaded, shape (n,)."""
-        left, right = self.edge_uplift.T
-        width = 2.0 * self.properties.half_width
-        across = np.abs(right - left)
-        down = -np.minimum(left, right)
-        share = np.divide(down, across, out=np.where(down > 0.0, 1.0, 0.0), where=across > 0.0)
-        return width * np.clip(share, 0.0, 1.0)
+        return contact_length(self.edge_uplift, 2.0 * self.properties.half_width)
 
     @property
     def soil_pressure(self) -> Array:
@@ -399,3 +394,15 @@ def resistance_on_springs(history: History) -> SpringsResistance | None:
         * (np.array([(each.height or 0.0) * each.cosine - each.position for each in p.elements]))
         * level[:, None],
     )
+
+
+def contact_length(edge_uplift: Array, width: float) -> Array:
+    """Return the length in m of a base of a `width` in m below the level of unloaded springs, shape (n,).
+
+    `edge_uplift` is the rise of its left and right edge above this level in m, shape (n, 2).
+    """
+    left, right = edge_uplift.T
+    across = np.abs(right - left)
+    down = -np.minimum(left, right)
+    share = np.divide(down, across, out=np.where(down > 0.0, 1.0, 0.0), where=across > 0.0)
+    return width * np.clip(share, 0.0, 1.0)

@@ -176,6 +176,7 @@ class ElementPeaks(NamedTuple):
     tendon_overload: bool
     ductility: Array
     residual_drift: Array
+    residual_drift_ratio: Array
 
 
 def _fixed(values: ArrayLike) -> NDArray[Any]:
@@ -184,13 +185,15 @@ def _fixed(values: ArrayLike) -> NDArray[Any]:
     return array
 
 
-OF_STORIES = ("ductility", "residual_drift")
+OF_STORIES = ("ductility", "residual_drift", "residual_drift_ratio")
 ELEMENT_PEAKS = (
     *("max_element_force", "max_element_elongation", "element_yielded", "remaining_prestress"),
     *OF_STORIES,
 )
 EMPTY: Array = _fixed(np.zeros(0))
-NONE = ElementPeaks(EMPTY, EMPTY, _fixed(np.zeros(0, dtype=np.bool_)), EMPTY, 0.0, 0.0, False, False, EMPTY, EMPTY)
+NONE = ElementPeaks(
+    EMPTY, EMPTY, _fixed(np.zeros(0, dtype=np.bool_)), EMPTY, 0.0, 0.0, False, False, EMPTY, EMPTY, EMPTY
+)
 
 
 class ElementExtremes(NamedTuple):
@@ -232,14 +235,16 @@ def _of_stories(model: RockingModel, moves: Sequence[ElementExtremes], final_sta
     """Return the ductility of each story and its drift at rest after the run; nothing if no story yields."""
     p = model.properties
     if not p.stories or p.floors is None:
-        return {"ductility": EMPTY, "residual_drift": EMPTY}
+        return dict.fromkeys(OF_STORIES, EMPTY)
     ductility = np.zeros(p.floors.heights.size)
     for story, move in zip(p.stories, moves, strict=True):
         ductility[story.floor - 1] = max(-move.low, move.high) * story.stiffness / story.yield_force
     left = model.bent_at_rest(plastic_stretches(model, _as_history(model, final_state)[None])[0])
+    drift = np.diff(p.floors.displacement @ left, prepend=0.0)
     return {
         "ductility": _fixed(ductility),
-        "residual_drift": _fixed(np.diff(p.floors.displacement @ left, prepend=0.0)),
+        "residual_drift": _fixed(drift),
+        "residual_drift_ratio": _fixed(drift / np.diff(p.floors.heights, prepend=0.0)),
     }
 
 

@@ -10,7 +10,7 @@ from rockflex._checks import checked_magnitude, checked_positive
 from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.modal import FloorModes
-from rockflex.models import RIGHT, BoucWen, Element, LinearModel
+from rockflex.models import RIGHT, BoucWen, Element, RockingModel
 from rockflex.response._quasi_static import (
     ElementState,
     at_rest,
@@ -229,7 +229,7 @@ class _Point(NamedTuple):
 class _Way:
     """The equilibria of a structure under lateral forces of one pattern, by the displacement of its top."""
 
-    def __init__(self, model: LinearModel, pattern: Array, floors: FloorModes) -> None:
+    def __init__(self, model: RockingModel, pattern: Array, floors: FloorModes) -> None:
         p, layout = model.properties, model.layout
         self.elements, self.lifts = model.elements, model.lifts
         self.rest = np.append(model.bent_at_rest(np.zeros(len(self.elements))), 0.0)
@@ -293,7 +293,7 @@ class _Way:
         return turned
 
 
-def pushover_path(model: LinearModel, pattern: Array, target: float, floors: FloorModes) -> Pushover:
+def pushover_path(model: RockingModel, pattern: Array, target: float, floors: FloorModes) -> Pushover:
     """Return the way of a structure to a displacement of its top relative to the ground.
 
     Parameters
@@ -366,7 +366,7 @@ def _changed(
 
 
 def _result(
-    model: LinearModel,
+    model: RockingModel,
     floors: FloorModes,
     pattern: Array,
     way: _Way,

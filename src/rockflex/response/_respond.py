@@ -87,7 +87,15 @@ NAMES = ("status", *(name for name in PEAKS if name not in ("model", "motion", "
 
 _values_of = attrgetter(*NAMES)
 
+MAX_OF_STORIES = ("max_ductility", "max_residual_drift_ratio")
+BY_STORY = ("ductility", "residual_drift")
+
 Columns = dict[str, NDArray[Any]]
+
+
+def missing_values(count: int, kind: Any) -> NDArray[Any]:
+    """Return a column of NaN; of zeros if the kind has no NaN."""
+    return np.full(count, math.nan if np.dtype(kind).kind == "f" else 0, kind)
 
 
 def columns_of(models: Sequence[RockingModel], solutions: Solutions, tracked: Tracked) -> Columns:
@@ -106,18 +114,32 @@ def columns_of(models: Sequence[RockingModel], solutions: Solutions, tracked: Tr
     return _of_bare_base(models, solutions, tracked)
 
 
-def columns_among(responses: Sequence[Response | None]) -> Columns:
-    """Return the status, as a place in `STATUSES`, and every number and flag of R responses, each of shape (R,).
+def story_results(response: Response) -> dict[str, float]:
+    """Return `MAX_OF_STORIES`, and `BY_STORY` with the number of each story from 1, such as `ductility_1`.
 
-    The values where there is no response mean nothing; if there is none at all, there are no columns.
+    Nothing if no story of the model can yield.
+    """
+    if not response.ductility.size:
+        return {}
+    found = {name: getattr(response, name) for name in MAX_OF_STORIES}
+    by_story = {name: getattr(response, name).tolist() for name in BY_STORY}
+    return found | {f"{name}_{k}": each for name, values in by_story.items() for k, each in enumerate(values, 1)}
+
+
+def columns_among(responses: Sequence[Response | None]) -> Columns:
+    """Return the status, as a place in `STATUSES`, every number and flag, and `story_results` of R responses.
+
+    Each has the shape (R,). The values where there is no response mean nothing; if there is none at all, there are no
+    columns. What a response has not is NaN.
     """
     found: Columns = {}
     for place, response in enumerate(responses):
         if response is None:
             continue
-        for name, value in zip(NAMES, _values_of(response), strict=True):
+        values = dict(zip(NAMES, _values_of(response), strict=True)) | story_results(response)
+        for name, value in values.items():
             if name not in found:
-                found[name] = np.zeros(len(responses), np.int64 if name == "status" else type(value))
+                found[name] = missing_values(len(responses), np.int64 if name == "status" else type(value))
             found[name][place] = STATUSES.index(value) if name == "status" else value
     return found
 

@@ -1,9 +1,12 @@
 """Warnings: forces that ground or tendons cannot provide, rotations beyond a model's range, unbalanced energies."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Generic, Self, TypeVar, overload
+
+import numpy as np
 
 from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError, MissingQuantityError
@@ -105,9 +108,10 @@ class Response(HtmlTable, Value):
     `element_elongation`, `element_energy`, `slip`, `slip_velocity`, `heave`, `edge_uplift`, `spring_force`,
     `soil_pressure`, `bearing_pressure`, `uplifted`, `vertical_ground_acceleration`, `tendon_force`,
     `horizontal_reaction`, `vertical_reaction`, `friction_demand`, `required_friction`,
-    `required_friction_excluding_impacts()`, `sliding_time()`, `energy`, `to_frame()`, `to_xarray()`, `at()`,
-    `resample()`, `floor_motion()`, `floor_spectrum()` and `settled_rotation()`; see `History`. A response with peaks
-    only has none of them: `hasattr` returns False, and accessing one raises an `InputError`.
+    `required_friction_excluding_impacts()`, `sliding_time()`, `energy`, `to_frame()`, `to_xarray()`,
+    `to_matlab()`, `to_netcdf()`, `at()`, `resample()`, `floor_motion()`, `floor_spectrum()` and `settled_rotation()`;
+    see `History`. A response with peaks only has none of them: `hasattr` returns False, and accessing one raises an
+    `InputError`.
 
     Parameters
     ----------
@@ -186,6 +190,8 @@ class Response(HtmlTable, Value):
     residual_drift
         Drift of each story in m at rest after the run, with what yielded as it is and everything else elastic, shape
         (N_floors,), or (0,).
+    residual_drift_ratio
+        The same over the height of the story, shape (N_floors,), or (0,).
     floors
         Floor peaks if the structure has floors and ``output="history"`` was requested; otherwise None.
     history
@@ -243,6 +249,7 @@ class Response(HtmlTable, Value):
     remaining_prestress: Array
     ductility: Array
     residual_drift: Array
+    residual_drift_ratio: Array
     floors: FloorPeaks | None = None
     history: History | None = None
 
@@ -288,6 +295,8 @@ class Response(HtmlTable, Value):
     energy = _OfHistory[EnergyLedger]()
     to_frame = _OfHistory[Callable[..., Any]]()
     to_xarray = _OfHistory[Callable[..., Any]]()
+    to_matlab = _OfHistory[Callable[..., Path]]()
+    to_netcdf = _OfHistory[Callable[..., Path]]()
     floor_motion = _OfHistory[Callable[..., GroundMotion]]()
     settled_rotation = _OfHistory[Callable[..., float]]()
     floor_spectrum = _OfHistory[Callable[..., Any]]()
@@ -320,6 +329,16 @@ class Response(HtmlTable, Value):
             return () if self.history is None else warnings_of_energy(self.history.energy.closing_error)
         except InputError:  # too fast for the sampling: no energies
             return ()
+
+    @property
+    def max_ductility(self) -> float:
+        """Largest `ductility` of a story; NaN if no story can yield."""
+        return float(self.ductility.max()) if self.ductility.size else math.nan
+
+    @property
+    def max_residual_drift_ratio(self) -> float:
+        """Largest |`residual_drift_ratio`| of a story; NaN if no story can yield."""
+        return float(np.abs(self.residual_drift_ratio).max()) if self.residual_drift_ratio.size else math.nan
 
     def peaks(self) -> dict[str, Any]:
         """Return every scalar by its name, for a table row or a JSON object."""

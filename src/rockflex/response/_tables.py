@@ -63,6 +63,33 @@ OTHERS = {
 }
 QUANTITIES = UNITS_OF_HISTORY | {name: unit for name, unit in UNITS_OF_GROUND.items() if "_edge_" not in name} | OTHERS
 """Every quantity of a history at its states, with its unit."""
+RESULT_UNITS = {
+    "duration": "s",
+    "end_time": "s",
+    "time_of_max_*": "s",
+    "time_of_min_*": "s",
+    "max_rotation": "rad",
+    "max_top_displacement": "m",
+    "max_total_top_displacement": "m",
+    "max_base_moment": "N m",
+    "max_base_shear": "N",
+    "max_horizontal_reaction": "N",
+    "min_vertical_reaction": "N",
+    "max_tendon_force": "N",
+    "max_element_force_*": "N",
+    "max_element_elongation_*": "m",
+    "element_energy_*": "J",
+    "residual_drift_*": "m",
+    "residual_rotation": "rad",
+    "max_slip": "m",
+    "residual_slip": "m",
+    "max_edge_uplift": "m",
+    "max_edge_settlement": "m",
+    "sliding_time": "s",
+    "nominal_limit": "rad",
+    "distance_km": "km",
+}
+"""Units of the columns of runs; a star stands for any letters."""
 DIMENSIONS = {
     **dict.fromkeys(("modal_displacement", "modal_velocity", "modal_acceleration"), "mode"),
     **dict.fromkeys(("story_drift", "story_shear", "floor_acceleration", "total_floor_displacement"), "floor"),
@@ -87,15 +114,11 @@ def frame_of(history: History, quantities: Sequence[str] | None) -> "pd.DataFram
 
 def dataset_of(history: History, quantities: Sequence[str] | None) -> "xr.Dataset":
     """Return a history as a labelled data set; see `History.to_xarray`."""
-    xr = _xarray()
-    names = [name for name in QUANTITIES if hasattr(history, name)] if quantities is None else quantities
-    check_quantities(names)
+    xr = import_xarray("to_xarray", "to_frame")
     variables: dict[str, Any] = {}
     labels: dict[str, Any] = {"time": ("time", history.time, {"units": "s"})}
-    for name in names:
-        values, dims = getattr(history, name), ("time",)
-        if name == "time" or (quantities is None and values.size == 0):
-            continue
+    for name, values in history_values(history, quantities).items():
+        dims = ("time",)
         if values.ndim > 1:
             dims = ("time", DIMENSIONS[name])
             labels[dims[1]] = ["left", "right"] if dims[1] == "edge" else np.arange(values.shape[1]) + 1
@@ -103,8 +126,16 @@ def dataset_of(history: History, quantities: Sequence[str] | None) -> "xr.Datase
     return xr.Dataset(variables, labels, {"model": history.model.label})
 
 
-def _xarray() -> Any:
-    """Return the module.
+def history_values(history: History, quantities: Sequence[str] | None) -> dict[str, Array]:
+    """Return quantities of a history at its states, but for the time; None: all that are not empty."""
+    names = [name for name in QUANTITIES if hasattr(history, name)] if quantities is None else quantities
+    check_quantities(names)
+    found = {name: getattr(history, name) for name in names if name != "time"}
+    return {name: values for name, values in found.items() if values.size or quantities is not None}
+
+
+def import_xarray(what: str, instead: str) -> Any:
+    """Return the module, for the function `what`; `instead` is one that needs only pandas and SciPy.
 
     Raises
     ------
@@ -115,8 +146,8 @@ def _xarray() -> Any:
         import xarray
     except ImportError as error:
         raise InputError(
-            "to_xarray needs xarray, which is not installed. Install it, or rockflex with its extra: pip install "
-            '"rockflex[xarray]"; or use to_frame, which needs only pandas.'
+            f"{what} needs xarray, which is not installed. Install it, or rockflex with its extra: pip install "
+            f'"rockflex[xarray]"; or use {instead}.'
         ) from error
     return xarray
 

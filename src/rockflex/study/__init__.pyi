@@ -9,6 +9,7 @@ from ._arguments import free_vibration_time as free_vibration_time
 from ._arguments import ground_under_structure as ground_under_structure
 from ._arguments import parse_scale_range as parse_scale_range
 from ._arguments import rocking_properties_of as rocking_properties_of
+from ._compare import compare as compare
 from ._modal_combination import CombinedPeaks as CombinedPeaks
 from ._modal_combination import SecondMode as SecondMode
 from ._modal_combination import combine_modal_peaks as combine_modal_peaks
@@ -40,6 +41,7 @@ from ._run_matrix import record_facts as record_facts
 from ._run_matrix import record_groups as record_groups
 from ._simulate import simulate as simulate
 from ._simulate import simulate_many as simulate_many
+from ._simulate import simulate_set as simulate_set
 from ._spectra import OverturningScales as OverturningScales
 from ._spectra import overturning_scales as overturning_scales
 from ._spectra import overturning_spectrum as overturning_spectrum

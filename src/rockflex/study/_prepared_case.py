@@ -14,7 +14,16 @@ from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model, Quantities, RockingModel, parse_model
 from rockflex.motion import GroundMotion
-from rockflex.response import STATUSES, Response, Tracked, columns_among, columns_of, respond, tracked_quantities
+from rockflex.response import (
+    STATUSES,
+    Response,
+    Tracked,
+    columns_among,
+    columns_of,
+    missing_values,
+    respond,
+    tracked_quantities,
+)
 from rockflex.solve import Engine, Excitation, Solution, Solutions, Start, Task, gather, preparing, run_all
 from rockflex.study._arguments import (
     WORK_LIMIT,
@@ -214,7 +223,7 @@ class RunPeaks:
         starts = [0, *accumulate(part.count for part in listed)]
         kinds = {name: values.dtype for part in listed for name, values in part.columns.items()}
         columns = {
-            name: np.concatenate([part.columns.get(name, np.zeros(part.count, kind)) for part in listed])
+            name: np.concatenate([part.columns.get(name, missing_values(part.count, kind)) for part in listed])
             for name, kind in kinds.items()
         }
         pairs = list(zip(starts, listed, strict=False))
@@ -277,7 +286,7 @@ def peaks_of_runs(runs: Sequence[Scaled], *, keep: bool = True) -> RunPeaks:
             response = cases[0].response(runs[places[0]][1], solutions.one(0))
             responses[places[0]], found = response, columns_among([response])
         for name, values in found.items():
-            columns.setdefault(name, np.zeros(len(runs), values.dtype))[places] = values
+            columns.setdefault(name, missing_values(len(runs), values.dtype))[places] = values
         left.subtract(cases)
         if not keep:
             for case in {case for case in cases if not left[case]}:

@@ -7,7 +7,7 @@ from rockflex._checks import checked_finite_vector, checked_instance, checked_po
 from rockflex._errors import InputError
 from rockflex._shown import shown
 from rockflex.modal import RockingProperties
-from rockflex.models import LinearModel, Model
+from rockflex.models import Model, RockingModel
 from rockflex.response import Pushover, pushover_path
 from rockflex.study._arguments import RockingStructure, rocking_properties_of
 
@@ -78,5 +78,5 @@ def pushover(
             field="pattern",
         )
     model = Model(lifts=checked_instance("lifts", lifts, bool)).of(properties)
-    assert isinstance(model, LinearModel)
+    assert isinstance(model, RockingModel)
     return pushover_path(model, np.asarray(forces / forces.sum()), target, floors)

@@ -1,6 +1,6 @@
 """Tables of results: the same columns in every chunk, with missing values where a run could not be solved."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import cache
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rockflex._cases import runs_by_case
 from rockflex.modal import RockingProperties, Tendon
-from rockflex.response import NAMES, Response, complete_of, leaves_range
+from rockflex.response import BY_STORY, MAX_OF_STORIES, NAMES, Response, complete_of, leaves_range
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -83,18 +83,27 @@ def _suffixed_result_names(suffix: str) -> tuple[str, ...]:
     return tuple(name + suffix for name in ("status", *RESULTS))
 
 
+def story_columns(structures: Iterable[RockingProperties]) -> dict[str, type]:
+    """Return the columns of stories that yield, up to the most that a structure has; none if none can yield."""
+    most = max((p.floors.heights.size for p in structures if p.stories and p.floors is not None), default=0)
+    by_story = [f"{name}_{k}" for name in BY_STORY for k in range(1, most + 1)]
+    return dict.fromkeys((*MAX_OF_STORIES, *by_story) if most else (), float)
+
+
 def result_columns(
-    structures: Iterable[RockingProperties] = (), suffix: str = "", *, with_ground: bool = False
+    structures: Collection[RockingProperties] = (), suffix: str = "", *, with_ground: bool = False
 ) -> dict[str, type]:
     """Return the kinds of the columns that `result_row` fills in a study of these structures.
 
     Without elements other than elastic tendons the columns of `OF_ELEMENTS` would say nothing, and are left out; so are
-    those of `OF_GROUND` on rigid ground on which no base slides, unless the study is `with_ground`.
+    those of `OF_GROUND` on rigid ground on which no base slides, unless the study is `with_ground`. The
+    `story_columns` follow.
     """
     left_out: tuple[str, ...] = () if with_ground else OF_GROUND
     if not any(map(_has_dissipating_elements, structures)):
         left_out += OF_ELEMENTS
     kinds = {"status": str, **RESULTS}
+    kinds |= story_columns(structures)
     return {name + suffix: kind for name, kind in kinds.items() if name not in left_out}
 
 

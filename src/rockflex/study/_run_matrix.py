@@ -35,6 +35,14 @@ from rockflex.study._result_tables import Columns, Row, Table, columns_of_kind, 
 
 Demands = Mapping[str, Callable[[Response], float]]
 
+STUDY_COLUMNS = (
+    *("error", "level", "number", "round", "overturned", "first_overturning_scale", "last_survival_scale"),
+    *("resurrections", "right_censored", "half_width", "aspect_ratio", "tendon", "prestress_ratio", "stiffness_ratio"),
+    *("resisting_moment", "tendon_factor", "dissipator_factor", "prestress", "dissipator_force", "weight"),
+    *("weight_moment", "l0r_g", "recentring_ratio"),
+)
+"""Columns that some kind of study adds to those of a run."""
+
 
 def checked_demands(demands: Demands | None, taken: Collection[str]) -> Demands:
     """Return demands whose names are free and whose values can be called."""
@@ -224,6 +232,7 @@ class StudyMatrix(RunMatrix):
                 'free_vibration="settle" cannot tell when a hysteretic spring is at rest. Give the free vibration in '
                 "seconds."
             )
+        checked_demands(options.demands, [*self._own_columns, *STUDY_COLUMNS])
         self.facts = record_facts(motions)
         self._measures: dict[tuple[int, int], dict[str, float]] = {}
 
@@ -251,6 +260,10 @@ class StudyMatrix(RunMatrix):
     @property
     def columns(self) -> Columns:
         """Columns of a run."""
+        return self._own_columns | dict.fromkeys(self.options.demands, float) | {"error": str}
+
+    @property
+    def _own_columns(self) -> dict[str, type | Sequence[str]]:
         found: dict[str, type | Sequence[str]] = {"structure": self.names}
         found |= record_columns(self.motions)
         found |= {"model": self.labels, "scale": float}
@@ -261,7 +274,7 @@ class StudyMatrix(RunMatrix):
         }
         if self.options.friction:
             found["required_friction"] = float
-        return found | dict.fromkeys(self.options.demands, float) | {"error": str}
+        return found
 
     def measures(self, structure: int, record: int) -> dict[str, float]:
         """Intensity measures of a record at the scale 1; computed once."""
@@ -397,7 +410,5 @@ def study_matrix(
     listed, names = checked_structures(structures)
     names = names or [f"S{place}" for place in range(1, len(listed) + 1)]
     named = {name: rocking_properties_of(each) for name, each in zip(names, listed, strict=True)}
-    options = replace(options, models=chosen, friction=friction)
-    matrix = StudyMatrix(named, suite, options)
-    own = checked_demands(demands, matrix.columns)
-    return StudyMatrix(named, suite, replace(options, demands=own)) if own else matrix
+    options = replace(options, models=chosen, friction=friction, demands=checked_demands(demands, ()))
+    return StudyMatrix(named, suite, options)

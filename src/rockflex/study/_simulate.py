@@ -11,6 +11,9 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 import numpy as np
 from numpy.typing import NDArray
 
+from rockflex._checks import checked_finite_vector
+from rockflex._errors import InputError, SolverError
+from rockflex._shown import shown
 from rockflex.modal import RockingProperties
 from rockflex.models import (
     BoucWen,
@@ -22,8 +25,8 @@ from rockflex.models import (
     VVELSimplified,
     parse_model,
 )
-from rockflex.motion import GroundMotion, check_horizontal_component
-from rockflex.response import STATUSES, Response
+from rockflex.motion import GroundMotion, Selection, check_horizontal_component
+from rockflex.response import STATUSES, RecordSet, Response, Rule, checked_rule
 from rockflex.solve import WorkLimitError
 from rockflex.study._arguments import (
     WORK_LIMIT,
@@ -239,7 +242,8 @@ def simulate_many(
         mapping, else its index), `motion` (name), `scale`, `model`, `status`, `error`, then every scalar of `Response`
         by its name, in SI units. A run that cannot be solved, or whose model has more modes than its structure, has a
         message in `error`. Its other results are missing: NaN, or NA in the columns of counts (Int64) and flags
-        (boolean).
+        (boolean). If stories of a structure yield: `max_ductility` and `max_residual_drift_ratio` of all stories, and
+        `ductility_1`, `residual_drift_1` (m), ... of each from the bottom, NaN for structures without.
 
     Raises
     ------
@@ -298,8 +302,9 @@ def simulate_many(
     refused = [error for error in found.failures.values() if isinstance(error, WorkLimitError)]
     if len(refused) == total:
         raise refused[0]
+    stories = {name: float for name in found.columns if name not in RESULTS and name != "status"}
     results = arrow_table(
-        {**found.columns, "error": found.errors}, {"status": STATUSES, "error": str, **RESULTS}, found.failed
+        {**found.columns, "error": found.errors}, {"status": STATUSES, "error": str, **RESULTS, **stories}, found.failed
     )
 
     import pandas as pd
@@ -326,3 +331,96 @@ def _categorical_column(codes: NDArray[np.int32], names: list[str]) -> "pd.Categ
     categories = list(dict.fromkeys(names))
     places = np.array([categories.index(name) for name in names], dtype=np.int32)
     return pd.Categorical.from_codes(places[codes], dtype=pd.CategoricalDtype(categories))
+
+
+def simulate_set(
+    structure: RockingStructure | RockingProperties,
+    motions: Motions | Selection,
+    model: str | Model = "MDOF-S",
+    rule: Rule | None = None,
+    periods: tuple[float, float] | None = None,
+    free_vibration: float | Literal["settle"] = 0.0,
+    bouc_wen: BoucWen | None = None,
+    impact: ImpactLaw | None = None,
+    initial: InitialState | None = None,
+    work_limit: float | None = WORK_LIMIT,
+    ground: GroundChoice = None,
+    workers: SupportsIndex | None = None,
+) -> RecordSet:
+    """Simulate one structure under a set of records, and find the values for which codes design.
+
+    Parameters
+    ----------
+    structure
+        A structure, or its `RockingProperties`.
+    motions
+        A suite or another sequence of motions, a mapping from names, or a `Selection`, whose scaled records are used.
+    model
+        As in `simulate`.
+    rule
+        ``"ec8"``: EN 1998-1:2004, 4.3.3.4.3: the mean of at least 7 records, or the most unfavourable value of 3 to 6.
+        ``"asce7"``: ASCE 7-16, 16.4.1: the mean of at least 11 records, none of which overturns. ``"asce7-ii"``: its
+        exception in 16.4.1.1 for Risk Categories I and II: one record may overturn, and then the larger of 1.2 times
+        the median of all and the mean of the others counts. None: the most unfavourable value of any number.
+    periods
+        Smallest and largest period in s for which the records were chosen, to compare with that of rocking. Default:
+        those of the `Selection`.
+    free_vibration, bouc_wen, impact, initial, work_limit, ground
+        As in `simulate`.
+    workers
+        Number of threads; None for one a core.
+
+    Returns
+    -------
+    RecordSet
+        The peaks by record, their statistics, and the values for design with the reasons.
+
+    Raises
+    ------
+    InputError
+        As for `simulate_many`; if the rule is unknown or asks for more records, or `periods` are not two rising
+        positive numbers.
+    SolverError
+        If a record cannot be solved: without it the set is another one.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> chosen = rf.load_suite("fema-p695-far-field").select(rf.ec8_spectrum(2.5, "C"), 7, (0.2, 2.0), per_event=1)
+    >>> frame = rf.Frame(2, 3.0, 40e3, 40e3, 1.0, period=0.5, aspect_ratio=8.0, damping_ratio=0.02)
+    >>> rf.simulate_set(frame, chosen, "2DOF-S", rule="ec8")
+    RecordSet(2DOF-S under 7 records, 0 overturned, rule='ec8')
+    """
+    given = motions.suite if isinstance(motions, Selection) else motions
+    if periods is None and isinstance(motions, Selection):
+        periods = (float(motions.periods.min()), float(motions.periods.max()))
+    records, span = checked_motions(given), None if periods is None else _checked_period_range(periods)
+    kept = checked_rule(rule, len(records))
+    table = simulate_many(
+        *(structure, records, model, "history", 1.0, free_vibration, bouc_wen, impact, initial, workers),
+        *(work_limit, ground),
+    )
+    failed = table[table["error"].notna()]
+    if len(failed):
+        first = failed.iloc[0]
+        raise SolverError(
+            f"{len(failed)} of {len(records)} records could not be solved, and without them the set is another one. "
+            f"{first['motion']}: {first['error']}"
+        )
+    return RecordSet(
+        responses=tuple(table["response"]),
+        motions=tuple(records),
+        properties=rocking_properties_of(structure),
+        rule=kept,
+        periods=span,
+    )
+
+
+def _checked_period_range(periods: Any) -> tuple[float, float]:
+    ends = checked_finite_vector("periods", periods, "s")
+    if ends.size != 2 or not 0.0 <= ends[0] < ends[1]:
+        raise InputError(
+            f"periods must be the smallest and the largest period in s, but {shown(periods)} was given.",
+            field="periods",
+        )
+    return float(ends[0]), float(ends[1])

@@ -19,7 +19,7 @@ from rockflex.study._arguments import (
 from rockflex.study._plan import CrossPlan, run_plan
 from rockflex.study._run_matrix import Demands, StudyMatrix, study_matrix
 from rockflex.study.progress import ProgressChoice
-from rockflex.study.spec import StructuresStudySpec
+from rockflex.study.spec import LimitKeys, StructuresStudySpec
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -38,11 +38,11 @@ Factors = Annotated[
 ]
 
 
-class CloudStudy(StructuresStudySpec):
+class CloudStudy(LimitKeys, StructuresStudySpec):
     """Cloud analysis (Silva & Stojadinović 2024, Section 3.2).
 
     The table has one row per run, structures outermost, then records, models and scales. Its columns are those of
-    `run_cloud`.
+    `run_cloud`, whose structures, motions, models, impact law, hysteresis, ground and demands it takes, too.
 
     Examples
     --------
@@ -70,7 +70,9 @@ class CloudStudy(StructuresStudySpec):
         InputError
             If a structure cannot be built or a record cannot be read; see also `run_cloud`.
         """
-        return CloudPlan(self.matrix(friction=self.friction), self.scales, self.runs_per_chunk)
+        plan = CloudPlan(self.matrix(friction=self.friction), self.scales, self.runs_per_chunk)
+        self.check_limits(plan.columns)
+        return plan
 
 
 class CloudPlan(CrossPlan):
@@ -134,7 +136,8 @@ def run_cloud(
         at the structure's first period and damping, `sa_t1_5` (m/s²) at 5 % damping,
         `relative_pga` = pga/(g tan α) and `relative_pgv` = p pgv/(g tan α) with g tan α = M_r/L_0^r and
         p² = L_0^r g/I_θ; `status` and every scalar of `Response` by its name; `nominal_limit`, the rotation in rad of
-        `nominal_overturning`; `zeta_1`, the damping ratio of the first mode; `required_friction` if requested; the
+        `nominal_overturning`; the columns of stories that yield, as in
+        `simulate_many`; `zeta_1`, the damping ratio of the first mode; `required_friction` if requested; the
         `demands`;
         `error`. A run that cannot be solved has a message in `error` and no results; a run whose friction cannot be
         found has a message and no friction.

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from rockflex._checks import checked_in_range, checked_positive
 from rockflex._errors import InputError
-from rockflex.fragility import OVERTURNING, limit_state_named
+from rockflex.fragility import OVERTURNING, check_limit_columns, limit_state_of
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.motion import scalable_measure
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Models, Motions, Structures
@@ -140,8 +140,9 @@ class IncrementalStudy(StructuresStudySpec):
     largest_scale: float = Field(20.0, description="the last factor on the acceleration, a number")
     growth: float = Field(1.15, description="each factor over the one before, a number above 1")
     tolerance: float = Field(0.01, description="the relative width to which bisection narrows a boundary, a number")
-    limit: Annotated[str, validator_of_check(limit_state_named)] = Field(
-        "overturning", description='the name of a limit state, such as "overturning" (|θ| = π/2)'
+    limit: Annotated[str | float, validator_of_check(limit_state_of)] = Field(
+        "overturning",
+        description='a limit state, such as "overturning" (|θ| = π/2) or "max_ductility > 4", or a rotation in rad',
     )
 
     @model_validator(mode="after")
@@ -167,7 +168,7 @@ class IncrementalPlan(CrossPlan):
     exact_count = False
     units = "ladders"
 
-    def __init__(self, matrix: StudyMatrix, steps: ScaleSteps, limit: str, runs_per_chunk: int) -> None:
+    def __init__(self, matrix: StudyMatrix, steps: ScaleSteps, limit: str | float, runs_per_chunk: int) -> None:
         check_scale_ladder(*steps)
         check_base_can_lift(matrix, "a base that cannot lift, so nothing overturns it")
         self.steps, self.limit = steps, limit
@@ -179,6 +180,7 @@ class IncrementalPlan(CrossPlan):
         )
         self._most = most
         super().__init__(matrix, 1, max(1, runs_per_chunk // most))
+        check_limit_columns([limit_state_of(limit)], self.columns)
 
     def scale(self, structure: int, record: int, level: int) -> float:  # noqa: ARG002
         """Return the first factor of every ladder."""
@@ -203,7 +205,7 @@ class IncrementalPlan(CrossPlan):
 
     def _ladder(self, unit: int) -> dict[str, list[Any]]:
         structure, record, model, _ = self.run_of(unit)
-        state, runs = limit_state_named(self.limit), dict[float, Any]()
+        state, runs = limit_state_of(self.limit), dict[float, Any]()
 
         def overturns(scale: float) -> bool | None:
             runs[scale] = self.matrix.results([(structure, record, model, scale)])
@@ -242,7 +244,7 @@ def run_incremental(
     largest_scale: float = 20.0,
     growth: float = 1.15,
     tolerance: float = 0.01,
-    limit: str = "overturning",
+    limit: str | float = "overturning",
     free_vibration: float | Literal["settle"] = "settle",
     bouc_wen: BoucWen | None = None,
     impact: ImpactLaw | None = None,
@@ -267,7 +269,8 @@ def run_incremental(
         Relative width of the boundaries.
     limit
         Name of a limit state: ``"overturning"``: |θ| reaches π/2; ``"nominal"``: it passes 0.7 atan(B/h*_1); or
-        another one of ``rockflex.fragility.LIMIT_STATES``.
+        another one of ``rockflex.fragility.LIMIT_STATES``; a demand with its bound, such as ``"max_ductility > 4"``; or
+        a rotation in rad. A run that overturns exceeds them all.
     progress
         As in `run_cloud`, counted in ladders: all runs of a structure, a record and a model.
 
@@ -296,7 +299,6 @@ def run_incremental(
     matrix = study_matrix(
         structures, motions, models, free_vibration, bouc_wen, impact, work_limit=work_limit, ground=ground
     )
-    limit_state_named(limit)
     steps = ScaleSteps(smallest_scale, largest_scale, growth, tolerance)
     return run_plan(IncrementalPlan(matrix, steps, limit, 64), workers, progress)
 

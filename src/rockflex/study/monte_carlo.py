@@ -1,19 +1,26 @@
 """Monte Carlo simulation: structures whose dimensions and elements are random, under a suite of records."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, cast
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, InstanceOf, ValidatorFunctionWrapHandler, field_validator
 
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._schema import PLAIN, SchemaKey
 from rockflex.modal import Ground, RockingProperties
 from rockflex.motion import Suite, scalable_measures
+from rockflex.response import MAX_OF_STORIES
 from rockflex.structure.file import StructureEntry, TomlTable, parse_toml_table, toml_key_label
-from rockflex.study._arguments import checked_scale_factors, rocking_properties_of
+from rockflex.study._arguments import (
+    GroundChoice,
+    checked_scale_factors,
+    ground_under_structure,
+    rocking_properties_of,
+)
+from rockflex.study._objects import object_checksum
 from rockflex.study._plan import ChunkedPlan
 from rockflex.study._random_variables import (
     RandomVariables,
@@ -23,19 +30,28 @@ from rockflex.study._random_variables import (
     names_in_formula,
     uniform_draws,
 )
-from rockflex.study._result_tables import RESULTS, Columns, Row, Table, columns_of_kind, joined_tables
+from rockflex.study._result_tables import (
+    RESULTS,
+    Columns,
+    Row,
+    Table,
+    columns_of_kind,
+    joined_tables,
+    story_columns,
+)
 from rockflex.study._run_matrix import StudyMatrix, results_of_matrix_runs
 from rockflex.study.cloud import Factors
-from rockflex.study.spec import GroundTable, RunsStudySpec
+from rockflex.study.spec import GroundTable, LimitKeys, RunsStudySpec
 
 ELEMENT_KEYS = ("tendons", "elements")
+LATER_KEYS = (*ELEMENT_KEYS, "stories")  # what may depend on the facts of the structure
 FACTS = {
     "weight": "the weight m_tot g of the structure in N",
     "weight_moment": "the moment m_tot g B of the weight in N m",
     "half_width": "the half width B of the base in m",
     "l0r_g": "the moment L_0^r g of the weight, a radian, in N m",
 }
-"""Properties that formulas of tendons, elements and the ground may use besides the variables."""
+"""Properties that formulas of tendons, elements, stories and the ground may use besides the variables."""
 
 Place = tuple[str | int, ...]
 
@@ -52,23 +68,24 @@ class RandomPopulation:
     """Structures that differ in the values of variables.
 
     `structure` is a structure as a file describes it, with formulas such as "= 0.3 * weight" in place of some numbers,
-    and `ground` the ground in the same way, None for rigid ground. Relative paths of files of numbers start in
-    `folder`. An `InputError` tells of a formula that cannot be read, or refers to unknown names.
+    or a function of the values of the variables, by name, that returns a structure; `ground` is the ground in the same
+    way, a `Ground` or a function as in `simulate`, and None for rigid ground. Relative paths of files of numbers start
+    in `folder`. An `InputError` tells of a formula that cannot be read, or refers to unknown names.
     """
 
     def __init__(
         self,
         variables: RandomVariables,
-        structure: Mapping[str, Any],
+        structure: Mapping[str, Any] | Callable[..., Any],
         folder: Path,
-        ground: Mapping[str, Any] | None = None,
+        ground: Mapping[str, Any] | GroundChoice = None,
     ) -> None:
         self.variables, self._structure, self._folder, self._ground = variables, structure, folder, ground
         for place, formula in (
             *_formulas_in_structure_entry(structure, ("structure",)),
             *_formulas_in_structure_entry(ground, ("ground",)),
         ):
-            label, held = toml_key_label(place), place[0] == "ground" or place[1] in ELEMENT_KEYS
+            label, held = toml_key_label(place), place[0] == "ground" or place[1] in LATER_KEYS
             try:
                 needed = names_in_formula(formula)
             except InputError as error:
@@ -76,29 +93,29 @@ class RandomPopulation:
             if not held and (early := sorted(needed & FACTS.keys())):
                 raise InputError(
                     f"{label}: {early[0]} is known only after the structure is built, so only formulas of elements, "
-                    "tendons and the ground may use it."
+                    "tendons, stories and the ground may use it."
                 )
             check_formula_names_known(label, needed, variables.kinds | (FACTS if held else {}))
 
     def entry(self, values: Mapping[str, float]) -> StructureEntry:
-        """Return the structure without tendons and elements for values of the variables."""
-        return _checked_random_structure(
-            {key: value for key, value in self._structure.items() if key not in ELEMENT_KEYS}, values
-        )
+        """Return the structure without tendons, elements and yielding stories for values of the variables."""
+        items = self._structure.items() if isinstance(self._structure, Mapping) else ()
+        return _checked_random_structure({key: value for key, value in items if key not in LATER_KEYS}, values)
 
     def build(self, values: Mapping[str, float]) -> RockingProperties:
         """Return the structure for values of the variables."""
+        if not isinstance(self._structure, Mapping):
+            return rocking_properties_of(self._structure({name: values[name] for name in self.variables.kinds}))
         free = rocking_properties_of(self.entry(values).build(self._folder))
-        if not any(self._structure.get(key) for key in ELEMENT_KEYS):
+        if not any(self._structure.get(key) for key in LATER_KEYS):
             return free
-        return rocking_properties_of(
-            _checked_random_structure(self._structure, {**values, **random_structure_facts(free)}).hold(free)
-        )
+        whole = _checked_random_structure(self._structure, {**values, **random_structure_facts(free)})
+        return rocking_properties_of(whole.build(self._folder) if whole.stories else whole.hold(free))
 
     def ground_under(self, properties: RockingProperties, values: Mapping[str, float]) -> Ground | None:
         """Return the ground under a structure for values of the variables."""
-        if self._ground is None:
-            return None
+        if not isinstance(self._ground, Mapping):
+            return ground_under_structure(properties, self._ground)
         content = _structure_entry_with_values(
             self._ground, {**values, **random_structure_facts(properties)}, ("ground",)
         )
@@ -163,18 +180,20 @@ _COLUMNS = (
     *(measure.name for measure in scalable_measures()),
     "status",
     *RESULTS,
+    *MAX_OF_STORIES,
 )
 
 
-class MonteCarloStudy(RunsStudySpec):
+class MonteCarloStudy(LimitKeys, RunsStudySpec):
     """Random structures under all records, or under some that are drawn for each structure.
 
     `variables` are distributions (`uniform`, `log_uniform`, `whole`, `normal`, `lognormal` or `one_of`), formulas of
     other variables, and numbers. `structure` is a structure as a file describes it; any number in it may be a formula,
     a text that begins with "=": numbers, names of variables, + - * / **, parentheses, min, max, sqrt, exp and log.
-    `ground` is the ground as a file describes it, and may have formulas too. Formulas of tendons, elements and the
-    ground may also use `weight` (m_tot g, N), `weight_moment` (m_tot g B, N m), `half_width` (B, m) and `l0r_g`
-    (L_0^r g, N m), so that strengths can be shares of the weight.
+    `ground` is the ground as a file describes it, and may have formulas too. Formulas of tendons, elements, stories
+    that yield and the ground may also use `weight` (m_tot g, N), `weight_moment` (m_tot g B, N m), `half_width` (B, m)
+    and `l0r_g` (L_0^r g, N m), so that strengths can be shares of the weight. In Python `structure` may also be a
+    function of the values of the variables, by name, that returns a structure, and `ground` as in `simulate`.
 
     The table has one row per run, structures outermost, then records, models and scales. Its columns are those of
     `run_cloud`, with the name of the study as `structure`; `number`, which counts the structures from 0; each variable;
@@ -213,12 +232,21 @@ class MonteCarloStudy(RunsStudySpec):
     )
     seed: int = Field(0, ge=0, description="what the draws depend on, a whole number of at least 0")
     variables: dict[str, Any] = Field(description="a table of random variables")
-    structure: dict[str, Any] = Field(description="a table of a structure, such as [structure.frame]")
-    ground: Annotated[dict[str, Any] | None, SchemaKey("a table", form=PLAIN)] = None  # pyright: ignore[reportIncompatibleVariableOverride]
+    structure: dict[str, Any] | Callable[..., Any] = Field(
+        description="a table of a structure, such as [structure.frame]"
+    )
+    ground: Annotated[  # pyright: ignore[reportIncompatibleVariableOverride]
+        dict[str, Any] | InstanceOf[Ground] | Callable[..., Any] | None, SchemaKey("a table", form=PLAIN)
+    ] = None
     scales: Factors = Field([1.0])
     records_per_structure: int | None = Field(
         None, ge=1, description="how many records to draw for each structure, a whole number (default: all records)"
     )
+
+    @field_validator("ground", mode="wrap")
+    @classmethod
+    def _given_ground(cls, given: Any, table: ValidatorFunctionWrapHandler) -> Any:
+        return table(given)  # each structure has its own
 
     def population(self) -> RandomPopulation:
         """Return the population of structures.
@@ -228,7 +256,7 @@ class MonteCarloStudy(RunsStudySpec):
         InputError
             If a variable or a formula is wrong.
         """
-        taken = dict.fromkeys(_COLUMNS, "a column of the table")
+        taken = dict.fromkeys((*_COLUMNS, *(self.demands or {})), "a column of the table")
         return RandomPopulation(
             RandomVariables(self.variables, taken | FACTS), self.structure, self._folder, self.ground
         )
@@ -268,6 +296,11 @@ class MonteCarloStudy(RunsStudySpec):
             If a file cannot be read, or that law is not defined in a file.
         """
         population = self.population()
+        if callable(self.structure):
+            own = object_checksum("structure", self.structure, "function")
+            for each in population.build(population.variables.draw(self.seed, 0)).elements:
+                own |= object_checksum("element", type(each))
+            return own | super().checksums()
         entry = population.entry(population.variables.draw(self.seed, 0))
         files = {f"structure.{key}": value for key, value in entry.checksums(self._folder).items()}
         return files | super().checksums()
@@ -281,7 +314,9 @@ class MonteCarloStudy(RunsStudySpec):
             If a variable or a formula is wrong, none of the first structures can be built, a record cannot be read, or
             fewer records are there than are to be drawn.
         """
-        return MonteCarloPlan(self, self.records.load(self._folder))
+        plan = MonteCarloPlan(self, self.records.load(self._folder))
+        self.check_limits(plan.columns)
+        return plan
 
 
 class MonteCarloPlan(ChunkedPlan):
@@ -326,7 +361,8 @@ class MonteCarloPlan(ChunkedPlan):
     @property
     def columns(self) -> Columns:
         """Columns of every chunk's table."""
-        head, *rest = self.matrix.columns.items()
+        by_story = story_columns(self.matrix.structures).keys() - set(MAX_OF_STORIES)  # their number may be random
+        head, *rest = ((name, kind) for name, kind in self.matrix.columns.items() if name not in by_story)
         drawn = dict.fromkeys(self.population.variables.kinds, float)
         of_structure = dict.fromkeys(FACTS, float) | columns_of_kind(OF_STRUCTURE, float)
         return dict([head]) | {"number": int} | drawn | of_structure | dict(rest)

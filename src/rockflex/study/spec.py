@@ -1,18 +1,24 @@
 """The specification of a study in a file: the keys that all kinds share."""
 
-import math
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Container, Mapping
+from dataclasses import asdict, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Annotated, Any, Literal, NoReturn, Self, cast
 
-import numpy as np
-from pydantic import AfterValidator, Field, InstanceOf, PrivateAttr, ValidationError, field_validator, model_validator
+from pydantic import (
+    AfterValidator,
+    Field,
+    InstanceOf,
+    PrivateAttr,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    field_validator,
+    model_validator,
+)
 
 from rockflex._errors import InputError
 from rockflex._json import as_json_value
-from rockflex._registry import source_checksum
 from rockflex._schema import (
     IMPACT,
     PLAIN,
@@ -26,19 +32,31 @@ from rockflex._schema import (
     one_for_each,
 )
 from rockflex._shown import shown
-from rockflex.modal import Ground, RockingProperties, Springs, asce41_bed, winkler_bed
-from rockflex.models import BoucWen, ImpactLaw, Restitution, VVELComplete, VVELSimplified, parse_model
-from rockflex.motion import MEASURES, OnError, Suite, Vertical, load_suite, read_suite
+from rockflex.fragility import check_limit_columns, limit_state_of
+from rockflex.modal import Ground, RockingProperties, Springs, asce41_bed, gazetas_bed, winkler_bed
+from rockflex.models import BoucWen, ImpactLaw, Model, Restitution, VVELComplete, VVELSimplified, parse_model
+from rockflex.motion import GroundMotion, OnError, Suite, Vertical, load_suite, read_suite
 from rockflex.structure.file import StructureEntry, TomlTable, toml_problem_sentences
 from rockflex.study._arguments import (
     WORK_LIMIT,
     check_run_options,
+    checked_motions,
+    checked_structures,
     checked_work_limit,
     free_vibration_time,
+    ground_under_structure,
+    is_structure_or_properties,
     rocking_properties_of,
 )
+from rockflex.study._objects import (
+    added_checksums,
+    function_document,
+    impact_law_document,
+    object_checksum,
+    object_document,
+)
 from rockflex.study._plan import ChunkedPlan
-from rockflex.study._run_matrix import StudyMatrix, StudyOptions, check_different_values
+from rockflex.study._run_matrix import StudyMatrix, StudyOptions, check_different_values, checked_demands
 
 
 class Records(TomlTable):
@@ -97,6 +115,39 @@ class Records(TomlTable):
         return Suite(m for m in motions if any(fnmatchcase(m.name, pattern) for pattern in self.include))
 
 
+class GivenRecords(Records):
+    """Motions in the place of a table."""
+
+    given: InstanceOf[Suite]
+
+    def load(self, base: Path) -> Suite:  # noqa: ARG002
+        """Return the motions."""
+        return self.given
+
+    def document(self) -> dict[str, Any]:
+        """Return their names; the samples are among the checksums of a study."""
+        return {"motions": self.given.names}
+
+
+class GivenStructure(StructureEntry):
+    """A structure in the place of a table."""
+
+    given: Any
+
+    def build(self, folder: Path | str = "") -> Any:  # noqa: ARG002
+        """Return the structure."""
+        return self.given
+
+    def checksums(self, folder: Path | str = "") -> dict[str, str]:  # noqa: ARG002
+        """Return the SHA-256 of the modules of its elements that are not of rockflex."""
+        kinds = dict.fromkeys(type(each) for each in rocking_properties_of(self.given).elements)
+        return {key: value for kind in kinds for key, value in object_checksum("element", kind).items()}
+
+    def document(self) -> dict[str, Any]:
+        """Return its name, and what determines it."""
+        return {"name": self.name, "given": object_document("structures", self.given)}
+
+
 _EACH = one_for_each("spring")
 _DAMPING_RATIO = SchemaKey("the damping of the heave mode over the critical damping", low=0.0, high=100.0)
 
@@ -129,7 +180,7 @@ class SpringsTable(TomlTable):
 
 
 class SpringBedTable(SpringBedKeys, TomlTable):
-    """The arguments of `winkler_bed` or, with a shear modulus, of `asce41_bed`, for the width of the structure."""
+    """The arguments of `winkler_bed` or, with a shear modulus, of `asce41_bed` or `gazetas_bed`, for a structure."""
 
     damping: Annotated[
         float | None, SchemaKey("the damping coefficient of all springs together", "N s/m", low=0.0, high=1e15)
@@ -141,16 +192,38 @@ class SpringBedTable(SpringBedKeys, TomlTable):
     end_ratio: Annotated[
         float | None, SchemaKey("the stiffness of the end zones over that of the rest", low=1e-3, high=1e3)
     ] = None
+    method: Annotated[
+        Literal["asce41", "gazetas"] | None,
+        SchemaKey('"asce41" or "gazetas", for a shear modulus (default: ASCE 41)', form=PLAIN),
+    ] = None
+    density: Annotated[
+        float | None,
+        SchemaKey("the density of the soil, for dashpots that radiate, with Gazetas", "kg/m³", low=1.0, high=1e4),
+    ] = None
 
     def under(self, properties: RockingProperties) -> Springs:
         """Return the bed under a structure."""
         where: dict[str, Any] = {"n": self.n, "damping": self.damping or 0.0, "eccentricity": properties.eccentricity}
         zones = {"end_zone": self.end_zone, "end_ratio": self.end_ratio}
         ends: dict[str, Any] = {name: value for name, value in zones.items() if value is not None}
+        if self.density is not None and self.method != "gazetas":
+            raise InputError('density is for method = "gazetas". Leave it out, or give the method.', field="density")
         if self.subgrade_modulus is not None:
             if self.shear_modulus is not None or self.poisson_ratio is not None:
                 _refuse_both("subgrade_modulus", "the shear_modulus and poisson_ratio")
+            if self.method is not None:
+                _refuse_both("method", "the subgrade_modulus")
             bed = winkler_bed(properties.half_width, self.breadth, self.subgrade_modulus, **where, **ends)
+        elif self.shear_modulus is not None and self.poisson_ratio is not None and self.method == "gazetas":
+            for name in ("end_ratio", "damping"):
+                if getattr(self, name) is not None:
+                    _refuse_both(name, 'the method "gazetas", which gives it')
+            if self.density is not None and self.heave_damping_ratio is not None:
+                _refuse_both("density", "the heave_damping_ratio")
+            size = properties.half_width, self.breadth
+            more: dict[str, Any] = {"end_zone": self.end_zone, "density": self.density}
+            more |= {"n": self.n, "eccentricity": properties.eccentricity}
+            bed = gazetas_bed(*size, self.shear_modulus, self.poisson_ratio, **more)
         elif self.shear_modulus is not None and self.poisson_ratio is not None:
             if ends:
                 _refuse_both(next(iter(ends)), "the shear_modulus, whose end zones are those of ASCE 41")
@@ -200,6 +273,21 @@ class GroundTable(GroundKeys, TomlTable):
         if self.base_inertia is not None:
             _refuse_both("mat_mass", "the base_inertia")
         return self.mat_mass * (2.0 * properties.half_width) ** 2 / 12.0
+
+
+class GivenGround(GroundTable):
+    """A `Ground`, or a function of `RockingProperties` that returns one, in the place of a table."""
+
+    given: Any
+
+    def under(self, properties: RockingProperties) -> Ground:
+        """Return the ground under a structure."""
+        return cast("Ground", ground_under_structure(properties, self.given))
+
+    def document(self) -> Any:
+        """Return what determines it."""
+        of = object_document if isinstance(self.given, Ground) else function_document
+        return of("ground", self.given)
 
 
 def _springs_with_heave_damping(
@@ -283,59 +371,6 @@ def impact_law_name(law: ImpactLaw) -> str:
     return next(name for name, kind in _LAWS.items() if type(law) is kind)
 
 
-def impact_law_document(law: ImpactLaw) -> dict[str, Any]:
-    """Return the class of a law, the names of what it keeps and loses, and its values, as plain JSON."""
-    kind = type(law)
-    state = cast("Any", law).__getstate__()
-    parts = state if isinstance(state, tuple) else (state,)  # a class with slots gives two dictionaries
-    values = {name: _impact_law_value(name, value, kind) for part in parts if part for name, value in part.items()}
-    return {"law": f"{kind.__module__}.{kind.__qualname__}", "keeps": law.keeps, "loses": law.loses, "values": values}
-
-
-def impact_law_checksum(law: ImpactLaw) -> dict[str, str]:
-    """Return the SHA-256 of the module that defines the class of a law; an empty dictionary for laws of rockflex."""
-    kind = type(law)
-    try:
-        found = source_checksum(kind)
-    except LookupError as error:
-        raise InputError(
-            f"The impact law {kind.__qualname__} is not defined in a file, so a study that is resumed cannot check "
-            "that it is the same. Put it into a module (a .py file) and import it, or run the study without a folder."
-        ) from error
-    return {} if found is None else {f"impact, {kind.__module__}": found}
-
-
-def added_checksums(study: type) -> dict[str, str]:
-    """Return the SHA-256 of the sources of a class of studies and of measures that are not of rockflex."""
-    parts: dict[str, Any] = {"study": study} | {f"measure {name}": each.of for name, each in MEASURES.added.items()}
-    found = dict[str, str]()
-    for name, part in parts.items():
-        try:
-            checksum = source_checksum(part)
-        except LookupError:  # as in a notebook
-            checksum = "not in a file"
-        if checksum is not None:
-            found[f"{name}, {part.__module__}"] = checksum
-    return found
-
-
-def _impact_law_value(name: str, value: Any, kind: type) -> Any:
-    if isinstance(value, float) and not math.isfinite(value):
-        return str(value)
-    if value is None or isinstance(value, str | bool | int | float):
-        return value
-    if isinstance(value, np.ndarray | np.generic):
-        return _impact_law_value(name, value.tolist(), kind)
-    if isinstance(value, list | tuple):
-        return [_impact_law_value(name, each, kind) for each in cast("list[Any]", value)]
-    if isinstance(value, Mapping):
-        return {str(key): _impact_law_value(name, each, kind) for key, each in cast("Mapping[Any, Any]", value).items()}
-    raise InputError(
-        f"A study's folder must record the values of its impact law, but {kind.__qualname__}.{name} is of type "
-        f"{type(value).__name__}. Let the law hold numbers, texts and arrays, or run the study without a folder."
-    )
-
-
 def validator_of_check(check: Callable[[Any], object]) -> AfterValidator:
     """Return a validator that raises what `check` raises, and keeps the value as it is."""
 
@@ -353,8 +388,28 @@ FreeVibration = Annotated[
 ]
 
 
+class LimitKeys(TomlTable):
+    """The limits whose fragility curves the report of a study has."""
+
+    limits: Annotated[
+        list[float | str] | None, validator_of_check(lambda given: [limit_state_of(each) for each in given or ()])
+    ] = Field(
+        None,
+        description='a list of limits to report, such as [0.02, "uplift", "max_ductility > 4"] (default: the usual '
+        "ones of such a study)",
+    )
+
+    def check_limits(self, columns: Container[str]) -> None:
+        """Raise an InputError if a limit is on a demand that the table will not have."""
+        check_limit_columns(map(limit_state_of, self.limits or ()), columns)
+
+
 class StudySpec(TomlTable):
-    """A study as a file or Python describes it; in Python, its tables are dictionaries.
+    """A study as a file or Python describes it.
+
+    In Python, tables are dictionaries or the objects that `run_cloud` takes: `structures` and `records` one, a sequence
+    or a mapping from names, `models`, `impact`, `bouc_wen`, `ground` and `demands`. A folder records their values;
+    functions, and classes of other packages, must be of a module, whose checksum it records.
 
     Raises
     ------
@@ -380,6 +435,16 @@ class StudySpec(TomlTable):
         except ValidationError as error:
             raise InputError(" ".join(toml_problem_sentences(error, content, type(self)))) from error
 
+    @field_validator("records", mode="wrap")
+    @classmethod
+    def _motions(cls, given: Any, table: ValidatorFunctionWrapHandler) -> Any:
+        items = list(given.values()) if isinstance(given, Mapping) else given
+        several = isinstance(items, list | tuple | Suite) and any(isinstance(each, GroundMotion) for each in items)
+        if not several and not isinstance(given, GroundMotion):
+            return table(given)
+        suite = given if isinstance(given, Suite) else Suite(checked_motions(given))
+        return GivenRecords.model_construct(given=suite)
+
     @property
     def kind(self) -> str:
         """Kind of the study: the value of its key `study`."""
@@ -390,8 +455,17 @@ class StudySpec(TomlTable):
         raise NotImplementedError
 
     def document(self) -> dict[str, Any]:
-        """Return all that determines the study as plain JSON: infinite numbers are "inf", and None is left out."""
-        return as_json_value(self.model_dump(exclude_none=True))
+        """Return all that determines the study as plain JSON: infinite numbers are "inf", and None is left out.
+
+        Raises
+        ------
+        InputError
+            If an object of Python holds what is not plain JSON.
+        """
+        given: Any = self
+        objects = {name: _object_in_field(name, value) for name, value in given}
+        objects = {name: value for name, value in objects.items() if value is not None}
+        return as_json_value(self.model_dump(exclude={*objects}, exclude_none=True)) | objects
 
     def checksums(self) -> dict[str, str]:
         """Return the SHA-256 of what the study needs besides its document and records, by its key or module.
@@ -401,7 +475,7 @@ class StudySpec(TomlTable):
         Raises
         ------
         InputError
-            If a user-defined impact law is not defined in a file.
+            If an impact law, an element or a function of the user's is not defined in a file.
         """
         return added_checksums(type(self))
 
@@ -423,18 +497,28 @@ class RunsStudySpec(RunOptionKeys, StudySpec):
         ["MDOF-S"], min_length=1, description='a list of models, such as ["MDOF-S", "2DOF-S"]'
     )
     free_vibration: FreeVibration = 0.0
+    demands: Annotated[dict[str, Any] | None, validator_of_check(lambda given: checked_demands(given, ()))] = Field(
+        None, description="in Python only: functions of a Response by the names of their columns, as in `run_cloud`"
+    )
 
-    def document(self) -> dict[str, Any]:
-        """Return all that determines the study as plain JSON: infinite numbers are "inf", and None is left out.
+    @field_validator("models", mode="before")
+    @classmethod
+    def _labels(cls, given: Any) -> Any:
+        listed = [given] if isinstance(given, str | Model) else given
+        several = isinstance(listed, list | tuple)
+        return [each.label if isinstance(each, Model) else each for each in listed] if several else given
 
-        Raises
-        ------
-        InputError
-            If `impact` is a user-defined law with a value that is not plain JSON.
-        """
-        if self.impact is None or isinstance(self.impact, str):
-            return super().document()
-        return self.model_copy(update={"impact": None}).document() | {"impact": impact_law_document(self.impact)}
+    @field_validator("bouc_wen", mode="before")
+    @classmethod
+    def _hysteresis(cls, given: Any) -> Any:
+        return asdict(given) if isinstance(given, BoucWen) else given
+
+    @field_validator("ground", mode="wrap")
+    @classmethod
+    def _given_ground(cls, given: Any, table: ValidatorFunctionWrapHandler) -> Any:
+        return (
+            GivenGround.model_construct(given=given) if isinstance(given, Ground) or callable(given) else table(given)
+        )
 
     def checksums(self) -> dict[str, str]:
         """Return the SHA-256 of what the study needs besides its document and records, by its key or module.
@@ -442,10 +526,16 @@ class RunsStudySpec(RunOptionKeys, StudySpec):
         Raises
         ------
         InputError
-            If a user-defined impact law is not defined in a file.
+            If an impact law, an element or a function of the user's is not defined in a file.
         """
-        law = {} if self.impact is None or isinstance(self.impact, str) else impact_law_checksum(self.impact)
-        return super().checksums() | law
+        found = super().checksums()
+        if not isinstance(self.impact, str | None):
+            found |= object_checksum("impact", type(self.impact), "impact law")
+        functions = {f"demand {name}": each for name, each in (self.demands or {}).items()}
+        functions["ground"] = self.ground.given if isinstance(self.ground, GivenGround) else self.ground
+        for key, each in functions.items():
+            found |= object_checksum(key, each, "function") if callable(each) else {}
+        return found
 
     def study_options(self, *, friction: bool = False) -> StudyOptions:
         """Return the options that all runs share."""
@@ -453,13 +543,46 @@ class RunsStudySpec(RunOptionKeys, StudySpec):
             self.free_vibration, impact=self.law(), bouc_wen=self.hysteresis(), ground=self.ground_rule(),
             work_limit=self.work_limit
         )  # fmt: skip
-        return replace(options, models=tuple(map(parse_model, self.models)), friction=friction)
+        models = tuple(map(parse_model, self.models))
+        return replace(options, models=models, friction=friction, demands=self.demands or {})
+
+
+def _object_in_field(name: str, value: Any) -> Any:
+    """Return what the document of a study has for an object of Python in one of its fields; None for plain values."""
+    if isinstance(value, GivenRecords | GivenStructure | GivenGround):
+        return value.document()
+    if isinstance(value, list):
+        found = [each.document() for each in cast("list[Any]", value) if isinstance(each, GivenStructure)]
+        return found or None
+    if isinstance(value, ImpactLaw):
+        return impact_law_document(value)
+    if name == "demands" and value:
+        return {each: function_document(f"demands.{each}", function) for each, function in value.items()}
+    if isinstance(value, Ground):
+        return object_document(name, value)
+    return function_document(name, value) if callable(value) else None
 
 
 class StructuresStudySpec(RunsStudySpec):
-    """A study of given structures: the structures, the models, and the options of the runs."""
+    """A study of given structures: the structures, the models, and the options of the runs.
+
+    In Python, `structures` may also be structures: one, a sequence, or a mapping from names.
+    """
 
     structures: list[StructureEntry] = Field(min_length=1, description="one or more tables [[structures]]")
+
+    @field_validator("structures", mode="wrap")
+    @classmethod
+    def _given_structures(cls, given: Any, tables: ValidatorFunctionWrapHandler) -> Any:
+        items = list(given.values()) if isinstance(given, Mapping) else given
+        several = isinstance(items, list | tuple) and any(map(is_structure_or_properties, items))
+        if not several and not is_structure_or_properties(given):
+            return tables(given)
+        listed, names = checked_structures(given)
+        return [
+            GivenStructure.model_construct(name=name, given=each)
+            for name, each in zip(names or [""] * len(listed), listed, strict=True)
+        ]
 
     def checksums(self) -> dict[str, str]:
         """Return the SHA-256 of what the study needs besides its document and records, by its key or module."""

@@ -6,16 +6,15 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from pydantic import Field
 
-from rockflex._checks import checked_positive
 from rockflex._errors import InputError
 from rockflex._shown import shown
-from rockflex.fragility import LIMIT_STATES, LimitState, rotation_limit_state
+from rockflex.fragility import LimitState, limit_state_of
 from rockflex.motion import scalable_measure
 from rockflex.study._arguments import checked_positive_numbers
 from rockflex.study._plan import CrossPlan
 from rockflex.study._result_tables import Columns, Table
 from rockflex.study._run_matrix import StudyMatrix
-from rockflex.study.spec import StructuresStudySpec
+from rockflex.study.spec import LimitKeys, StructuresStudySpec
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
 StripeLimit: TypeAlias = str | float | LimitState
 
 
-class StripeStudy(StructuresStudySpec):
+class StripeStudy(LimitKeys, StructuresStudySpec):
     """Multiple-stripe analysis: every record is scaled to each level of an intensity measure.
 
     The table has the columns of `run_cloud` and the `level` of the stripe; `stripe_counts` counts its runs.
@@ -56,7 +55,9 @@ class StripeStudy(StructuresStudySpec):
             If a structure cannot be built, a record cannot be read, the measure is unknown, a level is not positive,
             or a record cannot be scaled to it.
         """
-        return StripePlan(self.matrix(), self.measure, self.levels, self.runs_per_chunk)
+        plan = StripePlan(self.matrix(), self.measure, self.levels, self.runs_per_chunk)
+        self.check_limits(plan.columns)
+        return plan
 
 
 class StripePlan(CrossPlan):
@@ -98,8 +99,9 @@ def stripe_counts(runs: "pd.DataFrame", limit: StripeLimit = "overturning") -> "
         The table of a `StripeStudy`.
     limit
         Name of a limit state: ``"overturning"`` (|θ| = π/2), ``"nominal"`` (|θ| > 0.7 atan(B/h*_1)),
-        ``"tendon_yield"``, ``"uplift"``, or another one of ``rockflex.fragility.LIMIT_STATES``; a rotation in rad; or a
-        limit state such as ``rockflex.fragility.residual_rotation_limit_state(0.005)``.
+        ``"tendon_yield"``, ``"uplift"``, or another of ``rockflex.fragility.LIMIT_STATES``; a demand with its
+        bound, such as ``"max_ductility > 4"``; a rotation in rad; or a limit state such as
+        ``rockflex.fragility.residual_rotation_limit_state(0.005)``.
 
     Returns
     -------
@@ -125,20 +127,8 @@ def stripe_counts(runs: "pd.DataFrame", limit: StripeLimit = "overturning") -> "
     0    0.2            1        1
     1    0.4            1        1
     """
-    solved, state = runs[runs["status"].notna()], stripe_limit_state(limit)
+    solved, state = runs[runs["status"].notna()], limit_state_of(limit)
     counted = solved.assign(exceeds=state.exceeded(solved).astype(bool)).groupby(
         ["structure", "model", "level"], observed=True
     )
     return counted["exceeds"].agg(n_exceeding="sum", n_total="size").reset_index()
-
-
-def stripe_limit_state(limit: StripeLimit) -> LimitState:
-    """Return the limit state that `stripe_counts` counts."""
-    if isinstance(limit, LimitState):
-        return limit
-    if not isinstance(limit, str):
-        return rotation_limit_state(checked_positive("limit", limit, "rad"))
-    if limit not in LIMIT_STATES:
-        words = ", ".join(f'"{each}"' for each in LIMIT_STATES)
-        raise InputError(f"limit must be {words}, a LimitState or a rotation in rad, but {shown(limit)} was given.")
-    return LIMIT_STATES[limit]

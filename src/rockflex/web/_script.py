@@ -177,8 +177,8 @@ def _springs_code(table: SpringsTable | SpringBedTable) -> str:
         positions = edges if table.positions is None else _python_literal(table.positions)
         named = _python_named_arguments({"stiffness": table.stiffness, "damping": table.damping})
         return f"rf.Springs({positions}, {named})"
-    named = _python_named_arguments(table.model_dump(exclude={"heave_damping_ratio"}))
-    maker = "asce41_bed" if table.subgrade_modulus is None else "winkler_bed"
+    named = _python_named_arguments(table.model_dump(exclude={"heave_damping_ratio", "method"}))
+    maker = f"{table.method or 'asce41'}_bed" if table.subgrade_modulus is None else "winkler_bed"
     return f"rf.{maker}(properties.half_width, {named}, eccentricity=properties.eccentricity)"
 
 

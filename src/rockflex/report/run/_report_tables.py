@@ -377,7 +377,7 @@ def _element_table_row(place: int, elements: Sequence[BaseElement], runs: Sequen
     element, yielded = elements[place], any(bool(run.element_yielded[place]) for run in runs)
     force = max(float(run.max_element_force[place]) for run in runs)
     elongation = max(float(run.max_element_elongation[place]) for run in runs)
-    name, properties, state = _describe_element(element)
+    name, properties, state = describe_element(element)
     return [
         ReportCell(f"{place + 1} {name}"),
         ReportCell(element.where) if element.attached else value_cell(element.position, "position"),
@@ -388,7 +388,7 @@ def _element_table_row(place: int, elements: Sequence[BaseElement], runs: Sequen
     ]
 
 
-def _describe_element(element: BaseElement) -> tuple[str, str, tuple[str, str]]:
+def describe_element(element: BaseElement) -> tuple[str, str, tuple[str, str]]:
     """Return kind, properties, and the words for an element that did not, or did, yield."""
     if isinstance(element, ElementLaw):
         values = {name: value for name, value in element_parameters(element).items() if name not in PLACE}

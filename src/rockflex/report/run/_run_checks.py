@@ -1,7 +1,7 @@
 """The checks of every run: uplift, overturning, contact, friction, its elements, and the energy balance."""
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -16,9 +16,10 @@ from rockflex.report.run._report_tables import (
     value_cell,
 )
 from rockflex.report.run._reported_runs import ReportedRuns
-from rockflex.response import BALANCED, IMPACT_WINDOW, History, Response
+from rockflex.response import BALANCED, IMPACT_WINDOW, NO_LIMIT, Check, CheckTable, History, Response
 
 NOT_COMPUTED = "not computed"
+NO_BREAK = "\u00a0"  # a space at which no line ends
 MAX_CLOSED_ROTATION, MAX_TILT = 1e-9, 1e-4  # rad
 MAX_SETTLING_TIME = 5.0  # s of computing, for a base to come to rest
 MAX_WORK = 2_000_000  # states times springs times modes: energies and friction of more take minutes
@@ -223,3 +224,51 @@ def run_check_legend(report: ReportedRuns, friction: float | None, *, omitted: b
     if omitted:
         lines.append(f"{NOT_COMPUTED.capitalize()}: energies and friction of a run that would take too long here.")
     return lines
+
+
+def limit_check_table(labels: Sequence[str], tables: Sequence[CheckTable]) -> ReportTable:
+    """Return checks against limits: a row a check, with the demand and its ratio for each label."""
+    rows: dict[str, list[Check | None]] = {}
+    for place, table in enumerate(tables):
+        for each in table.rows:
+            rows.setdefault(each.name, [None] * len(tables))[place] = each
+    heads = [
+        ("check (ratio)", ""),
+        *((label, "") for label in labels),
+        ("limit", ""),
+        ("source of the limit", ""),
+    ]
+    body: list[list[ReportCell]] = []
+    for name, found in rows.items():
+        first = next(each for each in found if each is not None)
+        limit, unit = first.in_table[1:]
+        sign = "≥" if first.at_least else "≤"
+        words = "–" if limit is None else f"{sign} {rounded_number(limit)} {unit}".rstrip().replace(" ", NO_BREAK)
+        cells = [ReportCell("–") if each is None else _limit_check_cell(each) for each in found]
+        body.append(
+            [
+                ReportCell(name),
+                *cells,
+                ReportCell(words),
+                ReportCell(first.source or (first.note if len(tables) == 1 else "–")),
+            ]
+        )
+    return ReportTable(heads, body)
+
+
+def _limit_check_cell(row: Check) -> ReportCell:
+    demand, _, unit = row.in_table
+    if math.isnan(demand):
+        return ReportCell("overturns", None, "demand", True)
+    ratio = "" if row.ratio is None else f" ({rounded_number(row.ratio)})"
+    return ReportCell(
+        f"{rounded_number(demand)} {unit}".rstrip().replace(" ", NO_BREAK) + ratio,
+        row.demand,
+        "demand",
+        row.ok is False,
+    )
+
+
+def missing_checks_text(table: CheckTable) -> str:
+    """Return what was not checked, and why, in a sentence for each reason."""
+    return "".join(f"Not checked: {name}: {lacks}. " for name, lacks in table.missing if NO_LIMIT not in lacks)

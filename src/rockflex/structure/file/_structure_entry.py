@@ -1,7 +1,7 @@
 """A structure in a TOML file: leaning mass, stories that yield, its place on the base, and its elements."""
 
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import MISSING, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeAlias, Union, get_origin, get_type_hints
@@ -16,6 +16,8 @@ from rockflex._shown import shortened
 from rockflex.modal import (
     BARS,
     PLACE,
+    STEELS,
+    STRANDS,
     BaseElement,
     ElementLaw,
     FrictionDamper,
@@ -23,6 +25,9 @@ from rockflex.modal import (
     Tendon,
     ViscousDamper,
     YieldingDissipator,
+    bar_fuse,
+    strand_tendon,
+    u_plate_fuse,
 )
 from rockflex.structure import Eccentric, Leaning, Restrained, YieldingStories
 from rockflex.structure._from_matrices import matrix_file_checksum
@@ -53,12 +58,13 @@ from rockflex.structure.file._toml_table import (
 _POST_YIELD_RATIO = "the stiffness after yielding over the elastic one"
 _POSITION = SchemaKey("the distance to the right of the axis of the masses", "m")
 LAWS: dict[str, type[ElementLaw]] = BARS | registered("elements")
-_ELEMENT_KINDS = ("tendon", "yielding_dissipator", "viscous_damper", "friction_damper", *LAWS)
+_DEVICES = ("strand_tendon", "bar_fuse", "u_plate_fuse")
+_ELEMENT_KINDS = ("tendon", "yielding_dissipator", "viscous_damper", "friction_damper", *_DEVICES, *LAWS)
 _ELEMENT_KIND = SchemaKey(
     ", ".join(f'"{kind}"' for kind in _ELEMENT_KINDS[:-1]) + f' or "{_ELEMENT_KINDS[-1]}"', form=PLAIN
 )
 _TABLE_KEY = SchemaKey("a table", form=PLAIN)
-_RUN_KEYS = ("impact", "restitution", "bouc_wen", "ground")  # only for `rockflex run`
+_RUN_KEYS = ("impact", "restitution", "bouc_wen", "ground", "report")  # only for `rockflex run`
 
 
 class ElementTable(TomlTable):
@@ -166,6 +172,66 @@ class FrictionDamperTable(ElementTable):
     force: Annotated[float, SchemaKey("the force at which the damper slides", "N")]
 
 
+def _names(catalogue: Iterable[str]) -> str:
+    return ", ".join(f'"{name}"' for name in catalogue)
+
+
+_Steel: TypeAlias = Annotated[Literal[tuple(STEELS)], SchemaKey(f"a steel: {_names(STEELS)}", form=PLAIN)]  # pyright: ignore
+_Strand: TypeAlias = Annotated[Literal[tuple(STRANDS)], SchemaKey(f"a strand: {_names(STRANDS)}", form=PLAIN)]  # pyright: ignore
+
+
+class StrandTendonTable(ElementTable):
+    """The arguments of `strand_tendon`."""
+
+    makes = strand_tendon
+    title = "Tendon of strands"
+
+    kind: Annotated[Literal["strand_tendon"], _ELEMENT_KIND]
+    position: Annotated[float, _POSITION] = 0.0
+    n: Annotated[int, SchemaKey("the number of strands", form=WHOLE, low=1, high=10_000)]
+    strand: _Strand
+    length: Annotated[float, SchemaKey("the free length", "m")]
+    prestress: Annotated[float, SchemaKey("the force at rest over the breaking force", low=0.0, high=0.9)]
+    post_yield_ratio: Annotated[float | None, SchemaKey(f"{_POST_YIELD_RATIO} (default: the tendon stays elastic)")] = (
+        None
+    )
+    ultimate_strain: Annotated[float | None, SchemaKey("the strain at which a tendon that yields breaks")] = None
+
+
+class BarFuseTable(ElementTable):
+    """The arguments of `bar_fuse`."""
+
+    makes = bar_fuse
+    title = "Fuse of steel bars"
+
+    kind: Annotated[Literal["bar_fuse"], _ELEMENT_KIND]
+    position: Annotated[float, _POSITION] = 0.0
+    n: Annotated[int, SchemaKey("the number of bars", form=WHOLE, low=1, high=10_000)]
+    diameter: Annotated[float, SchemaKey("the diameter of a bar where it yields", "m")]
+    length: Annotated[float, SchemaKey("the length that yields", "m")]
+    steel: _Steel
+    tension_only: Annotated[bool, SchemaKey("whether the bars cannot push", form="true or false: {}")] = False
+    ultimate_strain: Annotated[
+        float | None, SchemaKey("the strain at which the bars break (default: that of the steel)")
+    ] = None
+
+
+class UPlateFuseTable(ElementTable):
+    """The arguments of `u_plate_fuse`."""
+
+    makes = u_plate_fuse
+    title = "U-shaped flexural plates"
+
+    kind: Annotated[Literal["u_plate_fuse"], _ELEMENT_KIND]
+    position: Annotated[float, _POSITION] = 0.0
+    n: Annotated[int, SchemaKey("the number of plates", form=WHOLE, low=1, high=10_000)]
+    width: Annotated[float, SchemaKey("the width of a plate", "m")]
+    thickness: Annotated[float, SchemaKey("the thickness of a plate", "m")]
+    diameter: Annotated[float, SchemaKey("the diameter of the bend, between the middles of the legs", "m")]
+    steel: _Steel
+    post_yield_ratio: Annotated[float, SchemaKey(_POST_YIELD_RATIO)] = 0.0
+
+
 _FORMS = {
     float: NUMBER,
     int: WHOLE,
@@ -208,6 +274,9 @@ ELEMENTS: dict[str, type[ElementTable]] = {
     "yielding_dissipator": YieldingDissipatorTable,
     "viscous_damper": ViscousDamperTable,
     "friction_damper": FrictionDamperTable,
+    "strand_tendon": StrandTendonTable,
+    "bar_fuse": BarFuseTable,
+    "u_plate_fuse": UPlateFuseTable,
     **{kind: _element_table(kind, law) for kind, law in LAWS.items()},
 }
 """The table of each kind of element by its name in a file."""
@@ -436,7 +505,8 @@ def read_structure(path: str | Path) -> Built:
     (`LumpedStructure`), ``[matrices]`` (`from_matrices`), ``[modes]`` (`from_modes`), ``[properties]``
     (`RockingProperties`) or ``[block]`` (`rigid_block`). Tables ``[[elements]]`` restrain it; their key ``kind`` is
     "tendon" (`Tendon`), "yielding_dissipator" (`YieldingDissipator`), "viscous_damper" (`ViscousDamper`),
-    "friction_damper" (`FrictionDamper`), "flag_shaped_bar" (`FlagShapedBar`), "gap_bar" (`GapBar`), "multilinear_bar"
+    "friction_damper" (`FrictionDamper`), "strand_tendon" (`strand_tendon`), "bar_fuse" (`bar_fuse`), "u_plate_fuse"
+    (`u_plate_fuse`), "flag_shaped_bar" (`FlagShapedBar`), "gap_bar" (`GapBar`), "multilinear_bar"
     (`MultilinearBar`), or the name that another package registers (`ElementLaw`). Tables ``[[tendons]]`` are tendons
     without that key. In place of a ``position`` an element takes ``between`` (two floors) or the ``height`` of a tie,
     with a ``cosine`` (`Attachment`). ``leaning_masses`` above all tables is mass on other columns (`Leaning`), a table
@@ -447,8 +517,8 @@ def read_structure(path: str | Path) -> Built:
     Parameters
     ----------
     path
-        The file. The keys ``impact``, ``restitution``, ``[bouc_wen]`` and ``[ground]`` are for ``rockflex run`` and are
-        ignored; in Python they are arguments of `simulate`.
+        The file. The keys ``impact``, ``restitution``, ``[bouc_wen]``, ``[ground]`` and ``[report]`` are for ``rockflex
+        run`` and are ignored; in Python they are arguments of `simulate` and `write_report`.
 
     Returns
     -------

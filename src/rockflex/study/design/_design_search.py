@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex._checks import checked_instance
 from rockflex._errors import InputError
+from rockflex.fragility import check_limit_columns
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
 from rockflex.study._arguments import WORK_LIMIT, GroundChoice, Motions, RockingStructure, checked_scale_factors
@@ -193,7 +194,8 @@ class DesignSearchPlan(ChunkedPlan):
     def _check_limits(self, point: Point, properties: RockingProperties) -> None:
         for each in self.requirements:
             try:
-                design_limit_state(each.limit, properties.nominal_overturning_rotation)
+                state = design_limit_state(each.limit, properties.nominal_overturning_rotation)
+                check_limit_columns([state], self._empty.columns)
             except InputError as error:
                 raise InputError(f"B = {self.search.at(point)[0, 0]:.6g} m: {error}") from error
 

@@ -1,6 +1,7 @@
 """Design of a base: its width and the tendon that holds it down (Section 4.1)."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Annotated, Any, Literal, SupportsIndex
 
 from numpy.typing import ArrayLike
@@ -9,8 +10,9 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 from rockflex._checks import checked_in_range, checked_positive
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
+from rockflex._json import as_json_value
 from rockflex._shown import shown
-from rockflex.fragility import HazardCurve
+from rockflex.fragility import HazardCurve, check_limit_columns
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw
 from rockflex.structure.file import StructureEntry, TomlTable
@@ -179,6 +181,17 @@ class DesignStudy(StructuresStudySpec):
         None, description="a table of a search for the cheapest design, under the heading [search]"
     )
 
+    @field_validator("tendons", mode="before")
+    @classmethod
+    def _levels(cls, given: Any) -> Any:
+        several = isinstance(given, list | tuple)
+        return [asdict(each) if isinstance(each, TendonLevel) else each for each in given] if several else given
+
+    @field_validator("hazard", mode="before")
+    @classmethod
+    def _curve(cls, given: Any) -> Any:
+        return as_json_value(given) if isinstance(given, HazardCurve) else given
+
     @field_validator("half_widths", mode="before")
     @classmethod
     def _widths(cls, given: object) -> object:
@@ -186,6 +199,8 @@ class DesignStudy(StructuresStudySpec):
 
     @model_validator(mode="after")
     def _question(self) -> "DesignStudy":
+        if len(self.structures) != 1:
+            raise InputError(f"structures: a design study has one structure, but {len(self.structures)} were given.")
         if (self.level is None) == (self.hazard is None):
             raise InputError("level and hazard: give one of them, not both, for the strength of the shaking.")
         if self.hazard is not None:
@@ -255,7 +270,8 @@ class DesignStudy(StructuresStudySpec):
         for design in designs:
             for limit in self.limits:
                 try:
-                    design_limit_state(limit, design.properties.nominal_overturning_rotation)
+                    state = design_limit_state(limit, design.properties.nominal_overturning_rotation)
+                    check_limit_columns([state], matrix.columns)
                 except InputError as error:
                     raise InputError(f"{design.name}: {error}") from error
         return DesignPlan(matrix, designs, self.scales, self.runs_per_chunk)

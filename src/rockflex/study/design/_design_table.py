@@ -47,8 +47,8 @@ def design_table(
     runs
         The table of `run_design`, or of a `DesignStudy`.
     limit
-        A rotation in rad; a multiple of 0.7 atan(B/h*_1) of each design, ``"nominal"`` or such as ``"0.5 nominal"``; or
-        ``"overturning"``.
+        A rotation in rad; a multiple of 0.7 atan(B/h*_1) of each design, ``"nominal"`` or such as ``"0.5 nominal"``; a
+        limit state such as ``"overturning"``; or a demand with its bound, such as ``"max_ductility > 4"``.
     measure
         Column of the intensity measure, which must not depend on the base.
     at

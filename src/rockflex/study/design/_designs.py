@@ -330,7 +330,11 @@ class DesignSearch:
         names = ("tendon", "yielding dissipator or friction damper")
         for factors, kind, name in zip(FACTORS, kinds, names, strict=True):
             if getattr(self, factors) != (1.0,) and not any(isinstance(each, kind) for each in properties.elements):
-                raise InputError(f"{factors} were given, but the structure has no {name} that they could multiply.")
+                raise InputError(
+                    f"{factors} were given, but the structure has no {name} that they could multiply. A search varies "
+                    "half_widths, tendon_factors and dissipator_factors; strengths of stories and leaning masses stay "
+                    "as they are: vary these in a MonteCarloStudy, or search each structure."
+                )
 
     def _scaled(self, element: BaseElement, tendons: float, dissipators: float) -> BaseElement | None:
         if isinstance(element, Tendon):

@@ -25,6 +25,7 @@ from rockflex.fragility import (
     UnanimousOutcome,
     annual_rate,
     bootstrap_weights,
+    bounded_demand,
     fit_logistic,
     fit_outcomes,
     hazard_quadrature,
@@ -34,7 +35,6 @@ from rockflex.fragility import (
 )
 from rockflex.modal import RockingProperties
 from rockflex.motion import scalable_measure
-from rockflex.study._result_tables import RESULTS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -57,39 +57,23 @@ def design_limit_state(limit: float | str, nominal: float) -> LimitState:
     """Limit state of a limit, where `nominal` is 0.7 atan(B/h*_1) of the design.
 
     A rotation in rad; a multiple of the nominal one; the name of a limit state; or a result with its bound, such as
-    ``"max_base_moment > 5e6"``, which an overturned run exceeds too.
+    ``"max_base_moment > 5e6"`` or ``"max_ductility > 4"``, which an overturned run exceeds too.
     """
     words = limit.split() if isinstance(limit, str) else []
     if words == [OVERTURNING.name]:
         return OVERTURNING
     if len(words) == 1 and words[0] in LIMIT_STATES and words[0] != NOMINAL.name:
         return LIMIT_STATES[words[0]]
-    if len(words) == 3 and words[1] == ">" and RESULTS.get(words[0]) in (float, int):
-        return _column_limit_state(words[0], words[2], limit)
-    return rotation_limit_state(_limit_rotation(limit, nominal, words))
+    state = bounded_demand(limit)
+    if state is not None and state.column != "max_rotation":
+        return state
+    given = limit if state is None else float(words[2])
+    return rotation_limit_state(_limit_rotation(given, nominal, words if state is None else []))
 
 
 def is_rotation_limit_state(state: LimitState) -> bool:
     """Whether a state is a rotation whose probability `fit_outcomes` gives."""
     return ROCKED <= state.threshold <= OVERTURNED
-
-
-def _column_limit_state(column: str, given: str, limit: Any) -> LimitState:
-    try:
-        bound = float(given)
-    except ValueError:
-        bound = math.nan
-    if not (math.isfinite(bound) and bound >= 0.0):
-        raise InputError(
-            f"limit: the bound of {column} must be zero or a positive number, but {shown(limit)} was given."
-        )
-    if column == "max_rotation":
-        return rotation_limit_state(_limit_rotation(bound, math.nan, []))
-
-    def exceeded(runs: Any) -> Any:
-        return (runs[column] > bound) | OVERTURNING.exceeded(runs)
-
-    return LimitState(name=column, label=f"{column} > {bound:g}", symbol=f"{column} above {bound:g}", exceeded=exceeded)
 
 
 def _limit_rotation(limit: float | str, nominal: float, words: list[str]) -> float:

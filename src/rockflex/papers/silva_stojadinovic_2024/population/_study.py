@@ -13,7 +13,7 @@ from rockflex._checks import checked_whole_number
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
-from rockflex.models import LinearModel, modal_displacement
+from rockflex.models import RockingModel, modal_displacement
 from rockflex.motion import Suite
 from rockflex.response import Response, respond
 from rockflex.structure import Frame
@@ -252,7 +252,7 @@ class PopulationPlan(study.ChunkedPlan):
 
     def _cases(self, properties: RockingProperties) -> Sequence[study.PreparedCase | InputError]:
         """Return the cases of both models, with the peak of the second mode (of the first, if there is only one)."""
-        models = LinearModel("MDOF-S", properties), LinearModel("2DOF-S", properties.truncated(1))
+        models = RockingModel("MDOF-S", properties), RockingModel("2DOF-S", properties.truncated(1))
         extra = [modal_displacement(model, min(model.properties.n_modes, 2) - 1) for model in models]
         try:
             return [

@@ -69,7 +69,8 @@ const PLACES = ["position", "between", "height", "cosine"];
 // A new element, derived from the weight W = m g and the half width b of the structure. The first of its kind that is not
 // in the middle is followed by its twin on the other side. What yields does so at W/8, as a pair that resists with a
 // quarter of the moment W b of the weight (λ = 4), after 2 mm; a tendon pulls with W/5, and gains as much while the base
-// turns by 1/50; a damper has a force of W/20, at 0.1 m/s if it is viscous; a gap is of 5 mm.
+// turns by 1/50; a damper has a force of W/20, at 0.1 m/s if it is viscous; a gap is of 5 mm. Of strands, bars
+// and plates there are as many as that force needs.
 function fresh(kind, list, view) {
   const { mass, half_width: b, eccentricity: e } = view ?? { ...USUAL, eccentricity: 0 };
   const weight = 9.81 * mass;
@@ -78,6 +79,7 @@ function fresh(kind, list, view) {
   if (twin) return { ...clone(twin), position: -twin.position };
   const share = (part) => round(weight * part);
   const edge = round(0.85 * (b - Math.abs(e)));
+  const pieces = (force, each) => Math.min(Math.max(Math.round(force / each), 1), 100); // of catalogues
   const bar = { position: edge, stiffness: share(1 / 8 / 0.002), yield_force: share(1 / 8) };
   const values = {
     tendon: { position: 0, initial_force: share(1 / 5), stiffness: share(1 / 5 / (b / 50)) },
@@ -87,6 +89,10 @@ function fresh(kind, list, view) {
     flag_shaped_bar: { ...bar, post_yield_ratio: 0.05, flag_depth: 0.8 },
     gap_bar: { position: edge, stiffness: bar.stiffness, gap: 0.005 },
     multilinear_bar: { position: edge, elongations: [0.005, 0.02], forces: [share(1 / 8), share(1 / 4)] },
+    strand_tendon: { position: 0, n: pieces(share(1 / 5), 140e3), strand: "Y1860S7-15.7", length: 15, prestress: 0.5 },
+    bar_fuse: { position: edge, n: pieces(share(1 / 8), 157e3), diameter: 0.02, length: 0.5, steel: "B500B" },
+    u_plate_fuse: { position: edge, n: pieces(share(1 / 8), 17.75e3), width: 0.1, thickness: 0.01, diameter: 0.1,
+      steel: "S355" },
   };
   return { kind, ...values[kind] };
 }
@@ -165,7 +171,7 @@ const KINDS = [
   ["", "rigid"], ["springs", "springs"], ["winkler", "bed, by subgrade modulus"],
   ["asce41", "bed of ASCE 41, by shear modulus"],
 ];
-const WITHOUT = { winkler: ["shear_modulus", "poisson_ratio"], asce41: ["subgrade_modulus", "end_zone", "end_ratio"] };
+const WITHOUT = { winkler: ["shear_modulus", "poisson_ratio", "method", "density"], asce41: ["subgrade_modulus", "end_zone", "end_ratio"] };
 const [FRICTION, DAMPING, SETTLEMENT, GRAVITY] = [0.5, 0.3, 0.005, 9.81]; // of new springs, and m and m/s²
 const USUAL = { mass: 2e5, half_width: 1 }; // kg and m of a structure that cannot be built yet
 const round = (value) => Number(value.toPrecision(2));

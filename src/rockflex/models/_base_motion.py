@@ -1,54 +1,16 @@
-"""The simplified models on rigid ground, and the equations of motion of bases with several degrees of freedom."""
-
-from dataclasses import dataclass, field
+"""The equations of motion of bases with several degrees of freedom: rotation, slip and heave."""
 
 import numpy as np
 
 from rockflex._arrays import Array, Bools
-from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
-from rockflex.modal import RockingProperties
-from rockflex.models._impact import ImpactLaw, VVELSimplified
-from rockflex.models._modal_model import ModalModel
 from rockflex.models._phase import BaseEquations, BorderedSystem, Key
+from rockflex.models._rocking_model import RockingModel
 
 JAMMED = 1e-12  # relative: determinant below which the base has no inertia against a motion
 
 
-@dataclass(frozen=True, eq=False)
-class LinearModel(ModalModel):
-    """N modes on a base that may uplift: Eqs. 15, 23, 24 and 25.
-
-    Parameters
-    ----------
-    label
-        Label of the model, such as ``"2DOF-S"``.
-    properties
-        Parameters of the structure, with only the modes of this model.
-    lifts
-        Whether the base can lift; otherwise it is fixed.
-    law
-        Impact law.
-    missing_mass
-        Whether base shear and base moment include the mass that the modes leave out, as if it moved with the base.
-    gravity
-        Gravitational acceleration in m/s².
-    """
-
-    label: str
-    properties: RockingProperties
-    lifts: bool = True
-    law: ImpactLaw = field(default_factory=VVELSimplified)
-    missing_mass: bool = False
-    gravity: float = GRAVITY
-
-    @property
-    def linear(self) -> "LinearModel":
-        """The simplified, elastic model of the same modes: the model itself."""
-        return self
-
-
-def bordered_system_of(model: ModalModel, equations: BaseEquations, freed: Bools) -> BorderedSystem:
+def bordered_system_of(model: RockingModel, equations: BaseEquations, freed: Bools) -> BorderedSystem:
     """Return the equations of motion with the equations of the base, of which some degrees of freedom are free.
 
     The couplings are c = h* for the rotation, 1 for the slip and 0 for the heave.
@@ -85,7 +47,7 @@ def bordered_system_of(model: ModalModel, equations: BaseEquations, freed: Bools
     )
 
 
-def _jammed(model: ModalModel) -> str:
+def _jammed(model: RockingModel) -> str:
     p = model.properties
     if p.horizontal_mass - p.effective_mass.sum() <= JAMMED * p.m_tot:
         return (
@@ -98,7 +60,7 @@ def _jammed(model: ModalModel) -> str:
     )
 
 
-def accelerations_of(model: ModalModel, key: Key) -> Array:
+def accelerations_of(model: RockingModel, key: Key) -> Array:
     """Return D'' of every mode and q'' of the base in a phase as rows, shape (N + b, C)."""
     bordered_system = model.bordered_system(key)
     p, layout = model.properties, model.layout
@@ -121,7 +83,7 @@ def accelerations_of(model: ModalModel, key: Key) -> Array:
     return rows
 
 
-def horizontal_reaction(model: ModalModel, key: Key) -> Array:
+def horizontal_reaction(model: RockingModel, key: Key) -> Array:
     """Return the horizontal force of the ground on the base in a phase: a row, (C,).
 
     (m_tot + Σ l) (a + x'') + L_0^r θ'' + Σ m* D'', and what ties from a height pull.

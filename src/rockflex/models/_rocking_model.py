@@ -1,8 +1,9 @@
-"""What all models with N modes have in common: elements, and equations of motion as rows; and the simplified models."""
+"""The models on rigid ground, simplified, complete or yielding: elements, phases, and equations of motion as rows."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +30,7 @@ from rockflex.models._elements import (
     rate_of,
     set_off,
 )
-from rockflex.models._impact import ImpactLaw
+from rockflex.models._impact import ImpactLaw, VVELSimplified
 from rockflex.models._layout import (
     BASES,
     HEADER,
@@ -42,7 +43,7 @@ from rockflex.models._layout import (
     decoded,
     layout_of,
 )
-from rockflex.models._phase import BaseEquations, BorderedSystem, Key
+from rockflex.models._phase import BaseEquations, BorderedSystem, GroundPhase, Key
 
 MAX_PHASES = 1000  # whose equations of motion are kept
 
@@ -57,35 +58,58 @@ class Pose(NamedTuple):
 LEVEL = Pose(0.0, 0.0)
 
 
-class ModalModel(Value):
+@dataclass(frozen=True, eq=False)
+class RockingModel(Value):
     """N modes on a base that may uplift: the equations of motion in each phase, as bordered systems and as rows.
 
-    A *row* is a linear functional of the state, the ground acceleration and 1: `StateLayout`.
+    On rigid ground without sliding; models on other ground derive from this one. A *row* is a linear functional of the
+    state, the ground acceleration and 1: `StateLayout`.
+
+    Parameters
+    ----------
+    label
+        Label of the model, such as ``"2DOF-S"``.
+    properties
+        Parameters of the structure, with only the modes of this model.
+    lifts
+        Whether the base can lift; otherwise it is fixed.
+    law
+        Impact law.
+    missing_mass
+        Whether base shear and base moment include the mass that the modes leave out, as if it moved with the base.
+    gravity
+        Gravitational acceleration in m/s².
+    complete
+        Whether rotations may be large, with all trigonometric, centrifugal and P-Δ terms (Eqs. 13, 14 and 16);
+        otherwise the simplified Eqs. 15, 23, 24 and 25 hold.
+    bouc_wen
+        Hysteresis of the one mode, or None for an elastic superstructure.
+    stepwise
+        Whether a model that could be solved in closed form is integrated step by step, too: to compare the two, and to
+        read responses saved when models with balanced tendons were.
     """
 
     label: str
     properties: RockingProperties
-    lifts: bool
-    law: ImpactLaw
-    missing_mass: bool
-    gravity: float
-    springs: Springs | None = None  # under the base; None on rigid ground
-    rest: Pose = LEVEL  # of the base under its weight, from which the elements are stretched
-
-    @property
-    def complete(self) -> bool:
-        """Whether rotations may be large: Eqs. 13, 14 and 16."""
-        return False
-
-    @property
-    def bouc_wen(self) -> BoucWen | None:
-        """Hysteresis of the one mode; None for an elastic superstructure."""
-        return None
+    lifts: bool = True
+    law: ImpactLaw = field(default_factory=VVELSimplified)
+    missing_mass: bool = False
+    gravity: float = GRAVITY
+    complete: bool = field(default=False, kw_only=True)
+    bouc_wen: BoucWen | None = field(default=None, kw_only=True)
+    stepwise: bool = field(default=False, kw_only=True)
+    springs: ClassVar[Springs | None] = None  # under the base; None on rigid ground
+    rest: ClassVar[Pose] = LEVEL  # of the base under its weight, from which the elements are stretched
 
     @property
     def integrated(self) -> bool:
         """Whether some phase is integrated step by step rather than solved in closed form."""
-        return False
+        return self.complete or self.bouc_wen is not None or self.stepwise
+
+    @property
+    def linear(self) -> Self:
+        """The simplified, elastic model of the same modes."""
+        return replace(self, complete=False, bouc_wen=None, stepwise=False) if self.integrated else self
 
     @property
     def has_bare_base(self) -> bool:
@@ -100,11 +124,20 @@ class ModalModel(Value):
     @cached_property
     def layout(self) -> StateLayout:
         """Layout of the state vector."""
+        return self._layout(codes_for(len(self.attached_places), self.code_base))
+
+    def _layout(self, n_marks: int, *, slides: bool = False, heaves: bool = False) -> StateLayout:
+        """Return the layout with a number of internal variables that tell branches."""
+        springs = self.springs if heaves else None
         return layout_of(
             self.properties.n_modes,
             integrated=self.integrated,
-            viscous=any(isinstance(each, Dashpot) for each in self.elements),
-            n_internal=internal_count(self.elements) + codes_for(len(self.attached_places), self.code_base),
+            viscous=not heaves and any(isinstance(each, Dashpot) for each in self.elements),
+            n_internal=internal_count(self.elements) + n_marks,
+            slides=slides,
+            heaves=heaves,
+            springs=0 if springs is None else springs.n,
+            elements=len(self.elements) if heaves else 0,
         )
 
     @cached_property
@@ -523,6 +556,10 @@ class ModalModel(Value):
             turn *= bordered_system.flexibility[0, 0]
             rows[:n] -= np.outer(p.effective_height, turn)
         return rows
+
+    def ground_phase(self, key: Key, branch: int) -> GroundPhase | None:  # noqa: ARG002
+        """Return what a `GroundField` knows of a phase; None on rigid ground without sliding."""
+        return None
 
     def is_free(self, key: Key) -> bool:
         """Return whether the base rotates in a phase: it neither rests on the ground nor is held at a rotation."""

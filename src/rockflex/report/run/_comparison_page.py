@@ -1,0 +1,185 @@
+"""The page of a comparison: the alternatives as they rock, and their demands with the differences."""
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from rockflex._constants import GRAVITY
+from rockflex._number_format import moment_unit
+from rockflex._shown import number_with_noun, shortened
+from rockflex.modal import RockingProperties
+from rockflex.report.run import _report_tables
+from rockflex.report.run._report_tables import ReportCell, ReportedRecord, ReportTable, value_cell
+from rockflex.report.run._reported_runs import ReportedRuns
+from rockflex.report.run._run_page import figures_of_runs, warnings_of_runs
+from rockflex.report.run._sheet import (
+    MAX_LETTERS,
+    ROW,
+    STRIP,
+    WIDTH,
+    Block,
+    Drawing,
+    Figures,
+    OneSheet,
+    ReportTexts,
+    first_warnings,
+    line_count_of_text,
+)
+from rockflex.response import COMPARED_DEMANDS, STATISTICS, Comparison, History
+
+SHOWN = ("median", "p84")  # of the statistics, under several records
+_SIZES = {"rad": (1e-3, "mrad"), "m": (1e-3, "mm"), "N": (1e3, "kN"), "m/s²": (GRAVITY, "g")}
+
+
+_OUTLINES = 48.0  # height in mm of the structures
+_CELL_LETTERS = 60  # in a line of their elements
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ComparisonPage(OneSheet):
+    """The page of a comparison."""
+
+    template: ClassVar[str] = "comparison.html.jinja"
+
+    several: bool  # records
+    records: str
+    alternatives: ReportTable
+    lines: Sequence[tuple[str, str]]
+    demands: ReportTable
+    record: ReportedRecord
+
+    @property
+    def height(self) -> float:
+        """About the height in mm of all but the figure."""
+        lines = sum(line_count_of_text(f"{head} {text}") for head, text in self.lines)
+        rows = sum(max(math.ceil(len(cell.text) / _CELL_LETTERS) for cell in row) for row in self.alternatives.rows)
+        texts = bool(self.texts.heads) + sum(map(line_count_of_text, (*self.warnings, *self.texts.notes)))
+        return _OUTLINES + STRIP[1] + ROW * (15 + rows + lines + 1.2 * len(self.demands.rows) + texts)
+
+    @property
+    def sections(self) -> list[tuple[str, Sequence[Block]]]:
+        """The contents with their headings, one below the other as in a document."""
+        return [
+            ("Alternatives", [Drawing("outlines"), self.alternatives, self.lines]),
+            (" ".join(("Demands", self.records)).strip(), [self.demands]),
+            (
+                f"{'Governing record' if self.several else 'Record'}: {self.record.name}",
+                [Drawing("strip", 0.5), self.record.facts, Drawing("sheet")],
+            ),
+        ]
+
+
+def comparison_page(comparison: Comparison, texts: ReportTexts) -> tuple[ComparisonPage, Figures]:
+    """Return the page of a comparison, and its figures."""
+    from rockflex.plot import draw_alternatives
+
+    report = reported_alternatives(comparison)
+    record = _report_tables.reported_record(report)
+    records, several = number_with_noun(comparison.n_records, "record"), comparison.n_records > 1
+    usual = f"{', '.join(comparison.names)} under {records if several else record.name or 'a ground motion'}"
+    fell = [
+        f"{name} overturned under {n} of {records}"
+        for name, n in zip(comparison.names, comparison.overturned, strict=True)
+        if n
+    ]
+    page = ComparisonPage(
+        title=shortened(texts.title or usual, MAX_LETTERS["title"]),
+        texts=texts,
+        several=several,
+        records=f"of {records}: {' / '.join(STATISTICS[each] for each in SHOWN)}" if several else "",
+        alternatives=alternatives_table(comparison),
+        lines=[model_line(comparison), *_report_tables.assumption_lines(report)],
+        demands=demand_table(comparison),
+        record=record,
+        warnings=first_warnings([*fell, *warnings_of_runs(report, ())]),
+    )
+    outlines = draw_alternatives(comparison, width=WIDTH, height=_OUTLINES)
+    return page, {"outlines": ("The alternatives as they rock", outlines), **figures_of_runs(page, record, report)}
+
+
+def reported_alternatives(comparison: Comparison) -> ReportedRuns:
+    """Return the responses of the alternatives to the governing record, as the parts of a page take them."""
+    runs = comparison.responses
+    histories = tuple(run.history for run in runs if isinstance(run.history, History))
+    first = histories[0].model.properties
+    return ReportedRuns(runs, histories, comparison.names, first, None, comparison.motion, 1.0)
+
+
+def alternatives_table(comparison: Comparison) -> ReportTable:
+    """Return a row for each alternative: its kind, what decides its response, and its elements."""
+    heads = [("alternative", ""), ("structure", ""), ("m_tot", "t"), ("B", "m"), ("T_1", "s"), ("M_r", "MN m")]
+    heads.append(("elements", ""))
+    rows: list[Sequence[ReportCell]] = []
+    for name, structure in zip(comparison.names, comparison.structures, strict=True):
+        p: RockingProperties = structure if isinstance(structure, RockingProperties) else structure.rocking()
+        rows.append(
+            [
+                ReportCell(name),
+                ReportCell(_report_tables.structure_kind_text(structure)),
+                value_cell(p.m_tot, "m_tot", 1e3, 4),
+                value_cell(p.half_width, "half_width"),
+                value_cell(2.0 * math.pi / float(p.omega[0]) if p.n_modes else None, "period"),
+                value_cell(p.resisting_moment, "resisting_moment", 1e6),
+                ReportCell(_elements_text(p) or "–"),
+            ]
+        )
+    return ReportTable(heads, rows)
+
+
+def model_line(comparison: Comparison) -> tuple[str, str]:
+    """Return the models as a headed line: one for all, or that of each alternative."""
+    labels = [run.model for run in comparison.responses]
+    own = ", ".join(f"{name}: {label}" for name, label in zip(comparison.names, labels, strict=True))
+    return "Model", labels[0] if len(set(labels)) == 1 else own
+
+
+def _elements_text(p: RockingProperties) -> str:
+    kinds = Counter(" ".join(_report_tables.describe_element(each)[:2]) for each in p.elements)
+    return "; ".join(kind if count == 1 else f"{count} × {kind}" for kind, count in kinds.items())
+
+
+def demand_table(comparison: Comparison) -> ReportTable:
+    """Return a row for each demand: its value for each alternative, and the differences in %.
+
+    Under several records each cell has the statistics `SHOWN`.
+    """
+    first, *others = comparison.names
+    shown = SHOWN if comparison.n_records > 1 else ("max",)
+    heads = [("demand", ""), *((name, "") for name in comparison.names)]
+    heads += [(f"{name} to {first}", "%") for name in others]
+    values = [comparison.demands(each).to_dict("index") for each in shown]
+    differences = [comparison.differences(each).to_dict("index") for each in shown]
+    rows: list[Sequence[ReportCell]] = []
+    for demand in map(str, values[0]):
+        size, unit = demand_size(demand, comparison)
+        symbol = COMPARED_DEMANDS[demand].symbol
+        cells = [ReportCell(f"{symbol} [{unit}]" if unit else symbol)]
+        cells += [
+            _joined([value_cell(each[demand][name], demand, size) for each in values]) for name in comparison.names
+        ]
+        cells += [_joined([difference_cell(each[demand][name]) for each in differences]) for name in others]
+        rows.append(cells)
+    return ReportTable(heads, rows)
+
+
+def _joined(cells: Sequence[ReportCell]) -> ReportCell:
+    """Return one cell with the texts of several, and the value of the first."""
+    return replace(cells[0], text=" / ".join(cell.text for cell in cells))
+
+
+def demand_size(demand: str, comparison: Comparison) -> tuple[float, str]:
+    """Return the divisor and the name of the unit in which a demand is shown."""
+    unit = COMPARED_DEMANDS[demand].unit
+    if unit == "N m":
+        return moment_unit(float(comparison.runs[demand].max()))
+    return _SIZES.get(unit, (1.0, unit))
+
+
+def difference_cell(percent: float) -> ReportCell:
+    """Return the cell of a difference in %, with its sign."""
+    if not math.isfinite(percent):
+        return ReportCell("∞" if percent > 0.0 else "–")
+    text = "0" if abs(percent) < 0.5 else f"{percent:+.0f}".replace("-", "−")
+    return ReportCell(text, percent, "difference")

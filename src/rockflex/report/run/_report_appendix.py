@@ -1,0 +1,62 @@
+"""What follows the first sheet of a report if asked for: cross-sections with their material, and loops of elements."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rockflex.report.run._report_tables import ReportCell, ReportTable, value_cell
+from rockflex.report.run._reported_runs import ReportedRuns
+from rockflex.response import Response
+from rockflex.structure import Section, TaperedTower
+
+
+@dataclass(frozen=True, eq=False)
+class ReportAppendix:
+    """The table of cross-sections, None if none is known, and the runs whose elements have loops, by their labels."""
+
+    sections: ReportTable | None
+    loops: Sequence[tuple[str, Response]]
+
+    def __bool__(self) -> bool:
+        return self.sections is not None or bool(self.loops)
+
+
+def report_appendix(report: ReportedRuns) -> ReportAppendix:
+    """Return the appendix of a report; empty where there is nothing to show."""
+    runs = zip(report.labels, report.responses, report.histories, strict=True)
+    loops = [(label, run) for label, run, history in runs if history.model.lifts and history.model.properties.elements]
+    return ReportAppendix(_section_table(report.structure), loops)
+
+
+def _sections_of(structure: Any) -> list[tuple[str, Section]]:
+    """Return the cross-sections of a structure, each with its place."""
+    while hasattr(structure, "structure"):  # what stands on an eccentric base, is restrained, ...
+        structure = structure.structure
+    if isinstance(structure, TaperedTower):
+        material = {"elastic_modulus": structure.elastic_modulus, "density": structure.density}
+        radii = {"base": structure.base_radius, "top": structure.top_radius}
+        return [(place, Section.tube(2.0 * r, structure.wall, **material)) for place, r in radii.items()]
+    section = getattr(structure, "section", None)
+    return [] if section is None else [("whole height", section)]
+
+
+def _section_table(structure: Any) -> ReportTable | None:
+    found = _sections_of(structure)
+    columns = {
+        "area": ("A", "m²", 1.0),
+        "second_moment": ("I", "m⁴", 1.0),
+        "elastic_modulus": ("E", "GPa", 1e9),
+        "density": ("ρ", "kg/m³", 1.0),
+        "stiffness_factor": ("factor on EI", "", 1.0),
+        "bending_stiffness": ("EI effective", "MN m²", 1e6),
+        "mass_per_length": ("m", "t/m", 1e3),
+    }
+    rows = [
+        [
+            ReportCell(place),
+            *(value_cell(float(getattr(each, of)), of, size, 4) for of, (_, _, size) in columns.items()),
+        ]
+        for place, each in found
+    ]
+    heads = [("section", ""), *((name, unit) for name, unit, _ in columns.values())]
+    return ReportTable(heads, rows) if rows else None

@@ -1,0 +1,116 @@
+"""The report of a set of records: peaks by record, statistics, values for design, and checks against limits."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from rockflex._number_format import rounded_number
+from rockflex._shown import shortened
+from rockflex.report.run import _report_tables
+from rockflex.report.run._report_tables import DAGGER, STATUS, ReportCell, ReportTable, value_cell
+from rockflex.report.run._reported_runs import checked_reported_runs
+from rockflex.report.run._run_checks import limit_check_table, missing_checks_text
+from rockflex.report.run._sheet import MAX_LETTERS, Block, Drawing, Figures, ReportPage, ReportTexts
+from rockflex.response import DEMANDS, CheckLimits, RecordSet, check
+from rockflex.structure import structure_warnings
+
+_OF_RECORDS = ("max_rotation", "max_total_top_displacement", "max_story_drift", "max_base_moment", "max_base_shear",
+               "min_vertical_reaction")  # fmt: skip
+_COLUMNS = {"mean": "mean", "worst": "worst", "median": "median", "fractile_84": "84 %", "design": "for design"}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SetPage(ReportPage):
+    """The page of a set of records, on as many sheets as it takes."""
+
+    template: ClassVar[str] = "set.html.jinja"
+
+    kind: str
+    facts: Sequence[_report_tables.ReportFact]
+    modes: ReportTable | None
+    lines: Sequence[tuple[str, str]]
+    model: str
+    records: ReportTable
+    fell: bool
+    statistics: ReportTable
+    reasons: Sequence[str]
+    limits: ReportTable
+    missing: str
+
+    @property
+    def sections(self) -> list[tuple[str, Sequence[Block]]]:
+        """The contents with their headings, one below the other as in a document."""
+        ground = [("Base and ground", [self.lines])] if self.lines else []
+        fell = [f"{DAGGER} The values of a record that overturns include its fall."] * self.fell
+        return [
+            (f"Structure: {self.kind}", [self.facts, self.modes]),
+            *ground,
+            (f"Records: {self.model}", [self.records, *fell, Drawing("peaks")]),
+            ("Values for design", [self.statistics, *(f"For design: {reason}." for reason in self.reasons)]),
+            ("Checks", [self.limits, self.missing]),
+        ]
+
+
+def set_page(
+    found: RecordSet, texts: ReportTexts, *, structure: Any = None, limits: CheckLimits | None = None
+) -> tuple[SetPage, Figures]:
+    """Return the page of a set of records, and its figure."""
+    from rockflex.plot import plot_set
+
+    first = checked_reported_runs(found.responses[0], structure, None)
+    known = found.properties if structure is None else structure
+    kind, n = _report_tables.structure_kind_text(known), len(found.responses)
+    checks = check(found, limits)
+    page = SetPage(
+        title=shortened(texts.title or f"{kind} under {n} records", MAX_LETTERS["title"]),
+        texts=texts,
+        kind=kind,
+        facts=_report_tables.structure_facts(found.properties),
+        modes=_report_tables.mode_table(found.properties),
+        lines=_report_tables.assumption_lines(first),
+        model=f"{found.responses[0].model}, {n} records",
+        records=_record_table(found),
+        fell=found.n_overturned > 0,
+        statistics=_statistics_table(found),
+        reasons=list(dict.fromkeys(found.statistics["reason"])),
+        limits=limit_check_table(["demand" if found.rule is None else "demand for design"], [checks]),
+        missing=missing_checks_text(checks),
+        warnings=[*structure_warnings(known), *found.warnings],
+    )
+    return page, {"peaks": ("Peaks of each record, and their statistics", plot_set(found))}
+
+
+def _record_table(found: RecordSet) -> ReportTable:
+    shown = [name for name in _OF_RECORDS if name in found.statistics.index]
+    heads = [("record", ""), ("", ""), ("PGA", "m/s²"), ("factor", "")]
+    heads += [(DEMANDS[name].symbol, DEMANDS[name].unit) for name in shown]
+    rows: list[list[ReportCell]] = []
+    for motion, (_, row) in zip(found.motions, found.peaks.iterrows(), strict=True):
+        fell = row["status"] == "overturned"
+        scale = None if motion.metadata is None else motion.metadata.scale
+        rows.append(
+            [
+                ReportCell(motion.name),
+                ReportCell(STATUS[row["status"]] + (f" {DAGGER}" if fell else ""), None, "status", fell),
+                value_cell(motion.pga, "pga"),
+                value_cell(scale, "scale"),
+                *(value_cell(float(row[name]), name, DEMANDS[name].size) for name in shown),
+            ]
+        )
+    return ReportTable(heads, rows)
+
+
+def _statistics_table(found: RecordSet) -> ReportTable:
+    heads = [("demand", ""), ("unit", ""), *((words, "") for words in _COLUMNS.values())]
+    rows = [
+        [
+            ReportCell(DEMANDS[str(name)].symbol),
+            ReportCell(DEMANDS[str(name)].unit),
+            *(
+                ReportCell(rounded_number(float(row[each]) / DEMANDS[str(name)].size), float(row[each]), each)
+                for each in _COLUMNS
+            ),
+        ]
+        for name, row in found.statistics.iterrows()
+    ]
+    return ReportTable(heads, rows)
