@@ -8,7 +8,7 @@ import numpy as np
 import rockflex as rf
 from rockflex.models import element_force_sums
 from rockflex.models._fields import RockingField
-from rockflex.models._vector_fields import numbers_of
+from rockflex.models._vector_fields import field_numbers
 
 # Structure #1 of Table 1 of Silva & Stojadinović (2024): five stories that shear, T_1 = 1 s, h*_1/B = 10.
 STRUCTURE_1: dict[str, Any] = {
@@ -65,7 +65,7 @@ def make_frame(**changes: Any) -> rf.Frame:
 def vector_field(model, side, branch=1, kinds=(), levers=None):
     """The compiled vector field of a nonlinear model on one side, with all elements on their first branches."""
     pulls = element_force_sums(model.properties, model.elements, model.start(side))
-    return RockingField(numbers_of(model, kinds, levers), side, branch, pulls, [])
+    return RockingField(field_numbers(model, kinds, levers), side, branch, pulls, [])
 
 
 def random_shaking(seed, strength, seconds, dt):

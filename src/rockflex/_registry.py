@@ -13,7 +13,7 @@ Part = TypeVar("Part")
 
 
 @cache
-def registered(group: str) -> dict[str, Any]:
+def registered_objects(group: str) -> dict[str, Any]:
     """Return the objects that installed packages register in the group ``rockflex.<group>``, by their names.
 
     An object that cannot be imported is left out, with a warning that names its package.
@@ -71,7 +71,7 @@ class Catalogue(MutableMapping[str, Part], Generic[Part]):
         return {name: part for name, part in self.items() if name not in self._first}
 
     def __getitem__(self, name: str) -> Part:
-        return self._own[name] if name in self._own else registered(self._group)[name]
+        return self._own[name] if name in self._own else registered_objects(self._group)[name]
 
     def __setitem__(self, name: str, part: Part) -> None:
         self._own[name] = part
@@ -80,7 +80,7 @@ class Catalogue(MutableMapping[str, Part], Generic[Part]):
         del self._own[name]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(dict.fromkeys((*self._own, *registered(self._group))))
+        return iter(dict.fromkeys((*self._own, *registered_objects(self._group))))
 
     def __len__(self) -> int:
         return sum(1 for _ in self)

@@ -77,7 +77,7 @@ IMPACT = SchemaKey(
 )
 
 
-class ImpactKeys:
+class ImpactSchema:
     """An impact law in place of each model's own, and its coefficient."""
 
     impact: Annotated[LawName | None, IMPACT]
@@ -92,7 +92,7 @@ class ImpactKeys:
     ] = None
 
 
-class BoucWenKeys:
+class BoucWenSchema:
     """The arguments of `BoucWen`."""
 
     yield_displacement: Annotated[
@@ -139,7 +139,7 @@ class BoucWenKeys:
     ] = 8.0
 
 
-class InitialStateKeys:
+class InitialStateSchema:
     """The state at t = 0."""
 
     initial_rotation: Annotated[
@@ -198,7 +198,7 @@ Eccentricity = Annotated[
 ]
 
 
-class FrameKeys:
+class FrameSchema:
     """The arguments of `Frame`."""
 
     n_stories: Annotated[
@@ -234,7 +234,7 @@ class FrameKeys:
     ]
 
 
-class FrameFlags(FrameKeys):
+class FrameFlags(FrameSchema):
     """A frame and its place on the base, as the command line takes them."""
 
     eccentricity: Eccentricity = None
@@ -243,7 +243,7 @@ class FrameFlags(FrameKeys):
 _PER_SPRING = "{}, a number or, with springs, one for each"
 
 
-class GroundKeys:
+class GroundSchema:
     """Friction, and the rotary inertia of a base on springs."""
 
     friction: Annotated[
@@ -281,7 +281,7 @@ class GroundKeys:
     ] = None
 
 
-class SpringBedKeys:
+class SpringBedSchema:
     """A bed of springs under the whole base."""
 
     breadth: Annotated[

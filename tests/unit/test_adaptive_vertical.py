@@ -7,8 +7,8 @@ import pytest
 
 import rockflex as rf
 from builders import NO_MODES, frame_values
-from rockflex.models import Model, accelerations, acting_side, parse_model, reactions
-from rockflex.response import respond, tracked_quantities
+from rockflex.models import Model, accelerations_at_states, acting_side, parse_model, reactions
+from rockflex.response import response_of_solution, tracked_quantities
 from rockflex.solve import Engine
 from twins import impact_laws
 from twins.complete import complete_frame, simulate_complete
@@ -45,7 +45,9 @@ def model_of(label, **options):
 def run(model, acceleration, dt, vertical=None, *, history=True, **options):
     tracked = tracked_quantities(model)
     engine = Engine(model, tracked.peaks.quantities)
-    return respond(model, "", engine.run(acceleration, dt, vertical=vertical, history=history, **options), tracked)
+    return response_of_solution(
+        model, "", engine.run(acceleration, dt, vertical=vertical, history=history, **options), tracked
+    )
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -78,7 +80,7 @@ def test_reactions(case):
     model = model_of(case)
     found = run(model, horizontal, dt, vertical)
     states = found.history.states
-    forces = reactions(model, states, accelerations(model, states))
+    forces = reactions(model, states, accelerations_at_states(model, states))
     if model.complete:
         twin = CompleteModel(Structure(**complete_frame(**FRAME, n_modes=n_modes)), complete=True)
         side = acting_side(states)
@@ -89,7 +91,7 @@ def test_reactions(case):
     fine = np.arange(16 * (horizontal.size - 1) + 1) / 16
     finer = [np.interp(fine, np.arange(horizontal.size), each) for each in (horizontal, vertical)]
     states = run(model, finer[0], dt / 16, finer[1]).history.states
-    forces = reactions(model, states, accelerations(model, states))
+    forces = reactions(model, states, accelerations_at_states(model, states))
     assert found.min_vertical_reaction == pytest.approx(forces.vertical.min(), rel=0.01)
     assert found.max_horizontal_reaction == pytest.approx(np.abs(forces.horizontal).max(), rel=0.01)
 

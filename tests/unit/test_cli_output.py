@@ -28,7 +28,7 @@ def contents(folder):
 
 
 def write(folder, files, *, force=False):
-    with output.staged_folder(folder, {"versions": output.versions()}, force=force) as stage:
+    with output.staged_output_folder(folder, {"versions": output.versions()}, force=force) as stage:
         for name, text in files.items():
             (stage / name).write_text(text)
 
@@ -92,7 +92,7 @@ def test_nothing_is_left_of_a_failure(tmp_path, exists):
     before = contents(folder) if exists else None
 
     def fail():
-        with output.staged_folder(folder, {}, force=True) as stage:
+        with output.staged_output_folder(folder, {}, force=True) as stage:
             (stage / "x.csv").write_text("half")
             raise KeyboardInterrupt
 
@@ -104,7 +104,7 @@ def test_nothing_is_left_of_a_failure(tmp_path, exists):
 
 
 def test_document_that_is_not_json_leaves_nothing(tmp_path):
-    with pytest.raises(TypeError), output.staged_folder(tmp_path / "out", {"x": object()}, force=False) as stage:
+    with pytest.raises(TypeError), output.staged_output_folder(tmp_path / "out", {"x": object()}, force=False) as stage:
         (stage / "x.csv").write_text("half")
     assert list(tmp_path.iterdir()) == []
 
@@ -146,9 +146,9 @@ def test_where_results_cannot_go(tmp_path):
     file = tmp_path / "file"
     file.touch()
     with pytest.raises(InputError, match=r"--out .*file is a file\. Give a folder; it is created if it does not exist"):
-        output.check_folder(file, force=True)
+        output.check_output_folder(file, force=True)
     with pytest.raises(InputError, match=r"--force was given without --out, to which it belongs\."):
-        output.check_folder(None, force=True)
+        output.check_output_folder(None, force=True)
     with pytest.raises(InputError, match=r"Cannot write to .*file/out: .*\. Give a folder that can be written to\."):
         write(file / "out", {})
 
@@ -162,7 +162,7 @@ def test_new_folder_has_ordinary_permissions(tmp_path):
 
 
 def test_file_names():
-    stems = output.file_stems(["FF-1-a", "a/b: c", "a/b? c", "A_b_c", "..", "Kōbe 1995"])
+    stems = output.output_file_stems(["FF-1-a", "a/b: c", "a/b? c", "A_b_c", "..", "Kōbe 1995"])
     assert stems == ["FF-1-a", "a_b_c", "a_b_c-2", "A_b_c-3", "motion", "Kōbe_1995"]
 
 

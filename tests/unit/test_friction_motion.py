@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import simpson
 
 from rockflex import BoucWen, Ground, GroundMotion, LumpedStructure, Restitution, load_suite, simulate
-from rockflex.models import accelerations, printed_reactions, reactions
+from rockflex.models import accelerations_at_states, printed_reactions, reactions
 from rockflex.response._interpolation import quintic
 
 GRAVITY = 9.81
@@ -178,7 +178,7 @@ def test_the_printed_reactions_of_a_base_that_slides_have_its_slip():
     """Before it rocks they are, but for the sign of the weight, those of small rotations."""
     history = simulate(STRUCTURE, SHAKING, "MDOF-S", ground=Ground(friction=0.12)).history
     found = [
-        each(history.model, history.states, accelerations(history.model, history.states))
+        each(history.model, history.states, accelerations_at_states(history.model, history.states))
         for each in (reactions, printed_reactions)
     ]
     still = history.side == 0.0

@@ -8,8 +8,8 @@ import pytest
 import rockflex as rf
 from builders import make_frame
 from rockflex.models import parse_model
-from rockflex.models._layout import code_of, codes_for, decoded
 from rockflex.models._spring_model import heave_at
+from rockflex.models._state_layout import branches_of_codes, codes_of_branches, n_branch_codes
 from rockflex.study._prepared_case import PreparedCase
 
 FRAME = make_frame(n_stories=3, base_mass=120e3, stiffness_ratio=0.125, period=0.4, aspect_ratio=6.0)
@@ -103,9 +103,9 @@ def test_codes_of_branches(size, base, least):
     chance = np.random.default_rng(size)
     branches = chance.integers(-1, base - 1, size=(5, size))
     branches[0] = base - 2  # all digits are the largest
-    codes = np.array([code_of(tuple(each), base) for each in branches.tolist()])
-    assert codes.shape == (5, codes_for(size, base)) == (5, -(-size // least))
-    np.testing.assert_array_equal(decoded(codes, size, base), branches)
+    codes = np.array([codes_of_branches(tuple(each), base) for each in branches.tolist()])
+    assert codes.shape == (5, n_branch_codes(size, base)) == (5, -(-size // least))
+    np.testing.assert_array_equal(branches_of_codes(codes, size, base), branches)
 
 
 def refused(text, structure=FRAME, model="2DOF-S", **ground):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from builders import make_frame
-from rockflex.models import Model, Quantities, RockingModel, system_of
+from rockflex.models import Model, Quantities, RockingModel, system_on_rigid_ground
 
 GRAVITY = 9.81
 
@@ -64,7 +64,7 @@ def test_at_uplift_the_rotation_starts_from_what_the_weight_cannot_hold():
 def test_a_fixed_base_resists_any_moment():
     free, fixed = model(2), model(2, lifts=False)
     resistance = free.properties.m_tot * GRAVITY * free.properties.half_width
-    lifting, never = (system_of([each], [Quantities.none(2)]).phase((0,)).events for each in (free, fixed))
+    lifting, never = (system_on_rigid_ground([each], [Quantities.none(2)]).phase((0,)).events for each in (free, fixed))
     assert [float(event.constant[0]) for event in lifting] == [resistance, resistance]
     assert never == ()
     assert (free.sides, fixed.sides) == ((0, 1, -1), (0,))

@@ -7,7 +7,14 @@ import pytest
 
 from builders import make_frame
 from rockflex import BoucWen, Tendon
-from rockflex.models import Model, Quantities, element_base, linear_system_of, nonlinear_system, system_of
+from rockflex.models import (
+    Model,
+    Quantities,
+    linear_system_base,
+    linear_system_of,
+    nonlinear_system,
+    system_on_rigid_ground,
+)
 from rockflex.models._elements import base_equations_of
 
 GRAVITY = 9.81
@@ -86,7 +93,11 @@ def test_in_contact_nothing_of_the_base_is_free(name):
 def test_phases_end_at_the_resisting_moments_of_the_pivots_and_at_a_quarter_turn(name, complete, bouc_wen):
     if not complete and bouc_wen is None:
         tied, none = Model(1).of(CASES[name]), Quantities.none(1)
-        system = linear_system_of(element_base(tied, none, none)) if tied.elements else system_of([tied], [none])
+        system = (
+            linear_system_of(linear_system_base(tied, none, none))
+            if tied.elements
+            else system_on_rigid_ground([tied], [none])
+        )
         phase_of, sign = system.phase, ()
     else:
         tied = Model(1, complete=complete).of(CASES[name], bouc_wen=bouc_wen)

@@ -11,8 +11,18 @@ from scipy.linalg import expm
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.models import GROUND, HEADER, RISE, SIDE, TIME, Model, MotionBetween, RockingModel, accelerations
-from rockflex.models._kept import _codes
+from rockflex.models import (
+    GROUND,
+    HEADER,
+    RISE,
+    SIDE,
+    TIME,
+    Model,
+    MotionBetween,
+    RockingModel,
+    accelerations_at_states,
+)
+from rockflex.models._values_at_states import _codes
 from twins.exact import Exact
 from twins.frame import frame_properties
 
@@ -118,7 +128,7 @@ def test_vertical_motion_against_integration(ground):
             row = before.copy()
             row[0, [GROUND, RISE]] += t / step * (after - before[0])[[GROUND, RISE]]
             row[0, HEADER : HEADER + layout.core] = y
-            found, moved = np.zeros(layout.core), accelerations(model, row)[0]
+            found, moved = np.zeros(layout.core), accelerations_at_states(model, row)[0]
             found[:n], found[n : 2 * n] = y[n : 2 * n], moved[:n]
             found[base], found[base + 1] = y[base + 1], moved[n:]
             return found

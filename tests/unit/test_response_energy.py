@@ -146,9 +146,9 @@ def test_energies_in_parts_are_those_at_once(monkeypatch):
     motion = GroundMotion(load_suite("el-centro-1940")[0].acceleration[:600] * 2.0, 0.02)
     run = simulate(frame(), motion, "MDOF-S")
     states, model = run.history.states, run.history.model
-    whole = _energy.work_between(model, states)
+    whole = _energy.energy_between_states(model, states)
     monkeypatch.setattr(_energy, "CHUNK", 37)
-    for one, other in zip(_energy.work_between(model, states), whole, strict=True):
+    for one, other in zip(_energy.energy_between_states(model, states), whole, strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9 * np.abs(other).max(initial=0.0))
 
 

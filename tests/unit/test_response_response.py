@@ -17,7 +17,7 @@ import pytest
 import rockflex as rf
 from builders import make_frame
 from rockflex.models import Model
-from rockflex.response import respond, tracked_quantities
+from rockflex.response import response_of_solution, tracked_quantities
 from rockflex.solve import Solution
 
 MOTION = rf.GroundMotion(rf.load_suite("el-centro-1940")[0].acceleration[:400] * 2.0, 0.02, name="El Centro")
@@ -206,7 +206,7 @@ def solution(**changes):
 )
 def test_status(changes, status):
     model = Model().of(FRAME.rocking())
-    assert respond(model, "", solution(**changes), tracked_quantities(model)).status == status
+    assert response_of_solution(model, "", solution(**changes), tracked_quantities(model)).status == status
 
 
 def test_peaks_of_the_solver_are_named_in_their_order():
@@ -217,7 +217,7 @@ def test_peaks_of_the_solver_are_named_in_their_order():
     lost = {"lost_support": 1e5, "time_of_lost_support": 7.0}
     model = Model().of(FRAME.rocking())
     tracked = tracked_quantities(model, floors=True)
-    run = respond(model, "one", solution(peaks=peaks, peak_times=times, **lost), tracked)
+    run = response_of_solution(model, "one", solution(peaks=peaks, peak_times=times, **lost), tracked)
     assert [getattr(run, f"max_{name}") for name in names] == peaks[:6].tolist()
     assert [getattr(run, f"time_of_max_{name}") for name in names] == times[:6].tolist()
     assert run.min_vertical_reaction == FRAME.rocking().m_tot * 9.81 - 1e5

@@ -6,7 +6,7 @@ import pytest
 import rockflex as rf
 from builders import frame_values
 from rockflex.models import parse_model
-from rockflex.response import NAMES, STATUSES, columns_of, respond
+from rockflex.response import NAMES, STATUSES, response_columns_of_runs, response_of_solution
 from rockflex.solve import Excitation, WorkLimitError, run_all
 from rockflex.study import PreparedCase
 
@@ -77,10 +77,10 @@ def test_every_run_is_as_if_it_were_alone(name):
 def test_columns_are_the_numbers_of_the_responses(name):
     case, runs = case_of(name)
     found = solved(case, [runs[0], runs[1]._replace(scale=30.0), runs[2]])
-    columns = columns_of([case.model] * 3, found, case.tracked)
+    columns = response_columns_of_runs([case.model] * 3, found, case.tracked)
     assert set(columns) == set(NAMES)
     for place in range(3):
-        response = respond(case.model, "", found.one(place), case.tracked)
+        response = response_of_solution(case.model, "", found.one(place), case.tracked)
         assert STATUSES[columns["status"][place]] == response.status
         for label in NAMES[1:]:
             value, expected = columns[label][place].item(), getattr(response, label)

@@ -122,13 +122,13 @@ def test_threads_change_nothing(output):
 
 
 def test_work_is_done_by_the_threads_asked_for(monkeypatch):
-    seen, real = set(), engine.Stack.taken
+    seen, real = set(), engine.EngineStack.taken
 
     def taken(stack, dt):
         seen.add(threading.current_thread())
         return real(stack, dt)
 
-    monkeypatch.setattr(engine.Stack, "taken", taken)
+    monkeypatch.setattr(engine.EngineStack, "taken", taken)
     rf.simulate_many(STRUCTURES, MOTIONS, workers=1)
     assert seen == {threading.current_thread()}
     rf.simulate_many(STRUCTURES, MOTIONS, workers=3)

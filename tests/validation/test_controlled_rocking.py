@@ -5,7 +5,7 @@ import pytest
 
 import rockflex as rf
 from builders import make_frame
-from rockflex.models import SIDE, phases_at
+from rockflex.models import SIDE, phases_at_states
 from rockflex.models._element import BROKEN, DOWN, INWARD, OUTWARD, SLACK, UP
 from twins.controlled import Bar, ControlledTwin, Dashpot, Slider
 
@@ -63,6 +63,9 @@ def test_controlled_rocking_meets_its_twin(name):
     assert found.max_top_displacement == pytest.approx(expected.max_top_displacement, rel=1e-8)
     assert found.max_base_moment == pytest.approx(expected.max_base_moment, rel=1e-8)
     model, states = rf.Model(n).of(structure.rocking()), found.history.states
-    keys = [key for _, key in phases_at(model, states[:, SIDE], model.layout.of(states, model.layout.rotation), states)]
+    keys = [
+        key
+        for _, key in phases_at_states(model, states[:, SIDE], model.layout.of(states, model.layout.rotation), states)
+    ]
     assert {branch for key in keys for branch in key[1:]} >= branches
     assert ("friction" not in name) or any(key[0] != 0 and not model.is_free(key) for key in keys)

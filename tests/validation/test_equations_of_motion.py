@@ -10,7 +10,7 @@ import sympy as sp
 
 from builders import vector_field
 from rockflex import RockingProperties
-from rockflex.models import RockingModel, accelerations, reactions
+from rockflex.models import RockingModel, accelerations_at_states, reactions
 from twins.lagrange import GRAVITY, GROUND, derived, lumped, orthogonal
 
 
@@ -25,7 +25,7 @@ def ground_forces(properties, side, a, state):
     """(F_x, F_z) that the ground gives the base, in N: what is under test."""
     model = RockingModel("MDOF-C", properties, complete=True)
     nodes = np.array([[0.0, side, a, 0.0, *state, *np.zeros(model.layout.size - state.size)]])
-    forces = reactions(model, nodes, accelerations(model, nodes))
+    forces = reactions(model, nodes, accelerations_at_states(model, nodes))
     return np.array([forces.horizontal[0], forces.vertical[0]])
 
 

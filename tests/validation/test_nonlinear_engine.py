@@ -18,7 +18,7 @@ from rockflex.models import _fields as compiled
 from rockflex.models import _ground_fields as compiled_ground
 from rockflex.models import _nonlinear_ground_system as ground_systems
 from rockflex.models import _nonlinear_system as systems
-from rockflex.models._vector_fields import numbers_of
+from rockflex.models._vector_fields import field_numbers
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -129,10 +129,10 @@ def test_fields_and_jumps_are_the_same_as_python(seed, monkeypatch):
     for module in (compiled, plain):
         for each in ("RockingField", "Landing", "Change", "Reversal"):
             monkeypatch.setattr(systems, each, getattr(module, each))
-        both.append(systems.Rocks(model, Quantities.none(layout.modes)))
+        both.append(systems.NonlinearRockingPhases(model, Quantities.none(layout.modes)))
     keys = [model.start(side) for side in ((1, -1) if model.lifts else (0,))]
     for key in keys:
-        own = systems.key_of(model, key)
+        own = systems.nonlinear_system_key(model, key)
         fields = [
             each.phase(own).field if module is compiled else None
             for each, module in zip(both, (compiled, plain), strict=True)
@@ -181,9 +181,9 @@ def test_fields_on_ground_are_the_same_as_python(ground, name):
     spring = {"bouc_wen": rf.BoucWen(0.05)} if "BW" in name else {}
     model = parse_model(name).of(rf.Restrained(frame, elements).rocking(), ground=GROUNDS[ground](b), **spring)
     plain, rng = as_python("_ground_fields"), np.random.default_rng(1)
-    phases = ground_systems.Slides if ground == "slides" else ground_systems.Stands
+    phases = ground_systems.NonlinearSlidingPhases if ground == "slides" else ground_systems.NonlinearSpringPhases
     kinds = (0, 1, 2, 3, 4, 5) if ground == "slides" else (0, 1, 2, 4, 5, 6, 7)
-    numbers = numbers_of(model, kinds, rng.normal(size=(len(kinds), 2)))
+    numbers = field_numbers(model, kinds, rng.normal(size=(len(kinds), 2)))
     met = [model.start(1), model.start(-1)]
     if ground == "slides":
         met = [(*key[:-1], slip) for key in met for slip in (0, 1, -1, 2)]
@@ -197,7 +197,7 @@ def test_fields_on_ground_are_the_same_as_python(ground, name):
         ]
     of_model = phases(model, Quantities.none(model.layout.modes))
     for key in met:
-        stops, checks, events = of_model.ends_of(systems.key_of(model, key))
+        stops, checks, events = of_model.ends_of(systems.nonlinear_system_key(model, key))
         given = numbers, model.ground_phase(key, 1), stops, checks
         fields = [module.GroundField(*given) for module in (compiled_ground, plain)]
         y = 0.05 * rng.normal(size=model.layout.size)

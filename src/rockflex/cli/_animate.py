@@ -87,7 +87,7 @@ def animate(
     from rockflex.cli._batch import RunArguments, prepare_batch, run_batch
     from rockflex.cli._options import naming_flags_in_errors
     from rockflex.cli._run_results import print_failed_runs, print_run_warnings
-    from rockflex.plot._figures import literal
+    from rockflex.plot._figures import literal_text
     from rockflex.plot.animation import animate as draw
     from rockflex.plot.animation import animation_path_and_suffix
 
@@ -109,7 +109,7 @@ def animate(
         )
     runs = run_batch(batch)
     responses = [run.response for run in runs if run.response is not None]
-    title = None if scale == 1.0 else f"{literal(batch.motions[0].name)} × {scale:g}"
+    title = None if scale == 1.0 else f"{literal_text(batch.motions[0].name)} × {scale:g}"
     with naming_flags_in_errors(FLAGS), progress_bar("Frames", transient=True) as show:
         draw(
             responses, target, [response.model for response in responses], structure=loaded.built, speed=speed,

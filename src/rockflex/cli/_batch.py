@@ -12,7 +12,7 @@ from typing import Any
 import typer
 
 from rockflex._errors import SolverError
-from rockflex._schema import BoucWenKeys, FrameFlags, InitialStateKeys
+from rockflex._schema import BoucWenSchema, FrameFlags, InitialStateSchema
 from rockflex.cli import _console as console
 from rockflex.cli._find_motions import FoundMotion, find_motions, quiet_ground_motion
 from rockflex.cli._options import flag_values, naming_flags_in_errors
@@ -229,7 +229,7 @@ def prepare_batch(context: typer.Context, arguments: RunArguments, *, histories:
     file, names = split_structure_file_argument(arguments.structure, arguments.arguments)
     loaded = load_structure(file, flag_values(context, FrameFlags))
     options, ground_values = make_run_options(context, loaded)
-    by_flag = bool(flag_values(context, BoucWenKeys))
+    by_flag = bool(flag_values(context, BoucWenSchema))
     models = choose_run_models(arguments.model, loaded.properties, options, by_flag=by_flag)
     if options.bouc_wen is not None and not yielding_model_labels(models):
         console.print_remark(f"[bouc_wen] of {file} is for models that end in -BW, such as 2DOF-S-BW; none was given")
@@ -238,7 +238,7 @@ def prepare_batch(context: typer.Context, arguments: RunArguments, *, histories:
         free = number_or_word(arguments.free_vibration)
         free_vibration_time(free)
         mu = None if arguments.friction is None else friction_coefficient(arguments.friction)
-        if names or arguments.vertical or not flag_values(context, InitialStateKeys):
+        if names or arguments.vertical or not flag_values(context, InitialStateSchema):
             found = find_motions(names, arguments.units, arguments.dt, arguments.on_error, arguments.vertical)
         else:
             found, free = quiet_ground_motion(free)

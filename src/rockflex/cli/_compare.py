@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar
 import typer
 
 from rockflex._errors import InputError
-from rockflex._schema import GroundKeys, ImpactKeys, InitialStateKeys, SpringBedKeys
+from rockflex._schema import GroundSchema, ImpactSchema, InitialStateSchema, SpringBedSchema
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
@@ -27,8 +27,8 @@ class CompareCommand(options.FrameCommand):
     """A command with the options of runs that hold for all alternatives."""
 
     panels: ClassVar[dict[str, tuple[type, ...]]] = {
-        options.ASSUMPTIONS: (ImpactKeys, InitialStateKeys),
-        options.GROUND: (GroundKeys, SpringBedKeys),
+        options.ASSUMPTIONS: (ImpactSchema, InitialStateSchema),
+        options.GROUND: (GroundSchema, SpringBedSchema),
     }
 
 

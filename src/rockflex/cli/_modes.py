@@ -86,7 +86,7 @@ def modes(
     )
     from rockflex.modal import adequacy as adequacy_of
 
-    output.check_folder(out, force=force)
+    output.check_output_folder(out, force=force)
     path, rest = split_structure_file_argument(structure, [] if file is None else [file])
     if rest:
         raise InputError(f"{file} is not a structure file: a name that ends in .toml is expected.")
@@ -194,7 +194,7 @@ def _write_modes(
 
     built = loaded.built
     drawn = not isinstance(built, RockingProperties)
-    with output.staged_folder(folder, document, force=force) as stage:
+    with output.staged_output_folder(folder, document, force=force) as stage:
         # As in the printed tables: each mode on a fixed base, then the mode of the same number while uplifted.
         lifted = pd.DataFrame(document["uplifted"]).drop(columns="mode", errors="ignore").add_prefix("uplifted_")
         pd.DataFrame(document["modes"]).join(lifted).to_csv(stage / "modes.csv", index=False, lineterminator="\n")

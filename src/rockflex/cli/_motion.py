@@ -60,7 +60,7 @@ def motion(
     """Print the data and the intensity measures of ground motions; without a name, list the embedded suites."""
     from rockflex.cli._find_motions import embedded_suite_facts, find_motions
 
-    output.check_folder(out, force=force)
+    output.check_output_folder(out, force=force)
     # With a folder or a unit, motions are expected, and an empty list of names is an error.
     about_files = units is not None or dt is not None or vertical is not None or on_error != "raise"
     if not names and out is None and period is None and not about_files:
@@ -183,7 +183,7 @@ def _write_motion_measures(
     import pandas as pd
 
     few = len(found) <= figures
-    with output.staged_folder(folder, document, force=force) as stage:
+    with output.staged_output_folder(folder, document, force=force) as stage:
         rows = [
             {**row, "metadata": None} | (asdict(row["metadata"]) if row["metadata"] else {})
             for row in document["motions"]
@@ -194,7 +194,7 @@ def _write_motion_measures(
             from rockflex.plot import plot_motion, save_figure
 
             for stem, item in zip(
-                output.file_stems(f"motion-{item.motion.name}" for item in found), found, strict=True
+                output.output_file_stems(f"motion-{item.motion.name}" for item in found), found, strict=True
             ):
                 series = {
                     name: getattr(item.motion, name) for name in ("time", "acceleration", "velocity", "displacement")

@@ -12,14 +12,14 @@ from typer.core import TyperCommand
 
 from rockflex._errors import InputError
 from rockflex._schema import (
-    BoucWenKeys,
+    BoucWenSchema,
     FrameFlags,
-    GroundKeys,
-    ImpactKeys,
-    InitialStateKeys,
+    GroundSchema,
+    ImpactSchema,
+    InitialStateSchema,
     ReportKeys,
     SchemaKey,
-    SpringBedKeys,
+    SpringBedSchema,
     command_line_flag,
     schema_keys,
 )
@@ -76,8 +76,8 @@ class RunCommand(FrameCommand):
     """A command that also takes the options of runs by flags."""
 
     panels: ClassVar[dict[str, tuple[type, ...]]] = {
-        ASSUMPTIONS: (ImpactKeys, BoucWenKeys, InitialStateKeys),
-        GROUND: (GroundKeys, SpringBedKeys),
+        ASSUMPTIONS: (ImpactSchema, BoucWenSchema, InitialStateSchema),
+        GROUND: (GroundSchema, SpringBedSchema),
         FRAME: (FrameFlags,),
     }
 

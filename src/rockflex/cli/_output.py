@@ -28,7 +28,7 @@ def versions() -> dict[str, str]:
     return {"rockflex": __version__, **package_versions(("numpy", "scipy"))}
 
 
-def check_folder(folder: Path | None, *, force: bool) -> None:
+def check_output_folder(folder: Path | None, *, force: bool) -> None:
     """Raise an InputError if the folder must not be written to, or --force was given without a folder."""
     if folder is None:
         if force:
@@ -45,12 +45,12 @@ def check_folder(folder: Path | None, *, force: bool) -> None:
 
 
 @contextmanager
-def staged_folder(folder: Path, document: dict[str, Any], *, force: bool) -> Generator[Path, None, None]:
+def staged_output_folder(folder: Path, document: dict[str, Any], *, force: bool) -> Generator[Path, None, None]:
     """Yield a temporary folder; at the end its files move to `folder`, with `document` as summary.json.
 
     If anything fails before the end, `folder` is unchanged. Only earlier results there are removed or replaced.
     """
-    check_folder(folder, force=force)
+    check_output_folder(folder, force=force)
     home = folder if folder.is_dir() else folder.absolute().parent
     try:
         home.mkdir(parents=True, exist_ok=True)
@@ -68,7 +68,7 @@ def staged_folder(folder: Path, document: dict[str, Any], *, force: bool) -> Gen
         ) from error
 
 
-def file_stems(names: Iterable[str]) -> list[str]:
+def output_file_stems(names: Iterable[str]) -> list[str]:
     """Return a different file name, without its ending, for each name."""
     stems: list[str] = []
     for name in names:

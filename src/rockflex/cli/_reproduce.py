@@ -77,7 +77,7 @@ def reproduce(
             typer.echo(f"{target:10}  {paper.target_title(target)}")
         return
 
-    output.check_folder(out, force=force)
+    output.check_output_folder(out, force=force)
     wanted = targets or list(paper.TARGETS)
     for target in wanted:
         paper.target_title(target)
@@ -110,7 +110,10 @@ def _write_reproduction(results: "list[ReproducedResult]", records: "PaperRecord
         "checks": document.checks,
     }
     figures = sum(len(result.figures) for result in results)
-    with output.staged_folder(out, summary, force=force) as stage, console.step_bar("Drawing", figures) as advance:
+    with (
+        output.staged_output_folder(out, summary, force=force) as stage,
+        console.step_bar("Drawing", figures) as advance,
+    ):
         write_publication_report(document, stage, lambda _: advance(1))
 
 

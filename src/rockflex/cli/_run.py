@@ -90,7 +90,7 @@ def run(
     )
     from rockflex.cli._structures import describe_rocking_properties
 
-    output.check_folder(out, force=force and (out is not None or report is None))
+    output.check_output_folder(out, force=force and (out is not None or report is None))
     head = flag_values(context, ReportKeys) | ({"appendix": True} if report_appendix else {})
     if head and report is None:
         raise InputError(f"The {', '.join(head)} of a report was given without --report FILE.")

@@ -9,7 +9,7 @@ import numpy as np
 import typer
 
 from rockflex._errors import InputError
-from rockflex._schema import BoucWenKeys, GroundKeys, ImpactKeys, InitialStateKeys, SpringBedKeys
+from rockflex._schema import BoucWenSchema, GroundSchema, ImpactSchema, InitialStateSchema, SpringBedSchema
 from rockflex.cli._options import flag_values, flags_of_tables, naming_flags_in_errors
 from rockflex.cli._structures import LoadedStructure
 from rockflex.modal import Ground, RockingProperties
@@ -26,8 +26,8 @@ from rockflex.study import (
 from rockflex.study.spec import GroundTable, RunOptionKeys, impact_law_name
 
 _INERTIA = {"base_inertia", "mat_mass"}
-_FIELDS = {f"ground.{name}": (name, flag) for name, flag in flags_of_tables(GroundKeys).items()} | {
-    f"ground.bed.{name}": (name, flag) for name, flag in flags_of_tables(SpringBedKeys).items()
+_FIELDS = {f"ground.{name}": (name, flag) for name, flag in flags_of_tables(GroundSchema).items()} | {
+    f"ground.bed.{name}": (name, flag) for name, flag in flags_of_tables(SpringBedSchema).items()
 }
 
 
@@ -49,8 +49,8 @@ def lines_about_ground(ground: Ground, properties: RockingProperties) -> list[st
 
 
 def _merged_ground_options(in_file: dict[str, Any], flags: dict[str, Any]) -> dict[str, Any]:
-    own = {name: flags[name] for name in flags_of_tables(GroundKeys) if name in flags}
-    bed = {name: flags[name] for name in flags_of_tables(SpringBedKeys) if name in flags}
+    own = {name: flags[name] for name in flags_of_tables(GroundSchema) if name in flags}
+    bed = {name: flags[name] for name in flags_of_tables(SpringBedSchema) if name in flags}
     replaced = _INERTIA if own.keys() & _INERTIA else set[str]()
     merged = {name: value for name, value in in_file.items() if name not in replaced} | own
     if not bed:
@@ -58,7 +58,7 @@ def _merged_ground_options(in_file: dict[str, Any], flags: dict[str, Any]) -> di
     if "springs" in merged:
         raise InputError(
             "The ground of the structure file has springs, and the command line gives a bed "
-            f"({', '.join(flags_of_tables(SpringBedKeys)[name] for name in bed)}). Leave one of them out."
+            f"({', '.join(flags_of_tables(SpringBedSchema)[name] for name in bed)}). Leave one of them out."
         )
     merged["bed"] = merged.get("bed", {}) | bed
     if "breadth" not in merged["bed"]:
@@ -107,12 +107,12 @@ def make_run_options(context: typer.Context, loaded: LoadedStructure) -> tuple[R
 
     Return the options, without free vibration, and the values of the ground as they were given, empty for none.
     """
-    law, initial = flag_values(context, ImpactKeys), flag_values(context, InitialStateKeys)
-    keys = () if "impact" in law else flags_of_tables(ImpactKeys)
+    law, initial = flag_values(context, ImpactSchema), flag_values(context, InitialStateSchema)
+    keys = () if "impact" in law else flags_of_tables(ImpactSchema)
     below = {name: loaded.run_options[name] for name in keys if name in loaded.run_options}
-    with naming_flags_in_errors(flags_of_tables(ImpactKeys)):
+    with naming_flags_in_errors(flags_of_tables(ImpactSchema)):
         chosen = parse_toml_table(RunOptionKeys, {**below, **law}).law()
-    with naming_flags_in_errors(flags_of_tables(InitialStateKeys) | {"rotation": "--initial-rotation"}):
+    with naming_flags_in_errors(flags_of_tables(InitialStateSchema) | {"rotation": "--initial-rotation"}):
         start = InitialState(rotation=initial["initial_rotation"]) if initial else None
     hysteresis = _bouc_wen_of_options(context, loaded)
     base, values = _make_run_ground(context, loaded)
@@ -121,7 +121,7 @@ def make_run_options(context: typer.Context, loaded: LoadedStructure) -> tuple[R
 
 def _make_run_ground(context: typer.Context, loaded: LoadedStructure) -> tuple[Ground | None, dict[str, Any]]:
     """Return the ground, None if it is rigid and the base cannot slide, and its values as given."""
-    flags = flag_values(context, GroundKeys) | flag_values(context, SpringBedKeys)
+    flags = flag_values(context, GroundSchema) | flag_values(context, SpringBedSchema)
     in_file = loaded.run_options.get("ground", {})
     if not in_file and not flags:
         return None, {}
@@ -186,13 +186,13 @@ def parse_work_limit(given: str | None) -> float | None:
 
 
 def _bouc_wen_of_options(context: typer.Context, loaded: LoadedStructure) -> BoucWen | None:
-    flags = flag_values(context, BoucWenKeys)
+    flags = flag_values(context, BoucWenSchema)
     values = {**loaded.run_options.get("bouc_wen", {}), **flags}
     if not values:
         return None
     if "yield_displacement" not in values:
         raise InputError("The hysteresis needs its yield displacement. Give --yield-displacement DY in m.")
-    named = {name: flag for name, flag in flags_of_tables(BoucWenKeys).items() if name in flags}
+    named = {name: flag for name, flag in flags_of_tables(BoucWenSchema).items() if name in flags}
     try:
         with naming_flags_in_errors(named):
             return BoucWen(**values)

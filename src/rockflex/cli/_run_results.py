@@ -287,7 +287,7 @@ def write_run_results(
     import pandas as pd
 
     histories = batch.history and len(batch.motions) * len(batch.scales) <= figures
-    with output.staged_folder(folder, document, force=force) as stage:
+    with output.staged_output_folder(folder, document, force=force) as stage:
         pd.DataFrame([run.row() for run in runs]).to_csv(stage / "results.csv", index=False, lineterminator="\n")
         if histories:
             _write_histories(stage, batch, runs, form)
@@ -304,7 +304,7 @@ def _write_histories(stage: Path, batch: RunBatch, runs: Sequence[BatchRun], for
     groups = [(place, list(members)) for place, members in groupby(runs, key=lambda run: (run.motion, run.scale))]
     several = len({scale for (_, scale), _ in groups}) > 1
     names = [f"history-{motion}-x{scale:g}" if several else f"history-{motion}" for (motion, scale), _ in groups]
-    for stem, ((motion, scale), members) in zip(output.file_stems(names), groups, strict=True):
+    for stem, ((motion, scale), members) in zip(output.output_file_stems(names), groups, strict=True):
         responses = [run.response for run in members if run.response is not None]
         if not responses:
             continue

@@ -40,7 +40,7 @@ def parse_target_spectrum(text: str, damping: float | None) -> "TargetSpectrum":
         raise InputError(
             "--damping is for a target from a file. Write ec8:...,damping=0.02; ASCE 7 has 5 %: leave --damping out."
         )
-    items = _target_items(code, rest)
+    items = _target_flag_items(code, rest)
     if code == "ec8":
         return ec8_spectrum(**_read_target_items(code, items, "ag", "ground type importance damping"))
     if code == "ec8-2024":
@@ -56,14 +56,14 @@ def parse_target_spectrum(text: str, damping: float | None) -> "TargetSpectrum":
 
 def parse_comma_separated_numbers(flag: str, text: str, least: int, most: int | None = None) -> list[float]:
     """Return numbers separated by commas."""
-    values = [_target_number(flag, part.strip()) for part in text.split(",")]
+    values = [_target_flag_number(flag, part.strip()) for part in text.split(",")]
     if len(values) < least or (most is not None and len(values) > most):
         count = f"{least}" if most == least else f"at least {least}"
         raise InputError(f"{flag} needs {count} numbers separated by commas, but {shown(text)} was given.")
     return values
 
 
-def _target_items(code: str, rest: str) -> dict[str, str]:
+def _target_flag_items(code: str, rest: str) -> dict[str, str]:
     items: dict[str, str] = {}
     for part in filter(None, (part.strip() for part in rest.split(","))):
         key, equals, value = (each.strip() for each in part.partition("="))
@@ -86,11 +86,13 @@ def _read_target_items(code: str, items: dict[str, str], needed: str, optional: 
             f"--target {code}:...: {what}. The keys are {', '.join(needed.split())}, and "
             f"{', '.join(optional.split())} if wanted."
         )
-    values = ((key, READERS.get(key, _target_number)(f"--target {code}: {key}", text)) for key, text in items.items())
+    values = (
+        (key, READERS.get(key, _target_flag_number)(f"--target {code}: {key}", text)) for key, text in items.items()
+    )
     return {ARGUMENTS.get(key, key): value for key, value in values}
 
 
-def _target_acceleration(name: str, text: str) -> float:
+def _target_flag_acceleration(name: str, text: str) -> float:
     from rockflex.motion import UNITS, acceleration_in_text
 
     value = acceleration_in_text(text)
@@ -102,14 +104,14 @@ def _target_acceleration(name: str, text: str) -> float:
     return value
 
 
-def _target_number(name: str, text: str) -> float:
+def _target_flag_number(name: str, text: str) -> float:
     try:
         return float(text)
     except ValueError:
         raise InputError(f"{name} must be a number, but {shown(text)} was given.") from None
 
 
-def _target_yes_or_no(name: str, text: str) -> bool:
+def _target_flag_yes_or_no(name: str, text: str) -> bool:
     if text not in WORDS:
         raise InputError(f"{name} must be yes or no, but {shown(text)} was given.")
     return WORDS[text]
@@ -117,9 +119,9 @@ def _target_yes_or_no(name: str, text: str) -> bool:
 
 ARGUMENTS = {"type": "kind", "damping": "damping_ratio"}  # of the functions, where they are not the keys
 READERS: dict[str, Callable[[str, str], Any]] = {  # of the keys that are not plain numbers
-    **dict.fromkeys(("ag", "s_alpha", "s_beta", "ss", "s1", "sds", "sd1"), _target_acceleration),
+    **dict.fromkeys(("ag", "s_alpha", "s_beta", "ss", "s1", "sds", "sd1"), _target_flag_acceleration),
     **dict.fromkeys(("ground", "site"), lambda _, text: text),
-    "mce": _target_yes_or_no,
+    "mce": _target_flag_yes_or_no,
 }
 
 
@@ -206,7 +208,7 @@ def select(
     from rockflex.motion import Suite
 
     if out is not None or records is None:
-        output.check_folder(out, force=force)
+        output.check_output_folder(out, force=force)
     if records is not None:
         _check_selected_records_folder(records, out, force=force)
     wanted = parse_target_spectrum(target, damping)
@@ -258,7 +260,7 @@ def _check_selected_records_folder(folder: Path, out: Path | None, *, force: boo
             f"--records {folder} is the folder of --out, too. Give it one of its own: every CSV file in it is a record."
         )
     try:
-        output.check_folder(folder, force=force)
+        output.check_output_folder(folder, force=force)
     except InputError as error:
         raise InputError(str(error).replace("--out", "--records")) from error
 
@@ -302,7 +304,7 @@ def _print_selection(chosen: "Selection") -> None:
 def _write_selection(folder: Path, document: dict[str, Any], chosen: "Selection", *, force: bool) -> None:
     from rockflex.plot import plot_selection, save_figure
 
-    with output.staged_folder(folder, document, force=force) as stage:
+    with output.staged_output_folder(folder, document, force=force) as stage:
         chosen.table().to_csv(stage / "selection.csv", index=False, lineterminator="\n")
         chosen.spectra().to_csv(stage / "spectra.csv", index=False, lineterminator="\n")
         save_figure(plot_selection(chosen), stage / "selection.png")
@@ -312,7 +314,9 @@ def _write_selection(folder: Path, document: dict[str, Any], chosen: "Selection"
 def _write_selected_records(folder: Path, document: dict[str, Any], chosen: "Selection", *, force: bool) -> None:
     from rockflex.motion import record_csv
 
-    with output.staged_folder(folder, document, force=force) as stage:
-        for stem, motion in zip(output.file_stems(motion.name for motion in chosen.suite), chosen.suite, strict=True):
+    with output.staged_output_folder(folder, document, force=force) as stage:
+        for stem, motion in zip(
+            output.output_file_stems(motion.name for motion in chosen.suite), chosen.suite, strict=True
+        ):
             (stage / f"{stem}.csv").write_text(record_csv(motion), "utf-8", newline="\n")
     console.print_remark(f"{number_with_noun(len(chosen.suite), 'scaled record')} written to {folder}")

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from rockflex._errors import InputError
-from rockflex._schema import PLAIN, FrameFlags, FrameKeys, ReportKeys, SchemaKey
+from rockflex._schema import PLAIN, FrameFlags, FrameSchema, ReportKeys, SchemaKey
 from rockflex._shown import number_with_noun
 from rockflex.cli import _console as console
 from rockflex.cli._options import flags_of_tables, naming_flags_in_errors
@@ -226,7 +226,7 @@ def describe_rocking_properties(properties: RockingProperties) -> dict[str, Any]
 
 
 def _frame_from_flags(given: dict[str, Any]) -> LoadedStructure:
-    needed = flags_of_tables(FrameKeys)
+    needed = flags_of_tables(FrameSchema)
     missing = [name for name in needed if name not in given]
     if missing:
         lack = f"The frame lacks {_flag_names_text(missing)}." if given else "No structure was given."

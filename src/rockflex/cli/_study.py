@@ -290,7 +290,7 @@ def figures(
     from rockflex.study.folders import StudyFolder
 
     target = folder / "figures" if out is None else out
-    output.check_folder(target, force=force)
+    output.check_output_folder(target, force=force)
     study = StudyFolder.load(folder)
     kind = study_kind_named(study.spec.get("study"))
     if measure is not None and not kind.measured:
@@ -312,7 +312,7 @@ def figures(
 
     undrawn: list[str] = []
     style = figure_style(theme, _figure_size(size))  # pyright: ignore[reportArgumentType]
-    with style, output.staged_folder(target, document, force=force) as stage:
+    with style, output.staged_output_folder(target, document, force=force) as stage:
         for stem, draw in kind.figures(study.spec, table, measure or "pgv", console.print_remark):
             try:
                 save_figure(draw(), stage / f"{stem}.{form}")

@@ -14,7 +14,7 @@ from rockflex.engine.system import (
     StepTooLongError,
     System,
 )
-from rockflex.engine.tables import by_rows, changes_of, halvings_of, radius
+from rockflex.engine.tables import by_rows, exponentials_less_identity, halvings_of, spectral_radius_bound
 
 __all__ = [
     "MAX_STATES",
@@ -31,7 +31,7 @@ __all__ = [
     "StepTooLongError",
     "System",
     "by_rows",
-    "changes_of",
+    "exponentials_less_identity",
     "halvings_of",
-    "radius",
+    "spectral_radius_bound",
 ]

@@ -6,7 +6,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex.engine.system import Key, LinearPhase, NonlinearPhase
 
 
-def lacks(level: str) -> ImportError:
+def missing_vector_level_error(level: str) -> ImportError:
     """The processor lacks a level of vector instructions."""
     return ImportError(
         f"ROCKFLEX_SIMD={level!r} is not a level of vector instructions that this processor has. Give 'baseline', "
@@ -22,7 +22,7 @@ def check_key(key: Key) -> None:
         raise InputError(f"The key {key!r} of a phase must be hashable, as a tuple is.") from error
 
 
-def broken_off() -> SolverError:
+def broken_off_run_error() -> SolverError:
     """A run that has failed is asked to go on."""
     return SolverError("This run has been broken off by an error; begin it anew by `restart`.")
 

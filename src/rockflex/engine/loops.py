@@ -10,7 +10,7 @@ from cython.cimports.rockflex.engine.field import Field, Jump
 
 from rockflex.engine import failures, tableau
 from rockflex.engine.system import up8
-from rockflex.engine.tables import grouped, jump_table
+from rockflex.engine.tables import jump_table, tables_in_row_groups
 
 LEVELS = ("", "baseline", "v3", "v4")
 
@@ -19,7 +19,7 @@ def chosen_level():
     """Return the level asked for by the environment variable ROCKFLEX_SIMD; empty for the best one."""
     asked = os.environ.get("ROCKFLEX_SIMD", "")
     if asked not in LEVELS or rockflex_loops(asked.encode()) == cython.NULL:
-        raise failures.lacks(asked)
+        raise failures.missing_vector_level_error(asked)
     return asked.encode()
 
 
@@ -156,7 +156,7 @@ class Phases:
         ]
         rests = [event.rest for event in events]
         parts = [
-            *(grouped(each, LOOPS.group) for each in tables[4:]),
+            *(tables_in_row_groups(each, LOOPS.group) for each in tables[4:]),
             np.array([event.scale for event in events]).reshape(count, systems).T,
             *(jump_table(J, LOOPS.group) for J in jumps if J is not None),
             *(conditions_of(rest) for rest in rests if rest is not None),
@@ -208,7 +208,7 @@ class Phases:
         self.known[place] = 2
         if shaken is None:
             return 0
-        content, offsets = joined([grouped(each, LOOPS.group) for each in shaken[3:]])
+        content, offsets = joined([tables_in_row_groups(each, LOOPS.group) for each in shaken[3:]])
         self.shaken[place] = content, offsets, np.array([*shaken.places, shaken.shift, shaken.nodes], dtype=np.intc)
         self.point(place, which)
         return content.nbytes

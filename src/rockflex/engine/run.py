@@ -14,9 +14,9 @@ from rockflex._errors import InputError
 from rockflex.engine import failures
 from rockflex.engine.rest import Fading
 from rockflex.engine.shaken import shaken_of
-from rockflex.engine.system import NonlinearPhase, acceleration, array, as_long, up8
+from rockflex.engine.system import NonlinearPhase, acceleration, array, checked_vertical_acceleration, up8
 from rockflex.engine.tableau import START
-from rockflex.engine.tables import prepared
+from rockflex.engine.tables import prepared_phase_and_tables
 
 if cython.compiled:
     from cython.cimports.cpython.exc import PyErr_CheckSignals
@@ -210,7 +210,7 @@ class Run:
 
     def prepare(self, key, place):
         """Prepare a phase, and return its place."""
-        phase, tables = prepared(self.system, key, self.h, self.mirrors)
+        phase, tables = prepared_phase_and_tables(self.system, key, self.h, self.mirrors)
         if self.size > self.memory:
             self.forget()
         self.size += self.phases.add(place, tables, phase.events, self.h)
@@ -249,7 +249,9 @@ class Run:
             If the run has failed, as `failure` says, or had failed before.
         """
         ground: cython.const[cython.double][::1] = acceleration(a)
-        rise: cython.const[cython.double][::1] = self.still if vertical is None else as_long(vertical, ground)
+        rise: cython.const[cython.double][::1] = (
+            self.still if vertical is None else checked_vertical_acceleration(vertical, ground)
+        )
         with cython.nogil:
             self.proceed(ground, rise, history)
 
@@ -302,7 +304,7 @@ class Run:
         last: cython.int = ground.shape[0] - 1
         if self.failed:
             with cython.gil:
-                raise failures.broken_off()
+                raise failures.broken_off_run_error()
         self.failed = True
         self.shakes = rise.shape[0] > 0
         self.load(self.now)

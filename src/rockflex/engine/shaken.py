@@ -18,14 +18,14 @@ from rockflex.engine.tables import (
     FAST,
     FINEST,
     VAGUE,
-    bounds,
     by_rows,
-    changes_of,
+    derivative_bound_factors,
+    exponentials_less_identity,
     halvings_of,
     most_of,
     padded,
-    radius,
     shift_of,
+    spectral_radius_bound,
     tables_of,
 )
 
@@ -117,10 +117,10 @@ def shaken_of(phase: LinearPhase | NonlinearPhase, h: float) -> ShakenTables | N
     C, speeds = rows[..., :n], rates[:, terms.places]
     moves = np.zeros((S, parts, columns))
     moves[:, :n] = rates
-    fast, marches = radius(phase.A * h), fed <= MAX_FED
+    fast, marches = spectral_radius_bound(phase.A * h), fed <= MAX_FED
     pieces = np.where((fast <= FAST) & marches, 2 ** np.clip(halvings_of(fast, LONGEST), 0, 30), 0)
     found = marched_of(terms, h, step, pieces)
-    found |= bounds_of(terms, h, m, parts, pieces)
+    found |= shaken_bound_factors(terms, h, m, parts, pieces)
     slope = np.concatenate((by_rows(C, rates), np.zeros((S, rows.shape[1], fed))), axis=2)
     slope[..., columns:] = rows[..., n + 3 :]
     return ShakenTables(
@@ -156,7 +156,7 @@ def gauss(count: int) -> tuple[Array, Array]:
     return 0.5 + 0.5 * places, 0.5 * weights
 
 
-def polynomials(count: int, times: Array) -> Array:
+def lagrange_polynomials(count: int, times: Array) -> Array:
     """The polynomials that are 1 at one of so many Gauss nodes and 0 at the others, at these times: (count, times)."""
     nodes, weights = gauss(count)
     degrees = np.arange(count)
@@ -170,12 +170,12 @@ def convolutions(count: int) -> Array:
     nodes, weights = gauss(count)
     found = np.zeros((count, count, count))
     for j, t in enumerate(nodes):
-        there = polynomials(count, t * nodes)
-        found[:, j] = (polynomials(count, t * (1.0 - nodes)) * (t * weights)) @ there.T
+        there = lagrange_polynomials(count, t * nodes)
+        found[:, j] = (lagrange_polynomials(count, t * (1.0 - nodes)) * (t * weights)) @ there.T
     return found
 
 
-def carried(G: Array, X: Array, times: Array, pieces: int) -> Array:
+def matrix_exponential_times(G: Array, X: Array, times: Array, pieces: int) -> Array:
     """e^{G t} X at these times from 0 to 1, in ascending order: shape (S, times, n, columns)."""
     (S, n, k), found, start = X.shape, list[Array](), X
     for piece in range(pieces):
@@ -197,7 +197,7 @@ def marched_of(terms: Terms, h: float, step: Array, pieces: Array) -> dict[str, 
         some = np.flatnonzero(pieces == count)
         flow = flow_of(terms.rates[some], terms.places, h, count)
         for q in NODES:
-            tables = collocated(flow, q, step[some])
+            tables = collocation_tables(flow, q, step[some])
             done = (tables["limit"][:, 0, 0] >= USUAL) | (q == NODES[-1])
             for k in np.flatnonzero(done).tolist():
                 rows.append((int(some[k]), q, {name: each[k] for name, each in tables.items()}))
@@ -238,7 +238,7 @@ def flow_of(rates: Array, places: list[int], h: float, pieces: int) -> Flow:
     """Carry the columns of p forwards, and the rows of the states that it is made of backwards."""
     (S, n, columns), counts = rates.shape, (*NODES, FINE)
     pushes = np.concatenate((rates[..., n + 3 :], rates[..., n + 2, None]), axis=2) * h
-    ends = carried(rates[..., :n] * h, pushes, gauss(FINE)[0], pieces)[:, ::-1]
+    ends = matrix_exponential_times(rates[..., :n] * h, pushes, gauss(FINE)[0], pieces)[:, ::-1]
     G = np.zeros((S, n + 5, n + 5))  # of y, a, its rise, 1, a_v and its rise
     G[:, :n, :n], G[:, :n, n], G[:, n, n + 1] = rates[..., :n] * h, rates[..., n] * h, 1.0
     G[:, :n, n + 2], G[:, :n, n + 3], G[:, n + 3, n + 4] = rates[..., n + 1] * h, rates[..., n + 2] * h, 1.0
@@ -247,7 +247,7 @@ def flow_of(rates: Array, places: list[int], h: float, pieces: int) -> Flow:
     times = np.concatenate([gauss(count)[0] for count in counts])
     order = np.argsort(times, kind="stable")
     found = np.empty((S, times.size, len(places), n + 5))
-    found[:, order] = carried(G.swapaxes(1, 2), rows, times[order], pieces).swapaxes(2, 3)
+    found[:, order] = matrix_exponential_times(G.swapaxes(1, 2), rows, times[order], pieces).swapaxes(2, 3)
     known = found.copy()
     known[..., n], known[..., n + 1] = found[..., n] - found[..., n + 1], found[..., n + 1]
     known[..., n + 3], known[..., n + 4] = found[..., n + 3] - found[..., n + 4], found[..., n + 4]
@@ -257,11 +257,11 @@ def flow_of(rates: Array, places: list[int], h: float, pieces: int) -> Flow:
     return Flow(ends, seen, {q: each[..., :n] @ pushes[:, None, :, :-1] for q, each in seen.items()})
 
 
-def collocated(flow: Flow, q: int, step: Array) -> dict[str, Array]:
+def collocation_tables(flow: Flow, q: int, step: Array) -> dict[str, Array]:
     """The tables for so many nodes, and the largest |a_v| for which they are exact."""
     S, _, n, fed = flow.ends.shape[0], *flow.ends.shape[1:3], flow.ends.shape[3] - 1
     times, fine, weights = gauss(q)[0], *gauss(FINE)
-    seen = polynomials(q, fine) * weights
+    seen = lagrange_polynomials(q, fine) * weights
     given = np.zeros((S, fed, q, n))
     for i in range(fed):
         given[:, i] = seen @ flow.ends[..., i]
@@ -272,7 +272,7 @@ def collocated(flow: Flow, q: int, step: Array) -> dict[str, Array]:
         feedback += kernel[:, :, None, :, None] * integral[:, None, :]
     changes = np.concatenate((step, rise), axis=2)
     return {
-        "limit": limit_of(flow, q, given, feedback, step)[:, None, None],
+        "limit": vertical_acceleration_limit(flow, q, given, feedback, step)[:, None, None],
         "times": np.tile(times[:, None], (S, 1, 1)),
         "changes": changes,
         "nodes": flow.seen[q].swapaxes(1, 2).reshape(S, fed * q, n + 5),
@@ -281,11 +281,11 @@ def collocated(flow: Flow, q: int, step: Array) -> dict[str, Array]:
     }
 
 
-def limit_of(flow: Flow, q: int, given: Array, feedback: Array, step: Array) -> Array:
+def vertical_acceleration_limit(flow: Flow, q: int, given: Array, feedback: Array, step: Array) -> Array:
     """The largest |a_v| for which what the polynomials leave out is rounding, and the fixed point is found fast."""
     (S, fed, _, n), (fine, weights), size = given.shape, gauss(FINE), np.abs(step)
     size = size + size[..., :n] @ size  # of what the state changes by: an entry that is zero has others on its way
-    found = CONTRACTS / np.maximum(radius(np.abs(feedback.reshape(S, fed * q, fed * q))), 1e-300)
+    found = CONTRACTS / np.maximum(spectral_radius_bound(np.abs(feedback.reshape(S, fed * q, fed * q))), 1e-300)
     for i in range(fed):
         for slope in (0.0, 1.0):
             factor, factors = (2.0 * t - 1.0 if slope else np.ones_like(t) for t in (fine, gauss(q)[0]))
@@ -301,7 +301,7 @@ def limit_of(flow: Flow, q: int, given: Array, feedback: Array, step: Array) -> 
     return np.minimum(np.nan_to_num(found, nan=0.0), VAGUE)
 
 
-def bounds_of(terms: Terms, h: float, m: int, parts: int, pieces: Array) -> dict[str, Array]:
+def shaken_bound_factors(terms: Terms, h: float, m: int, parts: int, pieces: Array) -> dict[str, Array]:
     """Factors in bounds of the rows and of the states that a_v multiplies, of those systems that have pieces.
 
     As in `tables.bounds`, with a_v and each p as more inputs. p is not linear in a sample: r'' has the term C_v p'',
@@ -314,13 +314,18 @@ def bounds_of(terms: Terms, h: float, m: int, parts: int, pieces: Array) -> dict
     found |= {f"swell{order}": np.zeros((S, fed, width)) for order in range(1, 5)} | {"loop": np.zeros((S, fed, fed))}
     unit = np.zeros((S, fed, n))
     unit[:, range(fed), terms.places] = 1.0
-    fine = np.minimum(halvings_of(radius(np.abs(terms.rates[..., :n]) * h), 1.0), FINEST)
+    fine = np.minimum(halvings_of(spectral_radius_bound(np.abs(terms.rates[..., :n]) * h), 1.0), FINEST)
     for kind in {*fine[pieces > 0].tolist()}:
         some = np.flatnonzero((fine == kind) & (pieces > 0))
         A, more = terms.rates[some, :, :n], terms.rates[some, :, n + 3 :]
         inputs = np.concatenate((terms.rates[some, :, n, None], terms.rates[some, :, n + 2 :]), axis=2)
-        changes, C = changes_of(A * h, kind + 1)[1:], np.concatenate((terms.rows[some, :, :n], unit[some]), axis=1)
-        bend, sway, jolt = (ordered(each, n, parts, fed) for each in bounds(A, inputs, C, m, changes, h))
+        changes, C = (
+            exponentials_less_identity(A * h, kind + 1)[1:],
+            np.concatenate((terms.rows[some, :, :n], unit[some]), axis=1),
+        )
+        bend, sway, jolt = (
+            ordered(each, n, parts, fed) for each in derivative_bound_factors(A, inputs, C, m, changes, h)
+        )
         once = most_of(unit[some], A, changes, h)
         first = ordered(
             np.concatenate((once, once @ np.abs(inputs), np.zeros((len(some), fed, 2 + fed))), axis=2), n, parts, fed
@@ -338,7 +343,7 @@ def bounds_of(terms: Terms, h: float, m: int, parts: int, pieces: Array) -> dict
 
 
 def ordered(bound: Array, n: int, parts: int, fed: int) -> Array:
-    """The columns of `bounds` for the inputs a, a_v and p in the order of `bounds_of`."""
+    """The columns of `bounds` for the inputs a, a_v and p in the order of `shaken_bound_factors`."""
     found, inputs = np.zeros((*bound.shape[:2], parts + 4 + 5 * fed)), 2 + fed
     varied, sloped = bound[..., n : n + inputs], bound[..., n + inputs :]
     found[..., :n], found[..., n], found[..., n + 1] = bound[..., :n], varied[..., 0], sloped[..., 0]

@@ -304,13 +304,13 @@ class System:
         else:
             found = _checked_field(place, found, n, m, self.count)
         arrays = {
-            name: stacked(place + name, getattr(found, name), shape, self.count, finite=name in "Afc")
+            name: stacked_array(place + name, getattr(found, name), shape, self.count, finite=name in "Afc")
             for name, shape in shapes.items()
         }
         for name, shape in zip(VERTICAL, ((n, n), (n,), (m, n), (m,)), strict=True):
             given = getattr(found, name, None)
             if given is not None:
-                arrays[name] = stacked(place + name, given, shape, self.count, finite=name in ("A_v", "f_v"))
+                arrays[name] = stacked_array(place + name, given, shape, self.count, finite=name in ("A_v", "f_v"))
         wrong = np.zeros(m, dtype=bool)
         for name in arrays.keys() & {"C", "d", "e", "C_v", "d_v"}:
             wrong |= ~np.isfinite(arrays[name]).all(axis=(0, 2) if name in {"C", "C_v"} else (0,))
@@ -418,7 +418,7 @@ def _stacked(place: str, part: Any, names: dict[str, int], n: int, count: int) -
     return {
         name: each
         if (each is None and name in OPTIONAL) or callable(each) or isinstance(each, Jump)
-        else stacked(place + name, each, (n,) * names[name], count)
+        else stacked_array(place + name, each, (n,) * names[name], count)
         for name, each in found.items()
     }
 
@@ -428,7 +428,7 @@ def up8(count: int) -> int:
     return -(-count // 8) * 8
 
 
-def stacked(name: str, values: Any, shape: tuple[int, ...], count: int, *, finite: bool = True) -> Array:
+def stacked_array(name: str, values: Any, shape: tuple[int, ...], count: int, *, finite: bool = True) -> Array:
     """Return a copy as `array` does, with a first axis for the systems of a stack, for all of which it may be given."""
     if type(values) is float and not shape and isfinite(values):
         return np.full(count, values)
@@ -467,7 +467,7 @@ def acceleration(values: Any) -> Array:
     return found
 
 
-def as_long(vertical: Any, ground: Any) -> Array:
+def checked_vertical_acceleration(vertical: Any, ground: Any) -> Array:
     """Return a vertical acceleration as the loops need it, and refuse one that is not as long as the other."""
     found = acceleration(vertical)
     if found.size != len(ground):

@@ -79,9 +79,9 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
         row[:, :n], row[:, n], row[:, n + 1] = event.row, event.direct, event.constant
     C = rows[..., :n]
 
-    turn = radius(A * h)
+    turn = spectral_radius_bound(A * h)
     halvings, squared = halvings_of(turn, LONGEST), halvings_of(turn, 1.0)
-    splits = [split_of(A[place], f[place], C[place], h) if turn[place] > FAST else None for place in range(S)]
+    splits = [split_fast_modes(A[place], f[place], C[place], h) if turn[place] > FAST else None for place in range(S)]
     most = max((len(each.parts) for each in splits if each is not None), default=0)
     slow, driven = A.copy(), f.copy()
     moves, (bend, cap, sway) = np.zeros((S, n + most, n)), np.zeros((3, S, m + k, n + 2 + most))
@@ -97,7 +97,7 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
             sway[place, :, n + 1] += each.jerk
             centre[place] -= by_rows(each.swing, rates[place])
     parted = np.array([each is not None for each in splits])
-    fine = np.minimum(halvings_of(radius(np.abs(slow) * h), 1.0), FINEST)
+    fine = np.minimum(halvings_of(spectral_radius_bound(np.abs(slow) * h), 1.0), FINEST)
     G = np.zeros((S, n + 3, n + 3))  # of y, a, its rise, and 1
     G[:, :n, :n], G[:, :n, n], G[:, :n, n + 2], G[:, n, n + 1] = A * h, f * h, c * h, 1.0
     step = np.empty((S, n, n + 3))
@@ -108,19 +108,23 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
     else:
         for kind in {*zip(squared.tolist(), fine.tolist(), parted.tolist(), strict=True)}:
             some = np.flatnonzero((squared == kind[0]) & (fine == kind[1]) & (parted == kind[2]))
-            changes = changes_of(G[some], kind[0] if kind[2] else max(kind[0], kind[1]) + 1)
+            changes = exponentials_less_identity(G[some], kind[0] if kind[2] else max(kind[0], kind[1]) + 1)
             whole = changes[0][:, :n]
             step[some, :, :n], step[some, :, n:] = whole[..., :n], whole[..., n:]
             step[some, :, n] -= whole[..., n + 1]
-            of_states = changes_of(slow[some] * h, kind[1] + 1) if kind[2] else [each[:, :n, :n] for each in changes]
-            found = bounds(slow[some], driven[some], C[some], m, of_states[1 : kind[1] + 2], h)
+            of_states = (
+                exponentials_less_identity(slow[some] * h, kind[1] + 1)
+                if kind[2]
+                else [each[:, :n, :n] for each in changes]
+            )
+            found = derivative_bound_factors(slow[some], driven[some], C[some], m, of_states[1 : kind[1] + 2], h)
             bend[some, :, : n + 2] = found[0]
             sway[some, :, : n + 2] += found[1]
             if not kind[2]:
                 jolt[some, :, : n + 2], jolt[some, :, n + 2 :] = found[2], 0.0
         if not most:
             mirrors[:] = [*mirrors[1 - MIRRORS :], Mirror(A, f, c, C, step, (bend, sway, jolt))]
-    changes = changes_ahead(step)
+    changes = state_changes_at_samples(step)
     shift = shift_of(rates)
     now, outs = padded(np.concatenate((rates[:, shift:], rows[:, m:]), axis=1)), padded(rows[:, :m])
     return Tables(
@@ -128,15 +132,15 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
         rows=m + k,
         shift=shift,
         halvings=halvings.astype(np.intc),
-        block=np.concatenate((seen_ahead(rows, changes, 1), padded(changes[-1])), axis=1),
+        block=np.concatenate((rows_at_samples(rows, changes, 1), padded(changes[-1])), axis=1),
         step=padded(step),
         moves=padded(moves @ rates),
         now=now,
         outs=outs,
-        slope=seen_ahead(by_rows(C, rates), changes, 0),
+        slope=rows_at_samples(by_rows(C, rates), changes, 0),
         bend=padded(bend),
         cap=padded(cap),
-        centre=seen_ahead(centre, changes if most else changes[:1], 0),
+        centre=rows_at_samples(centre, changes if most else changes[:1], 0),
         sway=padded(sway),
         jolt=padded(jolt),
         direct=padded(rows[:, :, n, None]),
@@ -145,7 +149,9 @@ def tables_of(phase: LinearPhase, h: float, mirrors: list[Mirror]) -> Tables:
     )
 
 
-def prepared(system: System, key: Key, h: float, mirrors: list[Mirror]) -> tuple[LinearPhase | NonlinearPhase, Tables]:
+def prepared_phase_and_tables(
+    system: System, key: Key, h: float, mirrors: list[Mirror]
+) -> tuple[LinearPhase | NonlinearPhase, Tables]:
     """Return the phase of a key, and its tables for steps of h.
 
     Raises
@@ -156,7 +162,7 @@ def prepared(system: System, key: Key, h: float, mirrors: list[Mirror]) -> tuple
     with PREPARING:
         phase = system.checked(key)
         if isinstance(phase, NonlinearPhase):
-            return phase, tables_of_rows(phase)
+            return phase, tables_of_nonlinear_phase(phase)
         tables = tables_of(phase, h, mirrors)
     if not np.isfinite(tables.step).all():
         words = f"phase {key!r}: the motion grows without bound within one time step of {h:.9g}."
@@ -164,7 +170,7 @@ def prepared(system: System, key: Key, h: float, mirrors: list[Mirror]) -> tuple
     return phase, tables
 
 
-def tables_of_rows(phase: NonlinearPhase) -> Tables:
+def tables_of_nonlinear_phase(phase: NonlinearPhase) -> Tables:
     """Return the tables of a phase that is not linear: those of its outputs and conditions."""
     (_, m, n), k = phase.C.shape, len(phase.events)
     outs, now = np.zeros((1, m, n + 2)), np.zeros((1, k, n + 2))
@@ -203,7 +209,7 @@ class Split(NamedTuple):
     swing: Array  # what they add to every row beside what changes linearly in a sample, from y', (R, n)
 
 
-def split_of(A: Array, f: Array, C: Array, h: float) -> Split | None:
+def split_fast_modes(A: Array, f: Array, C: Array, h: float) -> Split | None:
     """Part the fast modes from the others; None if that is ill-conditioned. It serves the bounds alone."""
     roots, vectors = (np.asarray(each, dtype=np.complex128) for each in np.linalg.eig(A))
     try:
@@ -235,7 +241,7 @@ def split_of(A: Array, f: Array, C: Array, h: float) -> Split | None:
     )
 
 
-def changes_ahead(step: Array) -> list[Array]:
+def state_changes_at_samples(step: Array) -> list[Array]:
     """The changes of the states after 0, 1, .. samples, from y, the accelerations at the samples, and 1."""
     S, n, _ = step.shape
     found = [np.zeros((S, n, n + AHEAD + 2))]
@@ -249,7 +255,7 @@ def changes_ahead(step: Array) -> list[Array]:
     return found
 
 
-def seen_ahead(rows: Array, changes: list[Array], first: int) -> Array:
+def rows_at_samples(rows: Array, changes: list[Array], first: int) -> Array:
     """The rows at the samples from the first on, one sample after another, from the same."""
     (S, R, _), n = rows.shape, changes[0].shape[1]
     found = np.zeros((S, up8((len(changes) - first) * R), changes[0].shape[2]))
@@ -262,7 +268,9 @@ def seen_ahead(rows: Array, changes: list[Array], first: int) -> Array:
     return found
 
 
-def bounds(A: Array, f: Array, C: Array, m: int, changes: list[Array], h: float) -> tuple[Array, Array, Array]:
+def derivative_bound_factors(
+    A: Array, f: Array, C: Array, m: int, changes: list[Array], h: float
+) -> tuple[Array, Array, Array]:
     """Factors of |y'|, of the variation of a and of |a'| in bounds of rows' derivatives within a block.
 
     They are those of h²/8 |r''| and h³/96 |r'''| of all rows and, from row m on, of h⁴/384 |r''''|. With v = y' and
@@ -306,12 +314,14 @@ def growth(G: Array, changes: list[Array]) -> Array:
     for step in reversed(changes[1:]):
         grid = np.concatenate((grid, grid + grid @ step), axis=1)
     most, between = np.abs(grid).reshape(S, -1, n, n).max(axis=1), np.abs(G) / 2.0 ** (len(changes) - 1)
-    found, turn = most.copy(), radius(between)
+    found, turn = most.copy(), spectral_radius_bound(between)
     near, far = np.flatnonzero(turn <= 0.5), np.flatnonzero(~(turn <= 0.5))
     if near.size:
         found[near] = most[near] @ np.linalg.inv(np.eye(n) - between[near])
     for each in far:
-        found[each] += most[each] @ changes_of(between[None, each], int(halvings_of(turn[each], 1.0)) + 1)[0][0]
+        found[each] += (
+            most[each] @ exponentials_less_identity(between[None, each], int(halvings_of(turn[each], 1.0)) + 1)[0][0]
+        )
     return found
 
 
@@ -320,7 +330,7 @@ def halvings_of(turn: Any, longest: float) -> Any:
     return np.maximum(0, np.ceil(np.log2(np.clip(turn / longest, 1e-300, 1e300)))).astype(int)
 
 
-def radius(A: Array) -> Array:
+def spectral_radius_bound(A: Array) -> Array:
     """A close upper estimate of the spectral radius of each matrix."""
     power = A
     for _ in range(4):
@@ -328,7 +338,7 @@ def radius(A: Array) -> Array:
     return np.asarray(np.sqrt((power * power).sum(axis=(1, 2))) ** (1.0 / 16.0))
 
 
-def changes_of(G: Array, halvings: int) -> list[Array]:
+def exponentials_less_identity(G: Array, halvings: int) -> list[Array]:
     """exp(G/2^k) - 1 for k = 0, 1, .., by the Taylor series of the last one, and squaring.
 
     Without the 1 its rounding is relative to the change of a step, so that many steps do not add up the same error, and
@@ -349,7 +359,7 @@ def changes_of(G: Array, halvings: int) -> list[Array]:
     return found[::-1]
 
 
-def grouped(tables: Array, most: int) -> Array:
+def tables_in_row_groups(tables: Array, most: int) -> Array:
     """The tables column after column, in groups of at most so many rows, of nearly the same size."""
     count, rows, _ = tables.shape
     groups = -(-rows // most)
@@ -362,7 +372,7 @@ def grouped(tables: Array, most: int) -> Array:
 
 def jump_table(jump: Array, most: int) -> Array:
     """A matrix J and |J|, one after the other, in groups of rows."""
-    return np.concatenate([grouped(padded(each), most) for each in (jump, np.abs(jump))], axis=1)
+    return np.concatenate([tables_in_row_groups(padded(each), most) for each in (jump, np.abs(jump))], axis=1)
 
 
 def padded(table: NDArray[Any]) -> NDArray[Any]:

@@ -198,7 +198,7 @@ class ElementLaw(Attachment, ABC):
     @cached_property
     def locked_force(self) -> float:
         """Largest force in N with which the element can keep a base from closing, after any slow movement."""
-        far = farthest(self)
+        far = elongation_beyond_branches(self)
         closing = [slow_path(self, [sign * far, 0.0])[-1] for sign in (1.0, -1.0)]
         return max(0.0, *(-sign * tension_of(self, state) for sign, state in zip((1.0, -1.0), closing, strict=True)))
 
@@ -215,7 +215,7 @@ class ElementLaw(Attachment, ABC):
         )
 
 
-def farthest(law: ElementLaw) -> float:
+def elongation_beyond_branches(law: ElementLaw) -> float:
     """Return an elongation in m beyond all ends of branches."""
     ends = [abs(end.elongation) for branch in law.law.values() for end in branch.ends]
     return 4.0 * max(ends, default=0.0) or 1.0
@@ -320,7 +320,7 @@ def _check_branch(name: str, branch: Any, known: Mapping[str, Branch]) -> None:
 
 def _force_scale(law: ElementLaw) -> float:
     """Return a force in N that is large for an element."""
-    far = farthest(law)
+    far = elongation_beyond_branches(law)
     return max(abs(branch.force) + abs(branch.stiffness) * far for branch in law.law.values()) or 1.0
 
 
@@ -390,7 +390,7 @@ def _check_energy(law: ElementLaw, size: float) -> None:
             "internal): the energy in J that is not dissipated.",
             field="stored_energy",
         )
-    far = farthest(law)
+    far = elongation_beyond_branches(law)
     for ends in ((far, -far, far), (-far, far, -far), (0.3 * far, -0.3 * far, 0.6 * far)):
         states = slow_path(law, ends)
         elongation, internal = (

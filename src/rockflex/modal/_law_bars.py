@@ -184,8 +184,10 @@ class GapBar(ElementLaw):
     def branches(self) -> Mapping[str, Branch]:
         """Return the branch within the gap, and those beyond it."""
         if self.gap == 0.0:
-            return pieces([0.0, 1.0], [0.0, self.stiffness], mirrored=self.both_ways)
-        return pieces([0.0, self.gap, self.gap + 1.0], [0.0, 0.0, self.stiffness], mirrored=self.both_ways)
+            return branches_of_piecewise_bar([0.0, 1.0], [0.0, self.stiffness], mirrored=self.both_ways)
+        return branches_of_piecewise_bar(
+            [0.0, self.gap, self.gap + 1.0], [0.0, 0.0, self.stiffness], mirrored=self.both_ways
+        )
 
 
 @dataclass(frozen=True, repr=False)
@@ -240,7 +242,7 @@ class MultilinearBar(ElementLaw):
 
     def branches(self) -> Mapping[str, Branch]:
         """Return a branch for each piece."""
-        return pieces([0.0, *self.elongations], [0.0, *self.forces], mirrored=not self.tension_only)
+        return branches_of_piecewise_bar([0.0, *self.elongations], [0.0, *self.forces], mirrored=not self.tension_only)
 
 
 BARS: dict[str, type[ElementLaw]] = {
@@ -251,7 +253,9 @@ BARS: dict[str, type[ElementLaw]] = {
 """The classes of this module by the names of their kinds in files."""
 
 
-def pieces(elongations: Sequence[float], forces: Sequence[float], *, mirrored: bool) -> dict[str, Branch]:
+def branches_of_piecewise_bar(
+    elongations: Sequence[float], forces: Sequence[float], *, mirrored: bool
+) -> dict[str, Branch]:
     """Return the branches of a force that is linear between points from zero on, and beyond the last two.
 
     Where δ is negative the force is that of -δ, turned round, if `mirrored`; otherwise zero.

@@ -1,9 +1,8 @@
 """Models of a structure on a base that may uplift."""
 
 from rockflex.models._base_motion import horizontal_reaction
-from rockflex.models._between import LinearMotion, MotionBetween, Part, Shaking, inside
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._element import Element, Slider
+from rockflex.models._element import Element, FrictionElement
 from rockflex.models._element_states import (
     element_energies,
     element_forces,
@@ -14,10 +13,10 @@ from rockflex.models._elements import (
     LEFT,
     RIGHT,
     SUMS,
-    arm_of,
+    arm_of_element,
     element_force_sums,
     elements_of,
-    rate_of,
+    rate_of_elongation_row,
     stiffness_of_fuses,
 )
 from rockflex.models._impact import (
@@ -29,19 +28,17 @@ from rockflex.models._impact import (
     VVELSimplified,
     housner,
 )
-from rockflex.models._kept import (
-    accelerations,
-    acting_side,
-    phases_at,
-    rates_of,
-    under_more_gravity,
-    values_of,
-)
 from rockflex.models._label import Model, parse_model
 from rockflex.models._landing import GainsEnergyError
-from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout
-from rockflex.models._linear_system import ElementBase, element_base, linear_system_of
-from rockflex.models._named import (
+from rockflex.models._linear_system import LinearSystemBase, linear_system_base, linear_system_of
+from rockflex.models._motion_between_states import (
+    IntervalsOfPhase,
+    LinearMotion,
+    MotionBetween,
+    VerticalShaking,
+    series_between_states,
+)
+from rockflex.models._named_quantities import (
     element_moves,
     element_speeds,
     floor_quantities,
@@ -52,7 +49,7 @@ from rockflex.models._named import (
     tracked_elements,
 )
 from rockflex.models._nonlinear_ground_system import nonlinear_system
-from rockflex.models._nonlinear_system import key_of, with_marks
+from rockflex.models._nonlinear_system import nonlinear_system_key, states_with_branch_codes
 from rockflex.models._phase import BorderedSystem, Key
 from rockflex.models._quantities import (
     HORIZONTAL,
@@ -63,15 +60,24 @@ from rockflex.models._quantities import (
     SWING,
     VERTICAL,
     Quantities,
-    joined,
-    rows_of,
+    joined_quantities,
+    rows_of_quantities,
 )
 from rockflex.models._reactions import Reactions, printed_reactions, reactions, spring_forces
+from rockflex.models._rigid_ground_system import may_stack, system_on_rigid_ground
 from rockflex.models._rocking_model import LEVEL, Pose, RockingModel
 from rockflex.models._sliding import SlidingModel
 from rockflex.models._spring_model import LOADED, SpringModel
-from rockflex.models._stored import floor_accelerations, soil_strain, stored_energies
-from rockflex.models._system import may_stack, system_of
+from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME, StateLayout
+from rockflex.models._stored_energies import floor_accelerations, soil_strain, stored_energies
+from rockflex.models._values_at_states import (
+    accelerations_at_states,
+    acting_side,
+    phases_at_states,
+    quantities_at_states,
+    rates_at_states,
+    under_more_gravity,
+)
 
 __all__ = [
     "CLOSED",
@@ -95,32 +101,31 @@ __all__ = [
     "BorderedSystem",
     "BoucWen",
     "Element",
-    "ElementBase",
     "ForgottenLaw",
+    "FrictionElement",
     "GainsEnergyError",
     "ImpactLaw",
+    "IntervalsOfPhase",
     "Key",
     "LinearMotion",
+    "LinearSystemBase",
     "Model",
     "MotionBetween",
-    "Part",
     "Pose",
     "Quantities",
     "Reactions",
     "Restitution",
     "RockingModel",
-    "Shaking",
     "SidedRestitution",
-    "Slider",
     "SlidingModel",
     "SpringModel",
     "StateLayout",
     "VVELComplete",
     "VVELSimplified",
-    "accelerations",
+    "VerticalShaking",
+    "accelerations_at_states",
     "acting_side",
-    "arm_of",
-    "element_base",
+    "arm_of_element",
     "element_energies",
     "element_force_sums",
     "element_forces",
@@ -131,31 +136,32 @@ __all__ = [
     "floor_quantities",
     "horizontal_reaction",
     "housner",
-    "inside",
-    "joined",
-    "key_of",
+    "joined_quantities",
+    "linear_system_base",
     "linear_system_of",
     "may_stack",
     "modal_displacement",
     "nonlinear_system",
+    "nonlinear_system_key",
     "parse_model",
-    "phases_at",
+    "phases_at_states",
     "plastic_stretches",
     "printed_reactions",
     "quantities",
-    "rate_of",
-    "rates_of",
+    "quantities_at_states",
+    "rate_of_elongation_row",
+    "rates_at_states",
     "reactions",
     "rotation_by_side",
     "rotation_rate_by_side",
-    "rows_of",
+    "rows_of_quantities",
+    "series_between_states",
     "soil_strain",
     "spring_forces",
+    "states_with_branch_codes",
     "stiffness_of_fuses",
     "stored_energies",
-    "system_of",
+    "system_on_rigid_ground",
     "tracked_elements",
     "under_more_gravity",
-    "values_of",
-    "with_marks",
 ]

@@ -16,7 +16,7 @@ BORDER = 1e-12  # relative: an elongation this close to the end of a branch stil
 BROKEN_FOR_GOOD = 1e30  # the internal variable of an element that has broken, m
 
 
-class Pull(NamedTuple):
+class ElementTension(NamedTuple):
     """Tension of an element on one branch: F = stiffness δ + damping δ' + force + recall m; m is internal."""
 
     stiffness: float = 0.0
@@ -25,7 +25,7 @@ class Pull(NamedTuple):
     recall: float = 0.0
 
 
-class Stop(NamedTuple):
+class BranchLimit(NamedTuple):
     """An elongation δ = place + recall m that ends a branch, reached from below if `upper`, and the next branch."""
 
     upper: bool
@@ -65,11 +65,11 @@ class Element(Protocol):
         """Its branches; a run starts on the first."""
         ...
 
-    def pull(self, branch: int) -> Pull:
+    def pull(self, branch: int) -> ElementTension:
         """Return the tension on a branch."""
         ...
 
-    def stops(self, branch: int) -> tuple[Stop, ...]:
+    def stops(self, branch: int) -> tuple[BranchLimit, ...]:
         """Return the elongations that end a branch."""
         ...
 
@@ -145,7 +145,7 @@ class WithoutMemory(Unbreakable):
     def branches(self) -> tuple[int, ...]:
         return (ELASTIC,)
 
-    def stops(self, branch: int) -> tuple[Stop, ...]:
+    def stops(self, branch: int) -> tuple[BranchLimit, ...]:
         del branch
         return ()
 
@@ -175,7 +175,7 @@ class WithoutMemory(Unbreakable):
 
 
 @dataclass(frozen=True)
-class Spring(WithoutMemory):
+class ElasticElement(WithoutMemory):
     """A tendon that stays elastic and cannot push: F = max(0, F_0 + k δ)."""
 
     stiffness: float
@@ -186,14 +186,14 @@ class Spring(WithoutMemory):
     def branches(self) -> tuple[int, ...]:
         return (ELASTIC, SLACK) if self.stiffness > 0.0 else (ELASTIC,)
 
-    def pull(self, branch: int) -> Pull:
-        return Pull() if branch == SLACK else Pull(self.stiffness, 0.0, self.initial_force)
+    def pull(self, branch: int) -> ElementTension:
+        return ElementTension() if branch == SLACK else ElementTension(self.stiffness, 0.0, self.initial_force)
 
-    def stops(self, branch: int) -> tuple[Stop, ...]:
+    def stops(self, branch: int) -> tuple[BranchLimit, ...]:
         if self.stiffness == 0.0:
             return ()
         slack = branch == SLACK
-        return (Stop(slack, -self.initial_force / self.stiffness, 0.0, ELASTIC if slack else SLACK),)
+        return (BranchLimit(slack, -self.initial_force / self.stiffness, 0.0, ELASTIC if slack else SLACK),)
 
     def branch_at(self, elongation: Array, memory: Array) -> NDArray[np.int64]:
         del memory
@@ -209,15 +209,15 @@ class Spring(WithoutMemory):
 
 
 @dataclass(frozen=True)
-class Dashpot(WithoutMemory):
+class ViscousElement(WithoutMemory):
     """A viscous damper: F = c δ'."""
 
     coefficient: float
     position: float | None
 
-    def pull(self, branch: int) -> Pull:
+    def pull(self, branch: int) -> ElementTension:
         del branch
-        return Pull(damping=self.coefficient)
+        return ElementTension(damping=self.coefficient)
 
     def lost_energy(self, elongation: Array, force: Array, plastic: Array, stored: Array, sweep: Array) -> Array:
         """C ∫ δ'² dt."""
@@ -226,7 +226,7 @@ class Dashpot(WithoutMemory):
 
 
 @dataclass(frozen=True)
-class Bar:
+class YieldingElement:
     """A fuse, or a tendon that yields: F = α k e + (1 - α) z, z = k (e - m) within ± F_y, e = δ + e_0.
 
     The internal variable m is the plastic stretch. A bar that cannot push has no compression: F = max(0, ·).
@@ -258,26 +258,31 @@ class Bar:
     def branches(self) -> tuple[int, ...]:
         return (ELASTIC, UP, DOWN, SLACK, BROKEN)
 
-    def pull(self, branch: int) -> Pull:
+    def pull(self, branch: int) -> ElementTension:
         k, a, e0 = self.stiffness, self.ratio, self.stretched
         if branch == ELASTIC:
-            return Pull(k, 0.0, k * e0, -(1.0 - a) * k)
+            return ElementTension(k, 0.0, k * e0, -(1.0 - a) * k)
         if branch in (UP, DOWN):
             sign = 1.0 if branch == UP else -1.0
-            return Pull(a * k, 0.0, a * k * e0 + sign * (1.0 - a) * self.yield_force)
-        return Pull()
+            return ElementTension(a * k, 0.0, a * k * e0 + sign * (1.0 - a) * self.yield_force)
+        return ElementTension()
 
-    def stops(self, branch: int) -> tuple[Stop, ...]:
+    def stops(self, branch: int) -> tuple[BranchLimit, ...]:
         reach, e0 = self.yield_force / self.stiffness, self.stretched
-        breaks = () if np.isinf(self.rupture) else (Stop(True, self.rupture, 0.0, BROKEN),)
+        breaks = () if np.isinf(self.rupture) else (BranchLimit(True, self.rupture, 0.0, BROKEN),)
         empty = 1.0 - self.ratio
         if branch == ELASTIC:
-            slackens = (Stop(False, -e0, empty, SLACK),) if self.pulls_only else ()
-            return (Stop(True, reach - e0, 1.0, UP), Stop(False, -reach - e0, 1.0, DOWN), *slackens, *breaks)
+            slackens = (BranchLimit(False, -e0, empty, SLACK),) if self.pulls_only else ()
+            return (
+                BranchLimit(True, reach - e0, 1.0, UP),
+                BranchLimit(False, -reach - e0, 1.0, DOWN),
+                *slackens,
+                *breaks,
+            )
         if branch == SLACK:
-            return (Stop(True, -e0, empty, ELASTIC), *breaks)
+            return (BranchLimit(True, -e0, empty, ELASTIC), *breaks)
         if branch == DOWN and self.pulls_only and self.ratio > 0.0:
-            return (Stop(False, empty / self.ratio * reach - e0, 0.0, SLACK),)
+            return (BranchLimit(False, empty / self.ratio * reach - e0, 0.0, SLACK),)
         return breaks if branch == UP else ()
 
     def direction(self, branch: int) -> int:
@@ -341,10 +346,10 @@ class Bar:
 
 
 @dataclass(frozen=True)
-class Story(Bar):
+class YieldingStoryElement(YieldingElement):
     """A story that yields, less its elastic part k δ, which belongs to the modes."""
 
-    def pull(self, branch: int) -> Pull:
+    def pull(self, branch: int) -> ElementTension:
         whole = super().pull(branch)
         return whole._replace(stiffness=whole.stiffness - self.stiffness)
 
@@ -355,7 +360,7 @@ class Story(Bar):
 
 
 @dataclass(frozen=True)
-class Slider(Unbreakable):
+class FrictionElement(Unbreakable):
     """A friction damper: F = ± F_0 while it slides, less while it sticks. It remembers its direction, 1, 0 or -1."""
 
     force: float
@@ -369,10 +374,10 @@ class Slider(Unbreakable):
     def branches(self) -> tuple[int, ...]:
         return (HELD, OUTWARD, INWARD)
 
-    def pull(self, branch: int) -> Pull:
-        return Pull(force=self.direction(branch) * self.force)
+    def pull(self, branch: int) -> ElementTension:
+        return ElementTension(force=self.direction(branch) * self.force)
 
-    def stops(self, branch: int) -> tuple[Stop, ...]:
+    def stops(self, branch: int) -> tuple[BranchLimit, ...]:
         del branch
         return ()
 
@@ -441,13 +446,13 @@ class LawElement:
     def branches(self) -> tuple[int, ...]:
         return tuple(range(len(self.parts)))
 
-    def pull(self, branch: int) -> Pull:
+    def pull(self, branch: int) -> ElementTension:
         part = self.parts[branch]
-        return Pull(part.stiffness, 0.0, part.force, part.internal)
+        return ElementTension(part.stiffness, 0.0, part.force, part.internal)
 
-    def stops(self, branch: int) -> tuple[Stop, ...]:
+    def stops(self, branch: int) -> tuple[BranchLimit, ...]:
         ends = self.parts[branch].ends
-        return tuple(Stop(end.rising, end.elongation, end.internal, self.places[end.branch]) for end in ends)
+        return tuple(BranchLimit(end.rising, end.elongation, end.internal, self.places[end.branch]) for end in ends)
 
     def yields(self, branch: int) -> bool:
         return self.parts[branch].yields != 0

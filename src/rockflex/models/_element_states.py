@@ -3,10 +3,10 @@
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex.models._element import Slider
-from rockflex.models._elements import hold_shares, is_held
-from rockflex.models._kept import acting_side, by_phase, held_moment
+from rockflex.models._element import FrictionElement
+from rockflex.models._elements import friction_damper_shares, is_held_by_dampers
 from rockflex.models._rocking_model import RockingModel
+from rockflex.models._values_at_states import acting_side, held_moment, states_by_phase
 
 
 def element_forces(model: RockingModel, states: Array) -> Array:
@@ -14,17 +14,19 @@ def element_forces(model: RockingModel, states: Array) -> Array:
     found = np.zeros((states.shape[0], len(model.elements)))
     if not model.elements:
         return found
-    for chosen, key, given in by_phase(model, states, acting_side(states)):
+    for chosen, key, given in states_by_phase(model, states, acting_side(states)):
         found[chosen] = model.stretched(given) @ model.tensions(key).T
         if (
             model.complete
             and model.springs is None
-            and is_held(model.properties, model.elements, model.element_key(key))
+            and is_held_by_dampers(model.properties, model.elements, model.element_key(key))
         ):
-            shares = hold_shares(model.properties, model.elements, key[0])
+            shares = friction_damper_shares(model.properties, model.elements, key[0])
             found[chosen] += np.outer(held_moment(model, states[chosen]), shares)
     for place, each in enumerate(model.elements):
-        if isinstance(each, Slider):  # where it turns back without a stop, it would take more than F_0 to hold the base
+        if isinstance(
+            each, FrictionElement
+        ):  # where it turns back without a stop, it would take more than F_0 to hold the base
             np.clip(found[:, place], -each.force, each.force, out=found[:, place])
     return found
 
@@ -39,7 +41,7 @@ def plastic_stretches(model: RockingModel, states: Array) -> Array:
     found = np.zeros(delta.shape)
     if not layout.n_internal:
         return found
-    for chosen, key, vector in by_phase(model, states, acting_side(states)):
+    for chosen, key, vector in states_by_phase(model, states, acting_side(states)):
         memory = layout.memory
         for place, (each, branch) in enumerate(zip(model.elements, model.element_key(key)[1:], strict=True)):
             if each.stretches is not None:

@@ -15,9 +15,19 @@ from rockflex.modal import (
     ViscousDamper,
     YieldingDissipator,
 )
-from rockflex.models._element import HELD, Bar, Dashpot, Element, LawElement, Slider, Spring, Stop, Story
-from rockflex.models._layout import StateLayout
+from rockflex.models._element import (
+    HELD,
+    BranchLimit,
+    ElasticElement,
+    Element,
+    FrictionElement,
+    LawElement,
+    ViscousElement,
+    YieldingElement,
+    YieldingStoryElement,
+)
 from rockflex.models._phase import BaseEquations, Key
+from rockflex.models._state_layout import StateLayout
 
 CLOSED, RIGHT, LEFT = 0, 1, -1  # branches of the base: in contact, or rotating about one pivot; the sign of θ
 QUARTER_TURN = 0.5 * np.pi  # rad: a base that has rotated so far has overturned
@@ -42,17 +52,19 @@ def weight_equations(
     )
 
 
-def arm_of(properties: RockingProperties, element: Element, side: int) -> float:
+def arm_of_element(properties: RockingProperties, element: Element, side: int) -> float:
     """Return the distance r of an element from a pivot in m; negative beyond the pivot, zero if attached to floors."""
     return 0.0 if element.position is None else properties.pivot(side).arm - side * element.position
 
 
-def first_key(properties: RockingProperties, elements: tuple[Element, ...], side: int) -> Key:
+def first_branches(properties: RockingProperties, elements: tuple[Element, ...], side: int) -> Key:
     """Return the branches at the start of a run in contact, or as the base begins to rotate about a pivot."""
-    return set_off(properties, elements, (side, *(each.branches[0] for each in elements)), side)
+    return branches_of_moving_elements(properties, elements, (side, *(each.branches[0] for each in elements)), side)
 
 
-def set_off(properties: RockingProperties, elements: tuple[Element, ...], key: Key, turn: int) -> Key:
+def branches_of_moving_elements(
+    properties: RockingProperties, elements: tuple[Element, ...], key: Key, turn: int
+) -> Key:
     """Return the branches as the base begins to rotate, with the sign `turn` of θ'; 0 as it stops.
 
     Attached elements go on as they were.
@@ -62,27 +74,29 @@ def set_off(properties: RockingProperties, elements: tuple[Element, ...], key: K
         if each.position is None:
             found.append(branch)
             continue
-        reach = side * turn * arm_of(properties, each, side) if side != CLOSED else 0.0
+        reach = side * turn * arm_of_element(properties, each, side) if side != CLOSED else 0.0
         stopped = each.stopped(branch)
         found.append(each.moving(stopped, int(np.sign(reach))) if turn else stopped)
     return (side, *found)
 
 
-def is_held(properties: RockingProperties, elements: tuple[Element, ...], key: Key) -> bool:
+def is_held_by_dampers(properties: RockingProperties, elements: tuple[Element, ...], key: Key) -> bool:
     """Return whether friction dampers hold the base at a rotation."""
     return key[0] != CLOSED and any(
-        isinstance(each, Slider) and branch == HELD and arm_of(properties, each, key[0]) != 0.0
+        isinstance(each, FrictionElement) and branch == HELD and arm_of_element(properties, each, key[0]) != 0.0
         for each, branch in zip(elements, key[1:], strict=True)
     )
 
 
-def hold_shares(properties: RockingProperties, elements: tuple[Element, ...], side: int) -> Array:
+def friction_damper_shares(properties: RockingProperties, elements: tuple[Element, ...], side: int) -> Array:
     """Return the tension of each element per N m that friction dampers balance while they hold the base, in 1/m, (E,).
 
     Each takes a part in proportion to its force F_0, as at the instant in which they slide; zero for other elements.
     """
-    arms = np.array([arm_of(properties, each, side) if isinstance(each, Slider) else 0.0 for each in elements])
-    forces = np.array([each.force if isinstance(each, Slider) else 0.0 for each in elements])
+    arms = np.array(
+        [arm_of_element(properties, each, side) if isinstance(each, FrictionElement) else 0.0 for each in elements]
+    )
+    forces = np.array([each.force if isinstance(each, FrictionElement) else 0.0 for each in elements])
     return side * np.sign(arms) * forces / float(forces @ np.abs(arms))
 
 
@@ -111,7 +125,7 @@ def base_equations_of(
     side, known, count = key[0], internal_places(elements), internal_count(elements)
     total = weight_equations(properties, side, count, gravity)
     for place, (each, branch) in enumerate(zip(elements, key[1:], strict=True)):
-        r, pull = arm_of(properties, each, side), each.pull(branch)
+        r, pull = arm_of_element(properties, each, side), each.pull(branch)
         recall = np.zeros(count)
         if place in known:
             recall[known[place]] = -side * pull.recall * r
@@ -132,19 +146,19 @@ def element_force_sums(properties: RockingProperties, elements: tuple[Element, .
     total = np.zeros((SUMS, 1 + internal_count(elements)))
     terms: list[tuple[float, ...]] = []
     for place, (each, branch) in enumerate(zip(elements, key[1:], strict=True)):
-        r = arm_of(properties, each, key[0]) if key[0] != CLOSED else 0.0
+        r = arm_of_element(properties, each, key[0]) if key[0] != CLOSED else 0.0
         k, c, f, g = each.pull(branch)
         terms.append((f * r, k * r**2, c * r**2, f, k * r, c * r))
         if place in known:
             total[MOMENT, 1 + known[place]], total[FORCE, 1 + known[place]] = g * r, g
     # Exactly rounded, so that mirrored bases have the same sums to the last digit.
     total[:HOLD, 0] = [math.fsum(values) for values in zip(*terms, strict=True)] or 0.0
-    total[HOLD, 0] = is_held(properties, elements, key)
+    total[HOLD, 0] = is_held_by_dampers(properties, elements, key)
     total.setflags(write=False)
     return total
 
 
-def is_in_reach(stop: Stop, arm: float) -> bool:
+def is_in_reach(stop: BranchLimit, arm: float) -> bool:
     """Return whether some rotation about a pivot can bring an element at the distance `arm` to the end of a branch.
 
     None makes a tendon between the pivots slack that has not yielded: the base lands first.
@@ -153,16 +167,16 @@ def is_in_reach(stop: Stop, arm: float) -> bool:
     return arm != 0.0 and (stop.recall != 0.0 or stop.place / arm > 0.0 or (outer and stop.place == 0.0))
 
 
-def turning_way(properties: RockingProperties, elements: tuple[Element, ...], key: Key) -> int:
+def direction_of_yielding(properties: RockingProperties, elements: tuple[Element, ...], key: Key) -> int:
     """Return the sign of |θ|' while elements yield or slide, which ends where it vanishes; 0 if none does."""
     ways = (
-        each.direction(branch) * int(np.sign(arm_of(properties, each, key[0])))
+        each.direction(branch) * int(np.sign(arm_of_element(properties, each, key[0])))
         for each, branch in zip(reversed(elements), reversed(key[1:]), strict=True)
     )
     return next((way for way in ways if way), 0)
 
 
-def marks_of(elements: tuple[Element, ...], key: Key) -> tuple[tuple[int, float], ...]:
+def internal_variables_of_branches(elements: tuple[Element, ...], key: Key) -> tuple[tuple[int, float], ...]:
     """Return the memories that have a value of their own on the branches, by index."""
     known = internal_places(elements)
     last = {place: first + elements[place].n_internal - 1 for place, first in known.items()}
@@ -183,7 +197,10 @@ def stiffness_of_fuses(properties: RockingProperties, side: int) -> float:
 
 def elements_of(properties: RockingProperties) -> tuple[Element, ...]:
     """Return the elements of a structure, in its order, and then its stories that yield."""
-    stories = (Story(each.stiffness, each.yield_force, each.post_yield_ratio, None) for each in properties.stories)
+    stories = (
+        YieldingStoryElement(each.stiffness, each.yield_force, each.post_yield_ratio, None)
+        for each in properties.stories
+    )
     return (*map(_element_of, properties.elements), *stories)
 
 
@@ -192,22 +209,24 @@ def _element_of(given: BaseElement) -> Element:
         return LawElement(given)
     position = None if given.attached else given.position
     if isinstance(given, ViscousDamper):
-        return Dashpot(given.coefficient, position)
+        return ViscousElement(given.coefficient, position)
     if isinstance(given, FrictionDamper):
         # Without force there is nothing to stick or slide.
-        return Slider(given.force, position) if given.force > 0.0 else Dashpot(0.0, position)
+        return FrictionElement(given.force, position) if given.force > 0.0 else ViscousElement(0.0, position)
     rupture = np.inf if given.rupture_elongation is None else given.rupture_elongation
     if isinstance(given, YieldingDissipator):
-        return Bar(
+        return YieldingElement(
             given.stiffness, given.yield_force, given.post_yield_ratio, position, 0.0, given.tension_only, rupture
         )
     if given.post_yield_ratio is None or given.yield_force is None:
-        return Spring(given.stiffness, given.initial_force, position)
+        return ElasticElement(given.stiffness, given.initial_force, position)
     stretched = given.initial_force / given.stiffness
-    return Bar(given.stiffness, given.yield_force, given.post_yield_ratio, position, stretched, True, rupture)
+    return YieldingElement(
+        given.stiffness, given.yield_force, given.post_yield_ratio, position, stretched, True, rupture
+    )
 
 
-def attached_rows(properties: RockingProperties, layout: StateLayout) -> dict[int, Array]:
+def elongation_rows_of_attached(properties: RockingProperties, layout: StateLayout) -> dict[int, Array]:
     """Return the elongations of attached elements and stories in m by their places, as rows, shape (C,)."""
     found, stories = dict[int, Array](), len(properties.elements)
     places = [k for k, each in enumerate(properties.elements) if each.attached]
@@ -244,7 +263,7 @@ def _row_of(element: BaseElement, layout: StateLayout, shapes: Array, floors: Fl
     return row
 
 
-def rate_of(row: Array, layout: StateLayout) -> Array:
+def rate_of_elongation_row(row: Array, layout: StateLayout) -> Array:
     """Return the rate of a row over displacements, the rotation, the slip and the heave."""
     found, n = np.zeros_like(row), layout.modes
     found[n : 2 * n] = row[:n]

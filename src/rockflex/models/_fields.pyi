@@ -2,12 +2,12 @@ from collections.abc import Callable, Sequence
 
 from rockflex._arrays import Array
 from rockflex.engine import Field, Jump
-from rockflex.models._vector_fields import Numbers
+from rockflex.models._vector_fields import FieldNumbers
 
 class RockingField(Field):
     def __init__(
         self,
-        numbers: Numbers,
+        numbers: FieldNumbers,
         side: int,
         branch: int,
         pulls: Array,

@@ -83,15 +83,15 @@ def pose_at_rest(label: str, properties: RockingProperties, springs: Springs, *,
     weight, bent = properties.l0r * GRAVITY, 0.0
     if complete:
         bent = float(np.sum(properties.effective_mass / properties.omega**2)) * GRAVITY**2
-    pose = _at_rest(label, properties, springs, weight + bent)
+    pose = _pose_at_rest_on_springs(label, properties, springs, weight + bent)
     for _ in range(TURNS if pose.rotation and complete else 0):
         level = float(np.cos(pose.rotation))
-        lean, heave = _at_rest(label, properties, springs, weight / level + bent)
+        lean, heave = _pose_at_rest_on_springs(label, properties, springs, weight / level + bent)
         pose = Pose(float(np.arcsin(lean)), heave)
     return pose
 
 
-def _at_rest(label: str, properties: RockingProperties, springs: Springs, toppling: float) -> Pose:
+def _pose_at_rest_on_springs(label: str, properties: RockingProperties, springs: Springs, toppling: float) -> Pose:
     """Return the pose at rest with a moment of the weight in N m/rad."""
     p = properties
     under = [(each.position, each.pull(each.branches[0]).force) for each in elements_of(p)]
@@ -117,7 +117,7 @@ def _at_rest(label: str, properties: RockingProperties, springs: Springs, toppli
     )
 
 
-def check_base(properties: RockingProperties, ground: Ground) -> None:
+def check_base_on_ground(properties: RockingProperties, ground: Ground) -> None:
     """Check that a structure can stand on the ground.
 
     Raises

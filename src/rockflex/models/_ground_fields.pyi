@@ -4,7 +4,7 @@ from typing import Any
 from rockflex._arrays import Array
 from rockflex.engine import Field
 from rockflex.models._phase import GroundPhase
-from rockflex.models._vector_fields import Numbers
+from rockflex.models._vector_fields import FieldNumbers
 
 GRIP: int
 PRESSURE: int
@@ -16,7 +16,7 @@ SPEED: int
 class GroundField(Field):
     def __init__(
         self,
-        numbers: Numbers,
+        numbers: FieldNumbers,
         phase: GroundPhase,
         stops: Sequence[tuple[int, int, tuple[float, float]]],
         checks: Sequence[tuple[Any, ...]],

@@ -12,7 +12,7 @@ from rockflex._errors import InputError
 from rockflex._shown import number_with_noun, shown
 from rockflex.modal import FrictionDamper, Ground, RockingProperties, initial_force
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._ground import check_base, model_on_ground
+from rockflex.models._ground import check_base_on_ground, model_on_ground
 from rockflex.models._impact import ImpactLaw, VVELComplete, VVELSimplified, housner
 from rockflex.models._rocking_model import RockingModel
 
@@ -163,7 +163,7 @@ class Model:
         label = self._check_yielding(kept, bouc_wen)
         if ground is not None and not ground.rigid:
             self._check_ground(label, ground, impact)
-            check_base(kept, ground)
+            check_base_on_ground(kept, ground)
             given = impact if impact is not None or ground.springs is not None else self._law(kept)
             return model_on_ground(
                 label, kept, ground, given, self.missing_mass, complete=self.complete, bouc_wen=bouc_wen

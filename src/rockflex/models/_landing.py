@@ -22,12 +22,12 @@ class GainsEnergyError(SolverError):
     """An impact law returns more energy than there was."""
 
 
-def gains_energy(model: RockingModel) -> GainsEnergyError:
+def landing_gains_energy_error(model: RockingModel) -> GainsEnergyError:
     """Return the error of a model whose impact law returns energy."""
     return GainsEnergyError(f"The impact law {shown(model.law)} returns energy.")
 
 
-def landing_of(
+def landing_jump(
     model: RockingModel,
     side: int,
     keys: Mapping[int, Key],
@@ -54,7 +54,7 @@ def landing_of(
     callable
         It raises `GainsEnergyError` if the law returns energy, and `InputError` if the law fails.
     """
-    p, shortest = model.properties, shortest_excursion(sided(model.law, side))
+    p, shortest = model.properties, shortest_excursion(impact_law_of_side(model.law, side))
     N, height, mass = p.n_modes, p.effective_height, p.effective_mass
     modes, rotation, spin = slice(N, 2 * N), 2 * N, 2 * N + 1
 
@@ -74,14 +74,16 @@ def landing_of(
                 after[modes] += height * passed
                 after[spin], onto = 0.0, CLOSED
         if gained > GAIN * before:
-            raise gains_energy(model)
+            raise landing_gains_energy_error(model)
         return after, keys[onto]
 
     return land
 
 
-def turn_by_rows(rows: Mapping[int, tuple[Array, Array]]) -> Callable[[int, Array, float, float], float]:
-    """Return θ'' as `landing_of` needs it, from a row of each side over the states, the acceleration and 1.
+def rotation_acceleration_by_rows(
+    rows: Mapping[int, tuple[Array, Array]],
+) -> Callable[[int, Array, float, float], float]:
+    """Return θ'' as `landing_jump` needs it, from a row of each side over the states, the acceleration and 1.
 
     The second row of a side is what each m/s² of vertical acceleration adds to the first.
     """
@@ -93,7 +95,7 @@ def turn_by_rows(rows: Mapping[int, tuple[Array, Array]]) -> Callable[[int, Arra
     return turn
 
 
-def sided(law: ImpactLaw, side: int) -> ImpactLaw:
+def impact_law_of_side(law: ImpactLaw, side: int) -> ImpactLaw:
     """Return the law of the edge about which the base rotates on a side."""
     if isinstance(law, SidedRestitution):
         return law.right if side == RIGHT else law.left

@@ -15,19 +15,19 @@ from rockflex.models._elements import (
     LEFT,
     QUARTER_TURN,
     RIGHT,
-    arm_of,
+    arm_of_element,
     base_equations_of,
+    branches_of_moving_elements,
+    direction_of_yielding,
     internal_count,
     internal_places,
     is_in_reach,
-    rate_of,
-    set_off,
-    turning_way,
+    rate_of_elongation_row,
 )
 from rockflex.models._impact import Restitution, VVELSimplified
-from rockflex.models._landing import landing_of, sided, turn_by_rows
+from rockflex.models._landing import impact_law_of_side, landing_jump, rotation_acceleration_by_rows
 from rockflex.models._phase import Key
-from rockflex.models._quantities import Quantities, rows_of
+from rockflex.models._quantities import Quantities, rows_of_quantities
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._sliding import LOST, STICK, SlidingModel
 from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, SpringModel
@@ -37,16 +37,16 @@ LEAST_ELONGATION = 1e-6  # m
 MORE = 1e6  # m/s², of gravity: the terms that it adds outweigh the rounding of all others
 
 
-def element_base(
+def linear_system_base(
     model: RockingModel, quantities: Quantities, extremes: Quantities, *, shaken: bool = False
-) -> "ElementBase":
+) -> "LinearSystemBase":
     """Return the base of a linear model, on rigid ground or on springs; `shaken` where the ground moves vertically."""
     if isinstance(model, SpringModel):
-        return OnSprings(model, quantities, extremes, shaken)
-    return OnRigidGround(model, quantities, extremes, shaken)
+        return LinearOnSprings(model, quantities, extremes, shaken)
+    return LinearOnRigidGround(model, quantities, extremes, shaken)
 
 
-def linear_system_of(base: "ElementBase") -> System:
+def linear_system_of(base: "LinearSystemBase") -> System:
     """Return a linear model as a hybrid system.
 
     The states are the motion and the elastic stretches of the bars. The outputs are the rotation, the quantities,
@@ -59,7 +59,7 @@ def linear_system_of(base: "ElementBase") -> System:
 
 
 @dataclass(frozen=True, eq=False)
-class ElementBase:
+class LinearSystemBase:
     """What the bases have in common: states, outputs, and the conversion from and to the states of the model.
 
     A row has the columns of the states, the ground acceleration and 1.
@@ -125,7 +125,7 @@ class ElementBase:
         return Event(name, row[:n], key, float(row[n + 1]), float(row[n]), max(scale, TINY), jump)  # pyright: ignore[reportArgumentType]
 
     @cached_property
-    def heavier(self) -> "ElementBase":
+    def heavier(self) -> "LinearSystemBase":
         """The same under more gravity: a vertical acceleration acts in the same way."""
         return replace(self, model=replace(self.model, gravity=self.model.gravity + MORE), shaken=False)
 
@@ -159,8 +159,8 @@ class ElementBase:
         rows = np.vstack(
             (
                 self.unit(model.layout.rotation),
-                self.taken(rows_of(model, self.quantities, key), key),
-                self.taken(rows_of(model, self.extremes, key), key),
+                self.taken(rows_of_quantities(model, self.quantities, key), key),
+                self.taken(rows_of_quantities(model, self.extremes, key), key),
                 self.taken(model.lost_support(key), key),
             )
         )
@@ -193,7 +193,7 @@ class ElementBase:
 
     def stretching(self, place: int, key: Key) -> Array:
         """The rate of the elongation of an element: a row."""
-        return rate_of(self.model.stretch(place, key[0]), self.model.layout)[self.columns]
+        return rate_of_elongation_row(self.model.stretch(place, key[0]), self.model.layout)[self.columns]
 
     def events(self, key: Key) -> list[Event]:
         """What ends a phase."""
@@ -293,7 +293,7 @@ class ElementBase:
 
 
 @dataclass(frozen=True, eq=False)
-class OnRigidGround(ElementBase):
+class LinearOnRigidGround(LinearSystemBase):
     """A base that rocks about its edges, and may slide (Silva & Stojadinović 2024, Eqs. 15 and 23 to 25)."""
 
     @property
@@ -328,7 +328,7 @@ class OnRigidGround(ElementBase):
         found, weight = list[Event](), p.m_tot * model.gravity * p.half_width
         known = internal_places(model.elements)
         for turn in (RIGHT, LEFT):
-            following = set_off(p, model.elements, (side or turn, *base[1:]), turn)
+            following = branches_of_moving_elements(p, model.elements, (side or turn, *base[1:]), turn)
             equations, row = base_equations_of(p, model.elements, following, model.gravity), moment.copy()
             for place in self.bars:
                 row[model.layout.memory + known[place]] -= float(equations.recall[0, known[place]])
@@ -350,7 +350,7 @@ class OnRigidGround(ElementBase):
         """The elements that take other branches at some elongation."""
         found, base = list[Event](), self.model.element_key(key)
         for place, each in enumerate(self.model.elements):
-            arm = arm_of(self.model.properties, each, base[0])
+            arm = arm_of_element(self.model.properties, each, base[0])
             reached = [is_in_reach(stop, arm) for stop in each.stops(base[1 + place])]
             for within, (row, branch, scale) in zip(reached, self.stops(place, key, base[1 + place]), strict=True):
                 following = (*base[: place + 1], branch, *base[place + 2 :])
@@ -363,10 +363,10 @@ class OnRigidGround(ElementBase):
     def turning(self, key: Key) -> list[Event]:
         """The rotation turns back while elements yield or slide, whose branches then end."""
         model, base, spin = self.model, self.model.element_key(key), self.model.layout.spin
-        way = turning_way(model.properties, model.elements, base)
+        way = direction_of_yielding(model.properties, model.elements, base)
         if way == 0:
             return []
-        turned = set_off(model.properties, model.elements, base, 0)
+        turned = branches_of_moving_elements(model.properties, model.elements, base, 0)
         row = base[0] * way * self.unit(spin)
         return [self.event("turn", row, self.along(key, turned), 1.0, self.without(spin))]
 
@@ -374,13 +374,15 @@ class OnRigidGround(ElementBase):
         """The impact, after which rocking may go on to the other side."""
         model, side = self.model, key[0]
         contact, other = self.beside(key, CLOSED), self.beside(key, -side)
-        row, law = side * self.unit(model.layout.rotation), sided(model.law, side)
+        row, law = side * self.unit(model.layout.rotation), impact_law_of_side(model.law, side)
         if isinstance(law, VVELSimplified) or (isinstance(law, Restitution) and law.e == 0.0):
             return self.event("impact", row, contact, QUARTER_TURN, self.struck(0.0))
         if not isinstance(law, Restitution) or self._gains(side, law):
             keys = {each: self.beside(key, each) for each in (CLOSED, RIGHT, LEFT)}
             turns = {each: (self.turn(keys[each]), self.turn_by_weight(keys[each])) for each in (RIGHT, LEFT)}
-            jump = landing_of(model, side, keys, lambda each, _: model.free_inertia(each), turn_by_rows(turns))
+            jump = landing_jump(
+                model, side, keys, lambda each, _: model.free_inertia(each), rotation_acceleration_by_rows(turns)
+            )
             return self.event("impact", row, contact, QUARTER_TURN, jump)
         back = law.shortest_excursion * side * self.turn(other)  # what θ' would lose within the shortest excursion
         back[model.layout.spin] += 2.0 * side
@@ -391,7 +393,9 @@ class OnRigidGround(ElementBase):
     def beside(self, key: Key, side: int) -> Key:
         """The phase after an impact, on one side or in contact."""
         base = self.model.element_key(key)
-        return self.along(key, set_off(self.model.properties, self.model.elements, (side, *base[1:]), side))
+        return self.along(
+            key, branches_of_moving_elements(self.model.properties, self.model.elements, (side, *base[1:]), side)
+        )
 
     def turn(self, key: Key) -> Array:
         """θ'' in a phase: a row."""
@@ -400,7 +404,7 @@ class OnRigidGround(ElementBase):
     def turn_by_weight(self, key: Key) -> Array:
         """What each m/s² of vertical acceleration adds to θ'': a row."""
         heavier = self.heavier
-        assert isinstance(heavier, OnRigidGround)
+        assert isinstance(heavier, LinearOnRigidGround)
         return (heavier.turn(key) - self.turn(key)) / MORE
 
     def struck(self, e: float) -> Array:
@@ -438,7 +442,7 @@ class OnRigidGround(ElementBase):
 
 
 @dataclass(frozen=True, eq=False)
-class OnSprings(ElementBase):
+class LinearOnSprings(LinearSystemBase):
     """A base on springs that cannot pull: it rotates, heaves and may slide."""
 
     model: SpringModel  # pyright: ignore[reportIncompatibleVariableOverride]

@@ -8,11 +8,11 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex.engine import Event, StateLayout, System
 from rockflex.models._base_motion import horizontal_reaction
-from rockflex.models._elements import CLOSED, QUARTER_TURN, internal_places, marks_of
+from rockflex.models._elements import CLOSED, QUARTER_TURN, internal_places, internal_variables_of_branches
 from rockflex.models._ground_fields import DEPTH, GRIP, PRESSURE, PUSH, SPEED, STRETCH
-from rockflex.models._nonlinear_system import Check, Rocks, key_of, own_key
+from rockflex.models._nonlinear_system import Check, NonlinearRockingPhases, model_key, nonlinear_system_key
 from rockflex.models._phase import Key
-from rockflex.models._quantities import Quantities, joined
+from rockflex.models._quantities import Quantities, joined_quantities
 from rockflex.models._rocking_model import RockingModel
 from rockflex.models._sliding import LOST, STICK, SlidingModel
 from rockflex.models._spring_model import LIFTED, LOADED, RECEDING, SpringModel
@@ -30,14 +30,24 @@ def nonlinear_system(model: RockingModel, quantities: Quantities, extremes: Quan
     parts = {f"state {k}": 1 for k in range(layout.size)}
     names = ("rotation", *(f"quantity {k}" for k in range(len(quantities))))
     names += (*(f"extreme {k}" for k in range(len(most))), "loss of support")
-    kind = Stands if isinstance(model, SpringModel) else Slides if isinstance(model, SlidingModel) else Rocks
-    phases = kind(model, joined((quantities, most)))
+    kind = (
+        NonlinearSpringPhases
+        if isinstance(model, SpringModel)
+        else NonlinearSlidingPhases
+        if isinstance(model, SlidingModel)
+        else NonlinearRockingPhases
+    )
+    phases = kind(model, joined_quantities((quantities, most)))
     return System(
-        StateLayout(**parts), names, phases.phase, key_of(model, model.start(CLOSED)), names[1 + len(quantities) :]
+        StateLayout(**parts),
+        names,
+        phases.phase,
+        nonlinear_system_key(model, model.start(CLOSED)),
+        names[1 + len(quantities) :],
     )
 
 
-class Slides(Rocks):
+class NonlinearSlidingPhases(NonlinearRockingPhases):
     """The phases of a model that slides on rigid ground."""
 
     model: SlidingModel
@@ -45,7 +55,7 @@ class Slides(Rocks):
     def slips(self, key: Key, first: int) -> tuple[list[Check], tuple[Event, ...]]:
         """The base begins to slide, ends it, or loses its pressure on the ground (Coulomb)."""
         model, layout = self.model, self.model.layout
-        model.bordered_system(own_key(model, key))  # raises an error if the base jams at a small rotation
+        model.bordered_system(model_key(model, key))  # raises an error if the base jams at a small rotation
         place = -1 - (model.bouc_wen is not None)
         slip, weight = key[place], model.properties.m_tot * model.gravity
         way = 1 if slip > 0 else -1
@@ -77,7 +87,7 @@ class Slides(Rocks):
     def contact_rows(self, model: Any, key: Key) -> dict[int, Array]:
         """Conditions of the slip in contact: rows over the state, a and 1, by their factors while the base rocks."""
         assert isinstance(model, SlidingModel)
-        own = own_key(self.model, key)
+        own = model_key(self.model, key)
         pressure = model.pressure(own)
         rows = {-1: -pressure, 1: pressure}
         if own[-1] == STICK:
@@ -90,7 +100,7 @@ class Slides(Rocks):
         return found
 
 
-class Stands(Rocks):
+class NonlinearSpringPhases(NonlinearRockingPhases):
     """The phases of a model on springs."""
 
     model: SpringModel
@@ -180,8 +190,8 @@ class Stands(Rocks):
     def kept(self, key: Key, target: Key) -> Jump:
         """The jump at which elements that yield keep their plastic stretch."""
         model, layout, known = self.model, self.model.layout, internal_places(self.model.elements)
-        own = own_key(model, key)
-        marks = marks_of(model.elements, model.element_key(own_key(model, target)))
+        own = model_key(model, key)
+        marks = internal_variables_of_branches(model.elements, model.element_key(model_key(model, target)))
         yielding = list[tuple[int, float, Array]]()
         for place, (each, taken) in enumerate(zip(model.elements, model.element_key(own)[1:], strict=True)):
             offset = each.turning(taken)

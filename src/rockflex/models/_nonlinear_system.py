@@ -16,23 +16,23 @@ from rockflex.models._elements import (
     LEFT,
     QUARTER_TURN,
     RIGHT,
-    arm_of,
+    arm_of_element,
     base_equations_of,
+    branches_of_moving_elements,
+    direction_of_yielding,
     internal_count,
     internal_places,
+    internal_variables_of_branches,
     is_in_reach,
-    marks_of,
-    set_off,
-    turning_way,
 )
 from rockflex.models._fields import Change, Landing, Reversal, RockingField
 from rockflex.models._ground_fields import GroundField
 from rockflex.models._impact import Restitution, VVELComplete, VVELSimplified
-from rockflex.models._landing import gains_energy, landing_of, shortest_excursion, sided
+from rockflex.models._landing import impact_law_of_side, landing_gains_energy_error, landing_jump, shortest_excursion
 from rockflex.models._phase import Key
-from rockflex.models._quantities import LINEAR, VERTICAL, Quantities, rows_of
+from rockflex.models._quantities import LINEAR, VERTICAL, Quantities, rows_of_quantities
 from rockflex.models._rocking_model import RockingModel
-from rockflex.models._vector_fields import field_of, numbers_of
+from rockflex.models._vector_fields import field_numbers, field_of
 
 TREMOR = 0.01  # m/s²: the error of a step is relative to the response to it, or to a larger motion so far
 LIGHT = 0.05  # of the vertical reaction at rest: the least size of the loss of support
@@ -43,25 +43,25 @@ BARELY = 1e-10  # of that response: a velocity that is zero at a reversal
 Check = tuple[int, int, int, float, float, float, int]
 
 
-def key_of(model: RockingModel, key: Key, state: Array | None = None) -> Key:
+def nonlinear_system_key(model: RockingModel, key: Key, state: Array | None = None) -> Key:
     """Return the key of a phase of the hybrid system from that of the model."""
     if model.bouc_wen is None:
         return key
     return (*key, -1 if state is not None and state[model.properties.n_modes] < 0.0 else 1)
 
 
-def own_key(model: RockingModel, key: Key) -> Key:
+def model_key(model: RockingModel, key: Key) -> Key:
     """Return the key of the model from that of a phase of the hybrid system."""
     return key if model.bouc_wen is None else key[:-1]
 
 
-def with_marks(model: RockingModel, keys: Sequence[Key], places: Integers, states: Array) -> Array:
+def states_with_branch_codes(model: RockingModel, keys: Sequence[Key], places: Integers, states: Array) -> Array:
     """Return states in which the internal variables that tell branches are those of their phases, at keys[places]."""
     marks, first = list[list[tuple[int, float]]](), internal_count(model.elements)
     for key in keys:
-        own = own_key(model, key)
+        own = model_key(model, key)
         of_ground = enumerate(model.marks(own), first)
-        marks.append([*marks_of(model.elements, model.element_key(own)), *of_ground])
+        marks.append([*internal_variables_of_branches(model.elements, model.element_key(own)), *of_ground])
     if any(marks):
         states = states.copy()
         for place, of_phase in enumerate(marks):
@@ -70,7 +70,7 @@ def with_marks(model: RockingModel, keys: Sequence[Key], places: Integers, state
     return states
 
 
-class Rocks:
+class NonlinearRockingPhases:
     """The phases of a model."""
 
     def __init__(self, model: RockingModel, quantities: Quantities) -> None:
@@ -80,7 +80,7 @@ class Rocks:
         p, curved = model.properties, model.complete
         count = len(quantities)
         kinds = quantities.kinds.tolist() if curved else [LINEAR] * count
-        self.numbers = numbers_of(
+        self.numbers = field_numbers(
             model,
             [LINEAR, *kinds, VERTICAL if curved else LINEAR],
             np.vstack((np.zeros((1, 2)), quantities.levers, np.zeros((1, 2)))),
@@ -111,7 +111,7 @@ class Rocks:
     def ends_of(self, key: Key) -> tuple[list[Any], list[Check], tuple[Event, ...]]:
         """Limits of the rotation that the first events have, conditions that are not linear, and all events."""
         stops, events = list[Any](), tuple[Event, ...]()
-        if self.model.is_free(own_key(self.model, key)):
+        if self.model.is_free(model_key(self.model, key)):
             stops, events = self.changes(key)
             events += (*self.ends(key), *self.turns(key))
         else:
@@ -130,7 +130,7 @@ class Rocks:
 
     def contact(self, model: RockingModel, key: Key) -> Array:
         """The rates of the states in contact: rows with columns for the state, a and 1."""
-        layout, own = model.layout, own_key(model, key)
+        layout, own = model.layout, model_key(model, key)
         n, modes, rates = layout.size, np.arange(layout.modes), np.zeros((layout.size, layout.size + 2))
         columns = [*range(layout.moving), n, n + 1]
         of_motion = model.accelerations(own)
@@ -145,7 +145,7 @@ class Rocks:
         self, key: Key, stops: Sequence[Any], checks: Sequence[Check], events: tuple[Event, ...]
     ) -> NonlinearPhase:
         """A phase that is not linear."""
-        layout, own = self.model.layout, own_key(self.model, key)
+        layout, own = self.model.layout, model_key(self.model, key)
         (C, d, e), (C_v, _, d_v) = self.outputs(key)
         places = (*range(layout.modes), *range(2 * layout.modes, layout.core, 2))
         speeds = (*range(layout.modes, 2 * layout.modes), *range(2 * layout.modes + 1, layout.core, 2))
@@ -167,7 +167,7 @@ class Rocks:
 
     def outputs(self, key: Key) -> tuple[tuple[Array, Array, Array], tuple[Array, Array, Array]]:
         """C, d and e of the outputs in a phase, and what each m/s² of vertical acceleration adds to them."""
-        own, n = own_key(self.model, key), self.model.layout.size
+        own, n = model_key(self.model, key), self.model.layout.size
         rows = self.rows(self.model, own)
         more = self.rows(self.heavier, own) - rows
         return (rows[:, :n], rows[:, n], rows[:, n + 1]), (more[:, :n], more[:, n], more[:, n + 1])
@@ -176,13 +176,13 @@ class Rocks:
         """The outputs of a model in a phase: rows with columns for the state, a and 1."""
         layout, found = model.layout, np.zeros((len(self.quantities) + 2, model.layout.size + 2))
         found[0, layout.rotation] = 1.0
-        for place, row in enumerate((*rows_of(model, self.quantities, key), model.lost_support(key))):
+        for place, row in enumerate((*rows_of_quantities(model, self.quantities, key), model.lost_support(key))):
             found[1 + place, [*range(layout.moving), -2, -1]] = row
         return found
 
     def base_of(self, key: Key) -> Key:
         """The side and the branches of the elements in a phase."""
-        return self.model.element_key(own_key(self.model, key))
+        return self.model.element_key(model_key(self.model, key))
 
     def following(self, key: Key, base: Key) -> Key:
         """The phase in which the side and the elements are on other branches."""
@@ -193,7 +193,10 @@ class Rocks:
         model, (side, *rest) = self.model, self.base_of(key)
         if not model.lifts:
             return ()
-        following = [set_off(model.properties, model.elements, (side or turn, *rest), turn) for turn in (RIGHT, LEFT)]
+        following = [
+            branches_of_moving_elements(model.properties, model.elements, (side or turn, *rest), turn)
+            for turn in (RIGHT, LEFT)
+        ]
         rows, limits = self.margins(model, key, following)
         heavier, _ = self.margins(self.heavier, key, following)
         scale = max([abs(each) for each in limits if 0.0 < abs(each) < np.inf], default=1.0)
@@ -217,7 +220,7 @@ class Rocks:
         """
         layout, p, side = model.layout, model.properties, key[0]
         equations_after = [base_equations_of(p, model.elements, each, model.gravity) for each in following]
-        rows, moment = np.zeros((2, layout.size + 2)), model.contact_moment(own_key(model, key))
+        rows, moment = np.zeros((2, layout.size + 2)), model.contact_moment(model_key(model, key))
         for row, equations, sign in zip(rows, equations_after, (1.0, -1.0), strict=True):
             row[[*range(layout.moving), -2, -1]] = sign * moment
             recall = equations.recall[0]
@@ -242,7 +245,7 @@ class Rocks:
         stops, found, base = list[Any](), list[Event](), self.base_of(key)
         model, known = self.model, internal_places(self.model.elements)
         for place, (each, taken) in enumerate(zip(model.elements, base[1:], strict=True)):
-            arm = arm_of(model.properties, each, base[0])
+            arm = arm_of_element(model.properties, each, base[0])
             for stop in each.stops(taken):
                 if not is_in_reach(stop, arm):
                     continue
@@ -256,7 +259,7 @@ class Rocks:
 
     def change(self, base: Key, following: Key, *, stops: bool) -> Change:
         """The jump from a phase to one in which other branches are taken."""
-        layout, marks = self.model.layout, marks_of(self.model.elements, following)
+        layout, marks = self.model.layout, internal_variables_of_branches(self.model.elements, following)
         places = [(layout.memory + index, value) for index, value in marks]
         return Change(layout.rotation, self.model.complete, stops, self.turnings(base), places)
 
@@ -266,28 +269,30 @@ class Rocks:
         for place, (each, taken) in enumerate(zip(model.elements, base[1:], strict=True)):
             offset = each.turning(taken)
             if offset is not None:
-                arm = arm_of(model.properties, each, base[0])
+                arm = arm_of_element(model.properties, each, base[0])
                 found.append((model.layout.memory + known[place], arm, offset))
         return found
 
     def turns(self, key: Key) -> tuple[Event, ...]:
         """The rotation turns back while an element yields."""
         base = self.base_of(key)
-        way = turning_way(self.model.properties, self.model.elements, base)
+        way = direction_of_yielding(self.model.properties, self.model.elements, base)
         if way == 0:
             return ()
         row = self.unit(self.model.layout.spin, way * base[0])
-        turned = set_off(self.model.properties, self.model.elements, base, 0)
+        turned = branches_of_moving_elements(self.model.properties, self.model.elements, base, 0)
         return (Event("turn", row, self.following(key, turned), jump=self.change(base, turned, stops=True)),)
 
     def beside(self, key: Key, side: int) -> Key:
         """The phase after an impact, on one side or in contact."""
-        after = set_off(self.model.properties, self.model.elements, (side, *self.base_of(key)[1:]), side)
+        after = branches_of_moving_elements(
+            self.model.properties, self.model.elements, (side, *self.base_of(key)[1:]), side
+        )
         return self.following(key, after)
 
     def ends(self, key: Key) -> tuple[Event, Event]:
         """The landing, after which rocking may go on about the other edge, and overturning."""
-        side, law = key[0], sided(self.model.law, key[0])
+        side, law = key[0], impact_law_of_side(self.model.law, key[0])
         contact, other = self.beside(key, CLOSED), self.beside(key, -side)
         tips = Event("overturning", self.rotation(-side), None, QUARTER_TURN, scale=QUARTER_TURN)
         own, beyond = self.field(key), self.field(other)
@@ -297,7 +302,7 @@ class Rocks:
         p = self.model.properties
         unseen = p.translational_inertia - float(p.effective_mass @ p.effective_height**2)
         jump = Landing(
-            partial(gains_energy, self.model),
+            partial(landing_gains_energy_error, self.model),
             own,
             beyond,
             law.e if isinstance(law, Restitution) else 0.0,
@@ -311,7 +316,7 @@ class Rocks:
         """The jump of a law of the user's own, or of a base that slides, at which elements cease to yield."""
         spin, turnings = self.model.layout.spin, self.turnings(self.base_of(key))
         fields = {side: self.field(self.beside(key, side)) for side in (RIGHT, LEFT)}
-        land = landing_of(
+        land = landing_jump(
             self.model,
             key[0],
             {side: self.beside(key, side) for side in (CLOSED, RIGHT, LEFT)},
@@ -333,7 +338,7 @@ class Rocks:
     def field(self, key: Key, stops: Sequence[Any] = (), checks: Sequence[Check] = ()) -> RockingField | GroundField:
         """The vector field of a phase, with conditions or without."""
         branch = key[-1] if self.model.bouc_wen is not None else 1
-        return field_of(self.model, self.numbers, own_key(self.model, key), branch, stops, checks)
+        return field_of(self.model, self.numbers, model_key(self.model, key), branch, stops, checks)
 
     def reversal(self, key: Key) -> Event:
         """The velocity of the hysteretic spring changes its sign."""

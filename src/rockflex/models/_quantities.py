@@ -85,7 +85,7 @@ class Quantities:
         return self.kinds.size
 
     def __add__(self, other: "Quantities") -> "Quantities":
-        return joined((self, other))
+        return joined_quantities((self, other))
 
     @property
     def levers(self) -> Array:
@@ -104,7 +104,7 @@ def _columns(modes: int) -> dict[str, slice | int]:
     return of_modes | {name: k - len(OF_BASE) for k, name in enumerate(OF_BASE)}
 
 
-def collected(modes: int, shares: Sequence[Share]) -> Quantities:
+def collected_quantities(modes: int, shares: Sequence[Share]) -> Quantities:
     """Return one quantity for each pair of kind and shares."""
     count, columns = len(shares), _columns(modes)
     values, shifts = np.zeros((count, len(OF_MODES) * modes + len(OF_BASE))), np.zeros((count, len(OF_SHIFT)))
@@ -118,7 +118,7 @@ def collected(modes: int, shares: Sequence[Share]) -> Quantities:
     return Quantities(values, np.zeros((count, len(OF_SWING))), shifts, kinds)
 
 
-def joined(parts: Sequence[Quantities]) -> Quantities:
+def joined_quantities(parts: Sequence[Quantities]) -> Quantities:
     """Return all quantities of the parts, in their order."""
     if len(parts) == 1:
         return parts[0]
@@ -126,7 +126,7 @@ def joined(parts: Sequence[Quantities]) -> Quantities:
     return Quantities(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
-def rows_of(model: RockingModel, quantities: Quantities, key: Key) -> Array:
+def rows_of_quantities(model: RockingModel, quantities: Quantities, key: Key) -> Array:
     """Return the rows of the quantities in one phase, shape (F, C).
 
     While a complete model rocks, the row of a nonlinear quantity contains only its displacements and forces;

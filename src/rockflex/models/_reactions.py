@@ -10,11 +10,11 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex._constants import GRAVITY
 from rockflex.models._element_states import element_forces
-from rockflex.models._kept import acting_side, by_phase, observed, rates_of
-from rockflex.models._layout import GROUND, RISE, SIDE
 from rockflex.models._quantities import HORIZONTAL, VERTICAL
 from rockflex.models._rocking_model import RockingModel
-from rockflex.models._vector_fields import numbers_of
+from rockflex.models._state_layout import GROUND, RISE, SIDE
+from rockflex.models._values_at_states import acting_side, observed, rates_at_states, states_by_phase
+from rockflex.models._vector_fields import field_numbers
 
 
 class Reactions(NamedTuple):
@@ -32,7 +32,7 @@ def reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     as in `History`; `rates` contains D''_n and θ'' at each state, shape (n, N + 1).
     """
     if model.complete:
-        return _of_large_rotations(model, states, rates)
+        return _reactions_at_large_rotations(model, states, rates)
     p, side, layout = model.properties, acting_side(states), model.layout
     n = p.n_modes
     turn, push = rates[:, n], rates[:, :n] @ p.effective_mass
@@ -58,20 +58,20 @@ def spring_forces(model: RockingModel, states: Array) -> Array:
     if model.springs is None:
         return np.zeros((states.shape[0], 0))
     found = np.zeros((states.shape[0], model.springs.n))
-    for chosen, key, vector in by_phase(model, states, states[:, SIDE]):
+    for chosen, key, vector in states_by_phase(model, states, states[:, SIDE]):
         found[chosen] = model.stretched(vector) @ model.spring_forces(key).T
     return found
 
 
 def printed_reactions(model: RockingModel, states: Array, rates: Array) -> Reactions:
     """Return Eqs. 21 and 22 as printed, with Σ m_i (-g + z''_i), for every model, plus tendon forces."""
-    given = reactions if model.springs is not None else _of_large_rotations
+    given = reactions if model.springs is not None else _reactions_at_large_rotations
     x, z = given(model, states, rates)
     return Reactions(x, z - 2.0 * model.properties.m_tot * GRAVITY)
 
 
-def _of_large_rotations(model: RockingModel, states: Array, rates: Array) -> Reactions:
-    numbers, moving = numbers_of(model, [HORIZONTAL, VERTICAL]), rates_of(model, states, rates)
+def _reactions_at_large_rotations(model: RockingModel, states: Array, rates: Array) -> Reactions:
+    numbers, moving = field_numbers(model, [HORIZONTAL, VERTICAL]), rates_at_states(model, states, rates)
     x, lost = observed(model, numbers, states, acting_side(states), moving, np.zeros((states.shape[0], 2))).T
     x = x + model.properties.leaning_mass * states[:, GROUND]
     if model.layout.slip >= 0 and not model.integrated:

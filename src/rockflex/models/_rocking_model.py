@@ -13,37 +13,37 @@ from rockflex._constants import GRAVITY
 from rockflex._values import Value
 from rockflex.modal import RockingProperties, Springs
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._element import Dashpot, Element
+from rockflex.models._element import Element, ViscousElement
 from rockflex.models._elements import (
     CLOSED,
     LEFT,
     RIGHT,
-    arm_of,
-    attached_rows,
+    arm_of_element,
     base_equations_of,
+    branches_of_moving_elements,
     elements_of,
-    first_key,
-    hold_shares,
+    elongation_rows_of_attached,
+    first_branches,
+    friction_damper_shares,
     internal_count,
     internal_places,
-    is_held,
-    rate_of,
-    set_off,
+    is_held_by_dampers,
+    rate_of_elongation_row,
 )
 from rockflex.models._impact import ImpactLaw, VVELSimplified
-from rockflex.models._layout import (
+from rockflex.models._phase import BaseEquations, BorderedSystem, GroundPhase, Key
+from rockflex.models._state_layout import (
     BASES,
     HEADER,
     SHIFT,
     SIDE,
     TIME,
     StateLayout,
-    code_of,
-    codes_for,
-    decoded,
-    layout_of,
+    branches_of_codes,
+    codes_of_branches,
+    n_branch_codes,
+    state_layout_of,
 )
-from rockflex.models._phase import BaseEquations, BorderedSystem, GroundPhase, Key
 
 MAX_PHASES = 1000  # whose equations of motion are kept
 
@@ -124,15 +124,15 @@ class RockingModel(Value):
     @cached_property
     def layout(self) -> StateLayout:
         """Layout of the state vector."""
-        return self._layout(codes_for(len(self.attached_places), self.code_base))
+        return self._layout(n_branch_codes(len(self.attached_places), self.code_base))
 
     def _layout(self, n_marks: int, *, slides: bool = False, heaves: bool = False) -> StateLayout:
         """Return the layout with a number of internal variables that tell branches."""
         springs = self.springs if heaves else None
-        return layout_of(
+        return state_layout_of(
             self.properties.n_modes,
             integrated=self.integrated,
-            viscous=not heaves and any(isinstance(each, Dashpot) for each in self.elements),
+            viscous=not heaves and any(isinstance(each, ViscousElement) for each in self.elements),
             n_internal=internal_count(self.elements) + n_marks,
             slides=slides,
             heaves=heaves,
@@ -159,7 +159,7 @@ class RockingModel(Value):
     @cached_property
     def attached(self) -> dict[int, Array]:
         """The elongation in m of each attached element and story, by its place: a row, shape (C,)."""
-        return attached_rows(self.properties, self.layout)
+        return elongation_rows_of_attached(self.properties, self.layout)
 
     def integrates(self, side: Array | int) -> Bools:
         """Return for every side of the base whether a phase on it is integrated step by step."""
@@ -187,7 +187,7 @@ class RockingModel(Value):
 
     def start(self, side: int) -> Key:
         """Return the branches on which a run starts in contact, or as the base begins to rotate about a pivot."""
-        return first_key(self.properties, self.elements, side)
+        return first_branches(self.properties, self.elements, side)
 
     def initial(self, state: Array | None) -> tuple[Key, Array]:
         """Return the branches and the state at the start of a run, from [D.., D'.., θ, θ'] or at rest.
@@ -216,7 +216,7 @@ class RockingModel(Value):
             kept += remembered
         key = (side, *branches)
         if side != CLOSED and spin != 0.0:
-            key = set_off(self.properties, self.elements, key, 1 if spin > 0.0 else -1)
+            key = branches_of_moving_elements(self.properties, self.elements, key, 1 if spin > 0.0 else -1)
         start[layout.memory : layout.memory + len(kept)] = kept
         key = self.from_rest(key)
         start[layout.memory + len(kept) :] = self.marks(key)
@@ -245,7 +245,7 @@ class RockingModel(Value):
 
     def marks(self, key: Key) -> tuple[float, ...]:
         """Return the last internal variables of the state, which tell the branches of attached elements."""
-        return code_of(tuple(key[1 + place] for place in self.attached_places), self.code_base)
+        return codes_of_branches(tuple(key[1 + place] for place in self.attached_places), self.code_base)
 
     def element_key(self, key: Key) -> Key:
         """Return the branches of the base and of the elements, without those that a kind of ground adds."""
@@ -261,8 +261,8 @@ class RockingModel(Value):
         branches[:, 0] = side
         known = internal_places(self.elements)
         first = HEADER + self.layout.memory + internal_count(self.elements)
-        codes = states[:, first : first + codes_for(len(self.attached_places), self.code_base)]
-        branches_of = decoded(codes, len(self.attached_places), self.code_base).T
+        codes = states[:, first : first + n_branch_codes(len(self.attached_places), self.code_base)]
+        branches_of = branches_of_codes(codes, len(self.attached_places), self.code_base).T
         attached = dict(zip(self.attached_places, branches_of, strict=True))
         for place, each in enumerate(self.elements):
             if place in attached:
@@ -278,7 +278,7 @@ class RockingModel(Value):
 
     def elongations(self, element: Element, side: int, rotation: Array) -> Array:
         """Return the elongations δ of an element in m at rotations |θ| about a pivot, shape (n,)."""
-        return arm_of(self.properties, element, side) * self.stretch_per_arm(rotation)
+        return arm_of_element(self.properties, element, side) * self.stretch_per_arm(rotation)
 
     def stretch_per_arm(self, rotation: Array) -> Array:
         """Return the elongations of an element per unit distance from the pivot at |θ|: 2 sin(|θ|/2), or |θ|."""
@@ -287,7 +287,8 @@ class RockingModel(Value):
     def arms(self, side: Array) -> Array:
         """Return the distance of every element from the pivot of a side, or of a sign of θ, in m, shape (n, E)."""
         right, left = (
-            np.array([arm_of(self.properties, each, which) for each in self.elements]) for which in (RIGHT, LEFT)
+            np.array([arm_of_element(self.properties, each, which) for each in self.elements])
+            for which in (RIGHT, LEFT)
         )
         return np.where(side[:, None] < 0.0, left, right)
 
@@ -310,7 +311,7 @@ class RockingModel(Value):
             return self.attached[place].copy()
         row = np.zeros(self.layout.columns)
         if side != CLOSED:
-            row[self.layout.rotation] = side * arm_of(self.properties, self.elements[place], side)
+            row[self.layout.rotation] = side * arm_of_element(self.properties, self.elements[place], side)
         return row
 
     def tension(self, place: int, key: Key) -> Array:
@@ -328,7 +329,7 @@ class RockingModel(Value):
     def _tension(self, place: int, side: int, branch: int) -> Array:
         each, stretch, known = self.elements[place], self.stretch(place, side), internal_places(self.elements)
         pull = each.pull(branch)
-        row = pull.stiffness * stretch + pull.damping * rate_of(stretch, self.layout)
+        row = pull.stiffness * stretch + pull.damping * rate_of_elongation_row(stretch, self.layout)
         row[-1] += pull.force
         if place in known:
             row[self.layout.memory + known[place]] += pull.recall
@@ -563,7 +564,7 @@ class RockingModel(Value):
 
     def is_free(self, key: Key) -> bool:
         """Return whether the base rotates in a phase: it neither rests on the ground nor is held at a rotation."""
-        return key[0] != CLOSED and not is_held(self.properties, self.elements, key)
+        return key[0] != CLOSED and not is_held_by_dampers(self.properties, self.elements, key)
 
     def spring_forces(self, key: Key) -> Array:  # noqa: ARG002
         """Return the force of each spring under the base in a phase in N, upwards: rows, shape (n_springs, C)."""
@@ -591,7 +592,7 @@ class RockingModel(Value):
         rows = np.zeros((len(self.elements), self.layout.columns))
         for place in range(len(self.elements)):
             rows[place] = self.tension(place, key)
-        if is_held(self.properties, self.elements, self.element_key(key)):
+        if is_held_by_dampers(self.properties, self.elements, self.element_key(key)):
             self._hold(key, rows)
         return rows
 
@@ -610,4 +611,4 @@ class RockingModel(Value):
         moment[layout.rotation] -= others.stiffness[0, 0]
         moment[-1] += others.constant[0]
         moment[layout.memory : layout.memory + others.recall.size] += others.recall[0]
-        rows += np.outer(hold_shares(p, self.elements, side), moment)
+        rows += np.outer(friction_damper_shares(p, self.elements, side), moment)

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array
 from rockflex.models._base_motion import accelerations_of, bordered_system_of
 from rockflex.models._elements import CLOSED, base_equations_of, element_force_sums
-from rockflex.models._layout import HEADER, StateLayout, codes_for
 from rockflex.models._phase import BaseEquations, BorderedSystem, GroundPhase, Key
 from rockflex.models._rocking_model import RockingModel
+from rockflex.models._state_layout import HEADER, StateLayout, n_branch_codes
 
 STICK = 0  # the last branch of a key: it sticks, slips to the right (1) or left (-1), or does so without friction (±2)
 LOST = 2  # magnitude of the branch on which the ground has no pressure to rub against
@@ -40,7 +40,7 @@ class SlidingModel(RockingModel):
     @cached_property
     def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Layout of the state vector."""
-        return self._layout(codes_for(len(self.attached_places), self.code_base) + 1, slides=True)
+        return self._layout(n_branch_codes(len(self.attached_places), self.code_base) + 1, slides=True)
 
     @property
     def ground_parameters(self) -> dict[str, Any]:

@@ -13,9 +13,17 @@ from rockflex._constants import GRAVITY
 from rockflex.modal import Springs
 from rockflex.models._base_motion import accelerations_of, bordered_system_of
 from rockflex.models._elements import CLOSED, SUMS, internal_count, internal_places
-from rockflex.models._layout import HEADER, SIDE, TIME, StateLayout, code_of, codes_for, decoded
 from rockflex.models._phase import BaseEquations, BorderedSystem, GroundPhase, Key
 from rockflex.models._rocking_model import LEVEL, Pose, RockingModel
+from rockflex.models._state_layout import (
+    HEADER,
+    SIDE,
+    TIME,
+    StateLayout,
+    branches_of_codes,
+    codes_of_branches,
+    n_branch_codes,
+)
 
 # Branches of a spring. RECEDING: still compressed, but unloaded, since its dashpot would have to pull the base.
 LOADED, LIFTED, RECEDING = 0, 1, 2
@@ -55,7 +63,9 @@ class SpringModel(RockingModel):
     @cached_property
     def layout(self) -> StateLayout:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Layout of the state vector."""
-        return self._layout(codes_for(self._key_size, self.code_base), slides=self.friction is not None, heaves=True)
+        return self._layout(
+            n_branch_codes(self._key_size, self.code_base), slides=self.friction is not None, heaves=True
+        )
 
     def integrates(self, side: Array | int) -> Bools:
         """Return for every side whether its phases are integrated step by step: all of them or none."""
@@ -101,7 +111,9 @@ class SpringModel(RockingModel):
         """Return the branches at the states of a history, shape (n, K)."""
         first = HEADER + self.layout.memory + internal_count(self.elements)
         codes = states[:, first : HEADER + self.layout.size]
-        return np.column_stack((np.zeros(side.size, dtype=np.int64), decoded(codes, self._key_size, self.code_base)))
+        return np.column_stack(
+            (np.zeros(side.size, dtype=np.int64), branches_of_codes(codes, self._key_size, self.code_base))
+        )
 
     def lifted(self, states: Array) -> Bools:
         """Return which springs the base has left at the states of a history, shape (n, n_springs)."""
@@ -288,7 +300,7 @@ class SpringModel(RockingModel):
 
     def marks(self, key: Key) -> tuple[float, ...]:
         """Return the last internal variables of the state, which tell all branches."""
-        return code_of(key[1:], self.code_base)
+        return codes_of_branches(key[1:], self.code_base)
 
     @property
     def _weight(self) -> float:

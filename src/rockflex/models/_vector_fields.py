@@ -9,16 +9,24 @@ import numpy as np
 from rockflex._arrays import Array
 from rockflex.modal import RockingProperties
 from rockflex.models._bouc_wen import BoucWen
-from rockflex.models._elements import LEFT, MOMENT, RIGHT, element_force_sums, hold_shares, is_held, set_off
+from rockflex.models._elements import (
+    LEFT,
+    MOMENT,
+    RIGHT,
+    branches_of_moving_elements,
+    element_force_sums,
+    friction_damper_shares,
+    is_held_by_dampers,
+)
 from rockflex.models._fields import RockingField
 from rockflex.models._ground_fields import GroundField
-from rockflex.models._layout import StateLayout
 from rockflex.models._phase import Key
 from rockflex.models._rocking_model import RockingModel
+from rockflex.models._state_layout import StateLayout
 
 
 @dataclass(frozen=True, eq=False)
-class Numbers:
+class FieldNumbers:
     """What a vector field knows of a model."""
 
     properties: RockingProperties
@@ -32,9 +40,9 @@ class Numbers:
     levers: Array
 
 
-def numbers_of(model: RockingModel, kinds: Sequence[int] = (), levers: Array | None = None) -> Numbers:
+def field_numbers(model: RockingModel, kinds: Sequence[int] = (), levers: Array | None = None) -> FieldNumbers:
     """Return what the vector field of a model knows, with outputs of these kinds, each with two levers."""
-    return Numbers(
+    return FieldNumbers(
         properties=model.properties,
         bouc_wen=model.bouc_wen,
         complete=model.complete,
@@ -49,7 +57,7 @@ def numbers_of(model: RockingModel, kinds: Sequence[int] = (), levers: Array | N
 
 def field_of(
     model: RockingModel,
-    numbers: Numbers,
+    numbers: FieldNumbers,
     key: Key,
     branch: int,
     stops: Sequence[tuple[int, int, tuple[float, float]]] = (),
@@ -77,8 +85,11 @@ def field_of(
     branches = model.element_key(key)
     pulls = element_force_sums(p, elements, branches)
     releases, grip = None, 0.0
-    if model.complete and is_held(p, elements, branches):
-        after = (element_force_sums(p, elements, set_off(p, elements, branches, turn)) for turn in (RIGHT, LEFT))
+    if model.complete and is_held_by_dampers(p, elements, branches):
+        after = (
+            element_force_sums(p, elements, branches_of_moving_elements(p, elements, branches, turn))
+            for turn in (RIGHT, LEFT)
+        )
         releases = np.array([sums[MOMENT] for sums in after])
-        grip = float(hold_shares(p, elements, branches[0]).sum())
+        grip = float(friction_damper_shares(p, elements, branches[0]).sum())
     return RockingField(numbers, key[0], branch, pulls, list(stops), releases, grip)

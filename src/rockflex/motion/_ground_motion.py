@@ -288,7 +288,7 @@ class GroundMotion(HtmlTable, Value):
                 f"The motion {shown(self.name)} has no vertical component. Give one: "
                 "read_motion(path, vertical=...), or motion.with_vertical(...)."
             )
-        known = info_of(self)
+        known = record_info_of(self)
         info = replace(known, component=None, direction="vertical", source=known.vertical_source, vertical_source=None)
         return GroundMotion(self.vertical, self.dt, self.name, info)
 
@@ -498,7 +498,7 @@ def _checked_vertical_samples(vertical: ArrayLike, n_samples: int) -> Array:
 
 def _vertical_sign_and_info(vertical: GroundMotion, info: RecordInfo | None) -> tuple[int, RecordInfo | None]:
     """Return the sign that makes a vertical record positive upwards, and the metadata with its source."""
-    given = info_of(vertical)
+    given = record_info_of(vertical)
     if given.direction == "horizontal":
         raise InputError(
             f"A vertical ground motion is expected, but {shown(vertical.name)} is a horizontal component according to "
@@ -534,14 +534,14 @@ def _aligned_components(along: GroundMotion, upwards: GroundMotion) -> tuple[Arr
     return first, second
 
 
-def info_of(motion: GroundMotion) -> RecordInfo:
+def record_info_of(motion: GroundMotion) -> RecordInfo:
     """Return what is known about a motion."""
     return motion.metadata or RecordInfo()
 
 
 def is_vertical_component(motion: GroundMotion) -> bool:
     """Return whether a motion is known to be a vertical component."""
-    return info_of(motion).is_vertical
+    return record_info_of(motion).is_vertical
 
 
 def check_horizontal_component(*motions: GroundMotion) -> None:

@@ -14,7 +14,7 @@ from rockflex._checks import checked_positive
 from rockflex._errors import InputError, RecordWarning
 from rockflex._files import checked_file_path
 from rockflex._shown import first_texts_shown, number_with_noun, shown
-from rockflex.motion._ground_motion import GroundMotion, info_of, is_vertical_component
+from rockflex.motion._ground_motion import GroundMotion, is_vertical_component, record_info_of
 from rockflex.motion._readers import FORMATS, components_in_file, is_of_a_network, stated_peak_mismatch
 from rockflex.motion._record_table import RecordTable, entry_for_file, read_record_table, record_table_in_content
 from rockflex.motion._recordings import are_different_components, file_names_text, pair_vertical_records
@@ -146,7 +146,7 @@ def _read_record_file(
     motions: dict[Path, GroundMotion] = {}
     for motion in found:
         key = file if motion.name == file.stem else file.parent / (motion.name.replace("/", "_") + file.suffix)
-        motions[key] = replace(motion, metadata=given.completed(file, info_of(motion)))
+        motions[key] = replace(motion, metadata=given.completed(file, record_info_of(motion)))
     return RecordFileContent(file, motions)
 
 
@@ -170,9 +170,11 @@ def choose_components(found: Sequence[RecordFileContent], *, pair: bool) -> Chos
     motions = {path: motion for each in found for path, motion in each.motions.items()}
     copies = _duplicate_components(motions, {path: each.file for each in found for path in each.motions})
     motions = {path: motion for path, motion in motions.items() if path not in copies}
-    surface = {_site_key(motion) for motion in motions.values() if info_of(motion).location == "surface"}
+    surface = {_site_key(motion) for motion in motions.values() if record_info_of(motion).location == "surface"}
     boreholes = [
-        path for path, each in motions.items() if info_of(each).location == "borehole" and _site_key(each) in surface
+        path
+        for path, each in motions.items()
+        if record_info_of(each).location == "borehole" and _site_key(each) in surface
     ]
     beneath = set(boreholes)
     motions = {path: motion for path, motion in motions.items() if path not in beneath}
@@ -211,7 +213,7 @@ def _duplicate_components(motions: Mapping[Path, GroundMotion], files: Mapping[P
 
 def _duplicate_rank(path: Path, motion: GroundMotion) -> tuple[object, ...]:
     """Return a key by which the first of some copies is the one to keep."""
-    known = sum(value is not None for value in vars(info_of(motion)).values())
+    known = sum(value is not None for value in vars(record_info_of(motion)).values())
     return motion.vertical is None, -known, len(path.name), path.name, str(path)
 
 
@@ -233,7 +235,7 @@ def _equal_samples(one: Array, other: Array) -> bool:
 
 
 def _site_key(motion: GroundMotion) -> tuple[object, ...]:
-    info = info_of(motion)
+    info = record_info_of(motion)
     return info.event, info.network, info.station
 
 

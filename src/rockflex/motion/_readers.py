@@ -18,7 +18,7 @@ from rockflex.motion._columns import is_excel_workbook, parse_columns, parse_exc
 from rockflex.motion._cosmos import is_cosmos, parse_cosmos
 from rockflex.motion._esm import is_esm, parse_esm
 from rockflex.motion._geonet import is_geonet, parse_geonet
-from rockflex.motion._ground_motion import GroundMotion, info_of, is_vertical_component
+from rockflex.motion._ground_motion import GroundMotion, is_vertical_component, record_info_of
 from rockflex.motion._knet import is_knet, parse_knet
 
 
@@ -307,7 +307,7 @@ def stated_peak_mismatch(motion: GroundMotion) -> tuple[float, str]:
     The text says both peaks, and whether they agree when the mean is subtracted; it is empty if they agree, or none is
     stated. For a mean that explains the difference, the first value is at most `MAX_PEAK_MISMATCH`.
     """
-    stated, done = info_of(motion).stated_pga, info_of(motion).processing
+    stated, done = record_info_of(motion).stated_pga, record_info_of(motion).processing
     if not stated:
         return 0.0, ""
     difference = _relative_difference(motion.pga, stated)
@@ -351,7 +351,7 @@ def select_component(file: Path, found: list[GroundMotion], component: str | Non
 
 
 def _is_component_named(motion: GroundMotion, component: str) -> bool:
-    azimuth = info_of(motion).azimuth
+    azimuth = record_info_of(motion).azimuth
     wanted = component.strip().casefold()
     if azimuth is not None and wanted.isdecimal() and wanted.isascii() and len(wanted) <= 3:
         return float(wanted) % 360.0 == azimuth % 360.0
@@ -359,7 +359,7 @@ def _is_component_named(motion: GroundMotion, component: str) -> bool:
 
 
 def _component_name(motion: GroundMotion) -> str:
-    return info_of(motion).component or motion.name
+    return record_info_of(motion).component or motion.name
 
 
 def _component_names(found: list[GroundMotion]) -> str:

@@ -17,7 +17,7 @@ from rockflex._errors import InputError
 from rockflex._shown import first_texts_shown, shown
 from rockflex._values import Value
 from rockflex.engine.oscillator import rotated_peaks
-from rockflex.motion._ground_motion import GroundMotion, info_of, is_vertical_component
+from rockflex.motion._ground_motion import GroundMotion, is_vertical_component, record_info_of
 from rockflex.motion._record_info import (
     SEPARATORS,
     RecordInfo,
@@ -419,13 +419,13 @@ class Recording:
     @property
     def event(self) -> GroupKey:
         """Key of the earthquake; None if it is not known."""
-        info = info_of(self.motions[0])
+        info = record_info_of(self.motions[0])
         return None if info.event is None else (info.event.casefold(), info.year)
 
     @property
     def station(self) -> GroupKey:
         """Key of the station; None if it is not known."""
-        station = info_of(self.motions[0]).station
+        station = record_info_of(self.motions[0]).station
         return None if station is None else (station.casefold(),)
 
     def sa(self, periods: ArrayLike, measure: Combination, damping_ratio: float) -> Array:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rockflex._shown import number_with_noun
 from rockflex._values import Value
 from rockflex.motion import _read_suite
-from rockflex.motion._ground_motion import GroundMotion, info_of
+from rockflex.motion._ground_motion import GroundMotion, record_info_of
 from rockflex.motion._readers import stated_peak_mismatch
 from rockflex.motion._recordings import StationRecord, file_names_text, group_stations
 from rockflex.motion._suite import Suite
@@ -229,11 +229,11 @@ def _survey_entries(
             taken=path in result.taken or path in result.paired,
             reason="; ".join(filter(None, (_survey_reason(path, result), stated_peak_mismatch(motion)[1]))),
             name=motion.name,
-            format=info_of(motion).source_format,
+            format=record_info_of(motion).source_format,
             dt=motion.dt,
             n_samples=motion.acceleration.size,
             pga=motion.pga,
-            **{name: getattr(info_of(motion), name) for name in COPIED_FACTS},
+            **{name: getattr(record_info_of(motion), name) for name in COPIED_FACTS},
         )
         for path, motion in each.motions.items()
     ]

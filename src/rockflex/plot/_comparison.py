@@ -60,8 +60,8 @@ def plot_comparison(
     known = checked_instance("comparison", comparison, Comparison)
     if title is None:
         among = "" if known.n_records == 1 else f", which governs of {known.n_records}"
-        title = figures.literal(f"{known.motion.name}{among}")
-    labels = [figures.literal(name) for name in known.names]
+        title = figures.literal_text(f"{known.motion.name}{among}")
+    labels = [figures.literal_text(name) for name in known.names]
     return plot_history(known.responses, labels, panels=panels, title=title, size=size)
 
 
@@ -70,14 +70,14 @@ def draw_alternatives(comparison: Comparison, *, width: float, height: float) ->
     runs = comparison.responses
     instant = max(runs, key=lambda run: run.max_rotation).time_of_max_rotation
     times = np.array([instant])
-    with figures.styled():
-        curves = response_curves(runs, [figures.literal(name) for name in comparison.names])
+    with figures.applied_figure_style():
+        curves = response_curves(runs, [figures.literal_text(name) for name in comparison.names])
         both = zip(curves, comparison.structures, strict=True)
         outlines = [structure_outline(curve.history, structure, i) for i, (curve, structure) in enumerate(both)]
         poses = [
             structure_poses(curve, outline, times, _STILL) for curve, outline in zip(curves, outlines, strict=True)
         ]
-        figure = figures.new(width * _MM, height * _MM)
+        figure = figures.new_figure(width * _MM, height * _MM)
         figure.set_layout_engine("none")
         axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
         axes.set_axis_off()

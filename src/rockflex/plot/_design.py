@@ -87,7 +87,7 @@ def plot_design(
     styles: dict[str, tuple[LineStyle, str]] = figures.assign_distinct(tendons, looks, "tendons")
     found = None if target is None else smallest_width(table, target)
     logarithms = value == "rate" if logarithmic is None else logarithmic
-    with figures.styled(size=size):
+    with figures.applied_figure_style(size=size):
         figure, panels = tables.structure_panels(models, 2, 2.9, "half width $B$ [m]", _design_value_name(table, value))
         for axes, model in zip(panels, models, strict=True):
             for tendon, (style, marker) in styles.items():
@@ -99,7 +99,7 @@ def plot_design(
         _set_design_limits(panels[0], table, table[value].to_numpy(float), target, logarithmic=logarithms)
         for axes in panels:
             _draw_slenderness_axis(axes, table)
-        handles = tables.model_legend_handles({figures.literal(tendon): style for tendon, style in styles.items()})
+        handles = tables.model_legend_handles({figures.literal_text(tendon): style for tendon, style in styles.items()})
         if target is not None:
             handles.append(
                 Line2D([], [], color=BLUE, linewidth=0.8, dashes=(5, 3), label=f"target {short_number(target)}")
@@ -268,14 +268,14 @@ def plot_design_search(found: BestDesign, *, size: Size | None = None) -> Figure
     varied = [*between.given]
     labels = [each.label for each in found.requirements]
     styles = figures.assign_distinct(labels, figures.recoloured_line_styles(_SEARCH_STYLES), "requirements")
-    with figures.styled(size):
+    with figures.applied_figure_style(size):
         count = min(len(varied), 2)
-        figure = figures.new(7.2 if count > 1 else 4.2, 0.9 + 3.0 * count if figures.is_narrow() else 3.9)
+        figure = figures.new_figure(7.2 if count > 1 else 4.2, 0.9 + 3.0 * count if figures.is_narrow() else 3.9)
         panels: list[Axes] = list(np.atleast_1d(figure.subplots(*((count, 1) if figures.is_narrow() else (1, count)))))
         _draw_design_costs(panels[0], found, varied[0], styles)
         if len(varied) > 1:
             _draw_design_plane(panels[1], found, between, (varied[-2], varied[-1]), styles)
-        handles = [Line2D([], [], **style.look, label=figures.literal(label)) for label, style in styles.items()]
+        handles = [Line2D([], [], **style.look, label=figures.literal_text(label)) for label, style in styles.items()]
         for name, face in (("run, meets all targets", _design_text_color()), ("run, does not", "none")):
             handles.append(
                 Line2D(
@@ -302,7 +302,7 @@ def _best_design_text(found: BestDesign) -> str:
         if best[column] > 0.0:
             divisor, unit = unit_with_prefix(float(best[column]), "N")
             words.append(f"{symbol} = {short_number(best[column] / divisor)} {unit}")
-    return f"Cheapest: {', '.join(words)}; {figures.literal(found.governs)} governs"
+    return f"Cheapest: {', '.join(words)}; {figures.literal_text(found.governs)} governs"
 
 
 def _draw_design_costs(axes: Axes, found: BestDesign, variable: str, styles: dict[str, LineStyle]) -> None:

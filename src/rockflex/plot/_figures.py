@@ -170,7 +170,7 @@ def figure_style(theme: Theme = "light", size: Size | None = None) -> Generator[
 
 
 @contextmanager
-def styled(size: Size | None = None) -> Generator[None, None, None]:
+def applied_figure_style(size: Size | None = None) -> Generator[None, None, None]:
     """Apply the style while a figure is drawn; matplotlib's settings are global, so one thread at a time."""
     theme, usual_size = _CHOSEN.get()
     inches = _figure_size_in_inches(usual_size if size is None else size)
@@ -230,7 +230,7 @@ def _figure_size_in_inches(size: Size | None) -> tuple[float, float | None] | No
     )
 
 
-def literal(text: str) -> str:
+def literal_text(text: str) -> str:
     """Escape names so that they are not read as mathematics."""
     return text.replace("$", r"\$")
 
@@ -251,13 +251,13 @@ class NotebookFigure(Figure):
 
     def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
         content = io.BytesIO()
-        with styled():
+        with applied_figure_style():
             self.savefig(content, format="png", dpi=PIXEL_RATIO * NOTEBOOK_DPI)
         width, height = (round(NOTEBOOK_DPI * inches) for inches in self.get_size_inches())
         return content.getvalue(), {"width": width, "height": height}
 
 
-def new(width: float, height: float) -> Figure:
+def new_figure(width: float, height: float) -> Figure:
     """Empty figure, without a window or an entry in the global list of figures.
 
     Width and height in inches are those of a figure for which the caller has asked for no size.
@@ -478,6 +478,6 @@ def figure_as_png(figure: Figure) -> bytes:
 
 def _figure_file_content(figure: Figure, suffix: str) -> bytes:
     content = io.BytesIO()
-    with styled():
+    with applied_figure_style():
         figure.savefig(content, format=suffix[1:], dpi=_DPI, metadata=_UNDATED[suffix])
     return content.getvalue()

@@ -103,7 +103,7 @@ def plot_fragility(
     limit = _outcome_axis_limit(fits, runs, whole=overturning or groups > 0)
     ends = [fit.outcomes.measured[0] for fit in fits if fit.outcomes.measured is not None]
     lowest = min(ends, default=None)
-    with figures.styled(size=size):
+    with figures.applied_figure_style(size=size):
         digits, exponent = f"{fits[0].outcomes.threshold:.3e}".split("e")
         times = "" if float(digits) == 1.0 else rf"{float(digits):g}\times"
         limit_text = rf"{times}10^{{{int(exponent)}}}\ \mathrm{{rad}}"
@@ -264,7 +264,7 @@ def plot_stripes(
     styles = tables.model_lines_and_symbols(tables.names_in_column(runs["model"]))
     names = tables.names_in_column(runs["structure"])
     end = 1.1 * float(counts["level"].max())
-    with figures.styled(size=size):
+    with figures.applied_figure_style(size=size):
         event = fragility.limit_state_of(limit).symbol
         y = f"$P({event})$" if ">" in event else f"P({event})"
         figure, panels = tables.structure_panels(names, 3, 2.1, tables.measure_axis_name(measure), y)
@@ -360,15 +360,15 @@ def plot_ida(
         raise InputError(
             f"{len(cases)} structures and models are too many for one figure; {_MAX_ROWS} fit. Plot fewer at a time."
         )
-    with figures.styled(size=size):
+    with figures.applied_figure_style(size=size):
         across = 1 if figures.is_narrow() else 2
-        figure = figures.new(6.3, 0.9 + 2.1 * len(cases) * 2 // across)
+        figure = figures.new_figure(6.3, 0.9 + 2.1 * len(cases) * 2 // across)
         grid = figure.subplots(2 * len(cases) // across, across, sharex=True, squeeze=False).reshape(-1, 2)
         for row, (structure, model, ladders) in enumerate(cases):
             left, right = grid[row]
             failed = _draw_ida_curves(left, ladders, measure)
             _draw_ida_capacities(right, runs_of_case(capacities, structure, model), confidence, failed)
-            left.set(title=figures.literal(f"{structure}, {model}"), ylabel=r"$θ_{\mathrm{max}}$ [rad]")
+            left.set(title=figures.literal_text(f"{structure}, {model}"), ylabel=r"$θ_{\mathrm{max}}$ [rad]")
             right.set_ylabel("P(overturning)")
             figures.label_panel(left, chr(ord("A") + 2 * row))
             figures.label_panel(right, chr(ord("B") + 2 * row))
@@ -533,7 +533,7 @@ def plot_clouds(
     styles = tables.model_lines_and_symbols(tables.names_in_column(cloud.model for cloud in clouds))
     names = tables.names_in_column(cloud.structure for cloud in clouds)
     rocked, fallen = pd.concat([cloud.rocked for cloud in clouds]), pd.concat([cloud.fallen for cloud in clouds])
-    with figures.styled(size=size):
+    with figures.applied_figure_style(size=size):
         figure, panels = tables.structure_panels(
             names, 2, 2.45, tables.measure_axis_name(measure), _QUANTITIES[quantity]
         )

@@ -118,7 +118,7 @@ def response_figure_title(curves: list[ResponseCurve], title: str | None) -> str
     if title is not None:
         return title
     motions = {curve.response.motion for curve in curves}
-    return figures.literal(motions.pop()) if len(motions) == 1 else ""
+    return figures.literal_text(motions.pop()) if len(motions) == 1 else ""
 
 
 def response_curves(
@@ -149,8 +149,8 @@ def _response_labels(responses: list[Response], labels: Sequence[str] | None) ->
     if labels is None:
         models = [response.model for response in responses]
         if len(set(models)) == len(models):
-            return [figures.literal(model) for model in models]
-        return [figures.literal(f"{response.model}, {response.motion}") for response in responses]
+            return [figures.literal_text(model) for model in models]
+        return [figures.literal_text(f"{response.model}, {response.motion}") for response in responses]
     if isinstance(labels, str) or len(labels) != len(responses):
         given = f"the string {shown(labels)}" if isinstance(labels, str) else f"{len(labels)}"
         raise InputError(
@@ -411,8 +411,8 @@ def plot_history(
     curves = response_curves(responses, labels)
     quantities = panel_quantities(default_panels(curves) if panels is None else panels)
     handles: list[Artist] = []
-    with figures.styled(size=size):
-        figure = figures.new(6.3, len(quantities) * max(1.45, 0.155 * (len(curves) + 2)) + 0.8)
+    with figures.applied_figure_style(size=size):
+        figure = figures.new_figure(6.3, len(quantities) * max(1.45, 0.155 * (len(curves) + 2)) + 0.8)
         grid: list[Axes] = list(figure.subplots(len(quantities), 1, sharex=True, squeeze=False).flat)
         for axes, quantity, mark in zip(grid, quantities, ascii_uppercase, strict=False):
             handles = draw_panel(axes, quantity, curves, mark)
@@ -516,9 +516,9 @@ def plot_spread(
     quantities = panel_quantities(panels)
     everything = [*curves, *(curve for group in groups for curve in group)]
     times = np.linspace(0.0, time_axis_limits(curves)[1], _POINTS)
-    with figures.styled(size=size):
+    with figures.applied_figure_style(size=size):
         shape = (len(quantities) * len(curves), 1) if figures.is_narrow() else (len(curves), len(quantities))
-        figure = figures.new(0.8 + 3.2 * len(quantities), 0.9 + 1.35 * shape[0])
+        figure = figures.new_figure(0.8 + 3.2 * len(quantities), 0.9 + 1.35 * shape[0])
         # A narrow figure has one column: all panels of the first quantity, then of the next.
         grid = figure.subplots(*shape, sharex=True, squeeze=False).reshape(len(curves), -1, order="F")
         for column, quantity in enumerate(quantities):
@@ -603,8 +603,8 @@ def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
     supply = ledger.input[drawn] + start
     factor, unit = unit_with_prefix(float(np.max(np.abs(supply))), "J")
     time = history.time[drawn]
-    with figures.styled(size=size):
-        figure = figures.new(6.3, 3.4)
+    with figures.applied_figure_style(size=size):
+        figure = figures.new_figure(6.3, 3.4)
         axes = figure.subplots()
         if layers:
             axes.stackplot(
@@ -616,10 +616,8 @@ def plot_energy(response: Response, *, size: Size | None = None) -> Figure:
             axes.axvline(time[-1], color=BLUE, linestyle=":", label="overturning")
         axes.set_xlim(float(history.time[0]), float(history.time[-1]))
         axes.set(ylim=(0.0, 1.06 * float(np.max(supply)) / factor or 1.0), xlabel="time [s]", ylabel=f"energy [{unit}]")
-        title = (
-            f"{curve.label} under {figures.literal(curve.response.motion)}, closing error {ledger.closing_error:.1e}"
-        )
-        axes.set_title(title)
+        motion = figures.literal_text(curve.response.motion)
+        axes.set_title(f"{curve.label} under {motion}, closing error {ledger.closing_error:.1e}")
         handles, _ = axes.get_legend_handles_labels()
         figures.add_legend_beside(figure, handles[::-1])
     return figure
@@ -688,8 +686,8 @@ def plot_footing(response: Response, *, title: str | None = None, size: Size | N
             "The base of this response is not on springs. Simulate it with "
             "ground=Ground(springs=..., base_inertia=...), or use plot_history."
         )
-    with figures.styled(size=size):
-        figure = figures.new(6.3, 5.4)
+    with figures.applied_figure_style(size=size):
+        figure = figures.new_figure(6.3, 5.4)
         edges, soil, contact = figure.subplots(3, 1, sharex=True, height_ratios=(1.0, 1.3, 0.7))
         _draw_base_edges(edges, history)
         _draw_soil_pressure(figure, soil, history, springs)
@@ -700,7 +698,7 @@ def plot_footing(response: Response, *, title: str | None = None, size: Size | N
         contact.set_xlim(float(history.time[0]), float(history.time[-1]))
         figure.align_ylabels([edges, soil, contact])
         edges.set_title(
-            figures.literal(curve.label)
+            figures.literal_text(curve.label)
             + (f" under {given}" if (given := response_figure_title(curves, title)) else "")
         )
     return figure

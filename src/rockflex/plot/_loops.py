@@ -200,11 +200,11 @@ def plot_loops(
     drawn = [] if loops.edges is None else [_draw_edge_loops]
     drawn += [partial(_draw_element_loop, place=place) for place in range(len(loops.elements))]
     count = len(drawn)
-    with figures.styled(size=size):
+    with figures.applied_figure_style(size=size):
         narrow = figures.is_narrow()
         rows = count if narrow else max(math.ceil(count / _PER_ROW), 1)
         beside = 0 if narrow else math.ceil(count / rows)
-        figure = figures.new(4.2 + 2.2 * beside, max(3.6, (3.3 if narrow else 0.7) + 2.3 * rows))
+        figure = figures.new_figure(4.2 + 2.2 * beside, max(3.6, (3.3 if narrow else 0.7) + 2.3 * rows))
         figure.get_layout_engine().set(w_pad=0.07)  # pyright: ignore
         if narrow:
             grid = figure.add_gridspec(1 + rows, 1, height_ratios=(1.4, *[1.0] * rows))
@@ -216,7 +216,7 @@ def plot_loops(
         for place, draw in enumerate(drawn):
             row, column = (1 + place, 0) if narrow else (place // beside, 1 + place % beside)
             draw(figure.add_subplot(grid[row, column]), loops)
-        heading = figures.literal(title) if title is not None else loops.title
+        heading = figures.literal_text(title) if title is not None else loops.title
         figures.add_legend_above(figure, base.get_lines(), title=heading, handlelength=2.0)
     return figure
 
@@ -300,8 +300,8 @@ def plot_hysteresis(
     ('$u_{\\mathrm{top}}$, relative [m]', '$V_b$ [kN]')
     """
     curves = histories.response_curves(responses, labels)
-    with figures.styled(size=size):
-        figure = figures.new(4.2, 3.6)
+    with figures.applied_figure_style(size=size):
+        figure = figures.new_figure(4.2, 3.6)
         lines = _draw_hysteresis(figure.subplots(), curves)
         histories.add_legend(figure, curves, lines, {}, title)
     return figure
@@ -353,9 +353,9 @@ def plot_yielding(
     (3, '$u_{\\mathrm{top}}$, relative [m]')
     """
     curves = histories.response_curves(responses, labels)
-    with figures.styled(size=size):
+    with figures.applied_figure_style(size=size):
         tall, narrow = max(1.45, 0.155 * (len(curves) + 2)), figures.is_narrow()
-        figure = figures.new(8.6, 2.0 * tall + 2.6 * narrow + 0.9)
+        figure = figures.new_figure(8.6, 2.0 * tall + 2.6 * narrow + 0.9)
         if narrow:
             grid = figure.add_gridspec(3, 1, height_ratios=(tall, tall, 2.6))
         else:
@@ -446,10 +446,10 @@ def plot_moment_rotation(
     rotation = _LIMIT * (histories.rotation_axis_limit(curves) or max(map(static_line_rotation, curves)))
     largest = max(largest_base_moment_on_axes(curve) for curve in curves)
     factor, unit = unit_with_prefix(largest, "N m")
-    with figures.styled(size=size):
+    with figures.applied_figure_style(size=size):
         columns = 1 if figures.is_narrow() else min(len(curves), _RUNS_PER_ROW)
         rows = math.ceil(len(curves) / columns)
-        figure = figures.new(2.2 + 1.8 * columns, 0.6 + 2.6 * rows)
+        figure = figures.new_figure(2.2 + 1.8 * columns, 0.6 + 2.6 * rows)
         grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
         panels: list[Axes] = list(grid.flat)
         panels[0].set(xlim=(-rotation, rotation), ylim=(-_LIMIT * largest / factor, _LIMIT * largest / factor))
@@ -568,8 +568,8 @@ def plot_moment_rotation_laws(
     line = is_moment_path_independent(p)
     if not line:
         zeros = [_rotation_of_zero_moment(*push) for push in pushes]
-    with figures.styled(size=size):
-        figure = figures.new(6.3, 5.6 if figures.is_narrow() else 3.1)
+    with figures.applied_figure_style(size=size):
+        figure = figures.new_figure(6.3, 5.6 if figures.is_narrow() else 3.1)
         left, right = figure.subplots(*((2, 1) if figures.is_narrow() else (1, 2)), sharex=True, sharey=True)
         for axes, mark, title in ((left, "A", "pinned beam on a spring"), (right, "B", "rocking base")):
             axes.axhline(0.0, color=GRAY, linewidth=0.8, label="_axis")

@@ -90,8 +90,8 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
     ]
     if motion.vertical is not None:
         histories.insert(1, ("a_v", "m/s²", motion.vertical, f"{said['pva']} ({short_number(motion.pva / GRAVITY)} g)"))
-    with figures.styled(size=size):
-        figure = figures.new(7.2, 1.0 + 1.2 * len(histories) + 2.4 * figures.is_narrow())
+    with figures.applied_figure_style(size=size):
+        figure = figures.new_figure(7.2, 1.0 + 1.2 * len(histories) + 2.4 * figures.is_narrow())
         if figures.is_narrow():
             stacked: list[Any] = [[name] for name in (*(symbol for symbol, *_ in histories), "spectrum")]
             panels = figure.subplot_mosaic(stacked, height_ratios=(*[1.0] * len(histories), 1.7))
@@ -121,7 +121,7 @@ def plot_motion(motion: GroundMotion, *, size: Size | None = None) -> Figure:
         axes.set(xlabel="$T$ [s]", ylabel="$S_a$ [m/s²]")
         words = f"{said['arias']}, {said['d5_95']} (shaded)\nspectrum for ζ = {100.0 * _DAMPING:g} %"
         axes.set_title(words, fontsize=figures.scaled_font_size(8.0))
-        figure.suptitle(figures.literal(motion.name) or "ground motion", fontsize="medium")
+        figure.suptitle(figures.literal_text(motion.name) or "ground motion", fontsize="medium")
     return figure
 
 
@@ -169,13 +169,15 @@ def plot_selection(selection: Selection, *, size: Size | None = None) -> Figure:
     periods = np.geomspace(low / _BEYOND, high * _BEYOND, _N_PERIODS)
     known = periods[(periods >= target.periods[0]) & (periods <= target.periods[-1])]
     rows = selection.at(periods)
-    with figures.styled(size=size):
-        figure = figures.new(5.4, 4.6)
+    with figures.applied_figure_style(size=size):
+        figure = figures.new_figure(5.4, 4.6)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
         for axes in (upper, lower):
             axes.axvspan(low, high, color=SHADE, zorder=0.5)
         _draw_selected_spectra(upper, selection, periods, rows)
-        upper.plot(known, target.at(known), color=RED, linewidth=1.6, label=figures.literal(target.name) or "target")
+        upper.plot(
+            known, target.at(known), color=RED, linewidth=1.6, label=figures.literal_text(target.name) or "target"
+        )
         within = np.isin(periods, known)
         lower.plot(known, rows.mean(axis=0)[within] / target.at(known), color=BLUE, linewidth=1.4)
         lower.axhline(1.0, color=RED, linewidth=0.9)
@@ -250,8 +252,8 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "", size: Size 
     standing = [float(value) for value in table["relative_rotation"][~fell] if np.isfinite(value)]
     share = 1.0 - _CROSS_ROW * (len(groups) + 1)
     limit = (1.05 * max(standing, default=0.0) or 1.0) / share
-    with figures.styled(size=size):
-        figure = figures.new(6.3, 3.6)
+    with figures.applied_figure_style(size=size):
+        figure = figures.new_figure(6.3, 3.6)
         axes = figure.subplots()
         for rank, (slenderness, style) in enumerate(styles.items()):
             block = groups[slenderness].sort_values("period")
@@ -263,7 +265,9 @@ def plot_rocking_spectrum(table: "pd.DataFrame", *, title: str = "", size: Size 
                 block["period"][over], np.full(over.sum(), 1.0 - _CROSS_ROW * (rank + 1)), "x", color=style.color,
                 markersize=3.5, transform=axes.get_xaxis_transform(), label="_overturned",
             )  # fmt: skip
-        axes.set(ylim=(0.0, limit), xlabel=r"$2π/p$ [s]", ylabel=r"$θ_{\mathrm{max}}/α$", title=figures.literal(title))
+        axes.set(
+            ylim=(0.0, limit), xlabel=r"$2π/p$ [s]", ylabel=r"$θ_{\mathrm{max}}/α$", title=figures.literal_text(title)
+        )
         cross = Line2D([], [], color=BLACK, marker="x", linestyle="", markersize=3.5, label="overturned")
         handles, _ = axes.get_legend_handles_labels()
         figures.add_legend_beside(figure, [*handles, cross])
@@ -315,8 +319,8 @@ def plot_overturning_spectrum(
     needed = ("frequency_ratio", "lowest", "highest_standing")
     for table in named.values():
         check_table_columns(table, needed, "what overturning_spectrum returned")
-    with figures.styled(size=size):
-        figure = figures.new(6.3, 3.6)
+    with figures.applied_figure_style(size=size):
+        figure = figures.new_figure(6.3, 3.6)
         axes = figure.subplots()
         ends = [value for table in named.values() for name in needed[1:] for value in table[name]]
         limit = 1.1 * max(value for value in (*ends, 1.0) if np.isfinite(value))
@@ -329,10 +333,10 @@ def plot_overturning_spectrum(
                 ratio, low, high, where=both, facecolor="none", edgecolor=style.color, hatch="////", linewidth=0.0,
                 alpha=0.5,
             )  # fmt: skip
-            axes.plot(ratio, low, **style.look, label=figures.literal(name) or "lowest")
+            axes.plot(ratio, low, **style.look, label=figures.literal_text(name) or "lowest")
         axes.axhline(1.0, color=GRAY, linewidth=0.8, label="uplift")
         axes.set_xlim(left=0.0)
-        axes.set(ylim=(0.0, limit), xlabel=r"$ω_g/p$", ylabel=r"$a_p/(g\,α)$", title=figures.literal(title))
+        axes.set(ylim=(0.0, limit), xlabel=r"$ω_g/p$", ylabel=r"$a_p/(g\,α)$", title=figures.literal_text(title))
         handles, _ = axes.get_legend_handles_labels()
         if axes.collections and any(len(area.get_paths()) for area in axes.collections):
             handles.append(Patch(facecolor="none", edgecolor=GRAY, hatch="////", linewidth=0.0, label="either"))

@@ -48,9 +48,9 @@ def plot_pushover(push: Pushover, fit: BilinearFit | None = None, *, size: Size 
     (2, '$V_b$ [kN]')
     """
     checked_instance("push", push, Pushover)
-    with figures.styled(size=size):
+    with figures.applied_figure_style(size=size):
         narrow = figures.is_narrow()
-        figure = figures.new(4.2, 6.0) if narrow else figures.new(7.2, 3.4)
+        figure = figures.new_figure(4.2, 6.0) if narrow else figures.new_figure(7.2, 3.4)
         if narrow:
             curve, drifts = figure.subplots(2, 1, height_ratios=[3, 2])
         else:

@@ -76,11 +76,11 @@ def plot_set(found: RecordSet, demands: Sequence[str] | None = None, *, size: Si
             "was given.",
             field="demands",
         )
-    with figures.styled(size=size):
+    with figures.applied_figure_style(size=size):
         narrow, n = figures.is_narrow(), len(found.responses)
         rows = len(names) if narrow else 1
         height = 1.1 + (0.12 if narrow else 0.17) * min(max(n, 5), _MAX_NAMES)
-        figure = figures.new(7.2, rows * height)
+        figure = figures.new_figure(7.2, rows * height)
         panels = figure.subplots(rows, len(names) // rows, sharey=not narrow, squeeze=False).ravel()
         for axes, name in zip(panels, names, strict=True):
             _draw_demand(axes, found, name)
@@ -119,5 +119,5 @@ def _draw_demand(axes: Axes, found: RecordSet, name: str) -> None:
 
 def _name_records(axes: Axes, names: list[str]) -> None:
     step = -(-len(names) // _MAX_NAMES)
-    shown = [figures.literal(shortened(name, _MAX_LETTERS)) for name in names[::step]]
+    shown = [figures.literal_text(shortened(name, _MAX_LETTERS)) for name in names[::step]]
     axes.set_yticks(range(0, len(names), step), shown, fontsize=SMALL)

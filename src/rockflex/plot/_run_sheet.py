@@ -37,13 +37,13 @@ def draw_run_sheet(
     InputError
         If there are no responses or too many, or one has no history.
     """
-    names = None if labels is None else [figures.literal(label) for label in labels]
+    names = None if labels is None else [figures.literal_text(label) for label in labels]
     curves = histories.response_curves(responses, names)
     lifting = [curve for curve in curves if curve.lifts]
     loops = [curve for curve in lifting if curve.history.model.properties.n_modes]
     quantities = histories.panel_quantities(_run_sheet_panels(curves, height))
-    with figures.styled():
-        figure = figures.new(width * _MM, height * _MM)
+    with figures.applied_figure_style():
+        figure = figures.new_figure(width * _MM, height * _MM)
         figure.get_layout_engine().set(h_pad=0.01, w_pad=0.02, hspace=0.02, wspace=0.02)  # pyright: ignore
         grid = figure.add_gridspec(len(quantities), 2 if loops else 1, width_ratios=(1.9, 1.0) if loops else None)
         panels: list[Axes] = []
@@ -70,8 +70,8 @@ def draw_run_sheet(
 def draw_record_strip(time: Array, acceleration: Array, *, width: float, height: float) -> Figure:
     """Draw a ground acceleration in m/s² over the time in s, `width` by `height` mm."""
     largest = float(np.max(np.abs(acceleration))) or 1.0
-    with figures.styled():
-        figure = figures.new(width * _MM, height * _MM)
+    with figures.applied_figure_style():
+        figure = figures.new_figure(width * _MM, height * _MM)
         figure.get_layout_engine().set(h_pad=0.01, w_pad=0.02)  # pyright: ignore
         axes = figure.add_subplot()
         axes.plot(time, acceleration, color=figures.BLACK, linewidth=0.5)

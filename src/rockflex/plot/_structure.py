@@ -87,10 +87,10 @@ def plot_mode_shapes(
     complete = np.allclose(modes.shapes @ modes.participation, 1.0, rtol=0.0, atol=1e-6)
     total = float(modes.effective_mass.sum()) if complete else None
     shown = modes if n_modes is None else modes.truncated(n_modes)
-    with figures.styled(size=size):
+    with figures.applied_figure_style(size=size):
         per_row = min(shown.n_modes, _PER_NARROW_ROW if figures.is_narrow() else _PER_ROW)
         rows = math.ceil(shown.n_modes / per_row)
-        figure = figures.new(max(1.26 * per_row, 2.6), 3.4 * rows)
+        figure = figures.new_figure(max(1.26 * per_row, 2.6), 3.4 * rows)
         grid = figure.subplots(rows, per_row, sharey=True, squeeze=False)
         panels: list[Axes] = list(grid.flat)
         for n, axes in enumerate(panels):
@@ -185,12 +185,12 @@ def plot_frequency_equation(
     end = None if highest is None else checked_positive("highest", highest, "ω/ω_1")
     models = {name: _truncated_models(each, n_modes, side) for name, each in named.items()}
     styles = model_line_styles(label for each in models.values() for label in each)
-    with figures.styled(size=size):
-        figure = figures.new(6.3, 0.5 + 2.4 * len(named))
+    with figures.applied_figure_style(size=size):
+        figure = figures.new_figure(6.3, 0.5 + 2.4 * len(named))
         panels: list[Axes] = list(figure.subplots(len(named), 1, squeeze=False).flat)
         for axes, (name, each), mark in zip(panels, models.items(), ascii_uppercase, strict=False):
             _draw_frequency_equation(axes, each, styles, end, side)
-            axes.set_title(figures.literal(name))
+            axes.set_title(figures.literal_text(name))
             figures.label_panel(axes, mark)
         panels[-1].set_xlabel(r"$ω/ω_1$")
         handles = [Line2D([], [], **style.look, linewidth=style.width, label=label) for label, style in styles.items()]
@@ -314,9 +314,9 @@ def plot_frequency_ratios(
     _check_frequency_ratios(named, bounds, shown)
     styles = model_line_styles(str(model) for table in named.values() for model in table["model"])
     dashes = dict(zip(named, _DASHES, strict=False))
-    with figures.styled(size=size):
+    with figures.applied_figure_style(size=size):
         rows = len(shown) if figures.is_narrow() else 1
-        figure = figures.new(0.6 + 2.95 * len(shown) + 0.5 * (len(shown) == 1), 0.9 + 2.6 * rows)
+        figure = figures.new_figure(0.6 + 2.95 * len(shown) + 0.5 * (len(shown) == 1), 0.9 + 2.6 * rows)
         panels: list[Axes] = list(figure.subplots(rows, len(shown) // rows, squeeze=False).flat)
         for axes, mode, mark_of_panel in zip(panels, shown, ascii_uppercase, strict=False):
             top = max(_draw_frequency_ratios(axes, table, mode, styles, dashes[name]) for name, table in named.items())
@@ -366,7 +366,7 @@ def _frequency_ratio_handles(
     handles = [Line2D([], [], color=style.color, linewidth=style.width, label=model) for model, style in styles.items()]
     if list(dashes) != [""]:
         grays = {name: LineStyle("#606060", dash) for name, dash in dashes.items()}
-        handles += [Line2D([], [], **gray.look, label=figures.literal(name)) for name, gray in grays.items()]
+        handles += [Line2D([], [], **gray.look, label=figures.literal_text(name)) for name, gray in grays.items()]
     if bounded:
         handles.append(Line2D([], [], color=BLUE, linewidth=0.8, label="pinned beam, no spring"))
     if mark is not None:
@@ -439,8 +439,8 @@ def plot_tower(tower: TaperedTower, section: float | None = None, *, size: Size 
     z = 0.5 * tower.height if section is None else checked_positive("section", section, "m")
     if z > tower.height:
         raise InputError(f"section must be at most the height of the tower, {tower.height:g} m, but {z:g} m was given.")
-    with figures.styled(size=size):
-        figure = figures.new(6.3, 7.2 if figures.is_narrow() else 4.6)
+    with figures.applied_figure_style(size=size):
+        figure = figures.new_figure(6.3, 7.2 if figures.is_narrow() else 4.6)
         if figures.is_narrow():
             left, right = figure.subplots(2, 1, height_ratios=(1.5, 1.0))
         else:

@@ -46,7 +46,7 @@ def check_table_columns(table: object, columns: Iterable[str], source: str, call
 
 def measure_axis_name(measure: str) -> str:
     """Name of an axis: an intensity measure with its unit, or the name of another column."""
-    return MEASURES[measure].axis if measure in MEASURES else figures.literal(measure)
+    return MEASURES[measure].axis if measure in MEASURES else figures.literal_text(measure)
 
 
 def names_in_column(column: "pd.Series[Any] | Iterable[object]") -> list[str]:
@@ -90,13 +90,13 @@ def structure_panels(names: Sequence[str], across: int, height: float, x: str, y
         )
     columns = 1 if figures.is_narrow() else min(across, len(names))
     rows = math.ceil(len(names) / columns)
-    figure = figures.new(4.2 if columns == 1 else 6.3, 0.6 + height * rows)
+    figure = figures.new_figure(4.2 if columns == 1 else 6.3, 0.6 + height * rows)
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     panels: list[Axes] = list(grid.flat)
     for spare in panels[len(names) :]:
         spare.remove()
     for place, (axes, name) in enumerate(zip(panels, names, strict=False)):
-        axes.set_title(figures.literal(name))
+        axes.set_title(figures.literal_text(name))
         if place + columns >= len(names):
             axes.set_xlabel(x)
             axes.tick_params(labelbottom=True)

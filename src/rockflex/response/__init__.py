@@ -15,7 +15,7 @@ from rockflex.response._moment_rotation import (
     resistance_on_springs,
     weight_resistance,
 )
-from rockflex.response._peaks import GLOBAL, Tracked, tracked_quantities
+from rockflex.response._peaks import GLOBAL, TrackedPeaks, tracked_quantities
 from rockflex.response._pushover import BilinearFit, Pushover, PushoverEvent, pushover_path
 from rockflex.response._quasi_static import static_path
 from rockflex.response._record_set import DEMANDS, RecordSet, Rule, checked_rule
@@ -24,20 +24,20 @@ from rockflex.response._respond import (
     MAX_OF_STORIES,
     NAMES,
     STATUSES,
-    columns_among,
-    columns_of,
+    columns_of_responses,
     missing_values,
-    respond,
+    response_columns_of_runs,
+    response_of_solution,
     story_results,
 )
 from rockflex.response._response import (
     BALANCED,
     PEAKS,
     Response,
-    complete_of,
+    complete_model_label,
     leaves_range,
-    warnings_of,
     warnings_of_energy,
+    warnings_of_response,
 )
 from rockflex.response._tables import RESULT_UNITS, UNITS_OF_GROUND, UNITS_OF_HISTORY, ground_columns, history_columns
 
@@ -73,12 +73,11 @@ __all__ = [
     "Response",
     "Rule",
     "SampledHistory",
-    "Tracked",
+    "TrackedPeaks",
     "check",
     "checked_rule",
-    "columns_among",
-    "columns_of",
-    "complete_of",
+    "columns_of_responses",
+    "complete_model_label",
     "element_resistance",
     "friction_coefficient",
     "ground_columns",
@@ -88,13 +87,14 @@ __all__ = [
     "missing_values",
     "pushover_path",
     "resistance_on_springs",
-    "respond",
+    "response_columns_of_runs",
+    "response_of_solution",
     "static_path",
     "story_results",
     "to_matlab",
     "to_netcdf",
     "tracked_quantities",
-    "warnings_of",
     "warnings_of_energy",
+    "warnings_of_response",
     "weight_resistance",
 ]

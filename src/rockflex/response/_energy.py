@@ -22,16 +22,16 @@ from rockflex.models import (
     HEADER,
     LOADED,
     SIDE,
+    IntervalsOfPhase,
     Key,
     LinearMotion,
     MotionBetween,
-    Part,
     RockingModel,
-    Shaking,
+    VerticalShaking,
     element_energies,
     horizontal_reaction,
-    inside,
-    rate_of,
+    rate_of_elongation_row,
+    series_between_states,
     soil_strain,
     stored_energies,
     under_more_gravity,
@@ -136,7 +136,7 @@ def energy_ledger(model: RockingModel, states: Array) -> EnergyLedger:
     losses = kinetic[impact] - kinetic[impact + 1]
     lost = np.zeros(states.shape[0])
     np.add.at(lost, impact + 1, losses)
-    work = work_between(model, states)
+    work = energy_between_states(model, states)
     damped, given, yielded = work.damped, work.ground, np.zeros(work.damped.size)
     if model.integrated:
         layout, integrated = model.layout, model.integrates(states[:-1, SIDE])
@@ -151,7 +151,7 @@ def energy_ledger(model: RockingModel, states: Array) -> EnergyLedger:
         if layout.soil >= 0:
             soil, sweeps = counters[:, layout.soil : layout.sweeps], counters[:, layout.sweeps : layout.memory]
             work = work._replace(soil=soil, sweeps=sweeps)
-    stored, losses_of = element_energies(model, states, sweeps_of(model, states, work))
+    stored, losses_of = element_energies(model, states, swept_integrals(model, states, work))
     count = len(model.properties.elements)  # stories that yield follow
     yielded += losses_of[:, count:].sum(axis=1)
     return EnergyLedger(
@@ -183,7 +183,7 @@ MAX_SERIES = 10_000  # per interval with vertical motion: a minute of work for a
 CHUNK = 2**13  # intervals, whose power series take some dozens of megabytes
 
 
-class Work(NamedTuple):
+class EnergyBetweenStates(NamedTuple):
     """Energies in J between adjacent states, shape (n_states - 1,) unless another is given; zero if integrated."""
 
     damped: Array  # by modal damping
@@ -194,7 +194,7 @@ class Work(NamedTuple):
     sweeps: Array  # (n_states - 1, E): ∫ δ'² dt of each element in m²/s; on rigid ground only of attached dampers
 
 
-def work_between(model: RockingModel, states: Array) -> Work:
+def energy_between_states(model: RockingModel, states: Array) -> EnergyBetweenStates:
     """Return the work between adjacent states.
 
     Raises
@@ -204,10 +204,10 @@ def work_between(model: RockingModel, states: Array) -> Work:
     """
     motion, last = MotionBetween(model), states.shape[0] - 1
     parts = [_work_of(model, motion, states[k : min(k + CHUNK, last) + 1]) for k in range(0, max(last, 1), CHUNK)]
-    return Work(*(np.concatenate(each) for each in zip(*parts, strict=True)))
+    return EnergyBetweenStates(*(np.concatenate(each) for each in zip(*parts, strict=True)))
 
 
-def _work_of(model: RockingModel, motion: MotionBetween, states: Array) -> Work:
+def _work_of(model: RockingModel, motion: MotionBetween, states: Array) -> EnergyBetweenStates:
     n = states.shape[0] - 1
     damped, ground, friction, swing = np.zeros((4, n))
     soil, sweeps = -np.diff(soil_strain(model, states), axis=0), np.zeros((n, len(model.elements)))
@@ -221,10 +221,10 @@ def _work_of(model: RockingModel, motion: MotionBetween, states: Array) -> Work:
             soil[np.ix_(part.rows, loaded)] = model.springs.damping[loaded] * found[:, 4 + loaded]
             first += model.springs.n
         sweeps[part.rows[:, None], swept] = found[:, first:]
-    return Work(damped, ground, friction, swing, soil, sweeps)
+    return EnergyBetweenStates(damped, ground, friction, swing, soil, sweeps)
 
 
-def sweeps_of(model: RockingModel, states: Array, work: Work) -> Array:
+def swept_integrals(model: RockingModel, states: Array, work: EnergyBetweenStates) -> Array:
     """Return ∫ δ'² dt of each element between adjacent states in m²/s, shape (n_states - 1, E)."""
     if model.springs is not None or not model.elements:
         return work.sweeps
@@ -274,7 +274,7 @@ class PhaseWork:
         elif key[0] != CLOSED:
             self._lift = key[0] * p.m_tot * p.pivot(key[0]).arm * unit[layout.spin]
         for place in swept_elements(model):
-            rates.append(motion.taken(rate_of(model.stretch(place, CLOSED), layout)))
+            rates.append(motion.taken(rate_of_elongation_row(model.stretch(place, CLOSED), layout)))
         self._rates = np.array(rates)
         # Few independent rates, of which all others are sums: θ', the heave's and those of the modes.
         self._base, self._shares = _independent(self._rates)
@@ -287,7 +287,7 @@ class PhaseWork:
             self._held = motion.taken(horizontal_reaction(model, key))
             self._heavier = motion.taken(horizontal_reaction(heavier, key)) - self._held
 
-    def of(self, part: Part) -> Array:
+    def of(self, part: IntervalsOfPhase) -> Array:
         """Return the work in intervals, shape (n, 4 + n_springs + number of `swept_elements`)."""
         found = np.zeros((part.rows.size, 3 + len(self._rates)))
         rows = np.flatnonzero(part.steps)
@@ -318,7 +318,9 @@ class PhaseWork:
         """The tables for the lengths of `LinearMotion.pieces`: by quadrature for the last one, and doubled."""
         motion, unit = self._motion, np.eye(len(self._motion.rates))
         length = motion.lengths[-1]
-        z = inside(motion.series(unit, np.full(len(unit), length)), POINTS).swapaxes(0, 1)  # of unit vectors, (Z, P, Z)
+        z = series_between_states(motion.series(unit, np.full(len(unit), length)), POINTS).swapaxes(
+            0, 1
+        )  # of unit vectors, (Z, P, Z)
         weights = length * WEIGHTS
         rows = np.sqrt(weights)[:, None] * (z @ np.concatenate((self._drag, self._base)).T).swapaxes(0, 2)
         n, push, slide = len(self._drag), weights[:, None] * (z @ self._push).T, (z @ self._slide).T
@@ -340,7 +342,7 @@ class PhaseWork:
             found.append(Table(drag, base, push, friction))
         return found[::-1]
 
-    def _by_series(self, z: Array, steps: Array, shaking: Shaking | None = None) -> Array:
+    def _by_series(self, z: Array, steps: Array, shaking: VerticalShaking | None = None) -> Array:
         longest = float(steps.max(initial=0.0))
         found, parts = np.zeros((len(z), 3 + len(self._rates))), self._motion.parts(longest)
         if parts > MAX_SERIES:
@@ -353,7 +355,7 @@ class PhaseWork:
         h = (steps / parts)[:, None]
         weights = h * WEIGHTS
         for k, terms in enumerate(self._motion.developed(z, steps, shaking)):
-            z = inside(terms, POINTS).swapaxes(0, 1)  # (n, P, Z)
+            z = series_between_states(terms, POINTS).swapaxes(0, 1)  # (n, P, Z)
             rates = z @ self._rates.T
             push, held = z[..., -3] * (z @ self._push), z @ self._held
             if shaking is not None:

@@ -12,9 +12,9 @@ from rockflex._checks import checked_finite_vector, checked_positive, checked_wh
 from rockflex._errors import InputError, MissingQuantityError
 from rockflex._values import Value
 from rockflex.modal import FloorModes
-from rockflex.models import TIME, RockingModel, floor_accelerations, floor_quantities, values_of
+from rockflex.models import TIME, RockingModel, floor_accelerations, floor_quantities, quantities_at_states
 from rockflex.motion import GroundMotion
-from rockflex.response._interpolation import even_instants, states_at
+from rockflex.response._interpolation import even_instants, interpolated_states
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -86,7 +86,7 @@ def floor_histories(model: RockingModel, states: Array) -> tuple[Array, Array, A
             "accelerations or floor displacements. Simulate a Frame or a LumpedStructure, or give RockingProperties "
             "their floors."
         )
-    values = values_of(model, floor_quantities(model, floors, HISTORY_NAMES), states)
+    values = quantities_at_states(model, floor_quantities(model, floors, HISTORY_NAMES), states)
     drift, shear, displacement = np.split(values, len(HISTORY_NAMES), axis=1)
     histories = drift, shear, floor_accelerations(model, floors, states), displacement
     for each in histories:
@@ -114,7 +114,7 @@ def floor_motion(
     step = min(MAX_FLOOR_STEP, shortest / STEPS_PER_PERIOD) if dt is None else checked_positive("dt", dt, "s")
     span = float(known[-1] - known[0])
     times = even_instants(span / max(math.ceil(span / step - 1e-9), 2), known)
-    samples = floor_accelerations(model, floors, states_at(model, states, times))[:, number - 1]
+    samples = floor_accelerations(model, floors, interpolated_states(model, states, times))[:, number - 1]
     step = span / (times.size - 1)
     if impulses:
         place = np.minimum((known[1:] - known[0]) / step, times.size - 1.0)

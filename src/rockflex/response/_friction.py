@@ -21,11 +21,11 @@ from rockflex.models import (
     MotionBetween,
     Reactions,
     RockingModel,
-    accelerations,
+    accelerations_at_states,
     printed_reactions,
     reactions,
 )
-from rockflex.response._interpolation import freedoms_of, quintic
+from rockflex.response._interpolation import interpolated_columns, quintic
 
 IMPACT_WINDOW = 0.05  # s after an impact, in which the demand has short spikes
 MAX_PHASE_STEP = 0.2  # radians of the fastest mode between adjacent evaluation points
@@ -62,7 +62,7 @@ class Friction:
         self._model = model
         self._states = states
         self._printed = printed
-        self._rates = accelerations(model, states)
+        self._rates = accelerations_at_states(model, states)
         self._linear = None if model.bouc_wen is not None else MotionBetween(model)
         p = model.properties
         # Upper bound of the factor by which uplift increases the frequencies.
@@ -197,7 +197,7 @@ class Friction:
         lasting = np.diff(states[:, TIME]) > 0.0
         for rows, moved in self._between(states, rates, places):
             inside = rows[lasting]
-            known = accelerations(self._model, inside) if moved is None else moved[lasting]
+            known = accelerations_at_states(self._model, inside) if moved is None else moved[lasting]
             yield self._angle(self._reactions_at(inside, known))
 
     def _between(self, states: Array, rates: Array, places: Sequence[float]) -> Iterator[tuple[Array, Array | None]]:
@@ -222,7 +222,7 @@ class Friction:
     def _interpolated(self, rows: Array, states: Array, rates: Array, place: float) -> Array:
         """Put polynomials into rows where the model is not linear; return the accelerations that they give."""
         layout = self._model.layout
-        where, velocity = freedoms_of(layout)
+        where, velocity = interpolated_columns(layout)
         value, slope, bend = quintic(states[:, where], states[:, velocity], rates, np.diff(states[:, TIME]), place)
         integrated = self._model.integrates(states[:-1, SIDE])
         rows[np.ix_(integrated, where)] = value[integrated]

@@ -22,7 +22,7 @@ from rockflex.models import (
     SIDE,
     TIME,
     RockingModel,
-    accelerations,
+    accelerations_at_states,
     element_forces,
     spring_forces,
 )
@@ -31,9 +31,9 @@ from rockflex.response._energy import EnergyLedger, energy_ledger
 from rockflex.response._export_files import history_variables, write_matlab, write_netcdf
 from rockflex.response._floors import floor_histories, floor_motion
 from rockflex.response._friction import IMPACT_WINDOW, Friction
-from rockflex.response._interpolation import even_instants, instants, only_of_run, settled_rotation, states_at
+from rockflex.response._interpolation import even_instants, instants, interpolated_states, only_of_run, settled_rotation
 from rockflex.response._peaks import global_histories
-from rockflex.response._tables import dataset_of, frame_of
+from rockflex.response._tables import history_to_dataframe, history_to_dataset
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -113,7 +113,7 @@ class History(Value):
         InputError
             If an instant is not a number or outside the history.
         """
-        return SampledHistory(self.model, states_at(self.model, self.states, instants(times, self.time)))
+        return SampledHistory(self.model, interpolated_states(self.model, self.states, instants(times, self.time)))
 
     def settled_rotation(self, work_limit: float | None = 30.0) -> float:
         """Return the rotation in rad that remains once the base has come to rest, from that at rest under gravity.
@@ -156,7 +156,7 @@ class History(Value):
         InputError
             If `dt` is not a positive number, or gives more than 10 million instants.
         """
-        return SampledHistory(self.model, states_at(self.model, self.states, even_instants(dt, self.time)))
+        return SampledHistory(self.model, interpolated_states(self.model, self.states, even_instants(dt, self.time)))
 
     @property
     def time(self) -> Array:
@@ -357,7 +357,7 @@ class History(Value):
         InputError
             If the springs have no `area`.
         """
-        return pressure_of(self.spring_force, self.model.springs)
+        return soil_pressure(self.spring_force, self.model.springs)
 
     @property
     def bearing_pressure(self) -> Array:
@@ -375,7 +375,7 @@ class History(Value):
         """
         model, springs = self.model, self.model.springs
         if springs is None or springs.area is None:
-            raise no_area()
+            raise missing_spring_area_error()
         turn = model.turned(model.layout.of(self.states, model.layout.rotation))[:, None]
         pushes = springs.stiffness * np.maximum(springs.positions * turn - self.heave[:, None], 0.0)
         force, p = pushes.sum(axis=1), model.properties
@@ -544,7 +544,7 @@ class History(Value):
         InputError
             If there is no such quantity, or the structure has no floors.
         """
-        return frame_of(self, quantities)
+        return history_to_dataframe(self, quantities)
 
     def to_xarray(self, quantities: Sequence[str] | None = None) -> "xr.Dataset":
         """Return the history as a labelled data set, in SI units; it needs the extra ``rockflex[xarray]``.
@@ -566,7 +566,7 @@ class History(Value):
         InputError
             If xarray is not installed, there is no such quantity, or the structure has no floors.
         """
-        return dataset_of(self, quantities)
+        return history_to_dataset(self, quantities)
 
     def to_matlab(self, path: str | Path, quantities: Sequence[str] | None = None) -> Path:
         """Write the history as a file of MATLAB; see `rockflex.to_matlab`."""
@@ -582,7 +582,7 @@ class History(Value):
 
     @cached_property
     def _accelerations(self) -> Array:
-        values = accelerations(self.model, self.states)
+        values = accelerations_at_states(self.model, self.states)
         values.setflags(write=False)
         return values
 
@@ -627,7 +627,7 @@ class SampledHistory(History):
         return f"SampledHistory({self.model.label}, {self.time.size} instants, {self.time[0]:g} to {self.time[-1]:g} s)"
 
 
-def pressure_of(force: Array, springs: Springs | None) -> Array:
+def soil_pressure(force: Array, springs: Springs | None) -> Array:
     """Return the pressure at each spring in Pa from its force in N, shape (n, S).
 
     Raises
@@ -636,11 +636,11 @@ def pressure_of(force: Array, springs: Springs | None) -> Array:
         If there are no springs, or they have no `area`.
     """
     if springs is None or springs.area is None:
-        raise no_area()
+        raise missing_spring_area_error()
     return force / springs.area
 
 
-def no_area() -> MissingQuantityError:
+def missing_spring_area_error() -> MissingQuantityError:
     """Return the error of a pressure without areas."""
     return MissingQuantityError(
         "The springs under the base have no area, so there is no soil pressure. Give Springs the area that each "

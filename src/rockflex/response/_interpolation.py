@@ -21,7 +21,7 @@ from rockflex.models import (
     Quantities,
     RockingModel,
     StateLayout,
-    accelerations,
+    accelerations_at_states,
 )
 from rockflex.solve import Engine
 
@@ -123,7 +123,7 @@ def even_instants(dt: float, known: Array) -> Array:
     return np.append(begin + step * np.arange(steps), end)
 
 
-def states_at(model: RockingModel, states: Array, times: Array) -> Array:
+def interpolated_states(model: RockingModel, states: Array, times: Array) -> Array:
     """Return the states of a history at instants within it, shape (m, n_columns); at an event those after it.
 
     Linear phases are exact. In others the motion is a polynomial of fifth degree through position, velocity and
@@ -154,7 +154,7 @@ def states_at(model: RockingModel, states: Array, times: Array) -> Array:
     return found
 
 
-def freedoms_of(layout: StateLayout) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def interpolated_columns(layout: StateLayout) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return the columns of a history with D_n, θ, the slip and the heave, and those with their velocities."""
     n, base = layout.modes, layout.rotation + 2 * np.arange(layout.freedoms)
     places = np.concatenate((np.arange(n), base))
@@ -164,8 +164,8 @@ def freedoms_of(layout: StateLayout) -> tuple[NDArray[np.intp], NDArray[np.intp]
 def _curve(model: RockingModel, states: Array, which: NDArray[np.intp], part: Array, inside: Array) -> None:
     """Fill in the motion at a part of some intervals by polynomials between the states at their ends."""
     layout = model.layout
-    where, speeds = freedoms_of(layout)
-    rates, step = accelerations(model, states), np.diff(states[:, TIME])[which]
+    where, speeds = interpolated_columns(layout)
+    rates, step = accelerations_at_states(model, states), np.diff(states[:, TIME])[which]
     first, last = ((states[ends][:, where], states[ends][:, speeds], rates[ends]) for ends in (which, which + 1))
     inside[:, where], inside[:, speeds], _ = quintic_between(first, last, step, part[:, None])
     energies = slice(HEADER + layout.core, HEADER + layout.memory)

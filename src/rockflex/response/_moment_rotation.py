@@ -13,7 +13,7 @@ from rockflex._constants import GRAVITY
 from rockflex._shown import number_with_noun
 from rockflex._values import Value
 from rockflex.modal import BaseElement, RockingProperties, Springs
-from rockflex.response._history import History, pressure_of
+from rockflex.response._history import History, soil_pressure
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,7 +23,7 @@ _OF_ELEMENTS = ("element_force", "element_elongation", "plastic_stretch", "eleme
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StaticPath(Value, ABC):
+class MomentRotationPath(Value, ABC):
     """What paths on rigid ground and on springs have in common; between adjacent points everything is linear."""
 
     properties: RockingProperties
@@ -71,7 +71,7 @@ class StaticPath(Value, ABC):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MomentRotation(StaticPath):
+class MomentRotation(MomentRotationPath):
     """The quasi-static moment of a base over a path of its rotation, with the forces of its elements.
 
     Between adjacent points everything is linear: a point stands wherever an element changes its branch, and two of them
@@ -204,7 +204,7 @@ class MomentRotation(StaticPath):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MomentRotationOnSprings(StaticPath):
+class MomentRotationOnSprings(MomentRotationPath):
     """The quasi-static moment of a base on springs over a path of its rotation, with the forces and the settlement.
 
     Between adjacent points everything is linear: a point stands wherever a spring becomes empty or is met again, and
@@ -301,7 +301,7 @@ class MomentRotationOnSprings(StaticPath):
         InputError
             If the springs have no `area`.
         """
-        return pressure_of(self.spring_force, self.springs)
+        return soil_pressure(self.spring_force, self.springs)
 
     @property
     def uplift_rotations(self) -> Array:

@@ -21,13 +21,13 @@ from rockflex.models import (
     element_moves,
     element_speeds,
     floor_quantities,
-    joined,
+    joined_quantities,
     plastic_stretches,
     quantities,
+    quantities_at_states,
     rotation_by_side,
     rotation_rate_by_side,
     tracked_elements,
-    values_of,
 )
 from rockflex.solve import Solution
 
@@ -45,7 +45,7 @@ FLOORS = ("story_drift", "story_shear", "total_floor_displacement", "floor_accel
 
 
 @dataclass(frozen=True, eq=False)
-class NamedRows:
+class NamedPeakRows:
     """Quantities whose peaks a run keeps, and the places of these peaks in its solution.
 
     Parameters
@@ -62,7 +62,7 @@ class NamedRows:
     @classmethod
     def of(
         cls, parts: Sequence[tuple[tuple[str, ...] | str, Quantities]], before: Mapping[str, int] | None = None
-    ) -> "NamedRows":
+    ) -> "NamedPeakRows":
         """Return the rows of parts in their order, after other places.
 
         A part has a tuple with the name of each row, or one name for all its rows.
@@ -76,18 +76,18 @@ class NamedRows:
             else:
                 places |= zip(name, range(first, end), strict=True)
             first = end
-        return cls(joined([part for _, part in parts]), places)
+        return cls(joined_quantities([part for _, part in parts]), places)
 
     def named(self, peaks: Array) -> dict[str, Array]:
         """Return peaks, or their times, by name: from the shape (..., F), of one name (...), or (k, ...) of a slice."""
         return {name: peaks.T[place] for name, place in self.places.items()}
 
 
-class Tracked(NamedTuple):
+class TrackedPeaks(NamedTuple):
     """What a run tracks: largest magnitudes, and, on springs, largest values."""
 
-    peaks: NamedRows
-    extremes: NamedRows | None
+    peaks: NamedPeakRows
+    extremes: NamedPeakRows | None
 
     def of(self, solution: Solution) -> dict[str, Array]:
         """Return the peaks and extremes of a run by name, each of shape () or (k,)."""
@@ -97,7 +97,7 @@ class Tracked(NamedTuple):
 
 def tracked_quantities(
     model: RockingModel, *, floors: bool = False, more: Mapping[str, Quantities] | None = None
-) -> Tracked:
+) -> TrackedPeaks:
     """Return the quantities for a run of a model: `GLOBAL`, those of its base, optionally `FLOORS`, and `more` by name.
 
     Elements need the largest rotation to each side if the sides differ, and viscous dampers the velocities. Those of
@@ -123,8 +123,8 @@ def tracked_quantities(
     if floors and p.floors is not None:
         names = FLOORS[:-1] if model.integrated else FLOORS
         parts += [(name, floor_quantities(model, p.floors, (name,))) for name in names]
-    peaks = NamedRows.of([*parts, *(more or {}).items()], {"rotation": 0})  # the engine puts the rotation first
-    return Tracked(peaks, NamedRows.of(most) if most else None)
+    peaks = NamedPeakRows.of([*parts, *(more or {}).items()], {"rotation": 0})  # the engine puts the rotation first
+    return TrackedPeaks(peaks, NamedPeakRows.of(most) if most else None)
 
 
 def _edges(model: RockingModel) -> Quantities:
@@ -158,7 +158,7 @@ def largest_edge_moves(model: RockingModel, peaks: Mapping[str, Array]) -> tuple
 
 def global_histories(model: RockingModel, states: Array) -> dict[str, Array]:
     """Return the values of `GLOBAL` at the states of a history by name: read-only, each of shape (n_states,)."""
-    values = values_of(model, quantities(model, GLOBAL), states)
+    values = quantities_at_states(model, quantities(model, GLOBAL), states)
     values.setflags(write=False)
     return dict(zip(GLOBAL, values.T, strict=True))
 

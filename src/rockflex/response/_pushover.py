@@ -12,12 +12,12 @@ from rockflex._values import Value
 from rockflex.modal import FloorModes
 from rockflex.models import RIGHT, BoucWen, Element, RockingModel
 from rockflex.response._quasi_static import (
-    ElementState,
-    at_rest,
+    StaticElementState,
+    element_at_start_of_path,
     next_branch,
     next_branch_change,
     start_moving,
-    tension,
+    static_tension,
 )
 
 if TYPE_CHECKING:
@@ -222,11 +222,11 @@ class _Point(NamedTuple):
 
     moved: Array
     force: float
-    places: tuple[ElementState, ...]
+    places: tuple[StaticElementState, ...]
     closed: bool
 
 
-class _Way:
+class _PushoverEquilibria:
     """The equilibria of a structure under lateral forces of one pattern, by the displacement of its top."""
 
     def __init__(self, model: RockingModel, pattern: Array, floors: FloorModes) -> None:
@@ -244,11 +244,11 @@ class _Way:
 
     def start(self) -> _Point:
         """Return the state at rest."""
-        places = tuple(at_rest(each) for each in self.elements)
+        places = tuple(element_at_start_of_path(each) for each in self.elements)
         return _Point(self.rest, 0.0, self.stretched(places, self.rest), True)
 
     def solved(
-        self, places: tuple[ElementState, ...], top: float, *, closed: bool, rate: bool = False
+        self, places: tuple[StaticElementState, ...], top: float, *, closed: bool, rate: bool = False
     ) -> tuple[Array, float]:
         """Return D, θ and the sum of the forces at a displacement of the top, or their rates."""
         free = len(self.top) - closed
@@ -264,12 +264,12 @@ class _Way:
         found = np.linalg.solve(whole, np.append(load[:free], top))
         return np.append(found[:free], np.zeros(int(closed))).astype(float), float(found[free])
 
-    def stretched(self, places: tuple[ElementState, ...], moved: Array) -> tuple[ElementState, ...]:
+    def stretched(self, places: tuple[StaticElementState, ...], moved: Array) -> tuple[StaticElementState, ...]:
         """Return the elements at displacements."""
         ends = (self.rows @ moved).tolist()
         return tuple(place._replace(elongation=end) for place, end in zip(places, ends, strict=True))
 
-    def onward(self, point: _Point) -> tuple[tuple[ElementState, ...], Array, float]:
+    def onward(self, point: _Point) -> tuple[tuple[StaticElementState, ...], Array, float]:
         """Return the elements as they begin to move on from a point, and the rates of D, θ and the forces."""
         places = point.places
         moved, force = self.solved(places, 1.0, closed=point.closed, rate=True)
@@ -285,11 +285,13 @@ class _Way:
             moved, force = self.solved(places, 1.0, closed=point.closed, rate=True)
         return places, moved, force
 
-    def lift(self, places: tuple[ElementState, ...], force: float) -> float:
+    def lift(self, places: tuple[StaticElementState, ...], force: float) -> float:
         """Return the moment in N m that turns a closed base to the right, less what it resists; negative if none."""
         turned = force * self.push[-1] + self.weight[-1]
         for each, row, place, attached in zip(self.elements, self.rows, places, self.attached.tolist(), strict=True):
-            turned -= row[-1] * tension(each, place if attached else start_moving(each, place, int(np.sign(row[-1]))))
+            turned -= row[-1] * static_tension(
+                each, place if attached else start_moving(each, place, int(np.sign(row[-1])))
+            )
         return turned
 
 
@@ -312,7 +314,7 @@ def pushover_path(model: RockingModel, pattern: Array, target: float, floors: Fl
     InputError
         If the branches of an element follow one another without end.
     """
-    way = _Way(model, pattern, floors)
+    way = _PushoverEquilibria(model, pattern, floors)
     point = way.start()
     top = float(way.top @ point.moved)
     points, events, near = [point], list[tuple[str, int]](), NEAR * target
@@ -356,8 +358,8 @@ def pushover_path(model: RockingModel, pattern: Array, target: float, floors: Fl
 
 
 def _changed(
-    elements: tuple[Element, ...], places: tuple[ElementState, ...], which: int, direction: int
-) -> tuple[tuple[ElementState, ...], int]:
+    elements: tuple[Element, ...], places: tuple[StaticElementState, ...], which: int, direction: int
+) -> tuple[tuple[StaticElementState, ...], int]:
     """Return the elements after one of them has reached the end of its branch, and its next branch."""
     stop = next_branch_change(elements[which], places[which], direction)
     assert stop is not None
@@ -369,14 +371,17 @@ def _result(
     model: RockingModel,
     floors: FloorModes,
     pattern: Array,
-    way: _Way,
+    way: _PushoverEquilibria,
     points: list[_Point],
     events: list[tuple[str, int]],
 ) -> Pushover:
     p, n = model.properties, model.properties.n_modes
     moved = np.array([point.moved for point in points])
     tensions = np.array(
-        [[tension(each, place) for each, place in zip(way.elements, point.places, strict=True)] for point in points]
+        [
+            [static_tension(each, place) for each, place in zip(way.elements, point.places, strict=True)]
+            for point in points
+        ]
     ).reshape(len(points), len(way.elements))
     count = len(p.elements)
     restoring = moved[:, :n] * p.omega**2  # accelerations of the modes, with those of stories that yield

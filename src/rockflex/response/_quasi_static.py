@@ -15,9 +15,9 @@ from rockflex.models import (
     LEVEL,
     RIGHT,
     Element,
+    FrictionElement,
     Pose,
-    Slider,
-    arm_of,
+    arm_of_element,
     elements_of,
 )
 from rockflex.response._moment_rotation import MomentRotation, MomentRotationOnSprings
@@ -41,16 +41,16 @@ def static_path(
     """
     elements = elements_of(properties)
     if springs is None:
-        points = list(_about_pivots(properties, elements, rotations))
+        points = list(_static_path_about_pivots(properties, elements, rotations))
         side = np.array([point[0] for point in points])
         return MomentRotation(
             properties=properties,
             rotation=side * np.array([point[1] for point in points]) + 0.0,  # no -0.0
             given=np.array([point[2] for point in points]),
-            **_along(elements, [places for *_, places in points]),
+            **_elements_along_static_path(elements, [places for *_, places in points]),
             side=side,
         )
-    found = list(_on_springs(SprungBase(elements, springs, rest), rotations))
+    found = list(_static_path_on_springs(SprungBase(elements, springs, rest), rotations))
     states = [state for state, _ in found]
     rotation, heave = np.array([(state.rotation, state.heave) for state in states]).T
     loaded = np.array([state.pressed & ~state.empty for state in states])
@@ -59,15 +59,17 @@ def static_path(
         properties=properties,
         rotation=rotation + 0.0,  # no -0.0
         given=np.array([given for _, given in found]),
-        **_along(elements, [state.places for state in states], np.array([state.carried for state in states])),
+        **_elements_along_static_path(
+            elements, [state.places for state in states], np.array([state.carried for state in states])
+        ),
         springs=springs,
         heave=heave,
         spring_force=np.where(loaded, np.maximum(-springs.stiffness * depth, 0.0), 0.0),
     )
 
 
-def _along(
-    elements: tuple[Element, ...], path: "Sequence[tuple[ElementState, ...]]", carried: Array | None = None
+def _elements_along_static_path(
+    elements: tuple[Element, ...], path: "Sequence[tuple[StaticElementState, ...]]", carried: Array | None = None
 ) -> dict[str, Array]:
     """Return force, elongation, plastic stretch and losses of the elements along a path by name, each (n, E).
 
@@ -75,7 +77,7 @@ def _along(
     """
     values = np.array(
         [
-            (tension(each, place), place.elongation, plastic_stretch(each, place))
+            (static_tension(each, place), place.elongation, plastic_stretch(each, place))
             for places in path
             for each, place in zip(elements, places, strict=True)
         ]
@@ -95,7 +97,7 @@ def _along(
     }
 
 
-class ElementState(NamedTuple):
+class StaticElementState(NamedTuple):
     """The branch of an element, its internal variable at the start of the branch, and its elongation δ in m."""
 
     branch: int
@@ -103,32 +105,32 @@ class ElementState(NamedTuple):
     elongation: float
 
 
-def at_rest(element: Element) -> ElementState:
+def element_at_start_of_path(element: Element) -> StaticElementState:
     """Return the place at which every path starts."""
-    return ElementState(element.branches[0], 0.0, 0.0)
+    return StaticElementState(element.branches[0], 0.0, 0.0)
 
 
-def tension(element: Element, place: ElementState) -> float:
+def static_tension(element: Element, place: StaticElementState) -> float:
     """Return the force in N while the elongation changes slowly."""
     pull = element.pull(place.branch)
     return pull.stiffness * place.elongation + pull.force + pull.recall * place.memory
 
 
-def memory_at(element: Element, place: ElementState) -> float:
+def static_internal_variable(element: Element, place: StaticElementState) -> float:
     """Return the internal variable if the branch ended here: on a branch that yields it follows the elongation."""
     offset = element.turning(place.branch)
     return place.memory if offset is None else place.elongation - offset
 
 
-def start_moving(element: Element, place: ElementState, direction: int) -> ElementState:
+def start_moving(element: Element, place: StaticElementState, direction: int) -> StaticElementState:
     """Return the place as the elongation begins to change, with the sign of δ'; 0 if it does not change."""
     if element.direction(place.branch) == direction:
         return place
     branch = element.moving(element.stopped(place.branch), direction)
-    return ElementState(branch, memory_at(element, place), place.elongation)
+    return StaticElementState(branch, static_internal_variable(element, place), place.elongation)
 
 
-def next_branch_change(element: Element, place: ElementState, direction: int) -> tuple[float, int] | None:
+def next_branch_change(element: Element, place: StaticElementState, direction: int) -> tuple[float, int] | None:
     """Return the elongation at which the branch ends if it keeps its direction, and the next branch; None if never."""
     ahead = [
         (max(direction * (stop.place + stop.recall * place.memory), direction * place.elongation), stop.branch)
@@ -141,30 +143,34 @@ def next_branch_change(element: Element, place: ElementState, direction: int) ->
     return direction * reached, branch
 
 
-def next_branch(element: Element, place: ElementState, branch: int) -> ElementState:
+def next_branch(element: Element, place: StaticElementState, branch: int) -> StaticElementState:
     """Return the same place on the branch that follows."""
-    return ElementState(branch, memory_at(element, place), place.elongation)
+    return StaticElementState(branch, static_internal_variable(element, place), place.elongation)
 
 
-def jumps(element: Element, before: ElementState, after: ElementState) -> bool:
+def does_static_force_jump(element: Element, before: StaticElementState, after: StaticElementState) -> bool:
     """Return whether the force jumps between two branches."""
-    return before.branch != after.branch and (element.broken(after.branch) or isinstance(element, Slider))
+    return before.branch != after.branch and (element.broken(after.branch) or isinstance(element, FrictionElement))
 
 
-def plastic_stretch(element: Element, place: ElementState) -> float:
+def plastic_stretch(element: Element, place: StaticElementState) -> float:
     """Return the plastic part of the elongation in m; NaN once the element is broken."""
     if element.stretches is None:
         return 0.0
-    return math.nan if element.broken(place.branch) else memory_at(element, place)
+    return math.nan if element.broken(place.branch) else static_internal_variable(element, place)
 
 
-Point = tuple[int, float, bool, tuple[ElementState, ...]]  # side, |θ|, whether it was prescribed, and the elements
+Point = tuple[
+    int, float, bool, tuple[StaticElementState, ...]
+]  # side, |θ|, whether it was prescribed, and the elements
 
 
-def _about_pivots(properties: RockingProperties, elements: tuple[Element, ...], rotations: Array) -> Iterator[Point]:
+def _static_path_about_pivots(
+    properties: RockingProperties, elements: tuple[Element, ...], rotations: Array
+) -> Iterator[Point]:
     """Yield the points of the path, from rest."""
-    places = tuple(at_rest(each) for each in elements)
-    arms = {side: tuple(arm_of(properties, each, side) for each in elements) for side in (RIGHT, LEFT)}
+    places = tuple(element_at_start_of_path(each) for each in elements)
+    arms = {side: tuple(arm_of_element(properties, each, side) for each in elements) for side in (RIGHT, LEFT)}
     yield CLOSED, 0.0, bool(rotations[0] == 0.0), places
     before = CLOSED
     for side, start, end, given in _legs(rotations):
@@ -191,12 +197,12 @@ def _legs(rotations: Array) -> Iterator[tuple[int, float, float, bool]]:
 def _leg(
     elements: tuple[Element, ...],
     arms: tuple[float, ...],
-    places: tuple[ElementState, ...],
+    places: tuple[StaticElementState, ...],
     start: float,
     end: float,
     *,
     lifts: bool,
-) -> list[tuple[float, tuple[ElementState, ...]]]:
+) -> list[tuple[float, tuple[StaticElementState, ...]]]:
     """Return the points from one |θ| to another about one pivot; the first only if forces jump or the base lifts."""
     turn, near = int(np.sign(end - start)), TOLERANCE * max(start, end)
     if turn == 0:
@@ -232,12 +238,16 @@ def _leg(
     return found
 
 
-def _stretched(places: tuple[ElementState, ...], arms: tuple[float, ...], rotation: float) -> tuple[ElementState, ...]:
+def _stretched(
+    places: tuple[StaticElementState, ...], arms: tuple[float, ...], rotation: float
+) -> tuple[StaticElementState, ...]:
     return tuple(place._replace(elongation=arm * rotation) for place, arm in zip(places, arms, strict=True))
 
 
-def _jumped(elements: tuple[Element, ...], before: tuple[ElementState, ...], after: tuple[ElementState, ...]) -> bool:
-    return any(map(jumps, elements, before, after))
+def _jumped(
+    elements: tuple[Element, ...], before: tuple[StaticElementState, ...], after: tuple[StaticElementState, ...]
+) -> bool:
+    return any(map(does_static_force_jump, elements, before, after))
 
 
 class SprungBase(NamedTuple):
@@ -249,7 +259,7 @@ class SprungBase(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Equilibrium:
+class StaticEquilibrium:
     """A position in equilibrium.
 
     Attributes
@@ -268,45 +278,51 @@ class Equilibrium:
     heave: float
     pressed: Bools
     empty: Bools
-    places: tuple[ElementState, ...]
+    places: tuple[StaticElementState, ...]
     carried: Array
 
 
-def _on_springs(base: SprungBase, rotations: Array) -> Iterator[tuple[Equilibrium, bool]]:
+def _static_path_on_springs(base: SprungBase, rotations: Array) -> Iterator[tuple[StaticEquilibrium, bool]]:
     """Yield the points of the path, from rest, and whether their rotation was prescribed."""
     rotation, heave = base.rest
     pressed = heave - base.springs.positions * rotation < 0.0
-    places = tuple(at_rest(each) for each in base.elements)
-    state = Equilibrium(rotation, heave, pressed, np.zeros_like(pressed), places, np.zeros(len(places)))
+    places = tuple(element_at_start_of_path(each) for each in base.elements)
+    state = StaticEquilibrium(rotation, heave, pressed, np.zeros_like(pressed), places, np.zeros(len(places)))
     starts = bool(rotations[0] == rotation)
     yield state, starts
     for target in rotations[int(starts) :].tolist():
         while state.rotation != target or state.carried.any():
             before = state
-            state = _settled(base, state) if state.carried.any() else _turned(base, state, target)
+            state = (
+                _equilibrium_after_break(base, state)
+                if state.carried.any()
+                else _equilibrium_after_turn(base, state, target)
+            )
             if state.rotation != target and (state.rotation != before.rotation or before.carried.any()):
                 yield state, False
         yield state, True
 
 
-def _turned(base: SprungBase, state: Equilibrium, target: float) -> Equilibrium:
+def _equilibrium_after_turn(base: SprungBase, state: StaticEquilibrium, target: float) -> StaticEquilibrium:
     """Return the state where something changes next, or at the target."""
     length = abs(target - state.rotation)
-    moved, path = _moved(base, state, math.copysign(1.0, target - state.rotation), 0.0, length)
+    moved, path = _next_equilibrium(base, state, math.copysign(1.0, target - state.rotation), 0.0, length)
     return replace(moved, rotation=target) if path == length else moved
 
 
-def _settled(base: SprungBase, state: Equilibrium) -> Equilibrium:
+def _equilibrium_after_break(base: SprungBase, state: StaticEquilibrium) -> StaticEquilibrium:
     """Return the state where something changes next while an element that breaks lets its force go, or without it."""
     place = int(np.flatnonzero(state.carried)[0])
     force = float(state.carried[place])
-    moved, path = _moved(base, state, 0.0, math.copysign(1.0, force), abs(force))
+    moved, path = _next_equilibrium(base, state, 0.0, math.copysign(1.0, force), abs(force))
     carried = moved.carried.copy()
     carried[place] = 0.0 if path == abs(force) else force - math.copysign(path, force)
     return replace(moved, carried=carried)
 
 
-def _moved(base: SprungBase, state: Equilibrium, turn: float, lift: float, length: float) -> tuple[Equilibrium, float]:
+def _next_equilibrium(
+    base: SprungBase, state: StaticEquilibrium, turn: float, lift: float, length: float
+) -> tuple[StaticEquilibrium, float]:
     """Return the next state on the way with θ' = `turn`, and `lift` more upward force per unit, and the way to it.
 
     The way ends after `length`, or where a spring becomes empty or is met, or an element ends its branch.
@@ -347,14 +363,14 @@ def _moved(base: SprungBase, state: Equilibrium, turn: float, lift: float, lengt
         stretch = heave - base.rest.heave - at[k] * (rotation - base.rest.rotation)
         places[k] = places[k]._replace(elongation=stretch)
         if stop is not None and happens[springs.n + k]:
-            force = tension(each, places[k])
+            force = static_tension(each, places[k])
             places[k] = next_branch(each, places[k]._replace(elongation=stop[0]), stop[1])
             carried[k] = force if each.broken(stop[1]) else 0.0
     empty = happens[: springs.n] | (state.empty & (path <= near))
-    return Equilibrium(rotation, heave, pressed, empty, tuple(places), carried), path
+    return StaticEquilibrium(rotation, heave, pressed, empty, tuple(places), carried), path
 
 
-def _onward(element: Element, place: ElementState, way: int) -> ElementState:
+def _onward(element: Element, place: StaticElementState, way: int) -> StaticElementState:
     """Return the place of an element that begins to be stretched (1) or shortened (-1)."""
     place = start_moving(element, place, way)
     while (at := next_branch_change(element, place, way)) and at[0] == place.elongation and not element.broken(at[1]):

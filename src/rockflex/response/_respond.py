@@ -16,7 +16,7 @@ from rockflex.response._peaks import (
     FLOORS,
     GLOBAL,
     ROTATIONS,
-    Tracked,
+    TrackedPeaks,
     balance_ratio,
     element_extremes,
     element_peaks,
@@ -27,7 +27,7 @@ from rockflex.response._response import PEAKS, Response
 from rockflex.solve import Solution, Solutions
 
 
-def respond(model: RockingModel, motion: str, solution: Solution, tracked: Tracked) -> Response:
+def response_of_solution(model: RockingModel, motion: str, solution: Solution, tracked: TrackedPeaks) -> Response:
     """Return the response of a model from the solution of a run, and what this tracked."""
     p, final = model.properties, solution.final_state
     peaks, times = tracked.of(solution), tracked.peaks.named(solution.peak_times)
@@ -98,16 +98,16 @@ def missing_values(count: int, kind: Any) -> NDArray[Any]:
     return np.full(count, math.nan if np.dtype(kind).kind == "f" else 0, kind)
 
 
-def columns_of(models: Sequence[RockingModel], solutions: Solutions, tracked: Tracked) -> Columns:
-    """Return the status and every number and flag of the responses of R runs, as `columns_among` does.
+def response_columns_of_runs(models: Sequence[RockingModel], solutions: Solutions, tracked: TrackedPeaks) -> Columns:
+    """Return the status and every number and flag of the responses of R runs, as `columns_of_responses` does.
 
     There is a model for every run; they are of one kind, differ only in numbers, and tracked the same.
     """
     first = models[0]
     if not first.has_bare_base:
-        return columns_among(
+        return columns_of_responses(
             [
-                None if place in solutions.failures else respond(model, "", solutions.one(place), tracked)
+                None if place in solutions.failures else response_of_solution(model, "", solutions.one(place), tracked)
                 for place, model in enumerate(models)
             ]
         )
@@ -126,7 +126,7 @@ def story_results(response: Response) -> dict[str, float]:
     return found | {f"{name}_{k}": each for name, values in by_story.items() for k, each in enumerate(values, 1)}
 
 
-def columns_among(responses: Sequence[Response | None]) -> Columns:
+def columns_of_responses(responses: Sequence[Response | None]) -> Columns:
     """Return the status, as a place in `STATUSES`, every number and flag, and `story_results` of R responses.
 
     Each has the shape (R,). The values where there is no response mean nothing; if there is none at all, there are no
@@ -152,7 +152,7 @@ def _numbers_of(model: RockingModel) -> tuple[float, ...]:
     return p.top_height is not None, p.half_width, p.resting_reaction, *rotations[0], *rotations[1]
 
 
-def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions, tracked: Tracked) -> Columns:
+def _of_bare_base(models: Sequence[RockingModel], solutions: Solutions, tracked: TrackedPeaks) -> Columns:
     """Return the columns of bases on rigid ground without elements, on which they do not slide."""
     model, runs = models[0], len(solutions)
     peaks, times = (tracked.peaks.named(values) for values in (solutions.peaks, solutions.peak_times))

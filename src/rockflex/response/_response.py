@@ -16,16 +16,16 @@ from rockflex._shown import number_with_noun
 from rockflex._values import Value
 from rockflex.motion import GroundMotion
 from rockflex.response._energy import EnergyLedger
-from rockflex.response._file import load, save
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._history import History, SampledHistory
 from rockflex.response._peaks import ELEMENT_PEAKS
+from rockflex.response._response_file import load_response, save_response
 
 FALLEN = 1.57  # rad: an overturned run has a status of its own
 BALANCED = 1e-6  # closing error of the energy balance up to which only rounding is at work
 
 
-def warnings_of(model: str, peaks: Mapping[str, Any]) -> tuple[str, ...]:
+def warnings_of_response(model: str, peaks: Mapping[str, Any]) -> tuple[str, ...]:
     """Return one text per warning; `peaks` are those of a `Response` by name."""
     found: list[str] = []
     if peaks["min_vertical_reaction"] < 0.0:
@@ -44,7 +44,7 @@ def warnings_of(model: str, peaks: Mapping[str, Any]) -> tuple[str, ...]:
         found.append(
             f"θ reaches {peaks['max_rotation']:.4g} rad, {peaks['balance_ratio']:.3g} times the rotation α at which "
             f"the static moment vanishes. {model} is for small rotations: whether the structure overturns is to be "
-            f"decided by a complete model on rigid ground, such as {complete_of(model)}."
+            f"decided by a complete model on rigid ground, such as {complete_model_label(model)}."
         )
     return tuple(found)
 
@@ -61,7 +61,7 @@ def warnings_of_energy(closing_error: float) -> tuple[str, ...]:
     )
 
 
-def complete_of(model: str) -> str:
+def complete_model_label(model: str) -> str:
     """Return the label of a complete model of the same structure."""
     return "rigid-C" if model == "rigid" else "MDOF-C"
 
@@ -322,7 +322,7 @@ class Response(HtmlTable, Value):
 
         A response with a history also warns if its energy balance does not close to 1e-6; `energy` is computed for it.
         """
-        return (*warnings_of(self.model, self.peaks()), *self._warnings_of_energy())
+        return (*warnings_of_response(self.model, self.peaks()), *self._warnings_of_energy())
 
     def _warnings_of_energy(self) -> tuple[str, ...]:
         try:
@@ -355,7 +355,7 @@ class Response(HtmlTable, Value):
             If the path has another suffix, such as ``.parquet``.
         """
         of_elements = {name: getattr(self, name) for name in ELEMENT_PEAKS}
-        return save(checked_file_path("path", path), self.peaks(), of_elements, self.floors, self.history)
+        return save_response(checked_file_path("path", path), self.peaks(), of_elements, self.floors, self.history)
 
     @classmethod
     def load(cls, path: str | Path) -> "Response":
@@ -370,7 +370,7 @@ class Response(HtmlTable, Value):
         InputError
             If the file is missing or is not a saved response.
         """
-        peaks, floors, history = load(checked_file_path("path", path), KINDS)
+        peaks, floors, history = load_response(checked_file_path("path", path), KINDS)
         return Response(**peaks, floors=floors, history=history)
 
 

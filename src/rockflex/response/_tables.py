@@ -101,7 +101,7 @@ DIMENSIONS = {
 """The second dimension of quantities with several values."""
 
 
-def frame_of(history: History, quantities: Sequence[str] | None) -> "pd.DataFrame":
+def history_to_dataframe(history: History, quantities: Sequence[str] | None) -> "pd.DataFrame":
     """Return a history as a table; see `History.to_frame`."""
     import pandas as pd
 
@@ -112,7 +112,7 @@ def frame_of(history: History, quantities: Sequence[str] | None) -> "pd.DataFram
     return pd.DataFrame(columns).set_index("time")
 
 
-def dataset_of(history: History, quantities: Sequence[str] | None) -> "xr.Dataset":
+def history_to_dataset(history: History, quantities: Sequence[str] | None) -> "xr.Dataset":
     """Return a history as a labelled data set; see `History.to_xarray`."""
     xr = import_xarray("to_xarray", "to_frame")
     variables: dict[str, Any] = {}

@@ -55,7 +55,7 @@ class Status(IntEnum):
     INFINITE = -6, "The motion of {label} is not finite at {time:.6g} s.", "Check the parameters."
 
 
-def failure_of(model: RockingModel, status: Status, samples: int, dt: float, state: Array) -> SolverError:
+def failure_of_run(model: RockingModel, status: Status, samples: int, dt: float, state: Array) -> SolverError:
     """Return the error for a run that ended with a status after a number of completed samples."""
     # A failure inside a sample is reported with the time at the end of the sample.
     time = (samples + (status not in (Status.UNSETTLED, Status.INFINITE))) * dt
@@ -82,7 +82,7 @@ def _in_state(model: RockingModel, what: str, mend: str, state: Array) -> Solver
     return SolverError(f"{what} The state [D, D', θ, θ'] there is [{values}]. {mend}")
 
 
-def preparing(model: RockingModel) -> AbstractContextManager[None]:
+def explaining_engine_failures(model: RockingModel) -> AbstractContextManager[None]:
     """Report arithmetic failures during the preparation of an engine in terms of the parameters of the model."""
     return explaining_overflow(lambda: _described(model))
 

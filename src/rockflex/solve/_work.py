@@ -32,7 +32,7 @@ _ASKED: ContextVar[Callable[[], bool] | None] = ContextVar("asked", default=None
 
 
 @dataclass(frozen=True)
-class Work:
+class EstimatedWork:
     """Estimated work of a run, in s of one core, by cause.
 
     Attributes
@@ -97,7 +97,7 @@ class CostModel:
 
     def work(
         self, samples: float, dt: float, velocity: float = 0.0, *, history: bool, fastest: float | None = None
-    ) -> Work:
+    ) -> EstimatedWork:
         """Estimate the work of a run over `samples` steps of `dt` s with continuous rocking.
 
         `velocity` is the mean ground speed in m/s, which matters for a yielding spring, and `fastest` the frequency in
@@ -107,9 +107,9 @@ class CostModel:
         turned = (self.fastest if fastest is None else fastest) * dt
         if self.integrated:
             flowing = step * velocity * self.flow * dt / RELAXING if self.flow else 0.0
-            return Work(samples * (sample + step), samples * step * turned / TURN, samples * flowing)
+            return EstimatedWork(samples * (sample + step), samples * step * turned / TURN, samples * flowing)
         looks = look * LOOKS * max(turned - 1.0, 0.0)
-        return Work(samples * (sample + look * SEARCH), samples * looks + self._tables(dt))
+        return EstimatedWork(samples * (sample + look * SEARCH), samples * looks + self._tables(dt))
 
     def energy(self, samples: float, dt: float) -> float:
         """Estimate the work in s of computing the energies after the run."""
@@ -209,7 +209,7 @@ class Task:
         """What the work depends on beside the model; None if it depends on every sample."""
         return None if self.cost_model.flow else (self.record.size, self.dt, self.free_vibration, self.history)
 
-    def work(self) -> Work:
+    def work(self) -> EstimatedWork:
         """Estimate the work of the run; the time to settle is taken as the longest period."""
         speed = (
             float(np.abs(np.cumsum(self.record)).mean()) * abs(self.scale) * self.dt if self.cost_model.flow else 0.0
@@ -259,7 +259,7 @@ class Task:
         )
         return what, f"The reason: {self.reason(self.work())} {LIFT}"
 
-    def reason(self, work: Work) -> str:
+    def reason(self, work: EstimatedWork) -> str:
         """Return why the run is long, and how to shorten it."""
         spring = self.model.bouc_wen
         if spring is not None and work.yielding > max(work.vibration, work.samples):
@@ -296,7 +296,7 @@ class Task:
         return 2.0 * math.pi / slowest
 
 
-class Gate:
+class WorkGate:
     """The tasks of a model that have passed the check of their work, so that others of the same size need none."""
 
     def __init__(self) -> None:

@@ -20,22 +20,28 @@ from rockflex.models import (
     RISE,
     SIDE,
     TIME,
-    ElementBase,
     GainsEnergyError,
     Key,
+    LinearSystemBase,
     Quantities,
     RockingModel,
-    element_base,
-    key_of,
+    linear_system_base,
     linear_system_of,
     may_stack,
     nonlinear_system,
-    system_of,
-    with_marks,
+    nonlinear_system_key,
+    states_with_branch_codes,
+    system_on_rigid_ground,
 )
-from rockflex.solve._failures import Status, failure_of, failure_of_limit, failure_of_step, preparing
+from rockflex.solve._failures import (
+    Status,
+    explaining_engine_failures,
+    failure_of_limit,
+    failure_of_run,
+    failure_of_step,
+)
 from rockflex.solve._solution import Ends, Excitation, Solution, Solutions
-from rockflex.solve._work import SEARCH, CostModel, Gate, Task, check_interruption, cost_model_of
+from rockflex.solve._work import SEARCH, CostModel, Task, WorkGate, check_interruption, cost_model_of
 
 SHARE = 0.5  # of the estimated time of a sample that one takes here
 STEP = 12.0  # samples that a step of a nonlinear model counts like
@@ -54,22 +60,22 @@ FAILURES = {"accumulation": Status.CHATTER, "growth": Status.INFINITE, "stall": 
 Start = Array | tuple[Key, Array] | None  # the state of a model at time 0; None: at rest
 
 
-class Stack:
+class EngineStack:
     """Models that differ only in numbers, or one with elements, and the solvers that have their phases."""
 
     def __init__(
         self,
         models: Sequence[RockingModel],
         quantities: Sequence[Quantities],
-        base: ElementBase | None = None,
+        base: LinearSystemBase | None = None,
         extremes: Quantities | None = None,
     ) -> None:
         self._first = models[0]  # of which a message speaks
-        with preparing(self._first):
+        with explaining_engine_failures(self._first):
             if self._first.integrated:
                 self.system = nonlinear_system(self._first, quantities[0], extremes)
             else:
-                self.system = system_of(models, quantities) if base is None else linear_system_of(base)
+                self.system = system_on_rigid_ground(models, quantities) if base is None else linear_system_of(base)
         self._solvers = defaultdict[float, list[Run]](list)
 
     @property
@@ -82,7 +88,7 @@ class Stack:
         try:
             return self._solvers[dt].pop()
         except IndexError:
-            with preparing(self._first):
+            with explaining_engine_failures(self._first):
                 return Run(self.system, dt)
 
     def returned(self, solver: Run) -> None:
@@ -117,29 +123,31 @@ class Engine:
                 "simulated. Keep fewer: the highest ones move nothing.",
                 field="model",
             )
-        self.place, self.gate = 0, Gate()
+        self.place, self.gate = 0, WorkGate()
         self.n_peaks = 1 + len(quantities)
 
     @cached_property
-    def base(self) -> ElementBase | None:
+    def base(self) -> LinearSystemBase | None:
         """The base of a model with elements, on springs, or that slides; None for all others."""
         return self._base(shaken=False)
 
-    def _base(self, *, shaken: bool) -> ElementBase | None:
+    def _base(self, *, shaken: bool) -> LinearSystemBase | None:
         if self.model.integrated or self.model.has_bare_base:
             return None
         most = Quantities.none(self.model.layout.modes) if self.extremes is None else self.extremes
-        return element_base(self.model, self.quantities, most, shaken=shaken)
+        return linear_system_base(self.model, self.quantities, most, shaken=shaken)
 
     @cached_property
-    def stack(self) -> Stack:
+    def stack(self) -> EngineStack:
         """The stack of the model, by itself unless it has been gathered."""
-        return Stack([self.model], [self.quantities], self.base, self.extremes)
+        return EngineStack([self.model], [self.quantities], self.base, self.extremes)
 
     @cached_property
-    def shaken(self) -> Stack:
+    def shaken(self) -> EngineStack:
         """The same for ground that moves vertically, which other phases need only if there are elements."""
-        return self.stack if self.base is None else Stack([self.model], [self.quantities], self._base(shaken=True))
+        return (
+            self.stack if self.base is None else EngineStack([self.model], [self.quantities], self._base(shaken=True))
+        )
 
     @cached_property
     def patience(self) -> float:
@@ -147,7 +155,7 @@ class Engine:
         p = self.model.properties
         slowest = float(p.omega.min(initial=math.inf))
         if self.base is not None or self.model.springs is not None:  # on springs it rocks more slowly
-            base = self.base or element_base(self.model.linear, *(Quantities.none(p.n_modes),) * 2)
+            base = self.base or linear_system_base(self.model.linear, *(Quantities.none(p.n_modes),) * 2)
             roots = np.linalg.eigvals(base.rates(self.model.linear.initial(None)[0])[:, :-2])
             slowest = float(np.abs(roots[roots.imag > 0.0]).min(initial=slowest))
         return 2000.0 * 2.0 * math.pi / slowest + 200.0 * math.sqrt(p.i_theta / (p.l0r * GRAVITY))
@@ -179,7 +187,7 @@ class Engine:
         """Return the task of a run, which estimates its work."""
         return Task(self.model, self.cost_model, run.acceleration, dt, free_vibration, history, run.scale)
 
-    def gather(self, stack: Stack, place: int) -> None:
+    def gather(self, stack: EngineStack, place: int) -> None:
         """Share a stack with other models."""
         vars(self)["stack"], self.place = stack, place
 
@@ -212,7 +220,7 @@ class Engine:
         )
         return found.one(0)
 
-    def stack_for(self, run: Excitation) -> Stack:
+    def stack_for(self, run: Excitation) -> EngineStack:
         """Return the stack that has the phases of a run."""
         return self.stack if run.vertical is None else self.shaken
 
@@ -230,7 +238,7 @@ class Engine:
             return self.at_rest
         key, start = state if isinstance(state, tuple) else self.model.initial(state)
         if self.model.integrated:
-            return key_of(self.model, key, start), start
+            return nonlinear_system_key(self.model, key, start), start
         return key, start if self.base is None else self.base.state_of(key, start)
 
     @cached_property
@@ -243,7 +251,7 @@ class Engine:
         known, places = np.unique(places, return_inverse=True)
         keys = [keys[place] for place in known.tolist()]
         if self.model.integrated:
-            return with_marks(self.model, keys, places, states)
+            return states_with_branch_codes(self.model, keys, places, states)
         return states if self.base is None else self.base.states_of_model(keys, places, states, history=history)
 
     def failure(
@@ -256,7 +264,7 @@ class Engine:
         if solver.failure == "work":
             return failure_of_limit(task, samples, work_limit, solver.state)
         status = Status.GAINED if isinstance(error, GainsEnergyError) else FAILURES.get(solver.failure)
-        return error if status is None else failure_of(self.model, status, samples, task.dt, solver.state)
+        return error if status is None else failure_of_run(self.model, status, samples, task.dt, solver.state)
 
     def samples_allowed(self, work_limit: float | None) -> int:
         """The number of samples that a work limit in s allows."""
@@ -337,7 +345,8 @@ def run_all(
         [runs[place].acceleration for place in allowed],
         [runs[place].scale for place in allowed],
         free=[
-            samples_in(engines[place].patience if free_vibration is None else free_vibration, dt) for place in allowed
+            free_vibration_samples(engines[place].patience if free_vibration is None else free_vibration, dt)
+            for place in allowed
         ],
         settles=settles,
         names=COUNTED,
@@ -360,13 +369,13 @@ def run_all(
     found = _ends_of(batch, states, dt, allowed, len(runs), settles=settles)
     for place in np.flatnonzero(found.status < 0).tolist():
         status, samples = Status(found.status[place]), int(found.samples[place])
-        failures.setdefault(place, failure_of(engines[place].model, status, samples, dt, found.states[place]))
+        failures.setdefault(place, failure_of_run(engines[place].model, status, samples, dt, found.states[place]))
     kept = first.history_of(solver) if history and not failures else None
     stack.returned(solver)
     return Solutions(found, dt, first.n_peaks, first.n_peaks, failures, kept)
 
 
-def samples_in(time: float, dt: float) -> int:
+def free_vibration_samples(time: float, dt: float) -> int:
     """Return the number of samples in some seconds of free vibration."""
     return math.ceil(min(time / dt, MAX_SAMPLES) - 1e-9)
 
@@ -407,7 +416,7 @@ def _spread(values: Any, places: Sequence[int], count: int) -> Any:
     return found
 
 
-def gather(engines: Iterable[Engine]) -> None:
+def share_engine_preparation(engines: Iterable[Engine]) -> None:
     """Let engines of many models that differ only in numbers share their preparation."""
     with _GATHERING:  # two threads may gather the same engines
         alike = defaultdict[tuple[int, ...], list[Engine]](list)
@@ -420,6 +429,6 @@ def gather(engines: Iterable[Engine]) -> None:
             most = max(1, min(STACK, MEMORY // some[0].size_of_plain))
             for first in range(0, len(some), most):
                 part = some[first : first + most]
-                stack = Stack([each.model for each in part], [each.quantities for each in part])
+                stack = EngineStack([each.model for each in part], [each.quantities for each in part])
                 for place, each in enumerate(part):
                     each.gather(stack, place)

@@ -62,7 +62,7 @@ class Leaning(ModifiedStructure, Value):
     masses: Array
 
     def __init__(self, structure: Structure, masses: ArrayLike) -> None:
-        lumped = lumped_of(structure)
+        lumped = lumped_structure_of(structure)
         count = lumped.heights.size
         given = np.full(count, masses, dtype=float) if np.ndim(masses) == 0 else masses
         found = checked_finite_vector("masses", given, "kg")
@@ -80,7 +80,7 @@ class Leaning(ModifiedStructure, Value):
     @cached_property
     def _moving(self) -> LumpedStructure:
         """The structure with all mass that moves horizontally."""
-        lumped = lumped_of(self.structure)
+        lumped = lumped_structure_of(self.structure)
         mass = lumped.masses + self.masses if lumped.masses.ndim == 1 else lumped.masses + np.diag(self.masses)
         return replace(lumped, masses=mass)
 
@@ -107,7 +107,7 @@ class Leaning(ModifiedStructure, Value):
         return self._rocking if n_modes is None else self._standing(self._moving.rocking(n_modes))
 
 
-def lumped_of(structure: object) -> LumpedStructure:
+def lumped_structure_of(structure: object) -> LumpedStructure:
     """Return the masses at the floors and the stiffness of a structure."""
     found = structure
     while isinstance(found, AssembledStructure):

@@ -14,7 +14,7 @@ from rockflex._shown import shown
 from rockflex._values import Value
 from rockflex.modal import YieldingStory
 from rockflex.structure._frames import LumpedStructure
-from rockflex.structure._leaning import Leaning, lumped_of
+from rockflex.structure._leaning import Leaning, lumped_structure_of
 from rockflex.structure._structure import ModifiedStructure, Structure
 
 COUPLED = 1e-9  # relative: stiffness between drifts that is attributed to rounding
@@ -65,17 +65,17 @@ class YieldingStories(ModifiedStructure, Value):
     post_yield_ratio: Array
 
     def __init__(self, structure: Structure, strengths: ArrayLike, post_yield_ratio: ArrayLike) -> None:
-        lumped = lumped_of(structure.structure if isinstance(structure, Leaning) else structure)
+        lumped = lumped_structure_of(structure.structure if isinstance(structure, Leaning) else structure)
         stiffness = story_stiffness(lumped)
         count = stiffness.size
-        found = _by_story("strengths", strengths, count)
+        found = _one_value_per_story("strengths", strengths, count)
         if not (found > 0.0).all():
             raise InputError(
                 f"strengths must be positive story shears in N from the bottom to the top, but {shown(strengths)} was "
                 "given. An infinite one keeps a story elastic.",
                 field="strengths",
             )
-        ratio = _by_story("post_yield_ratio", post_yield_ratio, count)
+        ratio = _one_value_per_story("post_yield_ratio", post_yield_ratio, count)
         if not ((ratio >= 0.0) & (ratio < 1.0)).all():
             raise InputError(
                 f"post_yield_ratio must be from 0 to below 1, but {shown(post_yield_ratio)} was given: the stiffness "
@@ -88,7 +88,7 @@ class YieldingStories(ModifiedStructure, Value):
     def stiffness(self) -> Array:
         """Elastic stiffness of each story in N/m, bottom to top, shape (N,)."""
         inner = self.structure.structure if isinstance(self.structure, Leaning) else self.structure
-        return story_stiffness(lumped_of(inner))
+        return story_stiffness(lumped_structure_of(inner))
 
     @property
     def yield_drift(self) -> Array:
@@ -127,7 +127,7 @@ def story_stiffness(lumped: LumpedStructure) -> Array:
     return found
 
 
-def _by_story(name: str, given: ArrayLike, count: int) -> Array:
+def _one_value_per_story(name: str, given: ArrayLike, count: int) -> Array:
     found = np.array([real_or_nan(each) for each in np.atleast_1d(np.asarray(given, dtype=object)).ravel()])
     if found.size == 1:
         found = np.full(count, found[0])

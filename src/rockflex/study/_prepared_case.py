@@ -17,14 +17,24 @@ from rockflex.motion import GroundMotion
 from rockflex.response import (
     STATUSES,
     Response,
-    Tracked,
-    columns_among,
-    columns_of,
+    TrackedPeaks,
+    columns_of_responses,
     missing_values,
-    respond,
+    response_columns_of_runs,
+    response_of_solution,
     tracked_quantities,
 )
-from rockflex.solve import Engine, Excitation, Solution, Solutions, Start, Task, gather, preparing, run_all
+from rockflex.solve import (
+    Engine,
+    Excitation,
+    Solution,
+    Solutions,
+    Start,
+    Task,
+    explaining_engine_failures,
+    run_all,
+    share_engine_preparation,
+)
 from rockflex.study._arguments import (
     WORK_LIMIT,
     GroundChoice,
@@ -57,7 +67,7 @@ class PreparedCase:
     history: bool = False
     floors: bool = False
     extra: Mapping[str, Quantities] | None = None
-    tracked: Tracked = field(init=False, repr=False)
+    tracked: TrackedPeaks = field(init=False, repr=False)
     engine: Engine = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -67,7 +77,7 @@ class PreparedCase:
                 "Give the free vibration in seconds.",
                 field="free_vibration",
             )
-        with preparing(self.model):
+        with explaining_engine_failures(self.model):
             tracked = tracked_quantities(self.model, floors=self.floors, more=self.extra)
         object.__setattr__(self, "tracked", tracked)
         extremes = None if tracked.extremes is None else tracked.extremes.quantities
@@ -107,7 +117,7 @@ class PreparedCase:
 
     def response(self, motion: GroundMotion, solution: Solution) -> Response:
         """Return the response to a motion from its solution."""
-        return respond(self.model, motion.name, solution, self.tracked)
+        return response_of_solution(self.model, motion.name, solution, self.tracked)
 
 
 def has_vertical_motion(motion: GroundMotion) -> bool:
@@ -253,7 +263,7 @@ def solve_runs_together(runs: Sequence[PreparedRun]) -> Solutions:
 
 def share_case_preparation(cases: Iterable[PreparedCase | InputError]) -> None:
     """Let those of many cases that differ only in numbers share their preparation."""
-    gather(dict.fromkeys(case.engine for case in cases if isinstance(case, PreparedCase)))
+    share_engine_preparation(dict.fromkeys(case.engine for case in cases if isinstance(case, PreparedCase)))
 
 
 def solutions_of_runs(runs: Sequence[Scaled]) -> list[Solution | InputError | SolverError]:
@@ -279,12 +289,12 @@ def peaks_of_runs(runs: Sequence[Scaled], *, keep: bool = True) -> RunPeaks:
         cases = [cast("PreparedCase", runs[place][0]) for place in places]
         failures |= {places[place]: error for place, error in solutions.failures.items()}
         if not cases[0].history:
-            found = columns_of([case.model for case in cases], solutions, cases[0].tracked)
+            found = response_columns_of_runs([case.model for case in cases], solutions, cases[0].tracked)
         elif solutions.failures:
             found = {}
         else:
             response = cases[0].response(runs[places[0]][1], solutions.one(0))
-            responses[places[0]], found = response, columns_among([response])
+            responses[places[0]], found = response, columns_of_responses([response])
         for name, values in found.items():
             columns.setdefault(name, missing_values(len(runs), values.dtype))[places] = values
         left.subtract(cases)

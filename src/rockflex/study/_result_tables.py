@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rockflex._cases import runs_by_case
 from rockflex.modal import RockingProperties, Tendon
-from rockflex.response import BY_STORY, MAX_OF_STORIES, NAMES, Response, complete_of, leaves_range
+from rockflex.response import BY_STORY, MAX_OF_STORIES, NAMES, Response, complete_model_label, leaves_range
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -141,7 +141,7 @@ class PivotLifts(NamedTuple):
                 f"{self.structure}, {self.model}: in {self.beyond} of {self.rocking} runs that rock and stand θ passes "
                 "α, at which the static moment vanishes (balance_ratio above one). The model is for small rotations: "
                 f"whether these overturn is to be decided by a complete model on rigid ground, such as "
-                f"{complete_of(self.model)}."
+                f"{complete_model_label(self.model)}."
             )
         return found
 

@@ -23,12 +23,12 @@ from rockflex._schema import (
     IMPACT,
     PLAIN,
     WHOLE,
-    BoucWenKeys,
-    GroundKeys,
-    ImpactKeys,
+    BoucWenSchema,
+    GroundSchema,
+    ImpactSchema,
     LawName,
     SchemaKey,
-    SpringBedKeys,
+    SpringBedSchema,
     one_for_each,
 )
 from rockflex._shown import shown
@@ -179,7 +179,7 @@ class SpringsTable(TomlTable):
         return _springs_with_heave_damping(springs, self, properties)
 
 
-class SpringBedTable(SpringBedKeys, TomlTable):
+class SpringBedTable(SpringBedSchema, TomlTable):
     """The arguments of `winkler_bed` or, with a shear modulus, of `asce41_bed` or `gazetas_bed`, for a structure."""
 
     damping: Annotated[
@@ -237,7 +237,7 @@ class SpringBedTable(SpringBedKeys, TomlTable):
         return _springs_with_heave_damping(bed, self, properties)
 
 
-class GroundTable(GroundKeys, TomlTable):
+class GroundTable(GroundSchema, TomlTable):
     """The arguments of `Ground`, with springs or a bed as tables."""
 
     springs: Annotated[SpringsTable | None, SchemaKey("a table", form=PLAIN)] = None
@@ -311,11 +311,11 @@ _LAWS: dict[str, Callable[..., ImpactLaw]] = {
 }
 
 
-class BoucWenTable(BoucWenKeys, TomlTable):
+class BoucWenTable(BoucWenSchema, TomlTable):
     """The arguments of `BoucWen`."""
 
 
-class RunOptionKeys(ImpactKeys, TomlTable):
+class RunOptionKeys(ImpactSchema, TomlTable):
     """The options of a run that files, links and forms share: impact law, hysteresis and ground.
 
     By default each model has its own law, nothing yields, and the base cannot slide on rigid ground.

@@ -74,7 +74,7 @@ def animation_file(
     `progress` is called with the number of frames drawn and that of all.
     """
     from rockflex.plot import animate
-    from rockflex.plot._figures import literal
+    from rockflex.plot._figures import literal_text
 
     built, motion, found = simulate_state_models(state, uploads)
     seconds = max(response.end_time for response in found)
@@ -85,7 +85,7 @@ def animation_file(
             "shorter record or less free vibration, or take Python lines and add rf.animate(..., start=, stop=)."
         )
         raise Refusal({"free_vibration": message})
-    title = None if state.scale == 1.0 else f"{literal(motion.name)} × {state.scale:g}"
+    title = None if state.scale == 1.0 else f"{literal_text(motion.name)} × {state.scale:g}"
     with TemporaryDirectory() as folder, errors_as_refusals("models"):
         file = animate(
             found, Path(folder) / "animation.gif", structure=built.structure, frames_per_second=rate, title=title,

@@ -11,7 +11,7 @@ from rockflex._json import as_json_value
 from rockflex.modal import RockingProperties, Tendon, YieldingDissipator
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
-from rockflex.response import History, Response, warnings_of, warnings_of_energy
+from rockflex.response import History, Response, warnings_of_energy, warnings_of_response
 from rockflex.solve import cost_model_of
 from rockflex.study import PreparedCase
 from rockflex.web._earthquake import chosen_motion
@@ -208,7 +208,9 @@ def _response_curves(
         "label": response.model,
         "status": response.status,
         "peaks": response.peaks(),
-        "warnings": warnings_of(response.model, response.peaks()),  # the energies of one model only are computed
+        "warnings": warnings_of_response(
+            response.model, response.peaks()
+        ),  # the energies of one model only are computed
         "lifts": history.model.lifts,
         "fall_time": _overturning_time(history),
         "impact_times": history.impact_times[:MAX_EVENT_NODES],

@@ -461,7 +461,7 @@ class AnimatedFigure:
         self, curves: list[ResponseCurve], poses: Sequence[StructurePoses], quantities: Sequence[PanelQuantity],
         timing: FrameTiming, amplification: float, title: str | None, width: int,
     ) -> None:  # fmt: skip
-        with figures.styled():
+        with figures.applied_figure_style():
             self._figure, axes, grid = _animation_layout(len(curves), len(quantities), width)
             panels = HistoryPanels(grid, quantities, curves, timing)
             histories.add_legend(self._figure, curves, panels.lines, panels.uplifts, title)
@@ -482,7 +482,7 @@ class AnimatedFigure:
 
     def picture(self, frame: int) -> Picture:
         """Return a frame."""
-        with figures.styled():
+        with figures.applied_figure_style():
             self._canvas.restore_region(self._still)
             for part in self._parts:
                 part.show(frame)
@@ -497,7 +497,7 @@ def _animation_layout(models: int, panels: int, width: int) -> tuple[Figure, Axe
     inches = max(4.8, 1.35 * panels + 1.1) if beside else 3.3 + 1.2 * panels + 0.9
     dpi = width / INCHES
     pixels = 2 * (width // 2), 2 * round(0.5 * inches * dpi)
-    figure = figures.new(*((each + 1e-3) / dpi for each in pixels))
+    figure = figures.new_figure(*((each + 1e-3) / dpi for each in pixels))
     figure.set_dpi(dpi)
     if beside:
         cells = figure.add_gridspec(panels, 2, width_ratios=(0.42, 0.58) if models == 1 else (0.5, 0.5))

@@ -10,7 +10,7 @@ from pydantic import Field, SerializerFunctionWrapHandler, create_model, model_s
 
 from rockflex._errors import InputError
 from rockflex._files import check_regular_file, checked_file_path
-from rockflex._registry import registered, source_checksum
+from rockflex._registry import registered_objects, source_checksum
 from rockflex._schema import NUMBER, PLAIN, WHOLE, Eccentricity, SchemaKey, one_for_each
 from rockflex._shown import shortened
 from rockflex.modal import (
@@ -57,7 +57,7 @@ from rockflex.structure.file._toml_table import (
 
 _POST_YIELD_RATIO = "the stiffness after yielding over the elastic one"
 _POSITION = SchemaKey("the distance to the right of the axis of the masses", "m")
-LAWS: dict[str, type[ElementLaw]] = BARS | registered("elements")
+LAWS: dict[str, type[ElementLaw]] = BARS | registered_objects("elements")
 _DEVICES = ("strand_tendon", "bar_fuse", "u_plate_fuse")
 _ELEMENT_KINDS = ("tendon", "yielding_dissipator", "viscous_damper", "friction_damper", *_DEVICES, *LAWS)
 _ELEMENT_KIND = SchemaKey(
@@ -484,7 +484,7 @@ else:
         __module__=__name__,
         **{
             kind: (Annotated[registered_table(made, StructureTable) | None, _TABLE_KEY], None)
-            for kind, made in registered("structures").items()
+            for kind, made in registered_objects("structures").items()
         },
     )
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias, get_args
 from pydantic import Field, StringConstraints
 
 from rockflex._errors import InputError
-from rockflex._schema import PLAIN, WHOLE, AspectRatio, BaseMass, FrameKeys, Period, SchemaKey, one_for_each
+from rockflex._schema import PLAIN, WHOLE, AspectRatio, BaseMass, FrameSchema, Period, SchemaKey, one_for_each
 from rockflex.modal import RockingProperties
 from rockflex.structure import (
     Beam,
@@ -178,7 +178,7 @@ class StructureTable(TomlTable):
         return {}
 
 
-class FrameTable(FrameKeys, StructureTable):
+class FrameTable(FrameSchema, StructureTable):
     """The arguments of `Frame`."""
 
     makes = Frame

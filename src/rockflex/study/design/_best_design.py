@@ -13,7 +13,7 @@ from rockflex._errors import InputError
 from rockflex._values import Value
 from rockflex.study.design._design_search import MarginSurface
 from rockflex.study.design._designs import VARIABLES
-from rockflex.study.design._exceedance_fit import check_confidence, check_hazard_damping, check_table
+from rockflex.study.design._exceedance_fit import check_confidence, check_exceedance_table, check_hazard_damping
 from rockflex.study.design._requirements import (
     DesignCost,
     Requirement,
@@ -141,7 +141,7 @@ def best_design(
 
     wanted, times = checked_requirements(requirements), checked_whole_number("n_resamples", n_resamples, MIN_RESAMPLES)
     check_confidence(confidence)
-    check_table(runs, (*FACTS, "structure", "round", "group"), "search_design")
+    check_exceedance_table(runs, (*FACTS, "structure", "round", "group"), "search_design")
     for each in wanted:
         check_hazard_damping(each.hazard, runs, each.measure)
     groups = [rows for _, rows in runs.groupby("structure", observed=True, sort=False)]

@@ -13,9 +13,9 @@ from rockflex.study.design._exceedance_fit import (
     ShakingLevel,
     check_confidence,
     check_design_limit,
+    check_exceedance_table,
     check_hazard_damping,
     check_measure_of_record_alone,
-    check_table,
     design_row,
 )
 
@@ -88,7 +88,7 @@ def design_table(
     [1.0, 0.999]
     """
     check_measure_of_record_alone(measure)
-    check_table(runs, ("structure", "model", *FACTS, *RESULTS, measure), "run_design")
+    check_exceedance_table(runs, ("structure", "model", *FACTS, *RESULTS, measure), "run_design")
     level = ShakingLevel.of(at, hazard)
     check_hazard_damping(hazard, runs, measure)
     if confidence is not None:
@@ -151,7 +151,7 @@ def smallest_width(table: "pd.DataFrame", target: float) -> "pd.DataFrame":
     import pandas as pd
 
     value = "rate" if "rate" in table else "probability"
-    check_table(table, (*NEEDED, value), "design_table")
+    check_exceedance_table(table, (*NEEDED, value), "design_table")
     wanted = checked_positive("target", target, "1/year" if value == "rate" else "probability")
     rows: list[dict[str, Any]] = []
     for (model, tendon), group in table.groupby(["model", "tendon"], observed=True, sort=False):

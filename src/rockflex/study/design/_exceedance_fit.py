@@ -93,7 +93,7 @@ def _limit_rotation(limit: float | str, nominal: float, words: list[str]) -> flo
     return rotation
 
 
-def check_table(table: "pd.DataFrame", names: Iterable[str], origin: str) -> None:
+def check_exceedance_table(table: "pd.DataFrame", names: Iterable[str], origin: str) -> None:
     """Raise an InputError unless a table has rows and these columns; it is what the function `origin` returns."""
     lacking = [name for name in names if name not in table]
     if lacking or not len(table):

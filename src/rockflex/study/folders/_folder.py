@@ -122,7 +122,7 @@ def study_folder_facts(folder: Path, manifest: StudyManifest) -> dict[str, str]:
         found["inputs"] = f"{len(manifest.checksums)} with checksums: {few_texts_shown(list(manifest.checksums))}"
     if manifest.versions:
         found["versions"] = ", ".join(f"{name} {version}" for name, version in manifest.versions.items())
-    return found | dict(list(_specification_items(manifest.spec))[:MAX_KEYS])
+    return found | dict(list(_study_folder_items(manifest.spec))[:MAX_KEYS])
 
 
 def _parts_in_folder(folder: Path, count: int) -> Iterator[tuple[Path, int, float]]:
@@ -178,18 +178,18 @@ def _row_counts_of_parts(paths: Sequence[Path]) -> dict[str, str]:
     return found
 
 
-def _specification_items(spec: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+def _study_folder_items(spec: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Yield the keys of a specification that say something, shortened."""
     for key, value in spec.items():
         if value is None or value == [] or key in ("study", "name"):
             continue
         if isinstance(value, Mapping):
-            yield key, "; ".join(f"{name}: {_specification_text(each)}" for name, each in value.items())
+            yield key, "; ".join(f"{name}: {_study_folder_item_text(each)}" for name, each in value.items())
         else:
-            yield key, _specification_text(value)
+            yield key, _study_folder_item_text(value)
 
 
-def _specification_text(value: Any) -> str:
+def _study_folder_item_text(value: Any) -> str:
     """Write a value; of several the first and the last few, by name where they have one, and how many they are."""
     if not isinstance(value, list):
         return str(value)

@@ -49,12 +49,12 @@ def lock_holder(path: Path) -> str | None:
         since = datetime.fromtimestamp(path.stat().st_mtime, UTC)
     except (OSError, ValueError, LookupError):
         return None
-    if pid is None or (host == platform.node() and not _runs(pid)):
+    if pid is None or (host == platform.node() and not _process_runs(pid)):
         return None
     return f"process {pid} on {shortened(host)} since {since.isoformat(timespec='seconds')}"
 
 
-def _runs(pid: int) -> bool:
+def _process_runs(pid: int) -> bool:
     if os.name == "nt":  # where signal 0 interrupts the process
         return True
     try:

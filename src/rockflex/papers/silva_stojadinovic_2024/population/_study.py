@@ -15,7 +15,7 @@ from rockflex._errors import InputError
 from rockflex.modal import RockingProperties
 from rockflex.models import RockingModel, modal_displacement
 from rockflex.motion import Suite
-from rockflex.response import Response, respond
+from rockflex.response import Response, response_of_solution
 from rockflex.structure import Frame
 from rockflex.study.progress import ProgressChoice
 from rockflex.study.spec import FreeVibration, StudySpec
@@ -241,7 +241,7 @@ class PopulationPlan(study.ChunkedPlan):
                 rows.append(row | {"error": str(errors[0])})
                 continue
             all_modes, one_mode = (
-                respond(case.model, motion.name, solution, case.tracked)
+                response_of_solution(case.model, motion.name, solution, case.tracked)
                 for case, solution in zip(both, solutions, strict=True)
             )
             row |= study.result_row(all_modes, "_mdof")

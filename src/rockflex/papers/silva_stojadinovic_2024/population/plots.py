@@ -114,8 +114,8 @@ def plot_population(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figur
     6
     """
     check_table_columns(pairs, ("behaviour", *_CHARACTERISTICS), "what run_population returned")
-    with figures.styled(size=size):
-        figure = figures.new(6.3, 5.6 if figures.is_narrow() else 4.3)
+    with figures.applied_figure_style(size=size):
+        figure = figures.new_figure(6.3, 5.6 if figures.is_narrow() else 4.3)
         panels: list[Axes] = list(figure.subplots(*((3, 2) if figures.is_narrow() else (2, 3))).flat)
         for axes, (name, label), mark in zip(panels, _CHARACTERISTICS.items(), "ABCDEF", strict=True):
             _draw_population_bars(axes, name, pairs)
@@ -205,8 +205,8 @@ def plot_agreement(pairs: "pd.DataFrame", *, size: Size | None = None) -> Figure
     markers = _markers_by_aspect_ratio(pairs)
     periods = pairs["period"].to_numpy(dtype=float)
     scale = Normalize(float(periods.min()), float(periods.max()))
-    with figures.styled(size=size):
-        figure = figures.new(6.3, 9.8 if figures.is_narrow() else 6.0)
+    with figures.applied_figure_style(size=size):
+        figure = figures.new_figure(6.3, 9.8 if figures.is_narrow() else 6.0)
         if figures.is_narrow():
             panels: list[Axes] = list(figure.subplots(4, 1, height_ratios=(1.0, 1.0, 1.0, 0.75)))
         else:
@@ -349,8 +349,8 @@ def plot_modal_combination(pairs: "pd.DataFrame", *, size: Size | None = None) -
     groups, left_out = _checked_outcome_groups(pairs, tuple(sorted(needed)))
     rows = groups.rocking
     behaviours = rows["behaviour"].astype(str).to_numpy()
-    with figures.styled(size=size):
-        figure = figures.new(6.3, 9.8 if figures.is_narrow() else 6.4)
+    with figures.applied_figure_style(size=size):
+        figure = figures.new_figure(6.3, 9.8 if figures.is_narrow() else 6.4)
         axes_of: list[Axes] = list(figure.subplots(*((4, 1) if figures.is_narrow() else (2, 2))).flat)
         for axes, panel, mark in zip(axes_of, _COMBINATION_PANELS, "ABCD", strict=True):
             _draw_combination(axes, panel, rows, behaviours)

@@ -4,9 +4,9 @@ import numpy as np
 
 from rockflex._arrays import Array
 from rockflex.modal import FloorModes
-from rockflex.models._kept import accelerations, acting_side
-from rockflex.models._layout import GROUND, SIDE
 from rockflex.models._rocking_model import RockingModel
+from rockflex.models._state_layout import GROUND, SIDE
+from rockflex.models._values_at_states import accelerations_at_states, acting_side
 
 
 def stored_energies(model: RockingModel, states: Array) -> tuple[Array, Array, Array]:
@@ -65,7 +65,7 @@ def floor_accelerations(model: RockingModel, floors: FloorModes, states: Array) 
     a + h θ'' + Σ Γ φ D''; in the complete models the second derivative of the horizontal coordinate of Eq. 3.
     """
     layout = model.layout
-    rates, n = accelerations(model, states), layout.modes
+    rates, n = accelerations_at_states(model, states), layout.modes
     ground = states[:, GROUND, None] + (rates[:, n + 1, None] if layout.slip >= 0 else 0.0)
     bend = rates[:, :n] @ floors.displacement.T  # u''
     angular = rates[:, n : n + 1]

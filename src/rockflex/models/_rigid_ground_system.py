@@ -10,7 +10,7 @@ from rockflex._constants import GRAVITY
 from rockflex.engine import Event, LinearPhase, Rest, StateLayout, System, by_rows
 from rockflex.models._elements import CLOSED, LEFT, QUARTER_TURN, RIGHT
 from rockflex.models._impact import Restitution, VVELSimplified
-from rockflex.models._landing import landing_of, sided, turn_by_rows
+from rockflex.models._landing import impact_law_of_side, landing_jump, rotation_acceleration_by_rows
 from rockflex.models._phase import Key
 from rockflex.models._quantities import GROUND, RIGHT_ROTATION, ROTATION, TURN, Quantities
 from rockflex.models._rocking_model import RockingModel
@@ -27,7 +27,7 @@ def may_stack(model: RockingModel) -> bool:
     return usual and (not model.lifts or type(model.law) is VVELSimplified)
 
 
-def system_of(models: Sequence[RockingModel], quantities: Sequence[Quantities]) -> System:
+def system_on_rigid_ground(models: Sequence[RockingModel], quantities: Sequence[Quantities]) -> System:
     """Return models without elements, on rigid ground, as a stack of hybrid systems.
 
     The models have equal numbers of modes and quantities, and all of them can lift, or none. The outputs are the
@@ -185,13 +185,15 @@ class RigidGround:
 
     def landing(self, side: int) -> Event:
         """The impact, after which rocking may go on to the other side."""
-        row, law = side * self.rotation()[:, 0, :-2], sided(self.model.law, side)
+        row, law = side * self.rotation()[:, 0, :-2], impact_law_of_side(self.model.law, side)
         if isinstance(law, VVELSimplified) or (isinstance(law, Restitution) and law.e == 0.0):
             return Event("impact", row, CONTACT, jump=self.struck(0.0))
         if not isinstance(law, Restitution) or self.gains(side, law):
             turns = {each: (self.turn(each)[0], self.turn_by_weight(each)[0]) for each in (RIGHT, LEFT)}
             model, keys = self.model, {CLOSED: CONTACT, **ALONE}
-            jump = landing_of(model, side, keys, lambda each, _: model.free_inertia(each), turn_by_rows(turns))
+            jump = landing_jump(
+                model, side, keys, lambda each, _: model.free_inertia(each), rotation_acceleration_by_rows(turns)
+            )
             return Event("impact", row, CONTACT, jump=jump)
         turn = self.turn(-side)
         back = law.shortest_excursion * side * turn  # what the rotation would lose within the shortest excursion

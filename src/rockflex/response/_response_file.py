@@ -14,7 +14,7 @@ import numpy as np
 from rockflex._constants import GRAVITY
 from rockflex._errors import InputError
 from rockflex._files import check_regular_file, write_file_atomically
-from rockflex._registry import registered
+from rockflex._registry import registered_objects
 from rockflex._shown import shown
 from rockflex.modal import (
     BARS,
@@ -87,7 +87,7 @@ ELEMENTS: tuple[type[BaseElement], ...] = (
 FLOOR_PEAKS = ("story_drift", "story_shear", "floor_acceleration", "total_floor_displacement")
 
 
-def save(
+def save_response(
     path: Path, peaks: dict[str, Any], of_elements: dict[str, Any], floors: FloorPeaks | None, history: History | None
 ) -> Path:
     """Write a response to `path`, adding the suffix ``.npz`` if necessary; the file is complete or absent.
@@ -108,7 +108,7 @@ def save(
     if history is not None:
         model = history.model
         scalars["lifts"] = model.lifts
-        scalars["law"] = _described(model.law)
+        scalars["law"] = _impact_law_to_file(model.law)
         scalars["missing_mass"] = model.missing_mass
         scalars |= {name: getattr(model.properties, name) for name in (*KNOWN_OR_NOT, "eccentricity", "leaning_mass")}
         if model.integrated:
@@ -134,7 +134,7 @@ def save(
     return write_file_atomically(path, content.getvalue())
 
 
-def load(path: Path, kinds: dict[str, type]) -> Kept:
+def load_response(path: Path, kinds: dict[str, type]) -> Kept:
     """Read a response written by `save`, with peaks of these names and types."""
     check_regular_file(path)
     if not path.exists():
@@ -145,7 +145,7 @@ def load(path: Path, kinds: dict[str, type]) -> Kept:
         arrays = {name: np.load(io.BytesIO(part)) for name, part in content.items()}
         scalars = json.loads(str(arrays["response"]))
         known = scalars["format"] in (FORMAT, OLDER, OLDEST)
-        kept = _kept(scalars, arrays, kinds) if known else None
+        kept = _response_from_file(scalars, arrays, kinds) if known else None
     except Exception as error:  # zipfile, zlib, NumPy and json raise almost any exception for damaged files
         reason = f"{type(error).__name__}: {error}"
         raise InputError(f"{path} is not a saved response ({reason}). Give a file that Response.save wrote.") from error
@@ -154,7 +154,7 @@ def load(path: Path, kinds: dict[str, type]) -> Kept:
     return kept
 
 
-def _kept(scalars: dict[str, Any], arrays: dict[str, Any], kinds: dict[str, type]) -> Kept:
+def _response_from_file(scalars: dict[str, Any], arrays: dict[str, Any], kinds: dict[str, type]) -> Kept:
     for name, values in arrays.items():
         if name != "response" and values.dtype != np.float64:
             raise InputError(f"{name} must be of type float64, but is of type {values.dtype}.")
@@ -165,7 +165,7 @@ def _kept(scalars: dict[str, Any], arrays: dict[str, Any], kinds: dict[str, type
         states = arrays["states"]
         if scalars["format"] != FORMAT:  # without vertical acceleration
             states = np.insert(states, RISE, 0.0, axis=1)
-        history = History(_model(scalars, arrays), states)
+        history = History(_model_from_file(scalars, arrays), states)
     later = _later(scalars, history) if scalars["format"] == OLDEST else _of_elements(arrays, history)
     if scalars["format"] != FORMAT:
         later |= _of_ground(scalars, history)
@@ -234,7 +234,7 @@ def _typed(scalars: dict[str, Any], name: str, kind: type) -> Any:
     return scalars[name]
 
 
-def _described(law: ImpactLaw) -> dict[str, Any]:
+def _impact_law_to_file(law: ImpactLaw) -> dict[str, Any]:
     """Return an impact law as JSON; for a user-defined law only its description."""
     name = type(law).__name__
     if name in LAWS and type(law) is LAWS[name]:
@@ -242,14 +242,14 @@ def _described(law: ImpactLaw) -> dict[str, Any]:
     return {"law": "ForgottenLaw", "description": repr(law), "keeps": str(law.keeps), "loses": str(law.loses)}
 
 
-def _law(parameters: dict[str, Any]) -> ImpactLaw:
+def _impact_law_from_file(parameters: dict[str, Any]) -> ImpactLaw:
     name = parameters.pop("law")
     if name == "SidedRestitution":
         parameters = {edge: Restitution(**each) for edge, each in parameters.items()}
     return LAWS[name](**parameters)
 
 
-def _element(kind: str = "Tendon", **values: Any) -> BaseElement:
+def _element_from_file(kind: str = "Tendon", **values: Any) -> BaseElement:
     """Return an element from the name of its class and its parameters.
 
     Raises
@@ -257,7 +257,7 @@ def _element(kind: str = "Tendon", **values: Any) -> BaseElement:
     InputError
         If no installed package has such an element.
     """
-    known = {each.__name__: each for each in (*ELEMENTS, *registered("elements").values())}
+    known = {each.__name__: each for each in (*ELEMENTS, *registered_objects("elements").values())}
     if kind not in known:
         raise InputError(
             f"The structure has an element {kind!r}, which no installed package registers. Install the package that "
@@ -266,21 +266,21 @@ def _element(kind: str = "Tendon", **values: Any) -> BaseElement:
     return known[kind](**values)
 
 
-def _model(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
+def _model_from_file(scalars: dict[str, Any], arrays: dict[str, Any]) -> RockingModel:
     values = {name: arrays[f"properties.{name}"] for name in PROPERTIES}
     values = {name: value if value.ndim else float(value) for name, value in values.items()}
     floors = None
     if "floor_modes.heights" in arrays:
         floors = FloorModes(*(arrays[f"floor_modes.{name}"] for name in FLOOR_MODES))
     name = "tendons" if scalars["format"] == OLDEST else "elements"
-    elements = [_element(**each) for each in _typed(scalars, name, list)]
+    elements = [_element_from_file(**each) for each in _typed(scalars, name, list)]
     known = {name: scalars[name] for name in KNOWN_OR_NOT}
     known |= {name: scalars.get(name, 0.0) for name in ("eccentricity", "leaning_mass")}  # older files may lack them
     known["stories"] = [YieldingStory(**each) for each in scalars.get("stories", [])]
     properties = RockingProperties(**values, floors=floors, elements=elements, **known)
     lifts, parameters = _typed(scalars, "lifts", bool), dict(_typed(scalars, "law", dict))
     missing = _typed(scalars, "missing_mass", bool)
-    law = _law(parameters)
+    law = _impact_law_from_file(parameters)
     gravity = scalars.get("gravity", GRAVITY)
     nonlinear = dict[str, Any]()
     if "complete" in scalars:

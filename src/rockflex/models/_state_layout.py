@@ -100,7 +100,7 @@ class StateLayout(NamedTuple):
 
 
 @lru_cache(maxsize=256)
-def layout_of(
+def state_layout_of(
     modes: int,
     *,
     integrated: bool = False,
@@ -135,25 +135,25 @@ def layout_of(
     return StateLayout(modes, *base, core, core + 1, core + 2, core + 3, *counters, memory, n_internal, moving, size)
 
 
-def digits_of(base: int) -> int:
+def branches_per_code(base: int) -> int:
     """Return how many digits a number has."""
     return BITS // (base.bit_length() - 1)
 
 
-def codes_for(size: int, base: int) -> int:
+def n_branch_codes(size: int, base: int) -> int:
     """Return how many numbers hold the branches of `size` elements."""
-    return -(-size // digits_of(base))
+    return -(-size // branches_per_code(base))
 
 
-def code_of(branches: tuple[int, ...], base: int) -> tuple[float, ...]:
+def codes_of_branches(branches: tuple[int, ...], base: int) -> tuple[float, ...]:
     """Return the numbers that stand for branches from -1 to base - 2."""
-    digits = digits_of(base)
+    digits = branches_per_code(base)
     parts = (branches[first : first + digits] for first in range(0, len(branches), digits))
     return tuple(float(sum((branch + SHIFT) * base**k for k, branch in enumerate(part))) for part in parts)
 
 
-def decoded(codes: Array, size: int, base: int) -> NDArray[np.int64]:
+def branches_of_codes(codes: Array, size: int, base: int) -> NDArray[np.int64]:
     """Return the branches of `size` elements from their numbers, (n, codes_for(size, base)), as (n, size)."""
-    whole, digits = codes.astype(np.int64), digits_of(base)
+    whole, digits = codes.astype(np.int64), branches_per_code(base)
     columns = [whole[:, k // digits] // base ** (k % digits) % base - SHIFT for k in range(size)]
     return np.array(columns, dtype=np.int64).reshape(size, len(codes)).T

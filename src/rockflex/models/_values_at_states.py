@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 from rockflex._arrays import Array, Bools
 from rockflex.models._fields import RockingField
 from rockflex.models._ground_fields import GroundField
-from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME
 from rockflex.models._phase import Key
-from rockflex.models._quantities import LINEAR, Quantities, rows_of
+from rockflex.models._quantities import LINEAR, Quantities, rows_of_quantities
 from rockflex.models._rocking_model import RockingModel
-from rockflex.models._vector_fields import Numbers, field_of, numbers_of
+from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME
+from rockflex.models._vector_fields import FieldNumbers, field_numbers, field_of
 
 _MAX_CODES = 2**31  # beyond which they are numbered anew, before they overflow
 
@@ -31,20 +31,20 @@ def acting_side(states: Array) -> Array:
     return side
 
 
-def accelerations(model: RockingModel, states: Array) -> Array:
+def accelerations_at_states(model: RockingModel, states: Array) -> Array:
     """Return D''_1..D''_N in m/s² and q'' of the base, θ'' in rad/s² first, at every state, shape (n, N + b)."""
     side, layout = acting_side(states), model.layout
     n = layout.modes
     found = np.zeros((states.shape[0], n + layout.freedoms))
     if model.integrated:
         speeds = range(layout.spin, layout.spin + 2 * layout.freedoms, 2)
-        for chosen, field in fields_at(model, numbers_of(model), states, side):
+        for chosen, field in vector_fields_at_states(model, field_numbers(model), states, side):
             motion, shaking = _apart(states[chosen])
             rates = field.rates_along(motion, *shaking, counted=False)
             found[chosen] = rates[:, [*range(n, 2 * n), *speeds]]
         return found
     heavier = under_more_gravity(model) if states[:, RISE].any() else None
-    for chosen, key, vector in by_phase(model, states, side):
+    for chosen, key, vector in states_by_phase(model, states, side):
         found[chosen] = vector @ model.accelerations(key).T
         if heavier is not None:
             more = heavier.accelerations(key) - model.accelerations(key)
@@ -60,7 +60,7 @@ def under_more_gravity(model: RockingModel) -> RockingModel:
     return replace(model, gravity=model.gravity + 1.0)
 
 
-def rates_of(model: RockingModel, states: Array, found: Array) -> Array:
+def rates_at_states(model: RockingModel, states: Array, found: Array) -> Array:
     """Return D', D'', θ', θ'' and those of slip and heave in the order of the state, (n, 2N + 2b)."""
     layout = model.layout
     n = layout.modes
@@ -70,29 +70,31 @@ def rates_of(model: RockingModel, states: Array, found: Array) -> Array:
     return np.concatenate(rates, axis=1)
 
 
-def values_of(model: RockingModel, quantities: Quantities, states: Array) -> Array:
+def quantities_at_states(model: RockingModel, quantities: Quantities, states: Array) -> Array:
     """Return the values of quantities at the states of a history (time, side, a, state), shape (n, F)."""
     side = acting_side(states)
     values = np.zeros((states.shape[0], len(quantities)))
     heavier = under_more_gravity(model) if states[:, RISE].any() else None
-    for chosen, key, vector in by_phase(model, states, side):
-        rows = rows_of(model, quantities, key)
+    for chosen, key, vector in states_by_phase(model, states, side):
+        rows = rows_of_quantities(model, quantities, key)
         values[chosen] = vector @ rows.T
         if heavier is not None:
-            more = rows_of(heavier, quantities, key) - rows
+            more = rows_of_quantities(heavier, quantities, key) - rows
             values[chosen] += states[chosen, RISE, None] * (vector @ more.T)
     rocking = model.bends(side)
     if rocking.any() and (quantities.kinds != LINEAR).any():
-        rates = rates_of(model, states, accelerations(model, states))
-        numbers = numbers_of(model, quantities.kinds.tolist(), quantities.levers)
+        rates = rates_at_states(model, states, accelerations_at_states(model, states))
+        numbers = field_numbers(model, quantities.kinds.tolist(), quantities.levers)
         values[rocking] = observed(model, numbers, states[rocking], side[rocking], rates[rocking], values[rocking])
     return values
 
 
-def observed(model: RockingModel, numbers: Numbers, states: Array, side: Array, rates: Array, rows: Array) -> Array:
-    """Return outputs in large rotations, shape (n, F), from their rows and from D', D'', θ' and θ'': see `rates_of`."""
+def observed(
+    model: RockingModel, numbers: FieldNumbers, states: Array, side: Array, rates: Array, rows: Array
+) -> Array:
+    """Return outputs at large rotations, (n, F), from their rows and D', D'', θ', θ'': see `rates_at_states`."""
     found = np.zeros(rows.shape)
-    for chosen, field in fields_at(model, numbers, states, side):
+    for chosen, field in vector_fields_at_states(model, numbers, states, side):
         motion, shaking = _apart(states[chosen])
         values = rows[chosen]
         field.observe_along(motion, rates[chosen], *shaking, values)
@@ -100,13 +102,13 @@ def observed(model: RockingModel, numbers: Numbers, states: Array, side: Array, 
     return found
 
 
-def fields_at(
-    model: RockingModel, numbers: Numbers, states: Array, side: Array
+def vector_fields_at_states(
+    model: RockingModel, numbers: FieldNumbers, states: Array, side: Array
 ) -> Iterator[tuple[Bools, RockingField | GroundField]]:
     """Yield a mask of the states of each phase, and its vector field."""
     layout = model.layout
     backwards = layout.velocities(states)[:, 0] < 0.0 if numbers.bouc_wen is not None else np.zeros(side.size, bool)
-    for chosen, key in phases_at(model, side, layout.of(states, layout.rotation), states):
+    for chosen, key in phases_at_states(model, side, layout.of(states, layout.rotation), states):
         for branch, part in ((1, chosen & ~backwards), (-1, chosen & backwards)):
             if part.any():
                 yield part, field_of(model, numbers, key, branch)
@@ -117,10 +119,10 @@ def held_moment(model: RockingModel, states: Array) -> Array:
 
     Over the lever arm factor cos(θ/2) of elements; the states are those of one phase.
     """
-    rates = rates_of(model, states, accelerations(model, states))
+    rates = rates_at_states(model, states, accelerations_at_states(model, states))
     motion, (a, a_v) = _apart(states)
     found = np.zeros(len(states))
-    for chosen, field in fields_at(model, numbers_of(model), states, states[:, SIDE]):
+    for chosen, field in vector_fields_at_states(model, field_numbers(model), states, states[:, SIDE]):
         assert isinstance(field, RockingField)
         found[chosen] = field.imbalance_along(motion[chosen], rates[chosen], a[chosen], a_v[chosen])
     return found / np.cos(0.5 * model.layout.of(states, model.layout.rotation))
@@ -131,15 +133,15 @@ def _apart(states: Array) -> tuple[Array, tuple[Array, Array]]:
     return np.ascontiguousarray(states[:, HEADER:]), (states[:, GROUND].copy(), states[:, RISE].copy())
 
 
-def by_phase(model: RockingModel, states: Array, side: Array) -> list[tuple[Bools, Key, Array]]:
+def states_by_phase(model: RockingModel, states: Array, side: Array) -> list[tuple[Bools, Key, Array]]:
     """Return for each phase a mask of its states, its key, and the vectors that its rows multiply."""
     moving = states[:, HEADER : HEADER + model.layout.moving]
     vector = np.column_stack((moving, states[:, GROUND], np.ones(side.size)))
     rotation = model.layout.of(states, model.layout.rotation)
-    return [(chosen, key, vector[chosen]) for chosen, key in phases_at(model, side, rotation, states)]
+    return [(chosen, key, vector[chosen]) for chosen, key in phases_at_states(model, side, rotation, states)]
 
 
-def phases_at(model: RockingModel, side: Array, rotation: Array, states: Array) -> list[tuple[Bools, Key]]:
+def phases_at_states(model: RockingModel, side: Array, rotation: Array, states: Array) -> list[tuple[Bools, Key]]:
     """Return for each phase a mask of its states, by sides, rotations and internal variables."""
     branches = model.branches_at(side, rotation, states).astype(np.int64)
     _, first, which = np.unique(_codes(branches), return_index=True, return_inverse=True)

@@ -17,11 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockflex._arrays import Array, Bools
-from rockflex.engine import changes_of, halvings_of, radius
-from rockflex.models._kept import phases_at, under_more_gravity
-from rockflex.models._layout import GROUND, HEADER, RISE, SIDE, TIME
+from rockflex.engine import exponentials_less_identity, halvings_of, spectral_radius_bound
 from rockflex.models._phase import Key
 from rockflex.models._rocking_model import RockingModel
+from rockflex.models._state_layout import GROUND, HEADER, RISE, SIDE, TIME
+from rockflex.models._values_at_states import phases_at_states, under_more_gravity
 
 TURN = 2.0  # rad that a mode may turn within one power series
 REST = 0.5  # rad that it turns at most in what is left of an interval after the exponentials
@@ -31,19 +31,19 @@ MOST = 2**14  # intervals whose power series fit in memory: a hundred megabytes
 ASIDE = 1e-6  # of a step times the change of θ' in it, from the middle rotation
 
 
-class Shaking(NamedTuple):
+class VerticalShaking(NamedTuple):
     """Vertical acceleration of the ground in m/s² and its slope, shape (n,)."""
 
     rise: Array
     slope: Array
 
-    def later(self, time: Array) -> "Shaking":
+    def later(self, time: Array) -> "VerticalShaking":
         """Return the same after times in s."""
-        return Shaking(self.rise + time * self.slope, self.slope)
+        return VerticalShaking(self.rise + time * self.slope, self.slope)
 
-    def of(self, which: NDArray[np.intp]) -> "Shaking":
+    def of(self, which: NDArray[np.intp]) -> "VerticalShaking":
         """Return that of some intervals."""
-        return Shaking(self.rise[which], self.slope[which])
+        return VerticalShaking(self.rise[which], self.slope[which])
 
 
 class LinearMotion:
@@ -81,7 +81,7 @@ class LinearMotion:
         self.rates[[*(n + modes), *(base + 1)]] = self.taken(accelerations[[*modes, *(n + free)]])
         self.more[[*(n + modes), *(base + 1)]] = self.taken(heavier[[*modes, *(n + free)]])
         self.rates[-3, -2] = 1.0
-        self.speed = float(radius(self.rates[None, : layout.core, : layout.core])[0])
+        self.speed = float(spectral_radius_bound(self.rates[None, : layout.core, : layout.core])[0])
         self._felt, self._longest = np.flatnonzero(self.more.any(axis=0)), longest
 
     def taken(self, rows: Array) -> Array:
@@ -99,7 +99,7 @@ class LinearMotion:
     def changes(self) -> list[Array]:
         """exp(G t) - 1 for the lengths t."""
         halvings = int(halvings_of(self.speed * self._longest, REST))
-        return [each[0] for each in changes_of(self.rates[None] * self._longest, halvings)]
+        return [each[0] for each in exponentials_less_identity(self.rates[None] * self._longest, halvings)]
 
     @property
     def lengths(self) -> Array:
@@ -110,7 +110,7 @@ class LinearMotion:
         """Return the number of equal parts in which intervals are to be taken, so that power series converge."""
         return max(math.ceil(self.speed * longest / TURN), 1)
 
-    def series(self, z: Array, h: Array, shaking: Shaking | None = None) -> Array:
+    def series(self, z: Array, h: Array, shaking: VerticalShaking | None = None) -> Array:
         """Return the terms of z in powers of the fraction of steps h in s, shape (terms, n, Z)."""
         turn, size, count = self.speed * float(h.max(initial=0.0)), 1.0, 8
         while count < 8 or size > SMALL:
@@ -156,7 +156,7 @@ class LinearMotion:
             found[alike] = z[alike] @ matrix
         return found
 
-    def developed(self, z: Array, steps: Array, shaking: Shaking | None = None) -> Iterator[Array]:
+    def developed(self, z: Array, steps: Array, shaking: VerticalShaking | None = None) -> Iterator[Array]:
         """Yield the power series in equal parts of steps in s, shape (n,), one after the other: see `series`."""
         parts = self.parts(float(steps.max(initial=0.0)))
         h = steps / parts
@@ -167,7 +167,7 @@ class LinearMotion:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class IntervalsOfPhase:
     """Intervals in one linear phase, with or without vertical acceleration."""
 
     key: Key
@@ -175,7 +175,7 @@ class Part:
     rows: NDArray[np.intp]  # which intervals, (n,)
     z: Array  # at their starts, (n, Z)
     steps: Array  # their lengths in s, (n,)
-    shaking: Shaking | None
+    shaking: VerticalShaking | None
 
     def after(self, which: NDArray[np.intp], elapsed: Array) -> Array:
         """Return z `elapsed` seconds after the start of some of the intervals, shape (m, Z)."""
@@ -195,17 +195,17 @@ class Part:
             return
         for k, terms in enumerate(self.motion.developed(self.z, self.steps, self.shaking)):
             while done < fractions.size and (fractions[done] * parts <= k + 1 or k == parts - 1):
-                yield inside(terms, fractions[[done]] * parts - k)[0]
+                yield series_between_states(terms, fractions[[done]] * parts - k)[0]
                 done += 1
 
 
 @dataclass(frozen=True, eq=False)
-class Intervals:
+class IntervalsBetweenStates:
     """The motion between adjacent states of a history; in phases that are not linear, the states at the start."""
 
     before: Array  # states at the start, (n - 1, S)
     core: int
-    parts: list[Part]
+    parts: list[IntervalsOfPhase]
     blur: float  # s, below which lengths do not differ
 
     def at(self, fraction: float) -> Array:
@@ -225,7 +225,7 @@ class Intervals:
     def after(self, which: NDArray[np.intp], elapsed: Array) -> Array:
         """Return the states `elapsed` (m,) seconds after the start of some intervals, shape (m, S)."""
         found, place = self.before[which], np.empty(len(self.before), dtype=np.intp)
-        elapsed = _merged(elapsed, self.blur)
+        elapsed = _merged_interval_lengths(elapsed, self.blur)
         for part in self.parts:
             place[:] = -1
             place[part.rows] = np.arange(part.rows.size)
@@ -257,22 +257,22 @@ class MotionBetween:
         found = (np.linalg.eigvals(LinearMotion(model, key, 1.0).rates[:core, :core]) for key in keys)
         return max(float(np.abs(roots).max()) for roots in found)
 
-    def intervals(self, states: Array) -> Intervals:
+    def intervals(self, states: Array) -> IntervalsBetweenStates:
         """Return the motion over the intervals between adjacent states, shape (n, columns)."""
         model, layout = self._model, self._model.layout
         blur = BLUR * max(float(states[-1, TIME]), 1e-300)
-        steps = _merged(np.diff(states[:, TIME]), blur)
+        steps = _merged_interval_lengths(np.diff(states[:, TIME]), blur)
         lasting = steps > 0.0
         slopes = np.diff(states[:, [GROUND, RISE]], axis=0) / np.where(lasting, steps, 1.0)[:, None]
         slopes[~lasting] = 0.0
-        shaking = Shaking(states[:-1, RISE], slopes[:, 1])
+        shaking = VerticalShaking(states[:-1, RISE], slopes[:, 1])
         shaken: Bools = (shaking.rise != 0.0) | (shaking.slope != 0.0)
         # The branch of an element over an interval is that in its middle, with the internal variable at its start. An
         # excursion may begin and end on the border of a branch: a little of its height tells on which side it is.
         rotation, spin = layout.of(states, layout.rotation), layout.of(states, layout.spin)
         middle = 0.5 * (rotation[:-1] + rotation[1:]) - ASIDE * steps * np.diff(spin)
-        parts, longest = list[Part](), _longest(steps)
-        for found, key in phases_at(model, states[:-1, SIDE], middle, states[:-1]):
+        parts, longest = list[IntervalsOfPhase](), _longest(steps)
+        for found, key in phases_at_states(model, states[:-1, SIDE], middle, states[:-1]):
             if model.integrates(key[0]):
                 continue
             if key not in self._known:
@@ -285,16 +285,18 @@ class MotionBetween:
                     start = states[rows]
                     moving = start[:, HEADER + motion.columns[:-1]]
                     z = np.column_stack((moving, start[:, GROUND], slopes[rows, 0], np.ones(rows.size)))
-                    parts.append(Part(key, motion, rows, z, steps[rows], shaking.of(rows) if apart else None))
-        return Intervals(states[:-1, HEADER:], layout.core, parts, blur)
+                    parts.append(
+                        IntervalsOfPhase(key, motion, rows, z, steps[rows], shaking.of(rows) if apart else None)
+                    )
+        return IntervalsBetweenStates(states[:-1, HEADER:], layout.core, parts, blur)
 
 
-def inside(terms: Array, places: Array) -> Array:
+def series_between_states(terms: Array, places: Array) -> Array:
     """Return z at fractions of a step from its power series, shape (places, n, Z)."""
     return np.tensordot(np.vander(places, len(terms), increasing=True), terms, axes=1)
 
 
-def _merged(lengths: Array, blur: float) -> Array:
+def _merged_interval_lengths(lengths: Array, blur: float) -> Array:
     """Return lengths in s, where those that differ by no more than a blur from the next shorter one have their mean."""
     if not lengths.size:
         return lengths

@@ -17,8 +17,8 @@ from rockflex.models._quantities import (
     SWING,
     Quantities,
     Share,
-    collected,
-    joined,
+    collected_quantities,
+    joined_quantities,
 )
 from rockflex.models._rocking_model import RockingModel
 
@@ -30,7 +30,7 @@ def quantities(model: RockingModel, names: Iterable[str]) -> Quantities:
     including the missing mass if the model does; `total_top_displacement` (m), zero if the height of the top is not
     known; `horizontal_reaction` (N), Eq. 21 for small rotations.
     """
-    return collected(model.properties.n_modes, [_WHOLE[name](model) for name in names])
+    return collected_quantities(model.properties.n_modes, [_WHOLE[name](model) for name in names])
 
 
 def _top_displacement(model: RockingModel) -> Share:
@@ -97,7 +97,7 @@ def floor_quantities(model: RockingModel, floors: FloorModes, names: Iterable[st
         "floor_acceleration": {"acceleration": floors.displacement, "turn": floors.heights, "ground": 1.0},
     }
     kinds = {"total_floor_displacement": SWAY}
-    return joined([Quantities.of(count, n, kinds.get(name, LINEAR), **shapes[name]) for name in names])
+    return joined_quantities([Quantities.of(count, n, kinds.get(name, LINEAR), **shapes[name]) for name in names])
 
 
 def modal_displacement(model: RockingModel, mode: int) -> Quantities:
