@@ -22,6 +22,7 @@ pytest.importorskip("starlette", reason="the web page needs the packages of rock
 pytest.importorskip("uvicorn", reason="the web page needs the packages of rockflex[web]")
 
 
+TASKS = ["structure", "optional", "devices", "ground", "runs", "import", "modes"]  # all of the forms, unfolded
 MODELS = ("MDOF-S", "2DOF-S", "fixed")  # with which the page begins
 
 
@@ -102,8 +103,9 @@ class Client:
         pytest.fail(f"The file took more than {seconds} s.")
 
     def state(self, **changes: Any) -> dict[str, Any]:
-        """The first state of the page, changed."""
-        return json.loads(self.request("/api/about")[2])["state"] | changes
+        """The first state of the page with a frame of Table 1, changed."""
+        about = json.loads(self.request("/api/about")[2])
+        return about["state"] | {"structure": about["presets"][0]["structure"], "scale": 1.0} | changes
 
     def wait(self, kind: str, token: str, state: dict[str, Any], seconds: float = 60.0) -> Any:
         """Progress of a study once it is over."""
@@ -186,6 +188,7 @@ class Visitor:
 
     def fill(self, path: str, value: str) -> None:
         box = self.page.locator(f'[data-path="{path}"] input[type="text"]').first
+        box.evaluate("e => { for (let d = e; (d = d.parentElement?.closest('details')); ) d.open = true; }")
         box.fill(value)
         box.press("Enter")
         box.blur()
@@ -250,7 +253,7 @@ def link() -> Any:
 
 @pytest.fixture(scope="session")
 def frame() -> Any:
-    """The structure that the page begins with."""
+    """The structure of a visitor."""
     return make_frame()
 
 
@@ -282,7 +285,10 @@ def visit(browser: Any, server: str) -> Iterator[Any]:
     contexts, visitors = [], []
 
     def new(link: str = "/", **options: Any) -> Visitor:
-        context = browser.new_context(**{"viewport": {"width": 1280, "height": 900}, **options})
+        usual = {"viewport": {"width": 1280, "height": 900}, "reduced_motion": "reduce"}
+        context = browser.new_context(**{**usual, **options})
+        unfold = f"for (const task of {TASKS}) localStorage.setItem('rockflex-open-' + task, true)"
+        context.add_init_script(f"if (location.protocol === 'http:') {unfold}")
         contexts.append(context)
         page = context.new_page()
         page.set_default_timeout(180_000)
@@ -298,5 +304,6 @@ def visit(browser: Any, server: str) -> Iterator[Any]:
 
 
 @pytest.fixture
-def visitor(visit: Any) -> Visitor:
-    return visit()
+def visitor(visit: Any, client: Client) -> Visitor:
+    """A visitor with a frame of Table 1."""
+    return visit(link_to(client.state()))

@@ -84,9 +84,9 @@ def test_a_warning_is_seen(visit, link) -> None:
 
 @pytest.mark.web
 @pytest.mark.parametrize("tab", ["structure", "earthquake", "response", "fragility", "design"])
-def test_a_tab_on_paper(visit, tab) -> None:
+def test_a_tab_on_paper(visit, link, client, tab) -> None:
     pypdf = pytest.importorskip("pypdf", reason="pages are read by pypdf, of rockflex[dev]")
-    visitor = visit(color_scheme="dark")
+    visitor = visit(link(client.state()), color_scheme="dark")
     page = visitor.page
     visitor.tab(tab)
     if tab == "response":
@@ -229,8 +229,8 @@ def test_the_page_answers_while_it_draws(client) -> None:
 
 
 @pytest.mark.web
-def test_the_button_saves_the_gif_and_says_that_it_works(visit, link) -> None:
-    visitor = visit(link({"record": SHORT, "models": ["MDOF-S", "2DOF-S", "fixed"]}))
+def test_the_button_saves_the_gif_and_says_that_it_works(visit, link, client) -> None:
+    visitor = visit(link(client.state(record=SHORT)))
     page = visitor.respond()
     button = page.get_by_role("button", name="Animation (GIF)")
     with page.expect_download(timeout=120_000) as got:
@@ -253,8 +253,8 @@ def test_the_button_saves_the_gif_and_says_that_it_works(visit, link) -> None:
 
 
 @pytest.mark.web
-def test_an_animation_can_be_cancelled_on_the_page(visit, link) -> None:
-    visitor = visit(link(LONG))
+def test_an_animation_can_be_cancelled_on_the_page(visit, link, client) -> None:
+    visitor = visit(link(client.state(**LONG)))
     page = visitor.respond(1, LONG["models"])
     saved = []
     page.on("download", lambda each: saved.append(each))

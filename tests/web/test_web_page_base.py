@@ -24,7 +24,7 @@ def held(visitor) -> list[dict]:
 
 def test_elements_of_all_kinds_are_added_changed_and_removed(visitor) -> None:
     page = visitor.page
-    bare = visitor.value("dd[data-value] >> nth=2")
+    bare = visitor.value("[data-task=modes] dd[data-value] >> nth=2")
     kinds = page.evaluate("Object.keys(rockflexPage.about.elements)")
     assert kinds == [*ELEMENTS]
     for place, kind in enumerate(kinds):
@@ -32,28 +32,37 @@ def test_elements_of_all_kinds_are_added_changed_and_removed(visitor) -> None:
         page.get_by_role("button", name="Add an element").click()
         assert page.evaluate("document.activeElement.labels[0].textContent") == "Element"
         visitor.fill(f"structure.elements.{place}.position", str(0.1 * place))
-        shown = page.locator(f'details[data-path="structure.elements.{place}"] summary').inner_text()
+        shown = page.locator(f'details[data-path="structure.elements.{place}"] > summary').inner_text()
         title = page.evaluate("kind => rockflexPage.about.elements[kind].title", kind)
         assert shown == f"{place + 1}: {title} at {0.1 * place:g} m"
         names = page.evaluate(f"rockflexPage.about.elements.{kind}.fields.map((each) => each.name)")
         assert page.locator(f'[data-path^="structure.elements.{place}."]').count() == len(names) + 1  # and the kind
     frame = make_frame()
+    weight, b = 9.81 * 240e3, frame.rocking().half_width
+
+    def share(part: float) -> float:
+        return float(f"{weight * part:.2g}")
+
     elements = [
-        rf.Tendon(1e5, 1e6), rf.YieldingDissipator(5e7, 1e5, position=0.1), rf.ViscousDamper(5e5, position=0.2),
-        rf.FrictionDamper(5e4, position=0.3),
+        rf.Tendon(share(1 / 5), share(10 / b)), rf.YieldingDissipator(share(1 / 0.016), share(1 / 8), position=0.1),
+        rf.ViscousDamper(share(1 / 2), position=0.2), rf.FrictionDamper(share(1 / 20), position=0.3),
+    ]  # fmt: skip
+    given = [{**each, "position": 0} for each in held(visitor)]
+    assert given[0] == {"kind": "tendon", "position": 0, "initial_force": share(1 / 5), "stiffness": share(10 / b)}
+    assert [given[k][name] for k, name in ((1, "yield_force"), (2, "coefficient"), (3, "force"))] == [
+        share(1 / 8), share(1 / 2), share(1 / 20),
     ]  # fmt: skip
     expected = rf.Restrained(frame, elements).rocking()
     page.wait_for_function(
         "m => [...document.querySelectorAll('dd[data-value]')].some((e) => Number(e.dataset.value) === m)",
         arg=expected.pivot(1).resisting_moment,
     )
+    visitor.wait_for_results()
     assert page.locator("#base").get_attribute("aria-label").count(";") == len(kinds) - 1
     # An element of another kind keeps what both have.
     row = page.locator('details[data-path="structure.elements.1"]')
     row.get_by_label("Element", exact=True).select_option("tendon")
-    assert held(visitor)[1] == {
-        "kind": "tendon", "position": 0.1, "initial_force": 1e5, "stiffness": 5e7, "yield_force": 1e5,
-    }  # fmt: skip
+    assert held(visitor)[1] == {**given[0], "position": 0.1}
     assert row.get_attribute("open") is not None
     page.locator('details[data-path="structure.elements.0"]').get_by_role("button", name="Remove").click()
     assert [each["kind"] for each in held(visitor)] == ["tendon", *kinds[2:]]
@@ -61,7 +70,7 @@ def test_elements_of_all_kinds_are_added_changed_and_removed(visitor) -> None:
         page.locator("details[data-path]:visible").first.get_by_role("button", name="Remove").click()
     assert "elements" not in visitor.state()["structure"]
     page.wait_for_selector("#base", state="detached")
-    assert visitor.value("dd[data-value] >> nth=2") == bare
+    assert visitor.value("[data-task=modes] dd[data-value] >> nth=2") == bare
 
 
 def test_a_bad_value_is_answered_beside_it_even_in_a_closed_row(visitor, visit, link) -> None:
@@ -84,7 +93,7 @@ def test_a_bad_value_is_answered_beside_it_even_in_a_closed_row(visitor, visit, 
     assert page.locator(".error:visible").count() == 0
     page.get_by_role("button", name="Add an element").click()
     rows = page.locator("details[data-path]")
-    page.locator("summary").first.click()
+    page.locator("details[data-path] > summary").first.click()
     assert rows.first.get_attribute("open") is None
     page.evaluate("rockflexPage.state.structure.elements[0].position = 50; rockflexPage.change({})")
     visitor.wait_for_error(f"{path}.position", "must act within half_width")
@@ -191,7 +200,7 @@ def test_a_link_with_tendons_of_an_earlier_version_opens(visit, link) -> None:
     assert visitor.peak("2DOF-S", "max_rotation") == expected.max_rotation
     assert visitor.value('#elements [data-name="force"]') == expected.max_element_force[0]
     visitor.tab("structure")
-    assert visitor.page.locator("details[data-path] summary").all_inner_texts() == ["1: Tendon at 0 m"]
+    assert visitor.page.locator("details[data-path] > summary").all_inner_texts() == ["1: Tendon at 0 m"]
     assert held(visitor) == [{"kind": "tendon", **tendons[0]}]
     visitor.fill("structure.elements.0.initial_force", "6e5")
     visitor.tab("response")

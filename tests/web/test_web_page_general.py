@@ -14,7 +14,7 @@ from rockflex.web._structure import build_page_structure
 pytestmark = pytest.mark.web
 
 TABS = ("structure", "earthquake", "response", "fragility", "design")
-CONTROLS = "button, input, select, textarea, summary, .chart, .stage canvas"
+CONTROLS = "button, input, select, textarea, summary, .chart, .stage .pinned canvas, .handle"
 
 
 @pytest.mark.parametrize("tab", TABS)
@@ -75,15 +75,16 @@ def test_a_damaged_link_is_told(visit, link, hash_, text) -> None:
 
 def test_two_visitors_do_not_see_each_other(visit) -> None:
     one, other = visit(), visit()
-    one.fill("structure.name", "<b>Mine</b>")
-    one.page.wait_for_function("() => document.querySelector('.results h2').textContent === '<b>Mine</b>'")
+    one.page.wait_for_selector("#adequacy")
+    one.fill("structure.name", "<b>Own</b>")
+    one.page.wait_for_function("() => document.querySelector('.results h2').textContent === '<b>Own</b>'")
     one.tab("earthquake")
     one.fill("scale", "3")
     other.page.reload()
     other.page.wait_for_selector("#adequacy")
-    assert other.state()["structure"]["name"] == "Structure #1 of Table 1"
-    assert other.state()["scale"] == 1.0
-    assert "Mine" not in other.page.content()
+    assert other.state()["structure"]["name"] == "Bridge pier"
+    assert other.state()["scale"] == 2.0
+    assert "Own" not in other.page.locator("main").inner_text()
 
 
 def test_tabs_and_buttons_by_the_keyboard(visitor) -> None:
@@ -368,8 +369,8 @@ def test_histories_of_the_ground_share_it_as_well(visitor) -> None:
     assert moved == [f"Ground {name} over time" for name in ("acceleration", "velocity", "displacement")]
 
 
-def test_on_a_phone_the_values_stay_within_their_chart(visit) -> None:
-    visitor = visit(viewport={"width": 390, "height": 844}, has_touch=True)
+def test_on_a_phone_the_values_stay_within_their_chart(visit, client, link) -> None:
+    visitor = visit(link(client.state()), viewport={"width": 390, "height": 844}, has_touch=True)
     visitor.respond(1, MODELS)
     visitor.page.locator('[aria-label="Base moment over time"]').scroll_into_view_if_needed()
     point_at(visitor, "Base moment over time", 0.7)

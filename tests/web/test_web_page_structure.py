@@ -283,7 +283,7 @@ def test_a_section_takes_the_place_of_stiffness_and_mass_and_gives_them_back(vis
     wait_for_facts(visitor, made)
     names = ("height", "tip_mass", "base_mass", "half_width", "damping_ratio")
     whole = rf.CantileverWithTipMass(**{name: given[name] for name in names}, section=made).rocking()
-    assert visitor.value("#view dl.values div:nth-child(2) dd[data-value]") == whole.m_tot
+    assert visitor.value("[data-task=modes] dl.values div:nth-child(2) dd[data-value]") == whole.m_tot
     shape.select_option("tube")
     wait_for_facts(visitor, rf.Section.tube(1.5, 0.2, **STEEL, stiffness_factor=0.5))
     shape.select_option("")

@@ -14,7 +14,8 @@ LONG = ", ".join(f"{0.25 * k:g}" for k in range(1, 21))  # scales: the study tak
 def test_fragility_runs_refits_and_cancels(visitor, frame) -> None:
     page = visitor.page
     visitor.tab("fragility")
-    assert page.locator("#status").inner_text() == "No run yet."
+    page.get_by_text("A quick look, with fewer runs. Done: 88 runs.").wait_for()  # with two of the three scales
+    assert page.locator("#fits tbody tr").count() == 1
     assert page.get_by_role("button", name="Rocking and overturning (SVG)").is_disabled()
     visitor.run_study()
     assert page.locator("#status").inner_text() == "Done: 132 runs."
@@ -98,7 +99,8 @@ def test_design_answers_how_wide(visitor) -> None:
     page = visitor.page
     visitor.tab("design")
     visitor.fill("design.widths", "4")
-    assert page.locator("#status").inner_text() == "No search yet."
+    page.get_by_text("A quick look, with fewer runs. Done: ").wait_for()
+    assert page.locator("#designs tbody tr").count() == 4
     visitor.run_study()
     answers = page.locator("#width p")
     assert answers.count() == 2

@@ -25,6 +25,7 @@ from builders import make_frame
 from rockflex._errors import InputError
 from rockflex._json import as_json_value
 from rockflex.cli import app
+from rockflex.study.spec import GroundTable
 from rockflex.web import make_app, serve
 from rockflex.web._forms import PRESETS
 
@@ -205,6 +206,31 @@ def test_energies_that_take_long_are_left_out(client) -> None:
     assert answer["models"][0]["peaks"]["n_impacts"] >= 0
     assert answer["energy"]["note"].startswith("The energy is not computed here for so many or such fast modes")
     assert "is not computed here" in client.refused("/api/download/energy", state)["energy"]
+
+
+def test_a_structure_comes_with_how_it_moves(client, frame, el_centro) -> None:
+    ground = {"mat_mass": 4e4, "springs": {"stiffness": 4e8, "heave_damping_ratio": 0.3}}
+    state = client.state(ground=ground, models=["fixed", "MDOF-S"][1:])
+    under = GroundTable.model_validate(ground).under(frame.rocking())
+    for quick, main, held in ((False, "MDOF-S", "fixed"), (True, "2DOF-S", "1DOF-fixed")):
+        answer = client.ask("/api/structure", state, quick=quick)
+        assert ("adequacy" in answer) != quick
+        run, fixed = answer["run"], rf.simulate(frame, el_centro, held, free_vibration=5.0)
+        expected = rf.simulate(frame, el_centro, main, free_vibration=5.0, ground=under)
+        (model,) = run["models"]
+        assert model["label"] == main
+        assert model["peaks"]["max_rotation"] == expected.max_rotation
+        assert run["fixed_base_moment"] == fixed.max_base_moment  # on rigid ground
+        assert np.abs(client.unpack(model["rotation"])).max() == pytest.approx(expected.max_rotation, rel=0.01)
+    missing = client.ask("/api/structure", client.state(record={"source": "upload", "upload": "0" * 64}))
+    assert missing["adequacy"]
+    assert "file" in missing["run"]["note"]
+    block = client.ask(
+        "/api/structure",
+        client.state(structure={"block": {"slenderness": 0.2, "half_diagonal": 3.0}}, models=["fixed"]),
+    )
+    assert block["run"]["models"][0]["label"] == "rigid"
+    assert block["run"]["fixed_base_moment"] is None
 
 
 def test_many_stories_are_judged_in_time(client) -> None:

@@ -286,7 +286,9 @@ def test_the_forms_have_every_field_of_every_kind() -> None:
     bodies = next(each for each in found["kinds"]["beam"]["fields"] if each["name"] == "lumped_masses")
     assert (bodies["type"], [each["name"] for each in bodies["fields"]]) == ("table", ["heights", "masses", "rotary"])
     assert [each["name"] for each in found["bouc_wen"]] == list(inspect.signature(rf.BoucWen).parameters)
-    moved = found["eccentricity"]
+    moved, leaning, stories = found["whole"]
+    assert (leaning["name"], leaning["type"]) == ("leaning_masses", "number or list")
+    assert [each["name"] for each in stories["fields"]] == ["strengths", "post_yield_ratio"]
     assert (moved["unit"], moved["required"], moved["default"], moved["type"]) == ("m", False, None, "number")
     assert moved["help"] == "The distance of the masses to the right of the middle of the base."
     period = next(each for each in found["kinds"]["frame"]["fields"] if each["name"] == "period")

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array, diags_array
@@ -99,6 +100,7 @@ def _further_beam_modes(
     return kept / np.sqrt(np.einsum("in,in->n", kept, np.asarray(mass @ kept)))
 
 
+@lru_cache(maxsize=64)  # bases of many widths, and what holds them, leave the modes as they are
 def finite_element_modes(beam: BeamSections, n_elements: int, n_modes: int) -> MassNormalisedModes:
     """Return the first modes of the beam by two-node elements with consistent mass.
 

@@ -26,11 +26,11 @@ from rockflex.web import _limits as limits
 from rockflex.web._downloads import MEDIA_TYPES, animation_file, download_file, study_file
 from rockflex.web._earthquake import PULSES, embedded_suite_names, record_view, suite_view
 from rockflex.web._folders import FIELD, MAX_LIST_BYTES, read_record_folder, unpacked_record_files
-from rockflex.web._forms import PRESETS, forms_of_structures
+from rockflex.web._forms import FIRST, PRESETS, forms_of_structures
 from rockflex.web._jobs import MAX_FILES, MAX_STUDIES, BackgroundFileJob, BackgroundJobs, StudyJob
 from rockflex.web._protection import KnownHosts, SecurityHeaders
 from rockflex.web._refusal import Refusal
-from rockflex.web._response import response_view
+from rockflex.web._response import response_view, sketch_view
 from rockflex.web._selection import scale_factor_view, selection_view
 from rockflex.web._state import PageState, limit_state_labels, measure_labels, parse_page_json, parse_page_state
 from rockflex.web._structure import structure_view
@@ -315,6 +315,11 @@ def create_page_application(host: str, names: Sequence[str]) -> Starlette:
     server = PageServer()
     view, uploads = server.view, server.uploads
 
+    def structure(state: PageState, content: dict[str, Any]) -> Any:
+        quick = content.get("quick") is True
+        view = {} if quick else structure_view(state.structure, state.ground)
+        return {**view, "run": sketch_view(state, uploads, quick=quick)}
+
     def response(state: PageState, content: dict[str, Any]) -> Any:
         return response_view(state, uploads, content.get("focus"), content.get("element"))
 
@@ -341,7 +346,7 @@ def create_page_application(host: str, names: Sequence[str]) -> Starlette:
         Route("/api/about", server.about),
         Route("/api/suite/{name}", server.suite),
         Route("/api/state", server.state, methods=["POST"]),
-        Route("/api/structure", view(lambda state, _: structure_view(state.structure, state.ground)), methods=["POST"]),
+        Route("/api/structure", view(structure), methods=["POST"]),
         Route("/api/record", view(lambda state, _: record_view(state, uploads)), methods=["POST"]),
         Route("/api/response", view(response), methods=["POST"]),
         Route("/api/upload", server.upload, methods=["POST"]),
@@ -382,13 +387,11 @@ def _answer_about_page() -> dict[str, Any]:
         "file": limits.MAX_FILE_BYTES,
         "files": limits.MAX_FOLDER_FILES,
         "folder": limits.MAX_FOLDER_BYTES,
-        "freedoms": limits.MAX_FREEDOMS,
         "duration": limits.MAX_DURATION,
         "models": limits.MAX_MODELS,
-        "runs": limits.MAX_STUDY_RUNS,
         "elements": limits.MAX_ELEMENTS,
     }
-    first = PageState.model_validate({"structure": PRESETS[0]["structure"]})
+    first = PageState.model_validate(FIRST)
     return forms_of_structures() | {
         "suites": embedded_suite_names(),
         "measures": measure_labels(),

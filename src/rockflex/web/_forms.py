@@ -56,12 +56,17 @@ PRESETS: list[dict[str, Any]] = [
 """Title and structure of each preset: Table 1 of Silva & Stojadinović 2024, its chimney, and others."""
 
 
+OF_WHOLE = ("eccentricity", "leaning_masses", "stories")  # fields of every kind of structure
+FIRST = {"structure": next(each["structure"] for each in PRESETS if "24 m" in each["title"]), "scale": 2.0}
+"""What the page begins with: a pier that rocks."""
+
+
 def forms_of_structures() -> dict[str, Any]:
     """Return the fields of every kind of structure and of element, the base and a hysteresis, and the presets."""
     return as_json_value(
         {
             "kinds": {name: {"title": table.title, "fields": _form_fields(table)} for name, table in KINDS.items()},
-            "eccentricity": _form_field("eccentricity", StructureEntry.model_fields["eccentricity"]),
+            "whole": [_form_field(name, StructureEntry.model_fields[name]) for name in OF_WHOLE],
             "elements": {
                 name: {"title": table.title, "fields": _form_fields(table)} for name, table in ELEMENTS.items()
             },
@@ -93,7 +98,6 @@ def _form_field(name: str, field: FieldInfo) -> dict[str, Any]:
         "default": None if hasattr(default, "model_fields") else default,
         "low": key.low,
         "high": key.high,
-        "infinite": key.high == math.inf,
         "fields": None if inner is None else _form_fields(inner),
     }
 

@@ -103,6 +103,55 @@ def simulate_state_models(
     return built, motion, found
 
 
+MAX_SKETCH_COST = 0.05  # s of estimated computing time of a run; beyond it one mode is drawn
+SKETCH_POINTS = 600  # of the history that is drawn
+SKETCH = "2DOF-S"  # the model that is fast enough to follow a handle that is dragged
+
+
+def sketch_view(state: PageState, uploads: UploadedRecords, *, quick: bool) -> dict[str, Any]:
+    """Return how the first model that lifts moves, and what a fixed base under the same record would do.
+
+    A `quick` one, and one that would take long, has one mode. Where no run is possible, a note says why. The fixed base
+    stands on rigid ground.
+    """
+    built = build_page_structure(state.structure)
+    p = built.properties
+    ground = ground_under_page_structure(state.ground, p)
+    lifting = next((label for label in state.models if parse_model(label).lifts), "MDOF-S" if p.n_modes else "rigid")
+    labels = [lifting, "fixed"] if p.n_modes else [lifting]
+    simpler = [SKETCH, "1DOF-fixed"] if p.n_modes and not parse_model(lifting).yields and not p.stories else labels
+    found = list[Response]()
+    try:
+        motion = chosen_motion(state.record, uploads).scaled(state.scale)
+
+        def case(label: str, *, main: bool) -> PreparedCase:
+            with errors_as_refusals("models", f"{label}: "):
+                options = state.run_options(ground if main else None)
+                return options.case(parse_model(label), p, history=main, floors=False)
+
+        if quick or case(lifting, main=True).task(motion).work().total > MAX_SKETCH_COST:
+            labels = simpler
+        for label in labels:
+            prepared = case(label, main=not found)
+            check_work_of_runs([prepared], motion)
+            with errors_as_refusals("models", f"{label}: "):
+                found.append(prepared.run(motion))
+    except Refusal as error:
+        if not found:
+            return {"note": " ".join(error.errors.values())}
+    fixed = found[1] if len(found) > 1 else None
+    curves = _response_curves(built, found[0], None, SKETCH_POINTS)
+    return as_json_value(
+        {
+            **structure_outline_view(state.structure, built),
+            "models": [{key: value for key, value in curves.items() if key not in CURVES[1:]}],
+            "ground": ground_view(ground, p),
+            "fixed_base_moment": fixed and fixed.max_base_moment,
+            "fixed_top_displacement": fixed and fixed.max_total_top_displacement,
+        }
+    )
+
+
 def response_view(
     state: PageState, uploads: UploadedRecords, focus: object = "", element: object = 0
 ) -> dict[str, Any]:
@@ -120,8 +169,6 @@ def response_view(
     return as_json_value(
         {
             **structure_outline_view(state.structure, built),
-            "motion": motion.name,
-            "duration": motion.duration,
             "nominal": p.nominal_overturning_rotation,
             "models": curves,
             "ground": ground_view(ground_under_page_structure(state.ground, p), p),
@@ -146,14 +193,16 @@ def _suggested_yield_displacement(p: RockingProperties, motion: GroundMotion) ->
     return float(f"{min(max(min(held, fixed), 1e-4), 10.0):.2g}")
 
 
-def _response_curves(built: BuiltStructure, response: Response, element: int | None) -> dict[str, Any]:
+def _response_curves(
+    built: BuiltStructure, response: Response, element: int | None, points: int = MAX_HISTORY_POINTS
+) -> dict[str, Any]:
     history = response.history
     assert history is not None  # asked for in `simulate_state_models`
     pulled = None if element is None or not history.model.lifts else history.element_force[:, element]
     base = base_motion_curves(history)
-    kept = _thinned_history_nodes(history, pulled, list(base.values()))
+    kept = _thinned_history_nodes(history, pulled, list(base.values()), points)
     modal = history.modal_displacement[kept]
-    points = modal @ built.shapes[:, : modal.shape[1]].T
+    drawn = modal @ built.shapes[:, : modal.shape[1]].T
     known = history.model.properties.top_height is not None
     return {
         "label": response.model,
@@ -164,14 +213,13 @@ def _response_curves(built: BuiltStructure, response: Response, element: int | N
         ),  # the energies of one model only are computed
         "lifts": history.model.lifts,
         "fall_time": _overturning_time(history),
-        "uplift_times": history.uplift_times[:MAX_EVENT_NODES],
         "impact_times": history.impact_times[:MAX_EVENT_NODES],
         "t": pack_array_as_base64(history.time[kept]),
         **{name: pack_array_as_base64(getattr(history, name)[kept]) for name in CURVES},
         "total_top_displacement": pack_array_as_base64(history.total_top_displacement[kept]) if known else None,
         **{name: pack_array_as_base64(values[kept]) for name, values in base.items()},
         "uplifted": pack_array_as_base64(history.uplifted[kept]),
-        "points": pack_array_as_base64(points),
+        "points": pack_array_as_base64(drawn),
         "element_force": None if pulled is None else pack_array_as_base64(pulled[kept]),
         "element_elongation": None
         if pulled is None
@@ -194,13 +242,12 @@ def base_motion_curves(history: History) -> dict[str, Array]:
     return curves
 
 
-def _thinned_history_nodes(history: History, pulled: Array | None, base: list[Array]) -> NDArray[np.intp]:
+def _thinned_history_nodes(history: History, pulled: Array | None, base: list[Array], points: int) -> NDArray[np.intp]:
     """Return the nodes that are sent: the extremes of every interval, and both sides of the events.
 
     `pulled` is the force of an element in N, if one is drawn, and `base` how the base moves on its ground.
     """
     curves = [history.rotation, history.top_displacement, history.base_moment, history.base_shear, *base]
-    points = MAX_HISTORY_POINTS
     if pulled is not None:  # loops need more points than curves over time
         curves.append(pulled)
         points *= 2

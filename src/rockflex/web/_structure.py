@@ -159,7 +159,9 @@ def structure_outline_view(entry: StructureEntry, built: BuiltStructure) -> dict
         "kind": entry.kind,
         "heights": built.heights,
         "shapes_known": built.modes is not None,
-        "mass": p.m_tot,
+        "mass": p.m_tot * p.weight_share,  # whose weight stands on the base
+        "period": 2.0 * np.pi / p.omega[0] if p.n_modes else None,
+        "leaning": p.leaning_mass > 0.0,
         "half_width": p.half_width,
         "eccentricity": p.eccentricity,
         "elements": [{name: getattr(table, name) for name in ("kind", *PLACE)} for table in entry.elements or []],

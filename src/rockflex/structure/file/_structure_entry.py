@@ -333,7 +333,10 @@ class _OwnStructures(TomlTable):
         float | list[float] | None,
         SchemaKey("the mass of each floor that stands on other columns", "kg", form=one_for_each("floor")),
     ] = None
-    stories: Annotated[StoriesTable | None, _TABLE_KEY] = None
+    stories: Annotated[
+        StoriesTable | None,
+        SchemaKey("a table", label="Stories that yield", form=PLAIN, page="the shear at which they yield"),
+    ] = None
     eccentricity: Eccentricity = None
     tendons: Annotated[
         list[TendonTable], SchemaKey("a list of tables, each under a heading [[tendons]]", form=PLAIN)

@@ -4,20 +4,26 @@ import { clone, h } from "./dom.js";
 import { trouble } from "./form.js";
 
 const MODELS = [
-  ["MDOF-S", "Simplified, all modes"],
-  ["2DOF-S", "Simplified, one mode"],
-  ["3DOF-S", "Simplified, two modes"],
-  ["2DOF-S-R", "As 2DOF-S, but base shear and base moment include the mass of the omitted modes"],
-  ["2DOF-C", "Complete, one mode: large rotations"],
-  ["MDOF-C-SI", "Complete, all modes"],
-  ["rigid", "Rigid block"],
-  ["fixed", "The same structure on a fixed base"],
+  ["MDOF-S", "all modes, small rotations"],
+  ["2DOF-S", "first mode, small rotations"],
+  ["3DOF-S", "two modes, small rotations"],
+  ["2DOF-S-R", "first mode; its forces include the mass of the other modes"],
+  ["2DOF-C", "first mode, large rotations"],
+  ["MDOF-C-SI", "all modes, large rotations"],
+  ["rigid", "no modes: a rigid block"],
+  ["fixed", "all modes, base held down"],
 ];
 const YIELDING = [
-  ["2DOF-S-BW", "Simplified, one yielding mode"],
-  ["2DOF-C-BW", "Complete, one yielding mode"],
-  ["1DOF-fixed-BW", "One yielding mode on a fixed base"],
+  ["2DOF-S-BW", "first mode, which yields; small rotations"],
+  ["2DOF-C-BW", "first mode, which yields; large rotations"],
+  ["1DOF-fixed-BW", "first mode, which yields; base held down"],
 ];
+
+// The label of a model with its words, where it has some.
+export function explained(label) {
+  const found = [...MODELS, ...YIELDING].find(([known]) => known === label);
+  return found ? `${label}: ${found[1]}` : label;
+}
 
 // Whether a model can stand on springs, or slide.
 export const grounded = (label) => !/fixed/.test(label);
@@ -27,7 +33,7 @@ export const yields = (label) => label.includes("-BW");
 export function models(path, chosen, most, change) {
   let now = clone(chosen);
   let offered = MODELS;
-  const chips = h("div", { class: "chips", role: "group", "aria-label": "Models" });
+  const chips = h("div", { class: "chips models", role: "group", "aria-label": "Models" });
   const other = h("input", {
     type: "text", placeholder: "another, e.g. 4DOF-S or 3DOF-S-R", "aria-label": "Another model", maxlength: 30,
     onchange: () => {
@@ -47,13 +53,13 @@ export function models(path, chosen, most, change) {
     const checked = now.includes(label);
     const disabled = checked ? now.length === 1 : now.length >= most;
     const box = h("input", {
-      type: "checkbox", checked, disabled, "data-label": label,
+      type: "checkbox", checked, disabled, "data-label": label, "aria-label": label, title,
       onchange: () => {
         commit(box.checked ? [...now, label] : now.filter((each) => each !== label));
         chips.querySelector(`[data-label="${CSS.escape(label)}"]`)?.focus();
       },
     });
-    return h("label", { title }, box, label);
+    return h("label", {}, box, label, title === label ? null : h("span", { class: "hint" }, title));
   }
 
   function draw() {

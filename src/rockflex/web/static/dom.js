@@ -117,6 +117,10 @@ export function tableOf(head, rows, attributes = {}) {
     h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, text)))), h("tbody", {}, rows));
 }
 
+// A part that scrolls sideways by itself where it is too wide, by keys as well.
+export const scrolled = (label, attributes, ...children) =>
+  h("div", { tabindex: 0, role: "group", "aria-label": label, ...attributes, class: `scroll ${attributes.class ?? ""}`.trim() }, children);
+
 // A symbol with a subscript after an underscore.
 export function symbol(text) {
   return text.split(/(_[\w,θαβ]+)/).map((part) => (part.startsWith("_") ? h("sub", {}, part.slice(1)) : part));

@@ -37,8 +37,7 @@ export function showErrors(root, errors) {
       left.push(path ? `${path}: ${text}` : text);
       continue;
     }
-    const folded = element.closest("details");
-    if (folded) folded.open = true;
+    for (let folded = element.closest("details"); folded; folded = folded.parentElement.closest("details")) folded.open = true;
     const sentence = text.replace(/^[a-z](?=[a-z]* )/, (c) => c.toUpperCase());
     element.querySelector(":scope > .error").textContent = sentence;
     // A message about a whole group does not concern its single fields.
@@ -50,6 +49,14 @@ export function showErrors(root, errors) {
 
 function controls(element) {
   return element.querySelectorAll("input, select, textarea");
+}
+
+// A part of a form under its heading, open or closed as the visitor left the last one of this name.
+export function folded(name, title, ...children) {
+  const key = `rockflex-open-${name}`;
+  const element = h("details", { class: "task", open: localStorage.getItem(key) === "true", "data-task": name,
+    ontoggle: () => localStorage.setItem(key, element.open) }, h("summary", {}, title), children);
+  return element;
 }
 
 const DECIMAL = /^[+-]?\d+,\d+(e[+-]?\d+)?$/i; // with a comma
@@ -182,7 +189,9 @@ export function box(path, label, value, change, { many = false, ...extra } = {})
     type: "text", inputmode: many ? "text" : "decimal", autocomplete: "off", value: write(value),
     onchange: () => change(understood(control, many ? list(control.value) : parseNumber(control.value))),
   });
-  return field(path, label, control, extra);
+  const element = field(path, label, control, extra);
+  element.setValue = (v) => document.activeElement !== control && (control.value = write(v));
+  return element;
 }
 
 // A box for a file, which takes each file at once, the same one again too.
@@ -222,7 +231,7 @@ export function chips(path, label, options, chosen, change) {
   return element;
 }
 
-// A slider with a box for the number.
+// A slider with a box for the number; `change` is told whether the slider still moves.
 export function slider(path, label, { low, high, step, unit = "", hint = "", log = false }, value, change) {
   const to = log ? Math.log10 : (v) => v;
   const from = log ? (v) => Number((10 ** v).toPrecision(3)) : Number;
@@ -230,8 +239,9 @@ export function slider(path, label, { low, high, step, unit = "", hint = "", log
     type: "range", min: to(low), max: to(high), step: log ? 0.005 : step, "aria-label": label,
     oninput: () => {
       entry.value = from(range.value);
-      change(Number(entry.value));
+      change(Number(entry.value), true);
     },
+    onchange: () => change(Number(entry.value), false),
   });
   const entry = h("input", {
     type: "text", class: "short", inputmode: "decimal", autocomplete: "off", value,

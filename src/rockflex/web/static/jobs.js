@@ -59,14 +59,16 @@ export class Remarks {
 const goes = (answer) => ["waiting", "running"].includes(answer.status);
 
 export class Study {
-  // `key` identifies everything that determines the runs; `show` draws an answer into `results`.
-  constructor(app, kind, { verb, key, show, results }) {
-    Object.assign(this, { app, kind, verb, key, show, results });
+  // `key` identifies everything that determines the runs; `show` draws an answer into `results`; `example` returns the
+  // choices of a quick look, so that the tab begins with something to see.
+  constructor(app, kind, { verb, key, show, results, example }) {
+    Object.assign(this, { app, kind, verb, key, show, results, example });
     this.token = null;
+    this.looked = null; // the choices of the quick look, while it is what is shown
     this.answer = null;
     this.ran = ""; // the key of the present or last run
     this.watching = false;
-    this.run = h("button", { type: "button", class: "primary", id: "run", onclick: () => this.#start() }, verb);
+    this.run = h("button", { type: "button", class: "primary", id: "run", onclick: () => this.#start(null) }, verb);
     this.cancel = h("button", { type: "button", id: "cancel", disabled: true, onclick: () => this.#stop() }, "Cancel");
     this.bar = h("progress", { max: 1, value: 0, "aria-label": "Progress" });
     this.status = h("p", { class: "help", id: "status", role: "status" }, `No ${verb.toLowerCase()} yet.`);
@@ -80,7 +82,8 @@ export class Study {
   // Update the tab after a change of the state.
   refresh() {
     this.ownRecords.hidden = ![GIVEN, CHOSEN].some((each) => this.app.state[this.kind].suites.includes(each));
-    if (this.token) this.#watch();
+    if (!this.token && !this.ran) this.#start(this.example());
+    else if (this.token) this.#watch();
     if (this.answer) this.load();
   }
 
@@ -105,11 +108,19 @@ export class Study {
     return this.element.closest(".columns");
   }
 
-  async #start() {
+  // The state of the page, with the choices of the quick look.
+  get #state() {
+    const { state } = this.app;
+    return this.looked ? { ...state, [this.kind]: { ...state[this.kind], ...this.looked } } : state;
+  }
+
+  async #start(looked) {
+    const wanted = this.ran = this.key();
     await this.#stop();
-    const wanted = this.key();
-    const found = await this.app.ask(`/api/study/${this.kind}`, this.#root);
-    if (!found) return;
+    this.looked = looked;
+    const path = `/api/study/${this.kind}`;
+    const found = looked ? await attempt(() => ask(path, { state: this.#state }), () => null) : await this.app.ask(path, this.#root);
+    if (!found || this.looked !== looked) return; // a study took the place of the quick look
     this.token = found.token;
     this.answer = null;
     this.ran = wanted;
@@ -138,7 +149,7 @@ export class Study {
     const token = this.token;
     if (!token) return;
     await attempt(async () => {
-      const answer = await ask(`/api/study/${this.kind}/${token}`, { state: this.app.state });
+      const answer = await ask(`/api/study/${this.kind}/${token}`, { state: this.#state });
       if (token !== this.token) return;
       this.answer = answer;
       this.app.complain(this.#root, {});
@@ -155,12 +166,13 @@ export class Study {
     const { answer } = this;
     const on = goes(answer);
     const old = this.ran !== this.key();
-    this.run.textContent = on ? `${this.verb} again` : this.verb;
+    this.run.textContent = on && !this.looked ? `${this.verb} again` : this.verb;
     this.cancel.disabled = !on;
     this.bar.value = answer.done / answer.total;
-    for (const button of this.needRuns) button.disabled = !answer.done;
+    for (const button of this.needRuns) button.disabled = !answer.done || Boolean(this.looked);
+    const first = this.looked ? "A quick look, with fewer runs. " : "";
     const changed = old ? ` The input has changed: ${this.verb.toLowerCase()} again.` : "";
-    this.status.textContent = STUDY_STATUS[answer.status](answer) + changed;
+    this.status.textContent = first + STUDY_STATUS[answer.status](answer) + changed;
     this.results.classList.toggle("stale", old);
     this.show(answer);
   }

@@ -6,7 +6,7 @@ import { showErrors } from "./form.js";
 
 const TABS = [
   ["structure", "Structure",
-    "Choose a structure or describe your own. Its base rests on the ground and can uplift."],
+    "A structure that is not tied to the ground: in an earthquake it lifts off and rocks from edge to edge, which limits its forces. Drag the dots, or type numbers."],
   ["earthquake", "Earthquake",
     "Choose the ground motion: a recorded earthquake, a pulse or your own file. Scale it as you like."],
   ["response", "Response",
@@ -17,6 +17,7 @@ const TABS = [
     "Find how wide the base must be to meet a target probability, with and without a tendon."],
 ];
 
+const LIVE = 300; // ms between two changes of the address
 const SLOW = 400; // ms after which a button says that it works
 const view = document.getElementById("view");
 const banner = document.getElementById("banner");
@@ -28,11 +29,13 @@ export const app = {
   about: null,
   state: null,
   uploads: {},
-  // Change part of the state and update the page.
-  change(patch) {
+  // Change part of the state and update the page; `live` while a handle or slider still moves: browsers take few changes of
+  // the address.
+  change(patch, live = false) {
     merge(app.state, patch);
-    keep();
-    refresh();
+    if (live) later ??= setTimeout(keep, LIVE);
+    else keep();
+    refresh(live);
   },
   // Query the server about the state; messages appear next to the fields of `root`, or in its foot.
   ask(path, root, extra = {}) {
@@ -145,8 +148,11 @@ function heading() {
 }
 
 let written = "";
+let later = null; // when the address is written
 
 function keep() {
+  clearTimeout(later);
+  later = null;
   written = `#s=${encode(app.state)}`;
   history.replaceState(null, "", written);
 }
@@ -197,8 +203,8 @@ async function show() {
   refresh();
 }
 
-function refresh() {
-  made[app.state.tab]?.refresh();
+function refresh(live = false) {
+  made[app.state.tab]?.refresh(live);
 }
 
 function tabs() {

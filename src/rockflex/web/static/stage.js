@@ -8,14 +8,19 @@ import { legend } from "./marks.js";
 
 const IMPACT = 0.12; // s for which an impact is marked
 const BRACKET = 34; // px above the base to which elements reach
+const LOW = 230; // px of a drawing that stays in sight above a form, in a narrow window
+const narrow = matchMedia("(max-width: 900px)");
 
 class Stage {
-  constructor(height = 340) {
+  // `room` is the height that fits in the drawing, over that of the structure.
+  constructor({ height = 340, room = 1.08 } = {}) {
     this.canvas = h("canvas", {
       tabindex: 0, role: "application", "aria-roledescription": "animation", "aria-keyshortcuts": "Space ArrowLeft ArrowRight",
       "aria-label": "The structure rocking: space plays and pauses, arrow keys step",
     });
-    this.height = height;
+    this.layer = h("div", { class: "handles" });
+    this.element = h("div", { class: "pinned" }, this.canvas, this.layer);
+    Object.assign(this, { tall: height, height, room, held: false }); // held: the scale stays while something is dragged
     this.view = null;
     this.time = 0;
     this.amplification = 1;
@@ -70,6 +75,7 @@ class Stage {
   draw() {
     const width = this.canvas.clientWidth;
     if (!width || !this.view) return;
+    this.height = narrow.matches ? Math.min(LOW, this.tall) : this.tall;
     const g = context(this.canvas, width, this.height);
     const count = this.view.models.length;
     const cell = width / count;
@@ -79,10 +85,18 @@ class Stage {
     const falls = this.view.models.some((model) => model.status === "overturned" || model.fall_time !== null);
     const reach = falls ? top + 2 * b : Math.max(0.32 * top, 1.6 * b);
     const wide = cell / (2.1 * reach);
-    const first = Math.min((this.height - 74) / (top * 1.08), wide);
-    this.depth = depthOf(this.view, this.amplification, first);
-    this.zoom = Math.min((this.height - 74 - this.depth) / (top * 1.08), wide);
+    if (!this.held || !this.zoom) {
+      const first = Math.min((this.height - 74) / (top * this.room), wide);
+      this.depth = depthOf(this.view, this.amplification, first);
+      this.zoom = Math.min((this.height - 74 - this.depth) / (top * this.room), wide);
+    }
+    this.placed?.();
     this.view.models.forEach((model, i) => this.#model(g, model, i, cell * (i + 0.5), this.zoom, cell));
+  }
+
+  // Where a point of the only model is while it rests, in px.
+  spot(x, y) {
+    return [this.canvas.clientWidth / 2 + this.zoom * x, this.height - 44 - (this.view.models[0].heave ? this.depth : 0) - this.zoom * y];
   }
 
   #model(g, model, index, centre, zoom, cell) {
@@ -99,6 +113,13 @@ class Stage {
     g.rect(centre - cell / 2, 0, cell, this.height);
     g.clip();
     drawGround(g, centre - cell / 2, centre + cell / 2, ground);
+    if (this.placed) {
+      g.strokeStyle = color("control"); // where it rests
+      g.setLineDash([4, 3]);
+      path([[0, 0], [0, this.view.heights.at(-1)]]);
+      g.stroke();
+      g.setLineDash([]);
+    }
     if (model.slip || frame.sprung) drawStance(g, this.edges(), to, ground);
     if (frame.sprung) drawSprings(g, this.view.ground.springs, frame, to, this.depth);
     else if (frame.side !== 0) {
@@ -147,6 +168,12 @@ class Stage {
       stroke(whole(right), 2.4);
       const width = heights.length > 25 ? 1 : 3.2;
       for (let i = 1; i < heights.length; i++) stroke([at(left, i), at(right, i)], width);
+      if (this.view.leaning) {
+        // A column beside it, on a hinge, which the floors hold upright.
+        const beside = heights.map((z, i) => [1.2 * right + at(right, i)[0], z]);
+        stroke([[2.2 * right, 0], ...beside.slice(1)], 1.6);
+        for (let i = 1; i < heights.length; i++) stroke([at(right, i), beside[i]], 0.8);
+      }
       return;
     }
     stroke(whole(0), ["cantilever", "beam", "properties"].includes(kind) ? 5 : 7);
@@ -163,7 +190,7 @@ class Stage {
     const top = heights[heights.length - 1];
     for (const { kind, position, between, height, cosine } of elements) {
       if (between || height) {
-        this.#attached(frame, to, { kind, between, height, cosine });
+        this.#attached(g, frame, to, { kind, between, height, cosine });
         continue;
       }
       const tendon = kind === "tendon";
@@ -176,7 +203,7 @@ class Stage {
   }
 
   // A brace between floors, or a tie to the ground beside the structure.
-  #attached(frame, to, { kind, between, height, cosine }) {
+  #attached(g, frame, to, { kind, between, height, cosine }) {
     const { heights } = this.view;
     const [low, high] = this.edges();
     const bent = (x, z) => {
@@ -186,9 +213,9 @@ class Stage {
       return frame.place(x + this.amplification * sway, z);
     };
     const half = 0.6 * Math.min(-low, high);
-    const ends = between
-      ? [bent(-half, heights[between[0]] ?? 0), bent(half, heights[between[1]] ?? 0)]
-      : [[1.15 * (cosine < 0 ? high : low), height], bent(0, height)];
+    const [side, lean] = [cosine < 0 ? 1 : -1, Math.sqrt(1 - cosine ** 2) / Math.abs(cosine)];
+    const anchor = lean > 0.05 ? [(side * height) / lean, 0] : [2.5 * side * Math.max(-low, high), height]; // or at an abutment
+    const ends = between ? [bent(-half, heights[between[0]] ?? 0), bent(half, heights[between[1]] ?? 0)] : [anchor, bent(0, height)];
     const [from, end] = ends.map(to);
     g.strokeStyle = g.fillStyle = color(colorOf(kind));
     drawBetween(g, strokes(kind, Math.hypot(end[0] - from[0], end[1] - from[1])), from, end);
@@ -263,11 +290,10 @@ const SPEEDS = [["0.05", "1/20"], ["0.1", "1/10"], ["0.25", "1/4"], ["0.5", "1/2
 const STEPS = 200; // of the arrow keys over the whole duration
 
 export class Player {
-  // `moved` is called with each time shown; `kinds` are those of elements.
-  constructor(moved, kinds) {
-    this.moved = moved;
-    this.kinds = kinds;
-    this.stage = new Stage();
+  // `moved` is called with each time shown; `kinds` are those of elements; with `loop` it begins again at its end.
+  constructor(moved, kinds, { loop = false, ...size } = {}) {
+    Object.assign(this, { moved, kinds, loop });
+    this.stage = new Stage(size);
     this.view = null;
     this.time = 0;
     this.amplification = 1;
@@ -294,7 +320,7 @@ export class Player {
     });
     this.stage.canvas.addEventListener("keydown", (event) => this.#key(event));
     this.keys = h("div");
-    this.element = h("div", { class: "stage" }, this.stage.canvas, this.keys,
+    this.element = h("div", { class: "stage" }, this.stage.element, this.keys,
       h("div", { class: "buttons" }, this.button, this.speed, jump),
       h("div", { class: "buttons time" }, this.scrub, this.clock), this.amplify);
   }
@@ -350,6 +376,7 @@ export class Player {
       const step = Math.min(now - last, 100) / 1000;
       last = now;
       this.move(this.time + step * Number(this.speed.value));
+      if (this.time >= this.view.end && this.loop) this.move(0);
       if (this.time >= this.view.end) this.pause();
       else this.playing = requestAnimationFrame(frame);
     };

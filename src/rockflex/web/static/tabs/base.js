@@ -1,9 +1,9 @@
 // The base of a structure: its drawing, the elements between it and the ground, and the ground itself.
 
 import { grounded, yields } from "../choices.js";
-import { h, ink, svg } from "../dom.js";
+import { clone, h, ink, svg } from "../dom.js";
 import { coil, colorOf, nameOf, strokes } from "../drawing.js";
-import { select, tableField, trouble } from "../form.js";
+import { folded, select, tableField, trouble } from "../form.js";
 
 const [WIDTH, HEIGHT] = [460, 104];
 const [BASE, GROUND] = [40, 74]; // px from the top
@@ -64,36 +64,55 @@ function numbers(places) {
   });
 }
 
-// Default values of elements added to a structure.
-const NEW_ELEMENTS = {
-  tendon: { position: 0, initial_force: 1e5, stiffness: 1e6 },
-  yielding_dissipator: { position: 0, stiffness: 5e7, yield_force: 1e5 },
-  viscous_damper: { position: 0, coefficient: 5e5 },
-  friction_damper: { position: 0, force: 5e4 },
-  strand_tendon: { position: 0, n: 4, strand: "Y1860S7-15.7", length: 15, prestress: 0.5 },
-  bar_fuse: { position: 0, n: 1, diameter: 0.02, length: 0.5, steel: "B500B" },
-  u_plate_fuse: { position: 0, n: 1, width: 0.1, thickness: 0.01, diameter: 0.1, steel: "S355" },
-  flag_shaped_bar: { position: 0, stiffness: 5e7, yield_force: 1e5, post_yield_ratio: 0.05, flag_depth: 0.8 },
-  gap_bar: { position: 0, stiffness: 5e7, gap: 0.005 },
-  multilinear_bar: { position: 0, elongations: [0.005, 0.02], forces: [1e5, 2e5] },
-};
+const PLACES = ["position", "between", "height", "cosine"];
 
-// `current` returns a copy of the structure, `put` takes the changed one.
-export function elements({ about }, current, put) {
+// A new element, derived from the weight W = m g and the half width b of the structure. The first of its kind that is not
+// in the middle is followed by its twin on the other side. What yields does so at W/8, as a pair that resists with a
+// quarter of the moment W b of the weight (λ = 4), after 2 mm; a tendon pulls with W/5, and gains as much while the base
+// turns by 1/50; a damper has a force of W/20, at 0.1 m/s if it is viscous; a gap is of 5 mm. Of strands, bars
+// and plates there are as many as that force needs.
+function fresh(kind, list, view) {
+  const { mass, half_width: b, eccentricity: e } = view ?? { ...USUAL, eccentricity: 0 };
+  const weight = 9.81 * mass;
+  const alike = list.filter((each) => each.kind === kind && !each.between && !each.height);
+  const twin = alike.find((each) => each.position && !alike.some((other) => other.position === -each.position));
+  if (twin) return { ...clone(twin), position: -twin.position };
+  const share = (part) => round(weight * part);
+  const edge = round(0.85 * (b - Math.abs(e)));
+  const pieces = (force, each) => Math.min(Math.max(Math.round(force / each), 1), 100); // of catalogues
+  const bar = { position: edge, stiffness: share(1 / 8 / 0.002), yield_force: share(1 / 8) };
+  const values = {
+    tendon: { position: 0, initial_force: share(1 / 5), stiffness: share(1 / 5 / (b / 50)) },
+    yielding_dissipator: bar,
+    viscous_damper: { position: edge, coefficient: share(1 / 20 / 0.1) },
+    friction_damper: { position: edge, force: share(1 / 20) },
+    flag_shaped_bar: { ...bar, post_yield_ratio: 0.05, flag_depth: 0.8 },
+    gap_bar: { position: edge, stiffness: bar.stiffness, gap: 0.005 },
+    multilinear_bar: { position: edge, elongations: [0.005, 0.02], forces: [share(1 / 8), share(1 / 4)] },
+    strand_tendon: { position: 0, n: pieces(share(1 / 5), 140e3), strand: "Y1860S7-15.7", length: 15, prestress: 0.5 },
+    bar_fuse: { position: edge, n: pieces(share(1 / 8), 157e3), diameter: 0.02, length: 0.5, steel: "B500B" },
+    u_plate_fuse: { position: edge, n: pieces(share(1 / 8), 17.75e3), width: 0.1, thickness: 0.01, diameter: 0.1,
+      steel: "S355" },
+  };
+  return { kind, ...values[kind] };
+}
+
+// `current` returns a copy of the structure, `put` takes the changed one; `shown` returns its view, if there is one.
+export function elements({ about }, current, put, shown) {
   const titles = Object.entries(about.elements).map(([name, { title }]) => [name, title]);
   const most = about.limits.elements;
   const rows = h("div");
   const kind = h("select", { id: "new-element", "aria-label": "Element to add" },
     titles.map(([name, title]) => h("option", { value: name }, title)));
   const add = h("button", { type: "button", onclick: () => {
-    change((list) => [...list, { kind: kind.value, ...NEW_ELEMENTS[kind.value] }]);
+    change((list) => [...list, fresh(kind.value, list, shown())]);
     const last = rows.lastElementChild;
     last.open = true;
     last.querySelector("select").focus();
   } }, "Add an element");
-  const element = h("fieldset", { "data-path": "structure.elements" }, h("legend", {}, "Elements at the base"),
-    h("p", { class: "hint" }, "Between the base and the ground, at the given distance from the axis of the masses."),
-    rows, h("div", { class: "buttons" }, add, kind), trouble());
+  const element = folded("devices", "Devices at the base", h("div", { "data-path": "structure.elements" },
+    h("p", { class: "hint" }, "Between the base and the ground, at the given distance from the axis of the masses. A new one suits the weight."),
+    rows, h("div", { class: "buttons" }, add, kind), trouble()));
 
   // Change the list and draw it again.
   function change(next) {
@@ -109,6 +128,7 @@ export function elements({ about }, current, put) {
     const open = [...rows.children].map((row) => row.open);
     rows.replaceChildren(...list.map((each, i) => row(each, i, open[i] ?? list.length < 2)));
     add.disabled = list.length >= most;
+    element.querySelector("summary").textContent = `Devices at the base${list.length ? ` (${list.length})` : ""}`;
   }
 
   function row(each, i, open) {
@@ -118,13 +138,16 @@ export function elements({ about }, current, put) {
       change((list) => list.with(i, turned(list[i], name)));
       rows.children[i].querySelector("select").focus();
     });
-    const fields = about.elements[each.kind].fields.map((spec) => tableField(`${path}.${spec.name}`, spec, each[spec.name], (value) => {
+    const all = about.elements[each.kind].fields.map((spec) => [spec.required || each[spec.name] !== undefined, tableField(`${path}.${spec.name}`, spec, each[spec.name], (value) => {
       const structure = current();
       if (value === undefined) delete structure.elements[i][spec.name];
       else structure.elements[i][spec.name] = value;
       summary.textContent = nameOf(about, structure.elements[i], i);
       put(structure);
-    }));
+    })]);
+    const fields = all.filter(([wanted]) => wanted).map(([, each]) => each);
+    const left = all.filter(([wanted]) => !wanted).map(([, each]) => each);
+    if (left.length) fields.push(folded("optional", "Optional fields", left));
     const remove = h("button", { type: "button", onclick: () => {
       rows.children[i].remove(); // so that the others stay open or closed
       change((list) => list.filter((_, j) => j !== i));
@@ -133,10 +156,11 @@ export function elements({ about }, current, put) {
     return h("details", { open, "data-path": path }, summary, other, fields, remove, trouble());
   }
 
-  // An element of another kind, with the values that both kinds have.
+  // An element of another kind, with the values that both have; forces of fuses and dampers do not suit a tendon.
   function turned(each, name) {
-    const kept = about.elements[name].fields.map((spec) => spec.name).filter((key) => key in each);
-    return { kind: name, ...NEW_ELEMENTS[name], ...Object.fromEntries(kept.map((key) => [key, each[key]])) };
+    const tendon = [each.kind, name].includes("tendon");
+    const kept = about.elements[name].fields.map((spec) => spec.name).filter((key) => key in each && (!tendon || PLACES.includes(key)));
+    return { ...fresh(name, [], shown()), ...Object.fromEntries(kept.map((key) => [key, each[key]])) };
   }
 
   element.draw = draw;
@@ -162,10 +186,10 @@ export function ground(app, shown) {
     put(tick.checked ? { ...rest, friction: FRICTION } : rest);
   } });
   const [fields, friction] = [h("div"), h("div")];
-  const element = h("fieldset", { "data-path": "ground" }, h("legend", {}, "Ground"), kind, fields,
+  const element = folded("ground", "Ground", h("div", { "data-path": "ground" }, kind, fields,
     h("label", { class: "check" }, tick, "The base can slide (Coulomb friction)"), friction,
     h("p", { class: "hint" }, "On springs no impact law acts. Models on a fixed base are left out, there and if the base can slide."),
-    trouble());
+    trouble()));
 
   let chosen = ""; // a later choice replaces one that still waits for the structure
   async function choose(name) {
@@ -233,9 +257,12 @@ export function ground(app, shown) {
   element.refresh = () => {
     const { ground: given } = app.state;
     const key = JSON.stringify([kindOf(given), given?.friction !== undefined]);
-    if (key === drawn) return;
+    const [, title] = KINDS.find(([name]) => name === kindOf(given));
+    element.querySelector("summary").textContent = `Ground: ${title}${given?.friction === undefined ? "" : ", can slide"}`;
+    if (key !== drawn) form();
     drawn = key;
-    form();
+    const box = fields.querySelector('[data-path="ground.springs.positions"] input'); // springs can be dragged
+    if (box && box !== document.activeElement) box.value = [given.springs.positions ?? []].flat().join(", ");
   };
   return element;
 }

@@ -2,7 +2,7 @@
 
 import { Chart } from "../chart.js";
 import { measuresOf, unitOf } from "../choices.js";
-import { h, number, symbol, tableOf } from "../dom.js";
+import { h, number, scrolled, symbol, tableOf } from "../dom.js";
 import { assumed, choices, recordsOf, Remarks, Study } from "../jobs.js";
 import { legend, look } from "../marks.js";
 
@@ -41,9 +41,9 @@ export default function designTab(app) {
     label: "Median base moment over half width", yLabel: "M_b [kN m]", xLabel: WIDTH, height: 190, zero: true, xName: "B [m]",
   });
   const keys = h("div");
-  const verdict = h("div", { class: "answer", id: "width", role: "status" }, "Press Search to find how wide the base must be.");
+  const verdict = h("div", { class: "answer", id: "width", role: "status" }, "A quick look is computed first. Press Search to find how wide the base must be.");
   const remarks = new Remarks();
-  const table = h("div", { class: "scroll", id: "designs" });
+  const table = scrolled("Designs", { id: "designs" });
   const drawing = h("div", { hidden: true }, keys, chart.element,
     h("p", { class: "hint" }, "Lines: probability of exceeding the limit at this intensity, overturning included; ",
       "bands: 90 % confidence over the recordings; dashed: acceptable probability."),
@@ -54,6 +54,7 @@ export default function designTab(app) {
   const results = h("div", { class: "results" }, verdict, drawing);
   const study = new Study(app, "design", {
     verb: "Search", results, show,
+    example: () => ({ widths: 4, tendons: choice().tendons.slice(0, 1), scales: choice().scales.slice(-1) }),
     key: () => JSON.stringify([assumed(app.state, [choice().model]), recordsOf(app.state, choice().suites), RUNS.map((name) => choice()[name])]),
   });
   const element = h("div", { class: "columns" },

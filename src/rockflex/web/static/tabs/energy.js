@@ -2,7 +2,7 @@
 
 import { bracket } from "../axes.js";
 import { Chart } from "../chart.js";
-import { decode, h, number, symbol, tableOf } from "../dom.js";
+import { decode, h, number, scrolled, symbol, tableOf } from "../dom.js";
 import { nameOf } from "../drawing.js";
 import { legend } from "../marks.js";
 
@@ -108,7 +108,7 @@ export class Elements {
       this.element = Number(this.of.value);
       chosen();
     } });
-    this.rows = h("div", { class: "scroll" });
+    this.rows = scrolled("Largest values of the elements", {});
     this.closing = h("p", { id: "closing" });
     this.table = h("div", { id: "elements" },
       h("h2", { class: "buttons" }, "Elements at the base, by", this.model), this.rows, this.closing);

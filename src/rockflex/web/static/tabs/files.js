@@ -1,7 +1,7 @@
 // Records from a visitor's files: one file, or a folder.
 
 import { attempt, get, isArchive, send, sendAll } from "../api.js";
-import { counted, h, latest, number, tableOf, tooLarge } from "../dom.js";
+import { counted, h, latest, number, scrolled, tableOf, tooLarge } from "../dom.js";
 import { box, field, fileBox, select, trouble } from "../form.js";
 
 const UNITS = [["", "as in the file"], ["g", "g"], ["m/s2", "m/s²"], ["cm/s2", "cm/s²"]];
@@ -66,8 +66,8 @@ export function folder(app, complain) {
   });
   const vertical = h("input", { type: "checkbox", id: "upwards", onchange: () => put({ vertical: vertical.checked }) });
   const upwards = h("label", { class: "check" }, vertical, "With the vertical components of the stations");
-  const rows = h("div", { class: "scroll report", role: "group", "aria-label": "Records given" });
-  const stations = h("div", { class: "scroll" });
+  const rows = scrolled("Records given", { class: "report" });
+  const stations = scrolled("Recordings", {});
   const notes = h("ul", { class: "notes" });
   const summary = h("p", { class: "answer", id: "taken" });
   const report = h("section", { id: "report", hidden: true },

@@ -2,7 +2,7 @@
 
 import { Chart } from "../chart.js";
 import { axisOf, measuresOf, models } from "../choices.js";
-import { h, number, tableOf } from "../dom.js";
+import { h, number, scrolled, tableOf } from "../dom.js";
 import { select } from "../form.js";
 import { assumed, choices, recordsOf, Remarks, Study } from "../jobs.js";
 import { legend, look } from "../marks.js";
@@ -31,7 +31,7 @@ export default function fragilityTab(app) {
   });
   const keys = h("div");
   const remarks = new Remarks();
-  const table = h("div", { class: "scroll", id: "fits" });
+  const table = scrolled("Fits", { id: "fits" });
   const drawing = h("div", { hidden: true },
     h("h2", {}, "Fragility curves"), keys, curves.element,
     h("p", { class: "hint" }, "Lines: fitted curves; bands: their confidence; circles: observed fraction in groups of runs ",
@@ -41,10 +41,12 @@ export default function fragilityTab(app) {
     h("p", { class: "hint" }, "Overturned runs are drawn at π/2, runs below 0.01 mrad at the bottom."),
     remarks.element);
   const empty = h("p", { class: "answer" },
-    "Press Run to simulate every record of the suites at every scale factor. The curves appear while it runs.");
+    "A quick look is computed first. Press Run to simulate every record of the suites at every scale factor; the curves appear ",
+    "while it runs.");
   const results = h("div", { class: "results" }, empty, drawing);
   const study = new Study(app, "cloud", {
     verb: "Run", results, show,
+    example: () => ({ models: [choice().models[0].replace("MDOF-S", "2DOF-S")], scales: [...new Set([choice().scales[0], choice().scales.at(-1)])] }),
     key: () => JSON.stringify([assumed(app.state, choice().models), recordsOf(app.state, choice().suites), choice().scales]),
   });
   const element = h("div", { class: "columns" },

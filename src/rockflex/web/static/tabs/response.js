@@ -2,13 +2,14 @@
 
 import { bracket } from "../axes.js";
 import { overTime } from "../chart.js";
-import { models, yields } from "../choices.js";
-import { decode, h, latest, number, symbol, tableOf } from "../dom.js";
-import { select, slider, tableField, trouble } from "../form.js";
+import { yields } from "../choices.js";
+import { decode, h, latest, number, scrolled, symbol, tableOf } from "../dom.js";
+import { select, slider } from "../form.js";
 import { making } from "../jobs.js";
 import { legend, looks } from "../marks.js";
 import { Player } from "../stage.js";
 import { Elements, Energy, Loop } from "./energy.js";
+import { runs } from "./runs.js";
 
 const EDGES = [["left_edge", ", left"], ["right_edge", ", right"]];
 // Name, axis, factor, title, height, and the curves of each model where there are several.
@@ -41,10 +42,7 @@ export default function responseTab(app) {
   const player = new Player(follow, app.about.elements);
   const scale = slider("scale", "Scale factor", { low: 0.01, high: 20, log: true }, app.state.scale,
     (value) => app.change({ scale: value }));
-  const labels = models("models", app.state.models, app.about.limits.models, (value) => app.change({ models: value }));
-  const free = slider("free_vibration", "Free vibration after the record", { low: 0, high: 60, step: 1, unit: "s" },
-    app.state.free_vibration, (value) => app.change({ free_vibration: value }));
-  const assumed = assumptions(app, () => view?.suggested_yield);
+  const options = runs(app, () => view?.suggested_yield);
   const onpick = (time) => player.go(time);
   const charts = overTime(PANELS.map(([, yLabel, , name, height, parts]) => (
     { label: `${name} over time`, yLabel, height, firstOnTop: true, onpick, symmetric: !parts })));
@@ -61,7 +59,7 @@ export default function responseTab(app) {
     draw();
   });
   const keys = h("div", { id: "keys" });
-  const peaks = h("div", { class: "scroll", id: "peaks" });
+  const peaks = scrolled("Largest values", { id: "peaks" });
   const verdict = h("p", { class: "answer", id: "verdict", role: "status" });
   const warned = h("div", { class: "warning", id: "warnings", role: "alert", hidden: true });
   const results = h("div", { class: "results" }, verdict, warned, keys, seen, charts.map((chart) => chart.element),
@@ -74,8 +72,7 @@ export default function responseTab(app) {
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       player.element,
-      h("fieldset", {}, h("legend", {}, "Runs"), scale, labels, free, h("p", { class: "error foot", role: "alert" })),
-      h("fieldset", {}, h("legend", {}, "Assumptions"), assumed.element)),
+      h("fieldset", {}, h("legend", {}, "Runs"), scale, options.element, h("p", { class: "error foot", role: "alert" }))),
     results);
   const moving = making(app, element, "animation", "Animation (GIF)");
   const files = app.downloads(element, FILES);
@@ -167,9 +164,7 @@ export default function responseTab(app) {
 
   function refresh() {
     scale.setValue(app.state.scale);
-    labels.setValue(app.state.models, app.state.bouc_wen !== undefined);
-    free.setValue(app.state.free_vibration);
-    assumed.refresh();
+    options.refresh();
     load();
   }
   globalThis.rockflexStage = {
@@ -312,78 +307,4 @@ function summary(view) {
   const fallen = view.models.filter((m) => m !== first && m.status === "overturned").map((m) => m.label);
   if (fallen.length) text += ` With ${fallen.join(" and ")} it overturns.`;
   return text;
-}
-
-const IMPACTS = [
-  ["", "default of each model"],
-  ["simplified", "simplified (Eq. 25)"],
-  ["complete", "complete (Eq. 19)"],
-  ["restitution", "restitution"],
-];
-const IMPACT_HELP = {
-  "": "The law sets the velocities after an impact.",
-  simplified: "Conserves the horizontal velocity of each mass; the rotation stops.",
-  complete: "Conserves the total horizontal kinetic energy; the rotation stops.",
-  restitution: "Conserves the horizontal velocity of each mass; part of the rotation continues about the other edge.",
-};
-const FORCES = "The impulse of an impact is not in the history of forces, and V_b and M_b are those of rigid ground: " +
-  "on stiff springs with little damping, V_b of a flexural frame may be larger.";
-const RESTITUTION = 0.8; // default
-const RANGE = "0: the base stays down until the next uplift; 1: it rocks on without loss";
-const YIELDING = ["2DOF-S", "2DOF-S-BW", "1DOF-fixed-BW"];
-const DISPLACEMENT = 0.05; // m, if the server suggests none
-
-// `suggested` returns a yield displacement that suits the response shown.
-function assumptions(app, suggested) {
-  const impact = select("impact", "Impact law", IMPACTS, "", (value) => app.change({
-    impact: value || undefined,
-    restitution: value === "restitution" ? RESTITUTION : undefined,
-  }), { hint: `${IMPACT_HELP[""]} ${FORCES}` });
-  const restitution = slider("restitution", "Coefficient of restitution",
-    { low: 0, high: 1, step: 0.01, hint: RANGE }, RESTITUTION, (value) => app.change({ restitution: value }));
-  const tick = h("input", { type: "checkbox", id: "yields", onchange: () => (tick.checked ? begin() : end()) });
-  const fields = h("div");
-  const yielding = h("div", { "data-path": "bouc_wen" },
-    h("label", { class: "check" }, tick, "The superstructure yields (Bouc–Wen)"),
-    h("p", { class: "hint" }, "Only models with -BW in their label yield; the others stay elastic."),
-    fields, trouble());
-  let drawn = false;
-
-  function begin() {
-    const found = suggested() ?? DISPLACEMENT;
-    app.change({ bouc_wen: { yield_displacement: Number(found.toPrecision(3)) }, models: [...YIELDING] });
-  }
-
-  function end() {
-    const { state } = app.about; // the default state, whose models do not yield
-    const without = (labels, otherwise) => {
-      const left = labels.filter((label) => !yields(label));
-      return left.length ? left : [...otherwise];
-    };
-    app.change({
-      bouc_wen: undefined,
-      models: without(app.state.models, state.models),
-      cloud: { models: without(app.state.cloud.models, state.cloud.models) },
-      design: { model: without([app.state.design.model], [state.design.model])[0] },
-    });
-  }
-
-  function entry(spec) {
-    const change = (value) => app.change({ bouc_wen: { [spec.name]: value } });
-    return tableField(`bouc_wen.${spec.name}`, spec, app.state.bouc_wen[spec.name], change);
-  }
-
-  function refresh() {
-    const { state } = app;
-    impact.setValue(state.impact ?? "");
-    impact.querySelector(".hint").replaceChildren(...symbol(`${IMPACT_HELP[state.impact ?? ""]} ${FORCES}`));
-    restitution.hidden = state.impact !== "restitution";
-    restitution.setValue(state.restitution ?? RESTITUTION);
-    const on = state.bouc_wen !== undefined;
-    tick.checked = on;
-    fields.hidden = !on;
-    if (on && !drawn) fields.replaceChildren(...app.about.bouc_wen.map(entry));
-    drawn = on;
-  }
-  return { element: h("div", {}, impact, restitution, yielding), refresh };
 }

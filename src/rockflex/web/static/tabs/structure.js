@@ -1,9 +1,11 @@
-// Structure: a form, its modes, and how many of them are needed.
+// Structure: a drawing that moves and is a form, the whole form folded by task, modes, and how many of them are needed.
 
 import { attempt, send } from "../api.js";
-import { clone, h, ink, latest, number, svg, symbol, tableOf, tooLarge } from "../dom.js";
-import { field, fileBox, select, tableField, tableGroup, trouble } from "../form.js";
+import { clone, h, ink, latest, number, scrolled, svg, symbol, tableOf, tooLarge } from "../dom.js";
+import { drawing, kindOf } from "../drawn.js";
+import { field, fileBox, folded, select, tableField, tableGroup, trouble } from "../form.js";
 import { base, elements, ground, without } from "./base.js";
+import { runs } from "./runs.js";
 
 // Default values of a form where no preset has the kind.
 const DEFAULTS = {
@@ -33,11 +35,12 @@ const DEFAULTS = {
 const INNER = {
   lumped_masses: (beam) => ({ heights: [beam.height], masses: [1e4] }),
 };
+const FLOORLESS = ["properties", "block"]; // kinds whose floors are not known: no mass leans on them, and no story yields
+const YIELD = 0.3; // share of the weight that new stories bear before they yield
 
 export default function structureTab(app) {
-  const { kinds, eccentricity, presets, limits } = app.about;
+  const { kinds, whole, presets, limits } = app.about;
   const current = () => clone(app.state.structure);
-  const kindOf = (structure) => Object.keys(kinds).find((key) => structure[key]) ?? "frame";
   let cuts = 0; // changes of the cross-section; a later one replaces one that waits
   const known = {}; // what the last section of each kind gave
   let drawn = false; // whether the form has the fields of the present structure
@@ -65,17 +68,25 @@ export default function structureTab(app) {
   const kind = select("kind", "Kind", titles, "frame", (name) => put(fresh(name), true));
   const name = h("input", { type: "text", maxlength: 80, onchange: () => put({ ...current(), name: name.value }) });
   const fields = h("div");
-  const moved = h("div");
-  const held = elements(app, current, put);
   let view = null;
   let viewed = ""; // the structure of the view
+  const held = elements(app, current, put, () => view);
   const below = ground(app, viewNow);
-  const results = h("div", { class: "results" });
-  const element = h("div", { class: "columns" },
+  const shown = drawing(app, () => {
+    drawn = false;
+    app.change({});
+  });
+  const options = runs(app, () => null);
+  const facts = h("div");
+  const more = folded("modes", "Modes, masses, and which model to use", facts);
+  const results = h("div", { class: "results" }, more, app.next("response", "Next: see forces and energies over time."));
+  const element = h("div", { class: "columns first" }, shown.player.element,
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
-      h("fieldset", {}, h("legend", {}, "Structure"), preset, kind, field("structure.name", "Name", name),
-        h("div", { "data-path": "structure" }, fields, moved, trouble()), h("p", { class: "error foot", role: "alert" })),
-      held, below, importMatrices(limits.file, current, (structure) => put(structure, true))),
+      h("fieldset", {}, preset, shown.quick.element, h("p", { class: "error foot", role: "alert" })),
+      folded("structure", "Structure: all fields", kind, field("structure.name", "Name", name),
+        h("div", { "data-path": "structure" }, fields, trouble())),
+      held, below, folded("runs", "Models and assumptions", options.element),
+      folded("import", "Import matrices", importMatrices(limits.file, current, (structure) => put(structure, true)))),
     results);
 
   // The first preset of a kind, or default values.
@@ -86,7 +97,7 @@ export default function structureTab(app) {
 
   function form() {
     const { structure } = app.state;
-    const now = kindOf(structure);
+    const now = kindOf(structure, kinds);
     kind.setValue(now);
     if (document.activeElement !== name) name.value = structure.name ?? "";
     const match = presets.findIndex((p) => same(p.structure, structure));
@@ -96,14 +107,27 @@ export default function structureTab(app) {
     const values = structure[now];
     const given = (spec) => !(values.section && SET_BY_SECTION.includes(spec.name) && values[spec.name] === undefined);
     const focused = fields.contains(document.activeElement) && document.activeElement.closest("[data-path]").dataset.path;
-    fields.replaceChildren(...kinds[now].fields.filter(given).map((spec) => entry(now, spec, values)));
+    const specs = kinds[now].fields.filter(given);
+    const own = whole.filter((spec) => spec.name === "eccentricity" || !FLOORLESS.includes(now));
+    const wanted = (spec, table) => spec.required || table[spec.name] !== undefined || ["section", ...SET_BY_SECTION].includes(spec.name);
+    const left = [...specs.filter((spec) => !wanted(spec, values)).map((spec) => entry(now, spec, values)),
+      ...own.filter((spec) => !wanted(spec, structure)).map(ofWhole)];
+    fields.replaceChildren(...specs.filter((spec) => wanted(spec, values)).map((spec) => entry(now, spec, values)),
+      ...own.filter((spec) => wanted(spec, structure)).map(ofWhole), left.length ? folded("optional", "Optional fields", left) : "");
     if (focused) fields.querySelector(`[data-path="${CSS.escape(focused)}"]`)?.querySelector("input, select, button")?.focus();
-    moved.replaceChildren(tableField("structure.eccentricity", eccentricity, structure.eccentricity, (value) => {
-      const next = current();
-      set(next, "eccentricity", value);
-      put(next);
-    }));
     held.draw(structure.elements ?? []);
+  }
+
+  // A field of every kind of structure.
+  function ofWhole(spec) {
+    const change = (value) => {
+      const next = current();
+      set(next, spec.name, value);
+      put(next);
+    };
+    const [path, value] = [`structure.${spec.name}`, app.state.structure[spec.name]];
+    const start = () => ({ strengths: Number((YIELD * 9.81 * (view?.mass ?? 1e5)).toPrecision(2)), post_yield_ratio: 0.05 });
+    return spec.type === "table" ? tableGroup(path, spec, value, start, change) : tableField(path, spec, value, change);
   }
 
   function entry(now, spec, values) {
@@ -136,16 +160,21 @@ export default function structureTab(app) {
     put(next, anew);
   }
 
+  results.append(app.downloads(element, [["report", "Report (HTML)"], ["modes", "Modes (SVG)"], ["structure", "Structure (TOML)"]]));
+  let quick = false; // whether the drawing alone is needed
   const load = latest(async () => {
-    results.classList.add("stale");
-    const asked = JSON.stringify(app.state.structure);
-    const answer = await app.ask("/api/structure", element);
+    const fast = quick;
+    const asked = app.state.structure;
+    if (!fast) results.classList.add("stale");
+    const answer = await app.ask("/api/structure", element, fast ? { quick: true } : {});
     if (!answer) return;
+    shown.set(answer.run, asked);
+    if (fast) return;
     results.classList.remove("stale");
     view = answer;
-    viewed = asked;
+    viewed = JSON.stringify(asked);
     if (answer.section.length) known[answer.kind] = answer.section;
-    results.replaceChildren(...show());
+    facts.replaceChildren(...show());
   });
 
   // The view of the present structure: at once if it is there, else a promise of it; null if it cannot be built.
@@ -171,17 +200,22 @@ export default function structureTab(app) {
       view.ground?.facts.length ? h("h2", {}, "Springs under the base") : "",
       view.ground?.facts.length ? h("dl", { class: "values", id: "springs" }, view.ground.facts.map(parameter)) : "",
       table(view),
-      app.downloads(element, [["modes", "Modes (SVG)"], ["structure", "Structure (TOML)"]]),
-      app.next("earthquake", "Next: choose the earthquake."),
     ];
   }
 
-  function refresh() {
-    form();
-    below.refresh();
+  function refresh(live = false) {
+    quick = live;
+    if (!live) {
+      results.classList.add("stale");
+      form();
+      below.refresh();
+      options.refresh();
+    }
+    shown.quick.refresh();
+    shown.resume();
     load();
   }
-  return { element, refresh };
+  return { element, refresh, leave: () => shown.leave() };
 }
 
 function parameter(p) {
@@ -387,6 +421,6 @@ function table(view) {
     value(m.period), value(m.effective_mass), percent(m.mass_share), value(m.effective_height), percent(m.damping),
     m.uplifted.flatMap((each) => [value(each.period), percent(each.damping)])));
   return h("div", {},
-    h("div", { class: "scroll" }, tableOf(head, rows, { id: "modes" })),
+    scrolled("Modes", {}, tableOf(head, rows, { id: "modes" })),
     view.modes.length > ROWS ? h("p", { class: "hint" }, `and ${view.modes.length - ROWS} more`) : null);
 }

@@ -3,7 +3,7 @@
 import { ask, attempt } from "../api.js";
 import { Chart } from "../chart.js";
 import { CHOSEN, GIVEN, suitesOf } from "../choices.js";
-import { h, latest, number, symbol, tableOf } from "../dom.js";
+import { h, latest, number, scrolled, symbol, tableOf } from "../dom.js";
 import { box, field, fileBox, parseNumber, select, tableField, trouble } from "../form.js";
 import { legend } from "../marks.js";
 
@@ -157,7 +157,7 @@ class Spectra {
     this.title = h("h2", { id: "target-title" });
     this.facts = h("dl", { class: "values", id: "fit" });
     this.keys = h("div");
-    this.rows = h("div", { class: "scroll", id: "chosen" });
+    this.rows = scrolled("Records chosen", { id: "chosen" });
     this.notes = h("ul", { class: "notes" });
     this.element = h("div", {}, this.title, this.facts, this.keys, this.chart.element,
       h("p", { class: "hint" }, "Shaded: the range of periods. Band: 16th to 84th percentile of a lognormal distribution. ",

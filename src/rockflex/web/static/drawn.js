@@ -1,0 +1,253 @@
+// The first drawing: a structure that rocks, with handles that are its form, three numbers and the few inputs that matter.
+
+import { attempt, get } from "./api.js";
+import { explained } from "./choices.js";
+import { clone, decode, h, latest, number } from "./dom.js";
+import { box, select, slider } from "./form.js";
+import { Player } from "./stage.js";
+
+const CURVES = ["t", "rotation", "points", "uplifted", "slip", "heave", "left_edge", "right_edge"];
+const HEIGHTS = { frame: "story_height", wall_frame: "height", tapered_tower: "height", cantilever: "height", beam: "height" };
+const STIFFNESSES = ["bending_stiffness", "shear_stiffness", "elastic_modulus", "stiffness", "column_stiffness", "beam_stiffness"];
+const LEAD = 3; // s before the largest rotation at which the drawing begins to move
+const FAR_FIELD = "fema-p695-far-field";
+const NEAR = 0.05; // of a range: arrow keys with Shift, Page Up and Page Down
+const tidy = (value) => Number(value.toPrecision(3));
+const clamp = (value, [low, high]) => Math.min(high, Math.max(low, value));
+const times = (value, factor) => {
+  if (Array.isArray(value)) return value.map((each) => times(each, factor));
+  return typeof value === "number" ? Number((value * factor).toPrecision(6)) : value; // "inf" stays
+};
+
+export const kindOf = (structure, kinds) => Object.keys(kinds).find((key) => structure[key]) ?? "frame";
+
+// What a structure measures, and how each measure is set: half width, height and first period, where they are in a field
+// of its form. The others stay as they are, so a wider frame of the same period has another slenderness.
+export function measures(structure, view, kinds) {
+  const kind = kindOf(structure, kinds);
+  const values = structure[kind];
+  const [B, H, T] = [view.half_width, view.heights.at(-1), view.period];
+  const into = (patch) => ({ ...clone(structure), [kind]: { ...values, ...patch } });
+  const scaled = (names, factor) => Object.fromEntries(names.filter((name) => name in values).map((name) => [name, times(values[name], factor)]));
+  const block = (half, tall) => into({ slenderness: Number(Math.atan2(half, tall / 2).toPrecision(6)), half_diagonal: Number(Math.hypot(half, tall / 2).toPrecision(6)) });
+  const found = {};
+  if (kind === "block") {
+    found.B = { value: B, set: (v) => block(v, H) };
+    found.H = { value: H, set: (v) => block(B, v) };
+    return found;
+  }
+  if (kind !== "properties") {
+    const direct = ["half_width", "base_radius"].find((name) => name in values);
+    found.B = { value: B, set: (v) => into(direct ? { [direct]: v } : scaled(["aspect_ratio"], B / v)) };
+  }
+  if (HEIGHTS[kind] && !values.z && !values.lumped_masses)
+    found.H = { value: H, set: (v) => into(scaled([HEIGHTS[kind], "aspect_ratio"], v / H)) };
+  if (values.period !== undefined) found.T = { value: T, set: (v) => into({ period: times(values.period, v / T) }) }; // masses that lean make T longer than the field
+  else if (T && STIFFNESSES.some((name) => name in values)) found.T = { value: T, set: (v) => into(scaled(STIFFNESSES, (T / v) ** 2)) };
+  return found;
+}
+
+// The handles of a drawing: each is a number with its range, at a place in metres, `down` px lower. What stands in a pair
+// about the middle stays a pair.
+function handles(app, view, wanted) {
+  const { structure, ground } = app.state;
+  const { B, H } = measures(view.of, view, app.about.kinds);
+  const { half_width: b, eccentricity: e } = view;
+  const within = [-b - e, b - e];
+  const places = (structure.elements ?? []).filter((each) => !each.between && !each.height).map((each) => each.position ?? 0);
+  const springs = ground?.springs;
+  const stood = springs ? (springs.positions ?? within) : [];
+  const reach = Math.max(0, ...[...places, ...(springs?.positions ?? [])].map((x) => Math.abs(x + e)));
+  const found = [];
+  if (B) found.push({ name: "B", label: "Half width of the base", value: wanted.B ?? B.value, range: [Math.max(B.value / 4, reach), 4 * B.value],
+    at: [(wanted.B ?? b) - e, 0],
+    next: (v) => ({ structure: B.set(v) }) });
+  if (H) found.push({ name: "H", label: "Height", up: true, value: wanted.H ?? H.value, range: [H.value / 4, 4 * H.value],
+    at: [0, wanted.H ?? H.value],
+    next: (v) => ({ structure: H.set(v) }) });
+  const moved = (all, i, v) => all.map((x, k) => (k === i ? v : k !== i && x !== 0 && Math.abs(x + all[i]) < 1e-9 ? -v : x));
+  (structure.elements ?? []).forEach((each, i) => {
+    if (each.between || each.height) return;
+    const { kind, position = 0 } = each;
+    found.push({ name: `element ${i}`, label: `Position of ${i + 1}, ${app.about.elements[kind].title}`, value: position, range: within, at: [position, 0], down: 17,
+      next: (v) => {
+        const all = structure.elements.map((other) => (other.kind === kind && !other.between && !other.height ? other.position ?? 0 : NaN));
+        const now = moved(all, i, v);
+        return { structure: { ...clone(structure), elements: structure.elements.map((other, k) => (Number.isNaN(now[k]) ? other : { ...other, position: now[k] })) } };
+      } });
+  });
+  if (stood.length < 9) stood.forEach((x, i) => found.push({
+    name: `spring ${i}`, label: `Position of spring ${i + 1}`, value: x, range: within, at: [x, 0], down: places.length ? 34 : 17,
+    next: (v) => ({ ground: { springs: { positions: moved(stood, i, v) } } }),
+  }));
+  return found;
+}
+
+// `load(quick)` asks for another response; `settle()` is called once a change is over.
+export function drawing(app, settle) {
+  const player = new Player(() => {}, app.about.elements, { height: 400, room: 1.3, loop: true });
+  const { stage } = player;
+  const calm = matchMedia("(prefers-reduced-motion: reduce)");
+  const dots = new Map(); // by the name of their handle
+  let view = null;
+  let wanted = {}; // width and height that no answer shows yet
+  let held = null; // the handle that is dragged, as it was before
+
+  function act(handle, value, live) {
+    const put = clamp(tidy(value), handle.range);
+    wanted = handle.name in { B: 0, H: 0 } ? { [handle.name]: put } : {};
+    app.change(handle.next(put), live);
+    place();
+  }
+
+  function dot(name) {
+    const now = () => held ?? handles(app, view, wanted).find((each) => each.name === name);
+    const element = h("div", {
+      class: "handle", role: "slider", tabindex: 0, "data-handle": name,
+      onpointerdown: (event) => {
+        element.setPointerCapture(event.pointerId);
+        held = { ...now(), from: [event.clientX, event.clientY], zoom: stage.zoom };
+        stage.held = true;
+      },
+      onpointermove: (event) => {
+        if (!element.hasPointerCapture(event.pointerId)) return;
+        const moved = held.up ? held.from[1] - event.clientY : event.clientX - held.from[0];
+        act(held, held.value + moved / held.zoom, true);
+      },
+      onlostpointercapture: () => {
+        held = null;
+        stage.held = false;
+        settle();
+      },
+      onkeydown: (event) => {
+        const handle = now();
+        const [low, high] = handle.range;
+        const step = 10 ** Math.floor(Math.log10((high - low) / 20)) / 2;
+        const far = (high - low) * NEAR;
+        const to = {
+          ArrowRight: step, ArrowUp: step, ArrowLeft: -step, ArrowDown: -step, PageUp: far, PageDown: -far,
+          Home: low - handle.value, End: high - handle.value,
+        }[event.key];
+        if (to === undefined || event.altKey || event.ctrlKey || event.metaKey) return;
+        event.preventDefault();
+        act(handle, handle.value + to * (event.shiftKey ? 5 : 1), true);
+        settle();
+      },
+    });
+    return element;
+  }
+
+  // Put every handle where the present state has it.
+  function place() {
+    if (!view) return;
+    const found = handles(app, view, wanted);
+    for (const [name, element] of dots) {
+      if (found.some((each) => each.name === name)) continue;
+      element.remove();
+      dots.delete(name);
+    }
+    for (const { name, label, value, range, at, up, down = 0 } of found) {
+      if (!dots.has(name)) {
+        dots.set(name, dot(name));
+        stage.layer.append(dots.get(name));
+      }
+      const element = dots.get(name);
+      const [x, y] = stage.spot(...at);
+      element.style.left = `${x}px`;
+      element.style.top = `${y + down}px`;
+      element.title = `${label}: ${number(value, 3)} m`;
+      const said = {
+        label, valuenow: tidy(value), valuemin: tidy(range[0]), valuemax: tidy(range[1]), valuetext: `${number(value, 3)} metres`,
+        orientation: up ? "vertical" : "horizontal",
+      };
+      for (const [key, text] of Object.entries(said)) element.setAttribute(`aria-${key}`, text);
+    }
+  }
+  stage.placed = place;
+
+  const figures = h("dl", { class: "values three", id: "three" });
+  const note = h("p", { class: "hint", hidden: true });
+  stage.element.after(figures, note);
+  const quick = few(app, () => view, settle);
+
+  // Show the response of a structure.
+  function set(run, of) {
+    note.hidden = !run.note;
+    note.textContent = run.note ?? "";
+    figures.hidden = Boolean(run.note);
+    if (run.note) return;
+    const first = !view;
+    const [m] = run.models;
+    for (const name of CURVES) m[name] = m[name] && decode(m[name]);
+    if (of === app.state.structure) wanted = {};
+    view = { ...run, of, end: m.t.at(-1), models: [{ ...m, label: explained(m.label) }] };
+    player.set(view);
+    figures.replaceChildren(...three(m, run));
+    quick.refresh();
+    if (!first) return;
+    const peak = m.peaks.time_of_max_rotation ?? 0;
+    player.move(calm.matches ? peak : peak - LEAD);
+    resume();
+  }
+
+  const resume = () => !calm.matches && view && !player.playing && player.toggle();
+  globalThis.rockflexDrawn = { player, view: () => view };
+  return { player, set, quick, resume, leave: () => player.pause() };
+}
+
+// Largest rotation, top displacement, and base moment over that of a fixed base.
+function three({ peaks, status }, { fixed_base_moment: fixed, fixed_top_displacement: stiff }) {
+  const fell = status === "overturned";
+  const top = peaks.max_total_top_displacement ?? peaks.max_top_displacement;
+  const one = (key, name, value, help, raw) => h("div", {}, h("dt", {}, name), h("dd", { "data-three": key, "data-value": raw }, value), h("dd", { class: "hint" }, help));
+  const share = fixed ? `${number((100 * peaks.max_base_moment) / fixed, 3)} %` : `${number(peaks.max_base_moment / 1000, 3)} kN m`;
+  return [
+    one("rotation", "Largest rotation", fell ? "overturns" : `${number(1000 * peaks.max_rotation, 3)} mrad`,
+      fell ? `it falls, and lies at ${number(peaks.end_time, 3)} s` : "of the base while it stands on one edge", peaks.max_rotation),
+    one("top", "Top displacement", fell ? "–" : `${number(top, 3)} m`, stiff ? `${number(stiff, 3)} m if its base were held down` : "relative to the ground", top),
+    one("moment", "Base moment", share, fixed ? "of that if its base were held down" : "at the level of the base", fixed ? peaks.max_base_moment / fixed : null),
+  ];
+}
+
+// The few inputs that matter, beside the drawing.
+function few(app, shown, settle) {
+  const field = (name, label, unit, hint) => box(`few.${name}`, label, "", (value) => {
+    const found = shown() && measures(shown().of, shown(), app.about.kinds)[name];
+    fields[name].querySelector(".error").textContent = value > 0 ? "" : "It must be a number above 0.";
+    if (!found || !(value > 0)) return;
+    app.change({ structure: found.set(value) }, true);
+    settle();
+  }, { unit, hint });
+  const fields = { B: field("B", "Half width of the base, B", "m"), H: field("H", "Height", "m", " "), T: field("T", "First period, base held down", "s") };
+  const record = select("few.record", "Earthquake record", [], "", (value) => {
+    const [suite, name] = value.split("|");
+    if (value === "more") app.go("earthquake");
+    else app.change({ record: name ? { source: "suite", suite, name } : { source: suite } });
+  });
+  const scale = slider("few.scale", "Scale factor of the record", { low: 0.01, high: 20, log: true }, 1, (value, live) => app.change({ scale: value }, live));
+  let known = [["el-centro-1940|EL-CENTRO-1940-NS", "El Centro 1940"], ["pulse", "a pulse"]];
+  attempt(() => get(`/api/suite/${FAR_FIELD}`), () => ({ records: [] })).then(({ records }) => {
+    known = [...known, ...records.map(({ name, event }) => [`${FAR_FIELD}|${name}`, `${event}, ${name}`])];
+    refresh();
+  });
+
+  function refresh() {
+    const view = shown();
+    const { record: now, scale: by } = app.state;
+    const chosen = now.source === "suite" ? `${now.suite}|${now.name}` : now.source;
+    if (record.dataset.listed !== `${known.length} ${chosen}`) { // not at every move of a handle
+      const other = known.some(([value]) => value === chosen) ? [] : [[chosen, now.source === "suite" ? now.name : "your own record"]];
+      record.setOptions([...other, ...known, ["more", "others: suites, pulses, your files …"]], chosen);
+      record.dataset.listed = `${known.length} ${chosen}`;
+    }
+    record.setValue(chosen);
+    scale.setValue(by);
+    const found = view ? measures(view.of, view, app.about.kinds) : {};
+    for (const [name, each] of Object.entries(fields)) {
+      each.hidden = !found[name];
+      if (found[name]) each.setValue(tidy(found[name].value));
+    }
+    if (view) fields.H.querySelector(".hint").textContent = `slenderness: ${number(view.heights.at(-1) / view.half_width, 3)} times B`;
+  }
+  return { element: h("div", { class: "few" }, Object.values(fields), record, scale), refresh };
+}
