@@ -46,6 +46,7 @@ def test_elements_of_all_kinds_are_added_changed_and_removed(visitor) -> None:
     elements = [
         rf.Tendon(share(1 / 5), share(10 / b)), rf.YieldingDissipator(share(1 / 0.016), share(1 / 8), position=0.1),
         rf.ViscousDamper(share(1 / 2), position=0.2), rf.FrictionDamper(share(1 / 20), position=0.3),
+        rf.strand_tendon(3, "Y1860S7-15.7", 15.0, 0.5, position=0.1 * kinds.index("strand_tendon")),
     ]  # fmt: skip
     given = [{**each, "position": 0} for each in held(visitor)]
     assert given[0] == {"kind": "tendon", "position": 0, "initial_force": share(1 / 5), "stiffness": share(10 / b)}
