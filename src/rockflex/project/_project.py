@@ -56,6 +56,15 @@ class ProjectResults(Value):
         SHA-256 of what they were computed from.
     version : str
         Version of rockflex that computed them.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> block = rf.rigid_block(slenderness=0.25, half_diagonal=3.0)
+    >>> pulse = rf.one_sine_pulse(amplitude=4.0, period=1.0)
+    >>> results = rf.Project({"block": block}, pulse, "rigid", limits=rf.CheckLimits(rotation_ratio=0.5)).run().results
+    >>> results.checks.loc[results.checks["limit"].notna(), ["structure", "name", "ok"]].values.tolist()
+    [['block', 'rotation', True], ['block', 'rotation over α', True]]
     """
 
     runs: "pd.DataFrame"
@@ -368,6 +377,14 @@ def read_project(path: str | Path) -> Project:
     InputError
         If the file does not exist, is damaged, too large or of another version of the format, holds other files than
         it lists, or a value in it is wrong.
+
+    Examples
+    --------
+    >>> import rockflex as rf
+    >>> block = rf.rigid_block(slenderness=0.25, half_diagonal=3.0)
+    >>> project = rf.Project({"block": block}, rf.one_sine_pulse(amplitude=4.0, period=1.0), "rigid")
+    >>> rf.read_project(project.save("block.rockflex"))
+    Project('block' under 1 record: not run)
     """
     members = read_archive(path, "project")
     try:
