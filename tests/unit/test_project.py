@@ -280,12 +280,32 @@ def test_wrong_members_are_named(file, words, changed):
         rf.read_project(file)
 
 
-def test_a_table_of_other_columns_is_refused(file):
+@pytest.mark.parametrize(
+    "table",
+    [
+        {"structure": ["free"]},
+        {"structure": ["free"], "name": ["sliding"], "limit": ["high"], "ratio": [0.5], "ok": [True]},
+        {"structure": ["free"] * 200_000, "name": "sliding", "limit": 1.0, "ratio": 0.5, "ok": True},
+    ],
+    ids=["few", "kind", "long"],
+)
+def test_a_table_of_other_columns_is_refused(file, table):
     content = io.BytesIO()
-    pd.DataFrame({"structure": ["free"]}).to_parquet(content)
+    pd.DataFrame(table).to_parquet(content)
     rewritten(file, {"results/checks.parquet": content.getvalue()})
     with pytest.raises(rf.InputError, match=r"checks\.parquet must have the columns"):
         rf.read_project(file)
+
+
+@pytest.mark.parametrize("member", ["project.toml", STRUCTURE])
+def test_deep_nesting_is_refused(file, member):
+    deep = ".".join(["structure"] * 5_000)
+    nested = f"class = 'Eccentric'\n{deep} = 1\n"
+    lists = f"class = 'Eccentric'\nstructure = {'[' * 5_000}"
+    for text in (nested, lists):
+        rewritten(file, {member: text})
+        with pytest.raises(rf.InputError, match=r"a\.rockflex"):
+            rf.read_project(file)
 
 
 @pytest.mark.parametrize("name", ["../evil.toml", "/etc/passwd", "a/b/c.toml", "C:\\a.toml", "records/.."])

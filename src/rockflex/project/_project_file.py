@@ -29,13 +29,13 @@ from rockflex.structure.file import (
 FORMAT = "rockflex-project-1"
 DOCUMENT = "project.toml"
 MAX_TOML_BYTES = 50_000_000
-MAX_ROWS = 1_000_000  # of a table of results
-TABLES = {
-    "runs": ("structure", "motion", "status"),
-    "statistics": ("structure", "demand", "design"),
-    "checks": ("structure", "name", "ok"),
+MAX_ROWS = 100_000  # of a table of results
+TABLES: dict[str, dict[str, type]] = {
+    "runs": {"structure": str, "motion": str, "status": str},
+    "statistics": {"structure": str, "demand": str, "design": float, "reason": str},
+    "checks": {"structure": str, "name": str, "limit": float, "ratio": float, "ok": bool},
 }
-"""The tables of results, and columns that tell what they are."""
+"""The tables of results, and columns that each has at least."""
 
 _OPTIONS = ("bouc_wen", "impact", "ground")  # objects of each structure
 _CLASSES: dict[str, type] = {
@@ -247,13 +247,22 @@ def _results(members: Mapping[str, bytes], row: ResultsRow) -> dict[str, Any]:
     return {"inputs": row.inputs, "version": row.version, **tables}
 
 
-def _result_table(members: Mapping[str, bytes], file: str, needed: tuple[str, ...]) -> Any:
+def _result_table(members: Mapping[str, bytes], file: str, needed: Mapping[str, type]) -> Any:
+    from pyarrow import types
     from pyarrow.parquet import ParquetFile
 
+    is_kind = {
+        str: lambda kind: types.is_string(kind) or types.is_large_string(kind),
+        float: types.is_floating,
+        bool: types.is_boolean,
+    }
     content = members[file]
     opened = _read(file, "Parquet", lambda: ParquetFile(io.BytesIO(content)))
-    if opened.metadata.num_rows > MAX_ROWS or not {*needed} <= {*opened.schema_arrow.names}:
-        raise InputError(f"{file} must have the columns {', '.join(needed)}, ... and at most {MAX_ROWS} rows.")
+    found = {each.name: each.type for each in opened.schema_arrow}
+    lacking = [name for name, kind in needed.items() if name not in found or not is_kind[kind](found[name])]
+    if lacking or opened.metadata.num_rows > MAX_ROWS:
+        kinds = ", ".join(f"{name} ({kind.__name__})" for name, kind in needed.items())
+        raise InputError(f"{file} must have the columns {kinds}, ... and at most {MAX_ROWS} rows.")
     return _read(file, "Parquet", lambda: opened.read().to_pandas())
 
 
