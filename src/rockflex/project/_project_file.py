@@ -251,11 +251,10 @@ def _result_table(members: Mapping[str, bytes], file: str, needed: Mapping[str, 
     from pyarrow import types
     from pyarrow.parquet import ParquetFile
 
-    is_kind = {
-        str: lambda kind: types.is_string(kind) or types.is_large_string(kind),
-        float: types.is_floating,
-        bool: types.is_boolean,
-    }
+    def is_text(kind: Any) -> bool:
+        return types.is_string(kind) or types.is_large_string(kind)
+
+    is_kind = {str: is_text, float: types.is_floating, bool: types.is_boolean}
     content = members[file]
     opened = _read(file, "Parquet", lambda: ParquetFile(io.BytesIO(content)))
     found = {each.name: each.type for each in opened.schema_arrow}
