@@ -76,7 +76,7 @@ $(LOWEST)/bin/uv:
 test-lowest: export VIRTUAL_ENV := $(abspath $(LOWEST))
 test-lowest: $(LOWEST)/bin/uv  ## quick tests of every layer with the oldest versions of what the package needs
 	$(LOWEST)/bin/uv pip install --quiet --resolution lowest-direct --reinstall-package rockflex .
-	$(LOWEST)/bin/uv pip install --quiet 'pytest>=8.2' 'hypothesis>=6.100' 'cython>=3.1' mpmath tomli-w
+	$(LOWEST)/bin/uv pip install --quiet 'pytest>=8.2' 'hypothesis>=6.100' 'cython>=3.1' mpmath
 	$(LOWEST)/bin/python -m pytest -p no:cacheprovider -W default::DeprecationWarning -m "not slow and not web" \
 		$(addprefix tests/,$(LOWEST_TESTS))
 

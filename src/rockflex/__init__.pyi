@@ -132,6 +132,9 @@ from .plot import plot_stripes as plot_stripes
 from .plot import plot_tower as plot_tower
 from .plot import plot_yielding as plot_yielding
 from .plot import save_figure as save_figure
+from .project import Project as Project
+from .project import ProjectResults as ProjectResults
+from .project import read_project as read_project
 from .report import write_report as write_report
 from .response import BilinearFit as BilinearFit
 from .response import Check as Check

@@ -33,6 +33,7 @@ ALLOWED = {
     },
     "plot": {"motion", "modal", "structure", "response", "study", "fragility"},
     "report": {"plot", "response", "models", "modal", "motion", "structure"},
+    "project": {"motion", "modal", "models", "structure", "response", "study", "report"},
     "papers": {
         "motion",
         "modal",
@@ -79,7 +80,7 @@ HOME = {
     "jinja2": {"report"},
     "starlette": {"web"},
     "uvicorn": {"web"},
-    "tomli_w": {"web"},
+    "tomli_w": {"project", "web"},
     "obspy": {"motion"},
     "openpyxl": {"motion"},
     "xarray": {"response"},

@@ -69,6 +69,10 @@ def pushed() -> rf.Pushover:
     return rf.pushover(rf.YieldingStories(make_frame(n_stories=2, stiffness_ratio=math.inf), [1e5, 8e4], 0.05), 0.2)
 
 
+def project() -> rf.Project:
+    return rf.Project({"A": frame()}, motion(), "2DOF-S", head={"author": "A"})
+
+
 def law_of_two() -> rf.AnnualRate:
     return rf.annual_rate(rf.HazardCurve([0.1, 1.0], [1e-2, 1e-4]), rf.LognormalFragility(0.5, 0.4))
 
@@ -154,6 +158,8 @@ VALUES = {
         frame(), [0.01], ground=rf.Ground(springs=rf.Springs([-0.2, 0.2], 1e9), base_inertia=1e3)
     ),
     rf.BilinearFit: lambda: pushed().fit(),
+    rf.Project: lambda: project(),
+    rf.ProjectResults: lambda: project().run().results,
     rf.Pushover: lambda: pushed(),
     rf.PushoverEvent: lambda: pushed().events[0],
     rf.Pivot: lambda: rf.Eccentric(frame(), 0.1).rocking().pivot(-1),
@@ -206,7 +212,7 @@ STUDIES = {
     rf.StripeStudy: lambda: rf.StripeStudy(**STUDY, measure="pga", levels=[1.0]),
 }
 NO_VALUES = {rf.Attachment, rf.ElementLaw, rf.StudyFolder}  # a place on the disk, held open by a process
-UNHASHABLE = {rf.BestDesign, rf.Comparison, rf.PopulationStatistics}  # they hold tables
+UNHASHABLE = {rf.BestDesign, rf.Comparison, rf.PopulationStatistics, rf.ProjectResults}  # they hold tables
 
 cases = pytest.mark.parametrize("make", VALUES.values(), ids=[kind.__name__ for kind in VALUES])
 

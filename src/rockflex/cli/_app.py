@@ -9,7 +9,7 @@ from typer.core import TyperGroup
 
 from rockflex import __version__
 from rockflex._errors import InputError, SolverError
-from rockflex.cli import _animate, _check, _compare, _modes, _motion, _reproduce, _run, _select, _study
+from rockflex.cli import _animate, _check, _compare, _modes, _motion, _project, _reproduce, _run, _select, _study
 from rockflex.cli import _console as console
 from rockflex.cli._options import FrameCommand, ReportCommand, RunCommand
 from rockflex.kinds import KINDS
@@ -57,6 +57,8 @@ rockflex check structure.toml chosen --rule ec8 --limits limits.toml
 
 rockflex compare a.toml b.toml fema-p695-far-field --out compared.html
 
+rockflex project new pier.rockflex a.toml b.toml chosen --rule ec8
+
 rockflex cloud study.toml --out study
 
 rockflex figures study
@@ -98,6 +100,7 @@ app = typer.Typer(
 app.command("run", cls=ReportCommand, epilog=_run.EPILOG, no_args_is_help=True)(_run.run)
 app.command("check", cls=RunCommand, epilog=_check.EPILOG, no_args_is_help=True)(_check.check)
 app.command("compare", cls=_compare.CompareCommand, epilog=_compare.EPILOG, no_args_is_help=True)(_compare.compare)
+app.add_typer(_project.app, name="project")
 app.command("animate", cls=RunCommand, epilog=_animate.EPILOG, no_args_is_help=True)(_animate.animate)
 app.command("modes", cls=FrameCommand, epilog=_modes.EPILOG, no_args_is_help=True)(_modes.modes)
 app.command("motion", epilog=_motion.EPILOG)(_motion.motion)

@@ -1,7 +1,8 @@
 """``rockflex compare``: alternatives under the same records, and how their demands differ from those of the first."""
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import typer
 
@@ -10,6 +11,9 @@ from rockflex._schema import GroundSchema, ImpactSchema, InitialStateSchema, Spr
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
+
+if TYPE_CHECKING:
+    from rockflex.cli._structures import LoadedStructure
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -63,30 +67,20 @@ def compare(
     """
     from rockflex.cli._find_motions import find_motions
     from rockflex.cli._options import naming_flags_in_errors
-    from rockflex.cli._run_options import make_run_options, number_or_word, parse_work_limit
+    from rockflex.cli._run_options import number_or_word, parse_work_limit
     from rockflex.cli._run_results import checked_path_of_report
-    from rockflex.cli._structures import load_structure
     from rockflex.report import write_report
     from rockflex.response import COMPARED_DEMANDS, STATISTICS
     from rockflex.study import compare as run
 
-    words = arguments or []
-    files = [Path(word) for word in words if word.lower().endswith(".toml")]
     page = None if out is None else checked_path_of_report(out, force=force, flag="--out")
-    loaded = [load_structure(file, {}) for file in files]
-    names = [each.name for each in loaded]
-    if len(set(names)) < len(names):
-        names = [str(file.with_suffix("")) for file in files]
-    if len(set(names)) < len(names):
-        raise InputError(f"The file {files[0]} was given twice. Give each alternative once.")
-    own = {name: make_run_options(context, each)[0] for name, each in zip(names, loaded, strict=True)}
-    found = find_motions([word for word in words if Path(word) not in files], units, dt, on_error, vertical)
-    options_of = ["impact", "initial", "ground", *(["bouc_wen"] if model.endswith("-BW") else [])]
-    given: dict[str, Any] = {each: {name: getattr(own[name], each) for name in names} for each in options_of}
+    loaded, given, rest = load_alternatives(context, arguments or [], model)
+    names = list(loaded)
+    found = find_motions(rest, units, dt, on_error, vertical)
     flags = {"scales": "--scale", "free_vibration": "--free-vibration", "model": "--model"}
     with naming_flags_in_errors(flags):
         comparison = run(
-            dict(zip(names, (each.built for each in loaded), strict=True)), [each.motion for each in found], model,
+            {name: each.built for name, each in loaded.items()}, [each.motion for each in found], model,
             scale=scale, free_vibration=number_or_word(free_vibration), workers=workers,
             work_limit=parse_work_limit(work_limit), **given
         )  # fmt: skip
@@ -96,7 +90,7 @@ def compare(
     if json:
         document: dict[str, Any] = {
             "versions": output.versions(),
-            "alternatives": {name: each.describe() for name, each in zip(names, loaded, strict=True)},
+            "alternatives": {name: each.describe() for name, each in loaded.items()},
             "model": model,
             "scale": scale,
             "motions": [each.describe() for each in found],
@@ -122,9 +116,35 @@ def compare(
         among = f"; {comparison.motion.name} governs" if several else f": {comparison.motion.name}"
         console.print_line(f"{model}, {comparison.n_records} record{'s' if several else ''}{among}")
         console.print_rows(head, rows, 2 if several else 1)
-    console.print_warnings([f"{each.name}: {text}" for each in loaded for text in each.warnings])
+    console.print_warnings([f"{name}: {text}" for name, each in loaded.items() for text in each.warnings])
     counts = zip(names, comparison.overturned, strict=True)
     console.print_warnings(f"{name} overturned under {n} of {len(found)} records" for name, n in counts if n)
     if page is not None:
         write_report(comparison, page)
         console.print_remark(f"Written to {page}; any browser prints it on one sheet of A4")
+
+
+def load_alternatives(
+    context: typer.Context, words: Sequence[str], model: str
+) -> tuple[dict[str, "LoadedStructure"], dict[str, Any], list[str]]:
+    """Return the structures of the files among some words by name, the options of each by option, and the other words.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, or was given twice.
+    """
+    from rockflex.cli._run_options import make_run_options
+    from rockflex.cli._structures import load_structure
+
+    files = [Path(word) for word in words if word.lower().endswith(".toml")]
+    loaded = [load_structure(file, {}) for file in files]
+    names = [each.name for each in loaded]
+    if len(set(names)) < len(names):
+        names = [str(file.with_suffix("")) for file in files]
+    if len(set(names)) < len(names):
+        raise InputError(f"The file {files[0]} was given twice. Give each alternative once.")
+    own = {name: make_run_options(context, each)[0] for name, each in zip(names, loaded, strict=True)}
+    options_of = ["impact", "initial", "ground", *(["bouc_wen"] if model.endswith("-BW") else [])]
+    given: dict[str, Any] = {each: {name: getattr(own[name], each) for name in names} for each in options_of}
+    return dict(zip(names, loaded, strict=True)), given, [word for word in words if Path(word) not in files]

@@ -23,6 +23,7 @@ from rockflex.modal import (
 )
 from rockflex.structure import Eccentric, Frame, Leaning, Restrained, structure_warnings
 from rockflex.structure.file import (
+    CLASS,
     ELEMENTS,
     KINDS,
     Built,
@@ -31,6 +32,7 @@ from rockflex.structure.file import (
     build_structure_in_file,
     parse_toml_table,
     read_toml_file,
+    structure_from_table,
 )
 from rockflex.study.spec import RunOptionKeys
 
@@ -189,6 +191,8 @@ def load_structure(file: Path | None, flags: dict[str, Any]) -> LoadedStructure:
     content = read_toml_file(file, "structure")
     if "study" in content:
         raise _study_in_place_of_structure(file, content["study"])
+    if CLASS in content:
+        return LoadedStructure(file.stem, str(content[CLASS]), content, structure_from_table(content, str(file)))
     document = parse_toml_table(StructureFile, content, str(file))
     run_options = document.model_dump(include=set(RunOptionKeys.model_fields), exclude_unset=True)
     built = build_structure_in_file(file, document)

@@ -4,11 +4,13 @@ from ._arguments import Motions as Motions
 from ._arguments import RockingStructure as RockingStructure
 from ._arguments import checked_motions as checked_motions
 from ._arguments import checked_scale_factors as checked_scale_factors
+from ._arguments import checked_structures as checked_structures
 from ._arguments import checked_work_limit as checked_work_limit
 from ._arguments import free_vibration_time as free_vibration_time
 from ._arguments import ground_under_structure as ground_under_structure
 from ._arguments import parse_scale_range as parse_scale_range
 from ._arguments import rocking_properties_of as rocking_properties_of
+from ._compare import MAX_ALTERNATIVES as MAX_ALTERNATIVES
 from ._compare import compare as compare
 from ._modal_combination import CombinedPeaks as CombinedPeaks
 from ._modal_combination import SecondMode as SecondMode
@@ -39,6 +41,7 @@ from ._run_matrix import StudyMatrix as StudyMatrix
 from ._run_matrix import record_columns as record_columns
 from ._run_matrix import record_facts as record_facts
 from ._run_matrix import record_groups as record_groups
+from ._simulate import checked_period_range as checked_period_range
 from ._simulate import simulate as simulate
 from ._simulate import simulate_many as simulate_many
 from ._simulate import simulate_set as simulate_set

@@ -394,7 +394,7 @@ def simulate_set(
     given = motions.suite if isinstance(motions, Selection) else motions
     if periods is None and isinstance(motions, Selection):
         periods = (float(motions.periods.min()), float(motions.periods.max()))
-    records, span = checked_motions(given), None if periods is None else _checked_period_range(periods)
+    records, span = checked_motions(given), None if periods is None else checked_period_range(periods)
     kept = checked_rule(rule, len(records))
     table = simulate_many(
         *(structure, records, model, "history", 1.0, free_vibration, bouc_wen, impact, initial, workers),
@@ -416,7 +416,8 @@ def simulate_set(
     )
 
 
-def _checked_period_range(periods: Any) -> tuple[float, float]:
+def checked_period_range(periods: Any) -> tuple[float, float]:
+    """Return the smallest and the largest period in s."""
     ends = checked_finite_vector("periods", periods, "s")
     if ends.size != 2 or not 0.0 <= ends[0] < ends[1]:
         raise InputError(

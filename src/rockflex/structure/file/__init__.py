@@ -1,5 +1,6 @@
 """Structures in TOML files."""
 
+from rockflex.structure.file._object_tables import CLASS, object_from_table, object_table, structure_from_table
 from rockflex.structure.file._structure_entry import (
     ELEMENTS,
     KINDS,
@@ -24,6 +25,7 @@ from rockflex.structure.file._toml_table import (
 )
 
 __all__ = [
+    "CLASS",
     "ELEMENTS",
     "KINDS",
     "Built",
@@ -37,10 +39,13 @@ __all__ = [
     "build_structure_in_file",
     "first_table_in_annotation",
     "members_of_annotation",
+    "object_from_table",
+    "object_table",
     "parse_toml_table",
     "read_structure",
     "read_toml_file",
     "schema_key_of_field",
+    "structure_from_table",
     "toml_key_label",
     "toml_problem_place",
     "toml_problem_sentences",

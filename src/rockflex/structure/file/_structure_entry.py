@@ -32,6 +32,7 @@ from rockflex.modal import (
 from rockflex.structure import Eccentric, Leaning, Restrained, YieldingStories
 from rockflex.structure._from_matrices import matrix_file_checksum
 from rockflex.structure._structure import Structure
+from rockflex.structure.file._object_tables import CLASS, structure_from_table
 from rockflex.structure.file._structure_tables import (
     BeamTable,
     Built,
@@ -512,7 +513,8 @@ def read_structure(path: str | Path) -> Built:
     with a ``cosine`` (`Attachment`). ``leaning_masses`` above all tables is mass on other columns (`Leaning`), a table
     ``[stories]`` with ``strengths`` and ``post_yield_ratio`` makes stories yield (`YieldingStories`), and a number
     ``eccentricity`` moves the structure from the middle of its base
-    (`Eccentric`). Units are kg, m, s, N and rad; paths of matrices are relative to the folder of the file.
+    (`Eccentric`). Units are kg, m, s, N and rad; paths of matrices are relative to the folder of the file. A file of a
+    `Project` has the key ``class`` above all tables, the name of the class, and its arguments.
 
     Parameters
     ----------
@@ -542,6 +544,8 @@ def read_structure(path: str | Path) -> Built:
     content = {key: value for key, value in read_toml_file(file, "structure").items() if key not in _RUN_KEYS}
     if "study" in content:
         raise InputError(f"{file} is the file of a study, but one of a structure is expected. Use load_study(path).")
+    if CLASS in content:
+        return structure_from_table(content, str(file))
     return build_structure_in_file(file, parse_toml_table(StructureEntry, content, str(path)))
 
 
