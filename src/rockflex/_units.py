@@ -45,9 +45,9 @@ QUANTITIES: Mapping[str, tuple[str, str, str, str]] = {
     "second moment of area": ("m⁴", "m⁴", "m⁴", "in⁴"),
     "bending stiffness": ("MN m²", "MN m²", "N m²", "kip in²"),
     "energy": ("kJ", "MJ", "J", "kip in"),
-    "time": ("s",) * 4,
-    "share": ("%",) * 4,
-    "ratio": ("",) * 4,
+    "time": ("s", "s", "s", "s"),
+    "share": ("%", "%", "%", "%"),
+    "ratio": ("", "", "", ""),
 }
 """The kinds of quantities, each with its unit in every system."""
 

@@ -42,7 +42,7 @@ def lines_about_ground(ground: Ground, properties: RockingProperties, units: Uni
             (springs.total_stiffness, units.of("stiffness", "N/m")),
             (springs.rotational_stiffness, units.of("rotational stiffness", "N m/rad")),
             (springs.total_damping, units.of("damping", "N s/m")),
-            (ground.base_inertia, units.of("inertia", "kg m²")),
+            (ground.base_inertia or 0.0, units.of("inertia", "kg m²")),
         )
         k, turning, c, inertia = (f"{value / unit.size:.4g} {unit.name}" for value, unit in sums)
         lines.append(

@@ -1,7 +1,7 @@
 """Responses: forces, displacements, energies and peaks from a solution."""
 
 from rockflex.response._comparison import STATISTICS, Comparison
-from rockflex.response._demands import COMPARED_DEMANDS, DEMANDS
+from rockflex.response._demands import DEMANDS
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._exports import to_matlab, to_netcdf
 from rockflex.response._floors import FloorPeaks
@@ -45,7 +45,6 @@ from rockflex.response._tables import RESULT_UNITS, UNITS_OF_GROUND, UNITS_OF_HI
 __all__ = [
     "BALANCED",
     "BY_STORY",
-    "COMPARED_DEMANDS",
     "DEMANDS",
     "GLOBAL",
     "IMPACT_WINDOW",

@@ -176,16 +176,16 @@ def _page_of_report(
     return _with_decimal_commas(page) if decimal == "," else page, figures
 
 
-def _with_decimal_commas(shown: Any) -> Any:
+def _with_decimal_commas(part: Any) -> Any:
     """Return contents of a page with decimal commas; what users wrote, and versions, stay as they are."""
-    if isinstance(shown, str):
-        return with_decimal_commas(shown)
-    if isinstance(shown, list | tuple):
-        return type(shown)(map(_with_decimal_commas, shown))  # pyright: ignore[reportUnknownArgumentType]
-    if isinstance(shown, ReportPage | ReportTable | ReportFact | ReportCell | ReportedRecord | ReportAppendix):
-        own = [each.name for each in fields(shown) if each.name not in _AS_GIVEN]
-        return replace(shown, **{name: _with_decimal_commas(getattr(shown, name)) for name in own})
-    return shown
+    if isinstance(part, str):
+        return with_decimal_commas(part)
+    if isinstance(part, list | tuple):
+        return type(part)(map(_with_decimal_commas, part))  # pyright: ignore[reportUnknownArgumentType]
+    if isinstance(part, ReportPage | ReportTable | ReportFact | ReportCell | ReportedRecord | ReportAppendix):
+        own = [each.name for each in fields(part) if each.name not in _AS_GIVEN]
+        return replace(part, **{name: _with_decimal_commas(getattr(part, name)) for name in own})
+    return part
 
 
 def _refuse_unused_options(what: str, given: Collection[str], taken: Collection[str]) -> None:

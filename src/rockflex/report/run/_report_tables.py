@@ -152,7 +152,8 @@ def structure_kind_text(structure: Any) -> str:
 
 def structure_facts(p: RockingProperties, units: UnitSystem) -> list[ReportFact]:
     """Return the parameters of a structure."""
-    mass, length, ratio = (units.of(each) for each in ("mass", "length", "ratio"))
+    mass, length, ratio, g = (units.of(each) for each in ("mass", "length", "ratio", "acceleration"))
+    moment = units.of("moment", largest=p.resisting_moment)
     height = float(p.effective_height[0]) if p.n_modes else p.l0r / p.m_tot
     pivot = p.weaker_pivot
     slope = "h*_1/B" if p.n_modes else "h/B"
@@ -176,13 +177,8 @@ def structure_facts(p: RockingProperties, units: UnitSystem) -> list[ReportFact]
         *_rotation_limit_facts(p, units.of("rotation")),
         value_fact("Inertia about a pivot I_θ", pivot.i_theta, units.of("inertia"), "i_theta", 4),
         *held,
-        value_fact(
-            *("Resisting moment M_r", p.resisting_moment, units.of("moment", largest=p.resisting_moment)),
-            *("resisting_moment", 4),
-        ),
-        value_fact(
-            "Uplift at a_lift = M_r/L_0", p.uplift_acceleration, units.of("acceleration"), "uplift_acceleration"
-        ),
+        value_fact("Resisting moment M_r", p.resisting_moment, moment, "resisting_moment", 4),
+        value_fact("Uplift at a_lift = M_r/L_0", p.uplift_acceleration, g, "uplift_acceleration"),
     ]
 
 
@@ -224,15 +220,8 @@ def mode_table(p: RockingProperties, units: UnitSystem) -> ReportTable | None:
         total, empty = ReportCell(f"1–{p.n_modes}" if p.n_modes > MAX_MODES else "Σ"), ReportCell("")
         rows.append([total, empty, empty, value_cell(float(np.sum(shares)), "mass_share", 0.01), empty, empty, empty])
     share = "m*_n/m_tot" if p.base_mass is None else "m*_n/Σm"
-    heads = [
-        ("mode", ""),
-        ("T_n", "s"),
-        ("T*_n", "s"),
-        (share, "%"),
-        ("h*_n", length.name),
-        ("ζ_n", "%"),
-        ("ζ*_n", "%"),
-    ]
+    heads = [("mode", ""), ("T_n", "s"), ("T*_n", "s"), (share, "%"), ("h*_n", length.name)]
+    heads += [("ζ_n", "%"), ("ζ*_n", "%")]
     return ReportTable(heads, rows)
 
 
