@@ -14,11 +14,6 @@ def unit_with_prefix(largest: float, unit: str) -> tuple[float, str]:
     return 1.0, unit
 
 
-def moment_unit(largest: float) -> tuple[float, str]:
-    """Divisor and name of the unit of moments up to `largest` N m in a table: MN m from 10 MN m on, else kN m."""
-    return (1e6, "MN m") if largest >= 1e7 else (1e3, "kN m")
-
-
 def short_number(value: float) -> str:
     """Three significant digits without trailing zeros, and without an exponent from 1e-4 up to a million."""
     return f"{float(f'{value:.3g}'):g}".replace("-", "−")

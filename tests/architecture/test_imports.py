@@ -62,6 +62,7 @@ FOUNDATION = {
     "_registry",
     "_schema",
     "_shown",
+    "_units",
     "_values",
     "_versions",
 }  # every layer may import these; they only each other

@@ -17,7 +17,6 @@ from typer.testing import CliRunner
 
 import rockflex
 from rockflex import InputError
-from rockflex._number_format import moment_unit
 from rockflex.cli import _console, app
 from rockflex.cli import _output as output
 from rockflex.study import progress
@@ -183,11 +182,6 @@ def test_file_names():
 )
 def test_numbers_in_tables(value, text):
     assert _console.number(value) == text
-
-
-@pytest.mark.parametrize(("largest", "unit"), [(9.99e6, "kN m"), (1e7, "MN m")])
-def test_unit_of_moments(largest, unit):
-    assert moment_unit(largest)[1] == unit
 
 
 ROOT = Path(__file__).parents[2]

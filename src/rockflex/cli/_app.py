@@ -2,6 +2,7 @@
 
 import sys
 from contextlib import suppress
+from contextvars import copy_context
 from typing import Annotated, Any
 
 import typer
@@ -78,7 +79,7 @@ class RockflexCommands(TyperGroup):
         """Run the command."""
         try:
             with console.printing_warnings_as_remarks():
-                return super().invoke(ctx)
+                return copy_context().run(super().invoke, ctx)
         except (InputError, SolverError) as error:
             console.print_error(str(error))
             raise typer.Exit(2 if isinstance(error, InputError) else 1) from error

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rockflex._errors import InputError
+from rockflex._units import UnitSystem
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
@@ -63,6 +64,8 @@ def check(
     workers: Annotated[int | None, typer.Option(min=1, metavar="N", help="Threads. Default: one per core.")] = None,
     work_limit: options.WorkLimit = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 if a limit is exceeded.")] = False,
+    output_units: options.OutputUnits = None,
+    decimal_comma: options.DecimalComma = False,
     json: options.Json = False,
     report: Annotated[Path | None, options.option("--report", "FILE.html", "Write a report of the set.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier report.")] = False,
@@ -126,11 +129,13 @@ def check(
         typer.echo(output.to_json(document))
     else:
         console.print_line(loaded.title)
-        _print_set(found)
-        _print_checks(table)
+        shown = UnitSystem(output_units or "kN")
+        _print_set(found, shown)
+        _print_checks(table, shown)
     console.print_warnings((*loaded.warnings, *found.warnings))
     if page is not None:
-        write_report(found, page, structure=loaded.built, title=loaded.name, limits=given)
+        written = options.report_format(output_units, comma=decimal_comma)
+        write_report(found, page, structure=loaded.built, title=loaded.name, limits=given, **written)
         console.print_remark(f"Written to {page}")
     if strict and not table.ok:
         raise typer.Exit(1)
@@ -160,43 +165,39 @@ def read_limits(file: Path | None) -> "CheckLimits":
         raise InputError(str(error), field=error.field, place=str(file)) from error
 
 
-def _print_set(found: "RecordSet") -> None:
+def _print_set(found: "RecordSet", units: UnitSystem) -> None:
     from rockflex.response import DEMANDS
 
     peaks, statistics = found.peaks, found.statistics
-    shown = [name for name in OF_RECORDS if name in statistics.index]
+    shown = {name: DEMANDS[name].unit_in(units) for name in OF_RECORDS if name in statistics.index}
     rows = [
         [
             str(motion),
             str(row["status"]).replace("_", " "),
-            *(console.number(row[name] / DEMANDS[name].size) for name in shown),
+            *(console.number(row[name] / unit.size) for name, unit in shown.items()),
         ]
         for motion, row in peaks.iterrows()
     ]
     console.print_line()
-    heads = [f"{DEMANDS[name].symbol} [{DEMANDS[name].unit}]" for name in shown]
+    heads = [unit.heading(DEMANDS[name].symbol) for name, unit in shown.items()]
     console.print_rows(("record", "status", *heads), rows, 2)
     console.print_line()
     rows = [
-        [
-            DEMANDS[name].symbol,
-            DEMANDS[name].unit,
-            *(console.number(row[column] / DEMANDS[name].size) for column in STATISTICS),
-        ]
+        [DEMANDS[name].symbol, unit, *(console.number(row[column] / size) for column in STATISTICS)]
         for name, row in zip(map(str, statistics.index), statistics.to_dict("records"), strict=True)
+        for size, unit in (DEMANDS[name].unit_in(units),)
     ]
     console.print_rows(("demand", "unit", *STATISTICS.values()), rows, 2)
     for reason in dict.fromkeys(statistics["reason"]):
         console.print_line(f"design: {reason}")
 
 
-def _print_checks(table: "CheckTable") -> None:
+def _print_checks(table: "CheckTable", units: UnitSystem) -> None:
     from rockflex.response import NO_LIMIT
 
     console.print_line()
-    console.print_rows(
-        ("check", "", "demand", "limit", "unit", "ratio", "source of the limit"), map(_check_cells, table.rows), 2
-    )
+    heads = ("check", "", "demand", "limit", "unit", "ratio", "source of the limit")
+    console.print_rows(heads, [_check_cells(row, units) for row in table.rows], 2)
     for name, lacks in table.missing:
         if not lacks.startswith(NO_LIMIT):
             console.print_line(f"not checked: {name}: {lacks}")
@@ -205,8 +206,10 @@ def _print_checks(table: "CheckTable") -> None:
         console.print_line(f"without a limit: {', '.join(unlimited)}", wrap=True)
 
 
-def _check_cells(row: "Check") -> list[str]:
-    demand, limit, unit = row.in_table
+def _check_cells(row: "Check", units: UnitSystem) -> list[str]:
+    from rockflex.response import check_in_units
+
+    demand, limit, unit = check_in_units(row, units)
     verdict = console.StyledCell(*VERDICTS[row.ok])
     sign = "≥ " if row.at_least else ""
     return [row.name, verdict, console.number(demand), sign + console.number(limit), unit, console.number(row.ratio, 3),

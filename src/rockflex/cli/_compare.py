@@ -8,6 +8,7 @@ import typer
 
 from rockflex._errors import InputError
 from rockflex._schema import GroundSchema, ImpactSchema, InitialStateSchema, SpringBedSchema
+from rockflex._units import UnitSystem
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
@@ -51,6 +52,8 @@ def compare(
     free_vibration: options.FreeVibration = "0",
     workers: Annotated[int | None, typer.Option(min=1, metavar="N", help="Threads. Default: one per core.")] = None,
     work_limit: options.WorkLimit = None,
+    output_units: options.OutputUnits = None,
+    decimal_comma: options.DecimalComma = False,
     json: options.Json = False,
     out: Annotated[
         Path | None, options.option("--out -o", "FILE.html", "Write a report on one sheet of A4.", show_default=False)
@@ -70,7 +73,7 @@ def compare(
     from rockflex.cli._run_options import number_or_word, parse_work_limit
     from rockflex.cli._run_results import checked_path_of_report
     from rockflex.report import write_report
-    from rockflex.response import COMPARED_DEMANDS, STATISTICS
+    from rockflex.response import DEMANDS, STATISTICS
     from rockflex.study import compare as run
 
     page = None if out is None else checked_path_of_report(out, force=force, flag="--out")
@@ -103,14 +106,17 @@ def compare(
     else:
         first, *others = names
         head = ["demand", *(["records"] if several else []), *names, *(f"{name} to {first} [%]" for name in others)]
+        units_shown = UnitSystem(output_units or "SI")
         rows = [
             [
-                f"{COMPARED_DEMANDS[str(demand)].symbol} [{COMPARED_DEMANDS[str(demand)].unit or '-'}]",
+                f"{known.compared_as or known.symbol} [{unit or '-'}]",
                 *([STATISTICS[each]] if several else []),
-                *(console.number(float(value)) for value in values.loc[demand]),
+                *(console.number(float(value) / size) for value in values.loc[demand]),
                 *(console.number(float(value), 3) for value in differences.loc[demand]),
             ]
             for demand in tables[shown[0]][0].index
+            for known in (DEMANDS[str(demand)],)
+            for size, unit in (units_shown.of(known.quantity),)
             for each, (values, differences) in tables.items()
         ]
         among = f"; {comparison.motion.name} governs" if several else f": {comparison.motion.name}"
@@ -120,7 +126,7 @@ def compare(
     counts = zip(names, comparison.overturned, strict=True)
     console.print_warnings(f"{name} overturned under {n} of {len(found)} records" for name, n in counts if n)
     if page is not None:
-        write_report(comparison, page)
+        write_report(comparison, page, **options.report_format(output_units, comma=decimal_comma))
         console.print_remark(f"Written to {page}; any browser prints it on one sheet of A4")
 
 

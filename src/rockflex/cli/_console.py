@@ -4,14 +4,29 @@ import math
 import warnings
 from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any, Self
 
 from rockflex._errors import RecordWarning
+from rockflex._units import with_decimal_commas
 from rockflex.study.progress import progress_bar, progress_counter
 
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
+
+
+_DECIMAL_COMMA = ContextVar("decimal_comma", default=False)
+
+
+def choose_decimal_comma(chosen: bool) -> bool:
+    """Print decimal commas from here to the end of the command, if they are chosen."""
+    _DECIMAL_COMMA.set(chosen)
+    return chosen
+
+
+def _printed(text: str) -> str:
+    return with_decimal_commas(text) if _DECIMAL_COMMA.get() else text
 
 
 def print_error(message: str) -> None:
@@ -33,7 +48,7 @@ def print_remark(message: str) -> None:
 def print_warnings(messages: Iterable[str]) -> None:
     """Print warnings to stderr."""
     for message in messages:
-        print_remark(f"Warning: {message}")
+        print_remark(_printed(f"Warning: {message}"))
 
 
 @contextmanager
@@ -58,7 +73,7 @@ def printing_warnings_as_remarks() -> Generator[None]:
 
 def print_line(text: str = "", style: str | None = None, *, wrap: bool = False) -> None:
     """Print text to stdout; long lines are broken at the width of the terminal only if `wrap` is set."""
-    _stdout().print(text, style=style, markup=False, soft_wrap=not wrap)
+    _stdout().print(_printed(text), style=style, markup=False, soft_wrap=not wrap)
 
 
 def _stdout(width: int | None = None) -> "Console":
@@ -92,7 +107,7 @@ def table(headings: Sequence[str], rows: Iterable[Sequence[str]], n_left: int = 
         text = Text(heading.replace(" [", "\n[").replace("u_top ", "u_top\n"))
         table.add_column(text, justify="left" if place < n_left else "right", no_wrap=True, vertical="bottom")
     for row in rows:
-        table.add_row(*(Text(cell, style=getattr(cell, "style", "")) for cell in row))
+        table.add_row(*(Text(_printed(cell), style=getattr(cell, "style", "")) for cell in row))
     return table
 
 

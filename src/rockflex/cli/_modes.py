@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rockflex._errors import InputError
-from rockflex._number_format import moment_unit
 from rockflex._schema import FrameFlags
+from rockflex._units import UnitSystem
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
@@ -72,6 +72,8 @@ def modes(
             "--adequacy", help="Report how many modes the structure needs, and why; --modes does not limit this."
         ),
     ] = False,
+    output_units: options.OutputUnits = None,
+    decimal_comma: options.DecimalComma = False,  # noqa: ARG001  its callback tells the console
     json: options.Json = False,
     out: options.Out = None,
     force: options.Force = False,
@@ -114,7 +116,7 @@ def modes(
     if json:
         typer.echo(output.to_json(document))
     else:
-        print_modes(loaded, rows, lifted, properties)
+        print_modes(loaded, rows, lifted, properties, UnitSystem(output_units or "kN"))
         if need is not None:
             _print_adequacy(need)
     console.print_warnings(document["warnings"])
@@ -210,13 +212,17 @@ def _write_modes(
 Rows = list[dict[str, Any]]
 
 
-def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "RockingProperties") -> None:
+def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "RockingProperties", units: UnitSystem) -> None:
     """Print the modes on a fixed base and while uplifted, and the rocking parameters, for each edge if they differ."""
     console.print_line(f"{loaded.title}\n")
     share = "m*_n/m_tot" if loaded.base_mass is None else "m*_n/Σm"
     if rows:
-        headings = ("mode", "T_n [s]", "ω_n [rad/s]", share, "h*_n [m]", "Γ_n φ_top", "ζ_n")
-        console.print_rows(headings, _mode_cells(rows, "period omega mass_share effective_height top_ordinate zeta"))
+        length = units.of("length")
+        headings = ("mode", "T_n [s]", "ω_n [rad/s]", share, length.heading("h*_n"), "Γ_n φ_top", "ζ_n")
+        measured = [{**row, "effective_height": row["effective_height"] / length.size} for row in rows]
+        console.print_rows(
+            headings, _mode_cells(measured, "period omega mass_share effective_height top_ordinate zeta")
+        )
         for side in ("",) if p.symmetric else ("right", "left"):
             about = f" about the {side} edge" if side else ""
             note = "" if side == "left" else "; with fewer (--modes) ζ*_n differs"
@@ -226,21 +232,23 @@ def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "Rocking
             console.print_rows(headings, _mode_cells(kept, "period omega ratio zeta"))
         console.print_line()
     total = sum(float(row["mass_share"]) for row in rows)
-    values = (
-        *_named_cells(rows, f"Sum of {share}", total, ""),
-        *_named_cells(p.symmetric, "Moment of inertia about a pivot, I_θ", p.i_theta, "kg m²"),
-        *_named_cells(True, "First moment of mass, L_0^r", p.l0r, "kg m"),
-        *_named_cells(True, "Total mass with the base, m_tot", p.m_tot, "kg"),
-        *_named_cells(p.leaning_mass, "Leaning mass", p.leaning_mass, "kg"),
-        *_named_cells(p.leaning_mass, "Share of the weight on the base", p.weight_share, ""),
-        *_named_cells(True, "Half width of the base, B", p.half_width, "m"),
-        *_named_cells(p.eccentricity, "Masses to the right of its middle, e", p.eccentricity, "m"),
-        *_named_cells(p.tendons, "Initial force of the tendons, P", p.prestress / 1e3, "kN"),
+    values: tuple[tuple[object, str, float, tuple[str, ...]], ...] = (
+        (rows, f"Sum of {share}", total, ("ratio",)),
+        (p.symmetric, "Moment of inertia about a pivot, I_θ", p.i_theta, ("inertia", "kg m²")),
+        (True, "First moment of mass, L_0^r", p.l0r, ("first moment of mass", "kg m")),
+        (True, "Total mass with the base, m_tot", p.m_tot, ("mass", "kg")),
+        (p.leaning_mass, "Leaning mass", p.leaning_mass, ("mass", "kg")),
+        (p.leaning_mass, "Share of the weight on the base", p.weight_share, ("ratio",)),
+        (True, "Half width of the base, B", p.half_width, ("length",)),
+        (p.eccentricity, "Masses to the right of its middle, e", p.eccentricity, ("length",)),
+        (p.tendons, "Initial force of the tendons, P", p.prestress, ("force",)),
     )
-    of_pivots = _parameters_of_pivots(p)
+    wanted = ((name, value, units.of(*quantity)) for asked, name, value, quantity in values if asked)
+    cells = [(name, console.number(value / size), unit) for name, value, (size, unit) in wanted]
+    of_pivots = _parameters_of_pivots(p, units)
     # Where both pivots are alike, one column has the values of both.
     console.print_rows(
-        ("Rocking", "", ""), (*values, *((name, right, unit) for name, right, _, unit in of_pivots if p.symmetric))
+        ("Rocking", "", ""), (*cells, *((name, right, unit) for name, right, _, unit in of_pivots if p.symmetric))
     )
     if not p.symmetric:
         console.print_line()
@@ -249,46 +257,47 @@ def print_modes(loaded: "LoadedStructure", rows: Rows, lifted: Rows, p: "Rocking
         from rockflex.cli._structures import elements_table
 
         console.print_line("\nBetween base and ground, x to the right of the masses")
-        console.print_table(elements_table(p.elements))
+        console.print_table(elements_table(p.elements, units))
 
 
-def _named_cells(wanted: object, name: str, value: float, unit: str) -> list[tuple[str, str, str]]:
-    """Return the row of a value, if it is wanted."""
-    return [(name, console.number(value), unit)] if wanted else []
-
-
-def _parameters_of_pivots(p: "RockingProperties") -> list[tuple[str, str, str, str]]:
+def _parameters_of_pivots(p: "RockingProperties", units: UnitSystem) -> list[tuple[str, str, str, str]]:
     """Return the name, the values about the right and the left pivot, and the unit of what depends on the pivot."""
-    size, unit = moment_unit(p.resisting_moment)
-    right, left = p.pivot(1), p.pivot(-1)
+    right, left, moment = p.pivot(1), p.pivot(-1), units.of("moment", largest=p.resisting_moment).name
     rows: list[tuple[str, str, str, str]] = []
 
-    def row(name: str, of: "Callable[[Pivot], float | str]", unit: str) -> None:
-        first, second = (each if isinstance(each, str) else console.number(each) for each in (of(right), of(left)))
-        rows.append((name, first, second, unit))
+    def row(name: str, of: "Callable[[Pivot], float | str]", *quantity: str) -> None:
+        unit = units.of(*quantity, largest=p.resisting_moment)
+        both = (of(right), of(left))
+        first, second = (each if isinstance(each, str) else console.number(each / unit.size) for each in both)
+        rows.append((name, first, second, unit.name))
 
     width = "B" if p.symmetric else "b"
     slenderness = f"{width}/h*_1" if p.n_modes else f"{width} m_tot/L_0^r"
     if not p.symmetric:
-        row("Distance from the masses, b", lambda pivot: pivot.arm, "m")
-        row("Moment of inertia, I_θ", lambda pivot: pivot.i_theta, "kg m²")
+        row("Distance from the masses, b", lambda pivot: pivot.arm, "length")
+        row("Moment of inertia, I_θ", lambda pivot: pivot.i_theta, "inertia", "kg m²")
     if p.tendons:
         name = "Their stiffness while rocking" if p.symmetric else "Stiffness of the tendons"
-        row(name, lambda pivot: pivot.tendon_stiffness / size, f"{unit}/rad")
+        row(name, lambda pivot: pivot.tendon_stiffness, "rotational stiffness", f"{moment}/rad")
     formula = f" = {'(m_tot g + P)' if p.tendons else 'm_tot g'} B" if p.symmetric else ""
-    row(f"Resisting moment, M_r{formula}", lambda pivot: pivot.resisting_moment / size, unit)
+    row(f"Resisting moment, M_r{formula}", lambda pivot: pivot.resisting_moment, "moment")
     formula = " = M_r/L_0^r" if p.symmetric else ""
-    row(f"Static uplift at a_lift{formula}", lambda pivot: pivot.uplift_acceleration, "m/s²")
+    row(f"Static uplift at a_lift{formula}", lambda pivot: pivot.uplift_acceleration, "acceleration", "m/s²")
     if right.dissipator_moment or left.dissipator_moment:
-        row("Moment of the dissipators, M_d", lambda pivot: pivot.dissipator_moment / size, unit)
-        row("Re-centring ratio, M_r/M_d", lambda pivot: pivot.recentring_ratio, "")
+        row("Moment of the dissipators, M_d", lambda pivot: pivot.dissipator_moment, "moment")
+        row("Re-centring ratio, M_r/M_d", lambda pivot: pivot.recentring_ratio, "ratio")
         row(
             "Least moment that lifts it after yielding, M_r - M_d",
-            lambda pivot: max(pivot.resisting_moment - pivot.dissipator_moment, 0.0) / size,
-            unit,
+            lambda pivot: max(pivot.resisting_moment - pivot.dissipator_moment, 0.0),
+            "moment",
         )
-        row("Self-centring", lambda pivot: "yes" if pivot.self_centring else "no: it may stay open", "")
-    row(f"Nominal limit, 0.7 atan({slenderness})", lambda pivot: pivot.nominal_overturning_rotation, "rad")
+        row("Self-centring", lambda pivot: "yes" if pivot.self_centring else "no: it may stay open", "ratio")
+    row(
+        f"Nominal limit, 0.7 atan({slenderness})",
+        lambda pivot: pivot.nominal_overturning_rotation,
+        "rotation",
+        "rad",
+    )
     return rows
 
 

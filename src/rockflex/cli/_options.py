@@ -23,6 +23,8 @@ from rockflex._schema import (
     command_line_flag,
     schema_keys,
 )
+from rockflex._units import SystemName
+from rockflex.cli._console import choose_decimal_comma
 
 FRAME = "Structure by flags (all eight), in place of a file"
 GROUND = "Ground: springs under the base, and friction"
@@ -97,6 +99,11 @@ def flag_values(ctx: typer.Context, table: type) -> dict[str, Any]:
 def flags_of_tables(*tables: type) -> dict[str, str]:
     """Return the flag of each key of some tables."""
     return {name: command_line_flag(name, key) for table in tables for name, _, key in schema_keys(table)}
+
+
+def report_format(units: SystemName | None, *, comma: bool) -> dict[str, Any]:
+    """Return the arguments of `write_report` that ``--output-units`` and ``--decimal-comma`` give."""
+    return {"units": units or "kN", "decimal": "," if comma else "."}
 
 
 @contextmanager
@@ -226,6 +233,18 @@ OnError = Annotated[
         "raise|skip",
         "If files cannot be read: stop and list them all, or skip them.",
         rich_help_panel=RECORD_FILES,
+    ),
+]
+OutputUnits = Annotated[
+    SystemName | None,
+    option("--output-units", "|".join(get_args(SystemName)), "Units of tables and reports; inputs stay in SI units."),
+]
+DecimalComma = Annotated[
+    bool,
+    typer.Option(
+        "--decimal-comma",
+        callback=choose_decimal_comma,
+        help="Write decimal commas in tables and reports, not in --json and the files of --out.",
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print only one JSON document, in SI units.")]

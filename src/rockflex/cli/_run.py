@@ -6,6 +6,7 @@ import typer
 
 from rockflex._errors import InputError
 from rockflex._schema import ReportKeys
+from rockflex._units import UnitSystem
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
@@ -52,6 +53,8 @@ def run(
     ] = None,
     work_limit: options.WorkLimit = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 if any run could not be solved.")] = False,
+    output_units: options.OutputUnits = None,
+    decimal_comma: options.DecimalComma = False,
     json: options.Json = False,
     out: options.Out = None,
     figures: options.Figures = 4,
@@ -72,7 +75,7 @@ def run(
 ) -> None:
     """Simulate a structure under ground motions and print the peaks of each run.
 
-    Peaks are those of the continuous motion, also between samples. All values are in kg, m, s, N and rad.
+    Peaks are those of the continuous motion, also between samples. All inputs are in kg, m, s, N and rad.
     """
     from time import perf_counter
 
@@ -125,11 +128,11 @@ def run(
     if json:
         typer.echo(output.to_json(document))
     else:
-        print_run_peaks(loaded.title, batch, runs, elapsed, times=times)
+        print_run_peaks(loaded.title, batch, runs, elapsed, times=times, units=UnitSystem(output_units or "kN"))
     console.print_warnings(document["warnings"])
     print_run_warnings(runs)
     failed = print_failed_runs(runs)
     if page is not None:
-        write_report_of_run(page, loaded, batch, runs, head)
+        write_report_of_run(page, loaded, batch, runs, head | options.report_format(output_units, comma=decimal_comma))
     if failed and strict:
         raise typer.Exit(1)

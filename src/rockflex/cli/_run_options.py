@@ -10,6 +10,7 @@ import typer
 
 from rockflex._errors import InputError
 from rockflex._schema import BoucWenSchema, GroundSchema, ImpactSchema, InitialStateSchema, SpringBedSchema
+from rockflex._units import UnitSystem
 from rockflex.cli._options import flag_values, flags_of_tables, naming_flags_in_errors
 from rockflex.cli._structures import LoadedStructure
 from rockflex.modal import Ground, RockingProperties
@@ -32,16 +33,22 @@ _FIELDS = {f"ground.{name}": (name, flag) for name, flag in flags_of_tables(Grou
 }
 
 
-def lines_about_ground(ground: Ground, properties: RockingProperties) -> list[str]:
+def lines_about_ground(ground: Ground, properties: RockingProperties, units: UnitSystem) -> list[str]:
     """Return the ground under a structure in lines, for the head of a table."""
     lines: list[str] = []
     if ground.springs is not None:
         springs = ground.springs
         ratio = 0.5 * springs.total_damping / math.sqrt(springs.total_stiffness * properties.m_tot)
+        sums = (
+            (springs.total_stiffness, units.of("stiffness", "N/m")),
+            (springs.rotational_stiffness, units.of("rotational stiffness", "N m/rad")),
+            (springs.total_damping, units.of("damping", "N s/m")),
+            (ground.base_inertia or 0.0, units.of("inertia", "kg m²")),
+        )
+        k, turning, c, inertia = (f"{value / unit.size:.4g} {unit.name}" for value, unit in sums)
         lines.append(
-            f"Ground: {springs.n} springs, Σk = {springs.total_stiffness:.4g} N/m, Σk x² = "
-            f"{springs.rotational_stiffness:.4g} N m/rad, Σc = {springs.total_damping:.4g} N s/m ({ratio:.3g} of "
-            f"critical in heave), I_b = {ground.base_inertia:.4g} kg m²"
+            f"Ground: {springs.n} springs, Σk = {k}, Σk x² = {turning}, Σc = {c} ({ratio:.3g} of critical in heave), "
+            f"I_b = {inertia}"
         )
     if ground.friction is not None:
         least, most = np.min(ground.friction), np.max(ground.friction)
@@ -85,22 +92,23 @@ def describe_run_options(options: RunOptions, ground: dict[str, Any]) -> dict[st
     return described | ({"ground": ground} if ground else {})
 
 
-def lines_about_run_options(options: RunOptions, properties: RockingProperties) -> list[str]:
+def lines_about_run_options(options: RunOptions, properties: RockingProperties, units: UnitSystem) -> list[str]:
     """Return the options that were given in lines, for the head of a table of runs of a structure."""
     lines: list[str] = []
     if options.impact is not None:
         e = f", e = {options.impact.e:g}" if isinstance(options.impact, Restitution) else ""
         lines.append(f"Impact: {impact_law_name(options.impact)}{e}")
     if options.bouc_wen is not None:
-        b = options.bouc_wen
+        b, (size, unit) = options.bouc_wen, units.of("displacement", "m")
         lines.append(
-            f"Hysteresis of -BW: D_y = {b.yield_displacement:g} m, α = {b.post_yield_ratio:g}, γ = {b.gamma:g}, "
-            f"β = {b.beta:g}, n = {b.exponent:g}"
+            f"Hysteresis of -BW: D_y = {b.yield_displacement / size:g} {unit}, α = {b.post_yield_ratio:g}, "
+            f"γ = {b.gamma:g}, β = {b.beta:g}, n = {b.exponent:g}"
         )
     if options.initial is not None:
-        lines.append(f"At rest at θ = {options.initial.rotation:g} rad at t = 0")
+        size, unit = units.of("rotation", "rad")
+        lines.append(f"At rest at θ = {options.initial.rotation / size:g} {unit} at t = 0")
     ground = ground_under_structure(properties, options.ground)
-    return lines if ground is None else [*lines, *lines_about_ground(ground, properties)]
+    return lines if ground is None else [*lines, *lines_about_ground(ground, properties, units)]
 
 
 def make_run_options(context: typer.Context, loaded: LoadedStructure) -> tuple[RunOptions, dict[str, Any]]:

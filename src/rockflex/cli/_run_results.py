@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockflex._errors import InputError
-from rockflex._number_format import moment_unit
 from rockflex._schema import schema_keys
 from rockflex._shown import number_with_noun, shortened
+from rockflex._units import UnitSystem
 from rockflex.cli import _console as console
 from rockflex.cli import _output as output
 from rockflex.cli._batch import SLIDING, BatchRun, RunBatch
@@ -52,27 +52,29 @@ STYLES = {"overturned": "bold red", "failed": "bold magenta", "rocking": "yellow
 Columns = list[tuple[str, list[str]]]
 
 
-def print_run_peaks(title: str, batch: RunBatch, runs: Sequence[BatchRun], elapsed: float, *, times: bool) -> None:
+def print_run_peaks(
+    title: str, batch: RunBatch, runs: Sequence[BatchRun], elapsed: float, *, times: bool, units: UnitSystem
+) -> None:
     """Print the peaks of every run, and their times if requested; by motion if the terminal is narrow."""
     for line in (
         title,
-        *lines_about_run_options(batch.options, batch.properties),
-        *_vertical_component_names(batch.motions),
+        *lines_about_run_options(batch.options, batch.properties, units),
+        *_vertical_component_names(batch.motions, units),
     ):
         console.print_line(line)
-    elements, base = batch.properties.elements, _base_motion_columns(batch, runs)
-    peaks, ground = _peak_columns(runs), _columns_of_peaks(runs, REACTIONS) + base
+    elements, base = batch.properties.elements, _base_motion_columns(batch, runs, units)
+    peaks, ground = _peak_columns(runs, units), _columns_of_peaks(runs, REACTIONS, units) + base
     tables = [(peaks + ground, 1)]
     if not console.table_fits(_table_of_all_runs(batch, runs, *tables[0])):
         tables = [(peaks, 1), (ground, 0)]
     if times:
-        tables.append((_columns_of_peaks(runs, PEAK_TIMES, digits=5), 0))
+        tables.append((_columns_of_peaks(runs, PEAK_TIMES, units, digits=5), 0))
     if batch.friction is not None:
         tables.append((_sliding_columns(runs), 0))
     if elements:
         console.print_line("\nElements" if any(each.attached for each in elements) else "\nBetween base and ground")
-        console.print_table(elements_table(elements))
-    tables += [(columns, 0) for columns in _numbered_columns(runs) if columns]
+        console.print_table(elements_table(elements, units))
+    tables += [(columns, 0) for columns in _numbered_columns(runs, units) if columns]
     for columns, n_words in tables:
         _print_columns(batch, runs, columns, n_words)
     for line in _legend(batch, runs, base):
@@ -134,64 +136,69 @@ def _print_first_lines(found: Sequence[str], rest: str) -> None:
         console.print_remark(rest.format(len(found) - MAX_LISTED))
 
 
-# Heading, name of the peak, and the unit of the column in that of the peak.
-Peaks = Sequence[tuple[str, str, float]]
-REACTIONS: Peaks = (("ΣF_x [kN]", "max_horizontal_reaction", 1e3), ("N_min [kN]", "min_vertical_reaction", 1e3))
-SLIPS: Peaks = (("slip [mm]", "max_slip", 1e-3), ("x_end [mm]", "residual_slip", 1e-3))
-EDGES: Peaks = (("edge up [mm]", "max_edge_uplift", 1e-3), ("edge down [mm]", "max_edge_settlement", 1e-3))
+# Name of the column, name of the peak, kind of quantity, and its usual unit as in `UnitSystem.of`.
+Peaks = Sequence[tuple[str, str, str] | tuple[str, str, str, str]]
+REACTIONS: Peaks = (("ΣF_x", "max_horizontal_reaction", "force"), ("N_min", "min_vertical_reaction", "force"))
+SLIPS: Peaks = (("slip", "max_slip", "displacement"), ("x_end", "residual_slip", "displacement"))
+EDGES: Peaks = (("edge up", "max_edge_uplift", "displacement"), ("edge down", "max_edge_settlement", "displacement"))
+PEAKS: Peaks = (
+    ("θ_max", "max_rotation", "rotation", "rad"),
+    ("u_top relative", "max_top_displacement", "displacement", "m"),
+    ("u_top total", "max_total_top_displacement", "displacement", "m"),
+    ("M_b", "max_base_moment", "moment"),
+    ("V_b", "max_base_shear", "force"),
+)
+TENDONS: Peaks = (("T", "max_tendon_force", "force"), ("T/F_y", "tendon_utilisation", "ratio"))
+RESIDUAL: Peaks = (("θ_end", "residual_rotation", "rotation", "rad"),)
 PEAK_TIMES: Peaks = (
-    ("t(θ_max) [s]", "time_of_max_rotation", 1.0),
-    ("t(u_top relative) [s]", "time_of_max_top_displacement", 1.0),
-    ("t(u_top total) [s]", "time_of_max_total_top_displacement", 1.0),
-    ("t(M_b) [s]", "time_of_max_base_moment", 1.0),
-    ("t(V_b) [s]", "time_of_max_base_shear", 1.0),
-    ("t(ΣF_x) [s]", "time_of_max_horizontal_reaction", 1.0),
-    ("t(N_min) [s]", "time_of_min_vertical_reaction", 1.0),
-    ("end [s]", "end_time", 1.0),
+    ("t(θ_max)", "time_of_max_rotation", "time"),
+    ("t(u_top relative)", "time_of_max_top_displacement", "time"),
+    ("t(u_top total)", "time_of_max_total_top_displacement", "time"),
+    ("t(M_b)", "time_of_max_base_moment", "time"),
+    ("t(V_b)", "time_of_max_base_shear", "time"),
+    ("t(ΣF_x)", "time_of_max_horizontal_reaction", "time"),
+    ("t(N_min)", "time_of_min_vertical_reaction", "time"),
+    ("end", "end_time", "time"),
 )
 
 
-def _columns_of_peaks(runs: Sequence[BatchRun], peaks: Peaks, digits: int = 4) -> Columns:
-    def cell(value: float | None, size: float) -> str:
-        return console.number(None if value is None else value / size, digits)
+def _columns_of_peaks(runs: Sequence[BatchRun], peaks: Peaks, units: UnitSystem, digits: int = 4) -> Columns:
+    columns: Columns = []
+    for symbol, name, *quantity in peaks:
+        values = [run.peaks[name] for run in runs]
+        unit = units.of(*quantity, largest=max(abs(value or 0.0) for value in values))
+        cells = [console.number(None if value is None else value / unit.size, digits) for value in values]
+        columns.append((unit.heading(symbol), cells))
+    return columns
 
-    return [(heading, [cell(run.peaks[name], size) for run in runs]) for heading, name, size in peaks]
 
-
-def _peak_columns(runs: Sequence[BatchRun]) -> Columns:
-    size, unit = moment_unit(max(abs(run.peaks["max_base_moment"] or 0.0) for run in runs))
-    peaks: list[tuple[str, str, float]] = [
-        ("θ_max [rad]", "max_rotation", 1.0),
-        ("u_top relative [m]", "max_top_displacement", 1.0),
-        ("u_top total [m]", "max_total_top_displacement", 1.0),
-        (f"M_b [{unit}]", "max_base_moment", size),
-        ("V_b [kN]", "max_base_shear", 1e3),
-    ]
+def _peak_columns(runs: Sequence[BatchRun], units: UnitSystem) -> Columns:
     columns: Columns = [
         ("status", [_run_status_text(run) for run in runs]),
-        *_columns_of_peaks(runs, peaks),
+        *_columns_of_peaks(runs, PEAKS, units),
         ("impacts", ["-" if run.error else str(run.peaks["n_impacts"]) for run in runs]),
     ]
     if any(run.peaks["max_tendon_force"] for run in runs):
-        columns += _columns_of_peaks(runs, [("T [kN]", "max_tendon_force", 1e3), ("T/F_y", "tendon_utilisation", 1.0)])
+        columns += _columns_of_peaks(runs, TENDONS, units)
     if any(run.elements and run.peaks["residual_rotation"] for run in runs):
-        columns += _columns_of_peaks(runs, [("θ_end [rad]", "residual_rotation", 1.0)])
+        columns += _columns_of_peaks(runs, RESIDUAL, units)
     times = [None if run.run_time is None else 1e3 * run.run_time for run in runs]
     return columns if set(times) == {None} else [*columns, ("time [ms]", [console.number(t, 3) for t in times])]
 
 
-def _base_motion_columns(batch: RunBatch, runs: Sequence[BatchRun]) -> Columns:
+def _base_motion_columns(batch: RunBatch, runs: Sequence[BatchRun], units: UnitSystem) -> Columns:
     """How far the base moves on a ground that lets it slide, or that gives."""
     ground = ground_under_structure(batch.properties, batch.options.ground)
     slips = SLIPS if ground is not None and ground.slides else ()
     edges = EDGES if ground is not None and ground.springs is not None else ()
-    return _columns_of_peaks(runs, [*slips, *edges])
+    return _columns_of_peaks(runs, [*slips, *edges], units)
 
 
-def _vertical_component_names(motions: Sequence[GroundMotion]) -> list[str]:
+def _vertical_component_names(motions: Sequence[GroundMotion], units: UnitSystem) -> list[str]:
     """Name the vertical components, if any."""
     upwards = [motion for motion in motions if motion.vertical is not None]
-    lines = [f"Vertical: {_record_source(motion)}, PVA = {motion.pva:.4g} m/s²" for motion in upwards[:MAX_LISTED]]
+    size, unit = units.of("acceleration", "m/s²")
+    lines = [f"Vertical: {_record_source(each)}, PVA = {each.pva / size:.4g} {unit}" for each in upwards[:MAX_LISTED]]
     return lines + ([f"and {len(upwards) - MAX_LISTED} more vertical components"] if len(upwards) > MAX_LISTED else [])
 
 
@@ -210,17 +217,21 @@ def _sliding_columns(runs: Sequence[BatchRun]) -> Columns:
     return [("μ_req", required[0]), ("μ_req [no impacts]", required[1]), ("slides at [s]", moments)]
 
 
-def _numbered_columns(runs: Sequence[BatchRun]) -> Iterator[Columns]:
+def _numbered_columns(runs: Sequence[BatchRun], units: UnitSystem) -> Iterator[Columns]:
     """The peaks of each element and each story that yields, by its number."""
-    for name, heading, unit in (
-        ("max_element_force", "F_{} [kN]", 1e3),
-        ("element_energy", "E_{} [kJ]", 1e3),
-        ("ductility", "μ_{}", 1.0),
-        ("residual_drift", "drift_{} [mm]", 1e-3),
+    for name, symbol, quantity in (
+        ("max_element_force", "F", "force"),
+        ("element_energy", "E", "energy"),
+        ("ductility", "μ", "ratio"),
+        ("residual_drift", "drift", "displacement"),
     ):
+        unit = units.of(quantity)
         values = [run.elements.get(name) for run in runs]
         yield [
-            (heading.format(k + 1), [console.number(None if each is None else each[k] / unit) for each in values])
+            (
+                unit.heading(f"{symbol}_{k + 1}"),
+                [console.number(None if each is None else each[k] / unit.size) for each in values],
+            )
             for k in range(max((len(each) for each in values if each is not None), default=0))
         ]
 

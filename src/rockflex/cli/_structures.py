@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from rockflex._errors import InputError
 from rockflex._schema import PLAIN, FrameFlags, FrameSchema, ReportKeys, SchemaKey
 from rockflex._shown import number_with_noun
+from rockflex._units import UnitSystem
 from rockflex.cli import _console as console
 from rockflex.cli._options import flags_of_tables, naming_flags_in_errors
 from rockflex.modal import (
@@ -49,16 +50,14 @@ ELEMENT_UNITS = {
     "coefficient": "N s/m",
     "force": "N",
 }
-_ELEMENT_HEADINGS = (
-    "no.",
-    "element",
-    "x [m]",
-    "k [kN/m]",
-    "c [kN s/m]",
-    "F_0 [kN]",
-    "strength [kN]",
-    "α",
-    "breaks at [m]",
+_ELEMENT_COLUMNS = (
+    ("x", "length"),
+    ("k", "stiffness", "kN/m"),
+    ("c", "damping"),
+    ("F_0", "force"),
+    ("strength", "force"),
+    ("α", "ratio"),
+    ("breaks at", "displacement", "m"),
 )
 _WORDS = 2  # columns of words
 
@@ -68,32 +67,35 @@ def describe_elements(elements: Sequence[BaseElement]) -> list[dict[str, Any]]:
     return [{"kind": _element_kind(each), **element_parameters(each)} for each in elements]
 
 
-def elements_table(elements: Sequence[BaseElement]) -> "Table":
+def elements_table(elements: Sequence[BaseElement], units: UnitSystem) -> "Table":
     """Return the table of elements, without the columns that none of them needs."""
-    rows = [(str(place), *_element_row(each)) for place, each in enumerate(elements, start=1)]
-    kept = [k for k in range(len(_ELEMENT_HEADINGS)) if k < _WORDS or any(row[k] != "-" for row in rows)]
-    return console.table([_ELEMENT_HEADINGS[k] for k in kept], ([row[k] for k in kept] for row in rows), _WORDS)
+    columns = [(symbol, units.of(*quantity)) for symbol, *quantity in _ELEMENT_COLUMNS]
+    headings = ["no.", "element", *(unit.heading(symbol) for symbol, unit in columns)]
+    sizes = [unit.size for _, unit in columns]
+    rows = [(str(place), *_element_row(each, sizes)) for place, each in enumerate(elements, start=1)]
+    kept = [k for k in range(len(headings)) if k < _WORDS or any(row[k] != "-" for row in rows)]
+    return console.table([headings[k] for k in kept], ([row[k] for k in kept] for row in rows), _WORDS)
 
 
-def _element_row(element: BaseElement) -> tuple[str, ...]:
+def _element_row(element: BaseElement, sizes: Sequence[float]) -> tuple[str, ...]:
     stiffness = damping = prestress = strength = ratio = breaks = None
     if isinstance(element, ElementLaw):
         given = {key: value for key, value in element_parameters(element).items() if isinstance(value, float)}
-        stiffness, strength = (given[key] / 1e3 if key in given else None for key in ("stiffness", "yield_force"))
-        ratio = given.get("post_yield_ratio")
+        stiffness, strength, ratio = map(given.get, ("stiffness", "yield_force", "post_yield_ratio"))
     if isinstance(element, Tendon | YieldingDissipator):
-        stiffness, strength = element.stiffness / 1e3, element.yield_force and element.yield_force / 1e3
+        stiffness, strength = element.stiffness, element.yield_force
         ratio, breaks = element.post_yield_ratio, element.rupture_elongation
     if isinstance(element, Tendon):
-        prestress = element.initial_force / 1e3
+        prestress = element.initial_force
     elif isinstance(element, ViscousDamper):
-        damping = element.coefficient / 1e3
+        damping = element.coefficient
     elif isinstance(element, FrictionDamper):
-        strength = element.force / 1e3
+        strength = element.force
     only = ", tension only" if isinstance(element, YieldingDissipator) and element.tension_only else ""
-    values = (stiffness, damping, prestress, strength, ratio, breaks)
-    place = element.where if element.attached else console.number(element.position)
-    return (_element_kind(element).replace("_", " ") + only, place, *map(console.number, values))
+    values = (None if element.attached else element.position, stiffness, damping, prestress, strength, ratio, breaks)
+    cells = [console.number(None if value is None else value / size) for value, size in zip(values, sizes, strict=True)]
+    place = element.where if element.attached else cells[0]
+    return (_element_kind(element).replace("_", " ") + only, place, *cells[1:])
 
 
 def _element_kind(element: BaseElement) -> str:

@@ -11,6 +11,7 @@ from rockflex._checks import checked_instance
 from rockflex._errors import InputError
 from rockflex._number_format import unit_with_prefix
 from rockflex._shown import few_texts_shown, shortened
+from rockflex._units import KN
 from rockflex.plot import _figures as figures
 from rockflex.plot._figures import BLACK, GRAY, GREEN, ORANGE, RED, SKY, SMALL, Size
 from rockflex.response import DEMANDS, RecordSet
@@ -95,7 +96,7 @@ def _draw_demand(axes: Axes, found: RecordSet, name: str) -> None:
     values, fallen = found.peaks[name].to_numpy(float), found.fallen
     row: Any = found.statistics.loc[name]
     stands = values[~fallen]
-    size, unit = DEMANDS[name].size, DEMANDS[name].unit
+    size, unit = DEMANDS[name].unit_in(KN)
     if unit.startswith("kN"):
         size, unit = unit_with_prefix(float(abs(stands).max(initial=0.0)), unit.removeprefix("k"))
     places = [place for place, fell in enumerate(fallen) if not fell]

@@ -1,12 +1,13 @@
 """Responses: forces, displacements, energies and peaks from a solution."""
 
-from rockflex.response._comparison import COMPARED_DEMANDS, STATISTICS, Comparison
+from rockflex.response._comparison import STATISTICS, Comparison
+from rockflex.response._demands import DEMANDS
 from rockflex.response._energy import EnergyLedger
 from rockflex.response._exports import to_matlab, to_netcdf
 from rockflex.response._floors import FloorPeaks
 from rockflex.response._friction import IMPACT_WINDOW, friction_coefficient
 from rockflex.response._history import History, SampledHistory
-from rockflex.response._limit_checks import NO_LIMIT, Check, CheckLimits, CheckTable, check
+from rockflex.response._limit_checks import NO_LIMIT, Check, CheckLimits, CheckTable, check, check_in_units
 from rockflex.response._moment_rotation import (
     MomentRotation,
     MomentRotationOnSprings,
@@ -18,7 +19,7 @@ from rockflex.response._moment_rotation import (
 from rockflex.response._peaks import GLOBAL, TrackedPeaks, tracked_quantities
 from rockflex.response._pushover import BilinearFit, Pushover, PushoverEvent, pushover_path
 from rockflex.response._quasi_static import static_path
-from rockflex.response._record_set import DEMANDS, RecordSet, Rule, checked_rule
+from rockflex.response._record_set import RecordSet, Rule, checked_rule
 from rockflex.response._respond import (
     BY_STORY,
     MAX_OF_STORIES,
@@ -44,7 +45,6 @@ from rockflex.response._tables import RESULT_UNITS, UNITS_OF_GROUND, UNITS_OF_HI
 __all__ = [
     "BALANCED",
     "BY_STORY",
-    "COMPARED_DEMANDS",
     "DEMANDS",
     "GLOBAL",
     "IMPACT_WINDOW",
@@ -75,6 +75,7 @@ __all__ = [
     "SampledHistory",
     "TrackedPeaks",
     "check",
+    "check_in_units",
     "checked_rule",
     "columns_of_responses",
     "complete_model_label",

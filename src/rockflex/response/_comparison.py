@@ -1,7 +1,7 @@
 """Alternatives side by side: their demands under the same records, and how these differ."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,35 +11,12 @@ from rockflex._errors import InputError
 from rockflex._shown import number_with_noun, shown
 from rockflex._values import Value
 from rockflex.motion import GroundMotion
+from rockflex.response._demands import COMPARED_DEMANDS
 from rockflex.response._response import Response
 
 if TYPE_CHECKING:
     import pandas as pd
 
-
-class Demand(NamedTuple):
-    """A demand that comparisons tell: its symbol, and its SI unit."""
-
-    symbol: str
-    unit: str
-
-
-COMPARED_DEMANDS = {
-    "max_rotation": Demand("θ_max", "rad"),
-    "balance_ratio": Demand("θ_max/α", ""),
-    "max_top_displacement": Demand("u_top relative", "m"),
-    "max_total_top_displacement": Demand("u_top total", "m"),
-    "max_story_drift": Demand("story drift", "m"),
-    "max_floor_acceleration": Demand("floor acceleration", "m/s²"),
-    "max_base_shear": Demand("V_b", "N"),
-    "max_base_moment": Demand("M_b", "N m"),
-    "tendon_utilisation": Demand("tendons, F/F_y", ""),
-    "max_edge_uplift": Demand("uplift of an edge", "m"),
-    "max_edge_settlement": Demand("settlement of an edge", "m"),
-    "max_slip": Demand("slip", "m"),
-    "residual_rotation": Demand("rotation left", "rad"),
-}
-"""The demands of a comparison by name; all but two are the scalars of a `Response`."""
 
 STATISTICS = {"median": "median", "p84": "84 %", "max": "largest", "mean": "mean"}
 """The statistics over records, and what tables call them."""

@@ -12,6 +12,7 @@ from rockflex._checks import checked_in_range, checked_instance, checked_positiv
 from rockflex._errors import InputError, MissingQuantityError
 from rockflex._html import HtmlTable
 from rockflex._shown import number_with_noun, shown
+from rockflex._units import UnitSystem
 from rockflex._values import Value
 from rockflex.modal import YieldingDissipator
 from rockflex.response._history import History
@@ -141,15 +142,15 @@ class Check:
         """Whether the limit is kept; None without one, and False where a record overturns and leaves no demand."""
         return None if self.ratio is None else self.ratio <= 1.0
 
-    @property
-    def in_table(self) -> tuple[float, float | None, str]:
-        """Demand, limit and unit as tables show them: in mrad, mm or kPa."""
-        size, unit = TABLE_UNITS.get(self.unit, (1.0, self.unit))
-        return self.demand / size, None if self.limit is None else self.limit / size, unit
-
 
 NO_LIMIT = "no limit: give"  # begins what a check lacks that only needs its limit
-TABLE_UNITS = {"rad": (1e-3, "mrad"), "m": (1e-3, "mm"), "Pa": (1e3, "kPa")}
+_QUANTITIES = {"": "ratio", "rad": "rotation", "m": "displacement", "Pa": "stress"}
+
+
+def check_in_units(check: Check, units: UnitSystem) -> tuple[float, float | None, str]:
+    """Return demand, limit and unit of a check as tables show them."""
+    size, unit = units.of(_QUANTITIES[check.unit])
+    return check.demand / size, None if check.limit is None else check.limit / size, unit
 
 
 @dataclass(frozen=True, repr=False)

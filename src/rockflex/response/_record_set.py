@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
@@ -12,9 +12,11 @@ from rockflex._checks import is_one_of
 from rockflex._errors import InputError
 from rockflex._html import HtmlTable
 from rockflex._shown import number_with_noun, shown
+from rockflex._units import KN
 from rockflex._values import Value
 from rockflex.modal import RockingProperties
 from rockflex.motion import GroundMotion, horizontal_pairs
+from rockflex.response._demands import DEMANDS, ONLY_COMPARED
 from rockflex.response._history import History
 from rockflex.response._quasi_static import static_path
 from rockflex.response._response import Response
@@ -42,32 +44,6 @@ RULES: Mapping[str, DesignRule] = {
     "ec8": DesignRule("EN 1998-1:2004, 4.3.3.4.3", 3, 7),
     "asce7": DesignRule("ASCE 7-16, 16.4.1", 11, 11),
     "asce7-ii": DesignRule("ASCE 7-16, 16.4.1.1, Risk Categories I and II", 11, 11, may_overturn=1),
-}
-
-
-class Demand(NamedTuple):
-    """A demand of a run: its symbol, and the unit of tables with its size in SI units."""
-
-    symbol: str
-    unit: str
-    size: float
-    worst_is_least: bool = False
-
-
-DEMANDS: Mapping[str, Demand] = {
-    "max_rotation": Demand("θ_max", "mrad", 1e-3),
-    "max_top_displacement": Demand("u_top", "mm", 1e-3),
-    "max_total_top_displacement": Demand("total u_top", "mm", 1e-3),
-    "max_story_drift": Demand("story drift", "mm", 1e-3),
-    "max_floor_acceleration": Demand("floor a", "m/s²", 1.0),
-    "max_base_moment": Demand("M_b", "kN m", 1e3),
-    "max_base_shear": Demand("V_b", "kN", 1e3),
-    "max_horizontal_reaction": Demand("ΣF_x", "kN", 1e3),
-    "min_vertical_reaction": Demand("N_min", "kN", 1e3, worst_is_least=True),
-    "max_tendon_force": Demand("tendon force", "kN", 1e3),
-    "max_slip": Demand("slip", "mm", 1e-3),
-    "max_edge_uplift": Demand("edge up", "mm", 1e-3),
-    "max_edge_settlement": Demand("edge down", "mm", 1e-3),
 }
 
 
@@ -171,9 +147,11 @@ class RecordSet(HtmlTable, Value):
         )
 
     def _shown_as(self) -> dict[str, Any]:
+        values = zip(map(str, self.statistics.index), self.statistics["design"], strict=True)
         design = {
-            f"{DEMANDS[name].symbol} [{DEMANDS[name].unit}]": float(value) / DEMANDS[name].size
-            for name, value in zip(map(str, self.statistics.index), self.statistics["design"], strict=True)
+            f"{DEMANDS[name].symbol} [{unit}]": float(value) / size
+            for name, value in values
+            for size, unit in (DEMANDS[name].unit_in(KN),)
         }
         return {
             "model": self.responses[0].model,
@@ -217,7 +195,7 @@ class RecordSet(HtmlTable, Value):
         peaks, fallen = self.peaks, self.fallen
         rows: dict[str, dict[str, Any]] = {}
         for name, demand in DEMANDS.items():
-            if name not in peaks or peaks[name].isna().any() or not peaks[name].any():
+            if name in ONLY_COMPARED or name not in peaks or peaks[name].isna().any() or not peaks[name].any():
                 continue
             values, least = peaks[name].to_numpy(float), demand.worst_is_least
             beyond = np.where(fallen, -math.inf if least else math.inf, values)

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
-from rockflex._constants import GRAVITY
-from rockflex._number_format import moment_unit
 from rockflex._shown import number_with_noun, shortened
+from rockflex._units import UnitSystem
 from rockflex.modal import RockingProperties
 from rockflex.report.run import _report_tables
 from rockflex.report.run._report_tables import ReportCell, ReportedRecord, ReportTable, value_cell
@@ -27,12 +26,9 @@ from rockflex.report.run._sheet import (
     first_warnings,
     line_count_of_text,
 )
-from rockflex.response import COMPARED_DEMANDS, STATISTICS, Comparison, History
+from rockflex.response import DEMANDS, STATISTICS, Comparison, History
 
 SHOWN = ("median", "p84")  # of the statistics, under several records
-_SIZES = {"rad": (1e-3, "mrad"), "m": (1e-3, "mm"), "N": (1e3, "kN"), "m/s²": (GRAVITY, "g")}
-
-
 _OUTLINES = 48.0  # height in mm of the structures
 _CELL_LETTERS = 60  # in a line of their elements
 
@@ -71,11 +67,11 @@ class ComparisonPage(OneSheet):
         ]
 
 
-def comparison_page(comparison: Comparison, texts: ReportTexts) -> tuple[ComparisonPage, Figures]:
+def comparison_page(comparison: Comparison, texts: ReportTexts, units: UnitSystem) -> tuple[ComparisonPage, Figures]:
     """Return the page of a comparison, and its figures."""
     from rockflex.plot import draw_alternatives
 
-    report = reported_alternatives(comparison)
+    report = reported_alternatives(comparison, units)
     record = _report_tables.reported_record(report)
     records, several = number_with_noun(comparison.n_records, "record"), comparison.n_records > 1
     usual = f"{', '.join(comparison.names)} under {records if several else record.name or 'a ground motion'}"
@@ -89,9 +85,9 @@ def comparison_page(comparison: Comparison, texts: ReportTexts) -> tuple[Compari
         texts=texts,
         several=several,
         records=f"of {records}: {' / '.join(STATISTICS[each] for each in SHOWN)}" if several else "",
-        alternatives=alternatives_table(comparison),
+        alternatives=alternatives_table(comparison, units),
         lines=[model_line(comparison), *_report_tables.assumption_lines(report)],
-        demands=demand_table(comparison),
+        demands=demand_table(comparison, units),
         record=record,
         warnings=first_warnings([*fell, *warnings_of_runs(report, ())]),
     )
@@ -99,18 +95,19 @@ def comparison_page(comparison: Comparison, texts: ReportTexts) -> tuple[Compari
     return page, {"outlines": ("The alternatives as they rock", outlines), **figures_of_runs(page, record, report)}
 
 
-def reported_alternatives(comparison: Comparison) -> ReportedRuns:
+def reported_alternatives(comparison: Comparison, units: UnitSystem) -> ReportedRuns:
     """Return the responses of the alternatives to the governing record, as the parts of a page take them."""
     runs = comparison.responses
     histories = tuple(run.history for run in runs if isinstance(run.history, History))
     first = histories[0].model.properties
-    return ReportedRuns(runs, histories, comparison.names, first, None, comparison.motion, 1.0)
+    return ReportedRuns(runs, histories, comparison.names, first, None, comparison.motion, 1.0, units)
 
 
-def alternatives_table(comparison: Comparison) -> ReportTable:
+def alternatives_table(comparison: Comparison, units: UnitSystem) -> ReportTable:
     """Return a row for each alternative: its kind, what decides its response, and its elements."""
-    heads = [("alternative", ""), ("structure", ""), ("m_tot", "t"), ("B", "m"), ("T_1", "s"), ("M_r", "MN m")]
-    heads.append(("elements", ""))
+    mass, length, moment = units.of("mass"), units.of("length"), units.of("moment", "MN m")
+    heads = [("alternative", ""), ("structure", ""), ("m_tot", mass.name), ("B", length.name), ("T_1", "s")]
+    heads += [("M_r", moment.name), ("elements", "")]
     rows: list[Sequence[ReportCell]] = []
     for name, structure in zip(comparison.names, comparison.structures, strict=True):
         p: RockingProperties = structure if isinstance(structure, RockingProperties) else structure.rocking()
@@ -118,11 +115,11 @@ def alternatives_table(comparison: Comparison) -> ReportTable:
             [
                 ReportCell(name),
                 ReportCell(_report_tables.structure_kind_text(structure)),
-                value_cell(p.m_tot, "m_tot", 1e3, 4),
-                value_cell(p.half_width, "half_width"),
+                value_cell(p.m_tot, "m_tot", mass.size, 4),
+                value_cell(p.half_width, "half_width", length.size),
                 value_cell(2.0 * math.pi / float(p.omega[0]) if p.n_modes else None, "period"),
-                value_cell(p.resisting_moment, "resisting_moment", 1e6),
-                ReportCell(_elements_text(p) or "–"),
+                value_cell(p.resisting_moment, "resisting_moment", moment.size),
+                ReportCell(_elements_text(p, units) or "–"),
             ]
         )
     return ReportTable(heads, rows)
@@ -135,12 +132,12 @@ def model_line(comparison: Comparison) -> tuple[str, str]:
     return "Model", labels[0] if len(set(labels)) == 1 else own
 
 
-def _elements_text(p: RockingProperties) -> str:
-    kinds = Counter(" ".join(_report_tables.describe_element(each)[:2]) for each in p.elements)
+def _elements_text(p: RockingProperties, units: UnitSystem) -> str:
+    kinds = Counter(" ".join(_report_tables.describe_element(each, units)[:2]) for each in p.elements)
     return "; ".join(kind if count == 1 else f"{count} × {kind}" for kind, count in kinds.items())
 
 
-def demand_table(comparison: Comparison) -> ReportTable:
+def demand_table(comparison: Comparison, units: UnitSystem) -> ReportTable:
     """Return a row for each demand: its value for each alternative, and the differences in %.
 
     Under several records each cell has the statistics `SHOWN`.
@@ -153,11 +150,11 @@ def demand_table(comparison: Comparison) -> ReportTable:
     differences = [comparison.differences(each).to_dict("index") for each in shown]
     rows: list[Sequence[ReportCell]] = []
     for demand in map(str, values[0]):
-        size, unit = demand_size(demand, comparison)
-        symbol = COMPARED_DEMANDS[demand].symbol
-        cells = [ReportCell(f"{symbol} [{unit}]" if unit else symbol)]
+        known = DEMANDS[demand]
+        unit = units.of(known.quantity, largest=float(comparison.runs[demand].max()))
+        cells = [ReportCell(unit.heading(known.compared_as or known.symbol))]
         cells += [
-            _joined([value_cell(each[demand][name], demand, size) for each in values]) for name in comparison.names
+            _joined([value_cell(each[demand][name], demand, unit.size) for each in values]) for name in comparison.names
         ]
         cells += [_joined([difference_cell(each[demand][name]) for each in differences]) for name in others]
         rows.append(cells)
@@ -167,14 +164,6 @@ def demand_table(comparison: Comparison) -> ReportTable:
 def _joined(cells: Sequence[ReportCell]) -> ReportCell:
     """Return one cell with the texts of several, and the value of the first."""
     return replace(cells[0], text=" / ".join(cell.text for cell in cells))
-
-
-def demand_size(demand: str, comparison: Comparison) -> tuple[float, str]:
-    """Return the divisor and the name of the unit in which a demand is shown."""
-    unit = COMPARED_DEMANDS[demand].unit
-    if unit == "N m":
-        return moment_unit(float(comparison.runs[demand].max()))
-    return _SIZES.get(unit, (1.0, unit))
 
 
 def difference_cell(percent: float) -> ReportCell:

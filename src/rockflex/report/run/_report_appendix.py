@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from rockflex._units import UnitSystem
 from rockflex.report.run._report_tables import ReportCell, ReportTable, value_cell
 from rockflex.report.run._reported_runs import ReportedRuns
 from rockflex.response import Response
@@ -25,7 +26,7 @@ def report_appendix(report: ReportedRuns) -> ReportAppendix:
     """Return the appendix of a report; empty where there is nothing to show."""
     runs = zip(report.labels, report.responses, report.histories, strict=True)
     loops = [(label, run) for label, run, history in runs if history.model.lifts and history.model.properties.elements]
-    return ReportAppendix(_section_table(report.structure), loops)
+    return ReportAppendix(_section_table(report.structure, report.units), loops)
 
 
 def _sections_of(structure: Any) -> list[tuple[str, Section]]:
@@ -40,23 +41,23 @@ def _sections_of(structure: Any) -> list[tuple[str, Section]]:
     return [] if section is None else [("whole height", section)]
 
 
-def _section_table(structure: Any) -> ReportTable | None:
+def _section_table(structure: Any, units: UnitSystem) -> ReportTable | None:
     found = _sections_of(structure)
     columns = {
-        "area": ("A", "m²", 1.0),
-        "second_moment": ("I", "m⁴", 1.0),
-        "elastic_modulus": ("E", "GPa", 1e9),
-        "density": ("ρ", "kg/m³", 1.0),
-        "stiffness_factor": ("factor on EI", "", 1.0),
-        "bending_stiffness": ("EI effective", "MN m²", 1e6),
-        "mass_per_length": ("m", "t/m", 1e3),
+        "area": ("A", units.of("area")),
+        "second_moment": ("I", units.of("second moment of area")),
+        "elastic_modulus": ("E", units.of("elastic modulus")),
+        "density": ("ρ", units.of("density")),
+        "stiffness_factor": ("factor on EI", units.of("ratio")),
+        "bending_stiffness": ("EI effective", units.of("bending stiffness")),
+        "mass_per_length": ("m", units.of("mass per length")),
     }
     rows = [
         [
             ReportCell(place),
-            *(value_cell(float(getattr(each, of)), of, size, 4) for of, (_, _, size) in columns.items()),
+            *(value_cell(float(getattr(each, of)), of, unit.size, 4) for of, (_, unit) in columns.items()),
         ]
         for place, each in found
     ]
-    heads = [("section", ""), *((name, unit) for name, unit, _ in columns.values())]
+    heads = [("section", ""), *((name, unit.name) for name, unit in columns.values())]
     return ReportTable(heads, rows) if rows else None

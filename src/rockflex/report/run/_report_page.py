@@ -1,6 +1,7 @@
 """Reports of runs, of sets of records and of comparisons, written as HTML, PDF or documents of Word."""
 
 from collections.abc import Collection, Iterable
+from dataclasses import fields, replace
 from datetime import date as Date  # noqa: N812
 from pathlib import Path
 from typing import Any
@@ -8,15 +9,19 @@ from typing import Any
 from rockflex._errors import InputError
 from rockflex._files import checked_file_path, write_file_atomically
 from rockflex._shown import shown
+from rockflex._units import Decimal, SystemName, checked_unit_system, with_decimal_commas
 from rockflex.motion import GroundMotion
 from rockflex.report.run._comparison_page import comparison_page
+from rockflex.report.run._report_appendix import ReportAppendix
 from rockflex.report.run._report_files import chromium, page_as_pdf, report_as_word, word_module
+from rockflex.report.run._report_tables import ReportCell, ReportedRecord, ReportFact, ReportTable
 from rockflex.report.run._run_page import run_page
 from rockflex.report.run._set_page import set_page
 from rockflex.report.run._sheet import Figures, ReportPage, checked_report_texts, page_as_html
 from rockflex.response import CheckLimits, Comparison, RecordSet, Response
 
 SUFFIXES = (".html", ".htm", ".pdf", ".docx")
+_AS_GIVEN = {"title", "texts", "versions", "inputs"}  # parts of a page that keep their decimal points
 
 
 def write_report(
@@ -34,6 +39,8 @@ def write_report(
     checker: str = "",
     appendix: bool = False,
     limits: CheckLimits | None = None,
+    units: SystemName = "kN",
+    decimal: Decimal = ".",
 ) -> Path:
     """Write the response of a structure to one record on one sheet of A4: HTML that needs no other file, PDF or DOCX.
 
@@ -78,6 +85,12 @@ def write_report(
         base and elements of every run that lifts.
     limits
         Limits of `check`, whose table the page of a run then has for every model. A set has it always.
+    units
+        Units of the tables: ``"kN"`` (kN, kN m or MN m, mm and m, t, g), ``"MN"`` (MN, mm and m, t, g), ``"SI"``
+        (N, m, kg, m/s²) or ``"kip-in"`` (kip, in, kip s²/in, g). Figures and warnings have units of their own.
+    decimal
+        The decimal sign of tables and texts, ``"."`` or ``","``; not of figures, nor of the values in the attributes
+        ``data-value``, which are for programs and in SI units.
 
     Returns
     -------
@@ -89,8 +102,9 @@ def write_report(
     InputError
         If there are no responses or more than six, one has no history, they are not of one structure and one record, or
         `structure` or `motion` are not theirs; if the path is a folder or has another suffix, or cannot be written to;
-        if the friction is not positive, or the notes are too long; if there is no browser for a PDF, or python-docx is
-        not installed; if an option is given that a set or a comparison does not take.
+        if the friction is not positive, the notes are too long, or `units` or `decimal` is none of these; if there is
+        no browser for a PDF, or python-docx is not installed; if an option is given that a set or a comparison does not
+        take.
 
     Examples
     --------
@@ -108,6 +122,7 @@ def write_report(
     target = checked_report_path("path", path)
     given: dict[str, Any] = {"title": title, "date": date, "notes": notes, "project": project, "author": author}
     given |= {"checker": checker, "structure": structure, "motion": motion, "friction": friction}
+    given |= {"units": units, "decimal": decimal}
     page, figures = _page_of_report(responses, **given, appendix=appendix, limits=limits)
     if target.suffix.lower() == ".docx":
         from rockflex.plot import figure_as_png
@@ -139,19 +154,38 @@ def _page_of_report(
     project: str = "",
     author: str = "",
     checker: str = "",
+    units: SystemName = "kN",
+    decimal: Decimal = ".",
     omitted: Collection[str] = (),
     **options: Any,
 ) -> tuple[ReportPage, Figures]:
     """Return the contents of a report, and its figures; `options` are those of its kind."""
     texts = checked_report_texts(title, date, notes, project, author, checker)
-    if not isinstance(responses, RecordSet | Comparison):
-        return run_page(responses, texts, omitted=omitted, **options)
+    system = checked_unit_system(units)
+    if decimal not in (".", ","):
+        raise InputError(f"decimal must be '.' or ',', but {shown(decimal)} was given.", field="decimal")
     given = {name: value for name, value in options.items() if value is not None and value is not False}
     if isinstance(responses, RecordSet):
         _refuse_unused_options("a set", given, ("structure", "limits"))
-        return set_page(responses, texts, **given)
-    _refuse_unused_options("a comparison", given, ())
-    return comparison_page(responses, texts)
+        page, figures = set_page(responses, texts, system, **given)
+    elif isinstance(responses, Comparison):
+        _refuse_unused_options("a comparison", given, ())
+        page, figures = comparison_page(responses, texts, system)
+    else:
+        page, figures = run_page(responses, texts, system, omitted=omitted, **options)
+    return _with_decimal_commas(page) if decimal == "," else page, figures
+
+
+def _with_decimal_commas(part: Any) -> Any:
+    """Return contents of a page with decimal commas; what users wrote, and versions, stay as they are."""
+    if isinstance(part, str):
+        return with_decimal_commas(part)
+    if isinstance(part, list | tuple):
+        return type(part)(map(_with_decimal_commas, part))  # pyright: ignore[reportUnknownArgumentType]
+    if isinstance(part, ReportPage | ReportTable | ReportFact | ReportCell | ReportedRecord | ReportAppendix):
+        own = [each.name for each in fields(part) if each.name not in _AS_GIVEN]
+        return replace(part, **{name: _with_decimal_commas(getattr(part, name)) for name in own})
+    return part
 
 
 def _refuse_unused_options(what: str, given: Collection[str], taken: Collection[str]) -> None:

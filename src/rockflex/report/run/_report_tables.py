@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from rockflex._arrays import Array
-from rockflex._constants import GRAVITY
 from rockflex._errors import InputError, SolverError
-from rockflex._number_format import moment_unit, rounded_number
+from rockflex._number_format import rounded_number
 from rockflex._shown import shown
+from rockflex._units import Unit, UnitSystem, named_unit
 from rockflex.modal import (
     PLACE,
     BaseElement,
@@ -73,9 +73,9 @@ def value_cell(value: float | None, of: str, size: float = 1.0, digits: int = 3,
     return ReportCell(rounded_number(None if value is None else value / size, digits), value, of, wrong)
 
 
-def value_fact(name: str, value: float, unit: str, of: str, size: float = 1.0, digits: int = 3) -> ReportFact:
-    """Return a fact with a value in units of `size`, whose name is `unit`."""
-    return ReportFact(name, value_cell(value, of, size, digits), unit)
+def value_fact(name: str, value: float, unit: Unit, of: str, digits: int = 3) -> ReportFact:
+    """Return a fact with a value in a unit."""
+    return ReportFact(name, value_cell(value, of, unit.size, digits), unit.name)
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,9 +95,10 @@ def reported_record(report: ReportedRuns) -> ReportedRecord:
     name = report.responses[0].motion
     longest = max(range(len(report.histories)), key=lambda place: float(report.histories[place].time[-1]))
     history, run = report.histories[longest], report.responses[longest]
-    ends = value_fact("Length of the run", float(history.time[-1]), "s", "end_time")
+    second, g, velocity = (report.units.of(each) for each in ("time", "acceleration", "velocity"))
+    ends = value_fact("Length of the run", float(history.time[-1]), second, "end_time")
     pva = float(np.max(np.abs(history.vertical_ground_acceleration), initial=0.0))
-    vertical = [value_fact("PVA, vertical", pva, "g", "pva", GRAVITY)] if pva > 0.0 else []
+    vertical = [value_fact("PVA, vertical", pva, g, "pva")] if pva > 0.0 else []
     if report.motion is None:
         time, acceleration = history.time, history.ground_acceleration
         steps = 0.5 * (acceleration[1:] + acceleration[:-1]) * np.diff(time)
@@ -106,8 +107,8 @@ def reported_record(report: ReportedRuns) -> ReportedRecord:
         # All runs overturned, and nothing is known of the ground after the last of them did.
         cut = " during the run" if run.status == "overturned" else ""
         facts = [
-            value_fact(f"PGA{cut}", pga, "g", "pga", GRAVITY),
-            value_fact(f"PGV{cut}", pgv, "m/s", "pgv"),
+            value_fact(f"PGA{cut}", pga, g, "pga"),
+            value_fact(f"PGV{cut}", pgv, velocity, "pgv"),
             *vertical,
             ends,
         ]
@@ -116,11 +117,11 @@ def reported_record(report: ReportedRuns) -> ReportedRecord:
     scale = report.scale if motion.metadata is None or motion.metadata.scale is None else motion.metadata.scale
     facts = [
         ReportFact("Scale", ReportCell(f"{scale:.6g}", scale, "scale")),
-        value_fact("PGA", motion.pga, "g", "pga", GRAVITY),
-        value_fact("PGV", motion.pgv, "m/s", "pgv"),
+        value_fact("PGA", motion.pga, g, "pga"),
+        value_fact("PGV", motion.pgv, velocity, "pgv"),
         *vertical,
-        value_fact("Length of the record", motion.duration, "s", "duration"),
-        value_fact("Significant duration D_5–95", motion.d5_95, "s", "d5_95"),
+        value_fact("Length of the record", motion.duration, second, "duration"),
+        value_fact("Significant duration D_5–95", motion.d5_95, second, "d5_95"),
         ends,
     ]
     upwards = np.zeros_like(motion.time) if motion.vertical is None else motion.vertical
@@ -149,38 +150,39 @@ def structure_kind_text(structure: Any) -> str:
     return ", ".join([_class_name_in_words(structure), *around])
 
 
-def structure_facts(p: RockingProperties) -> list[ReportFact]:
+def structure_facts(p: RockingProperties, units: UnitSystem) -> list[ReportFact]:
     """Return the parameters of a structure."""
-    size, unit = moment_unit(p.resisting_moment)
+    mass, length, ratio, g = (units.of(each) for each in ("mass", "length", "ratio", "acceleration"))
+    moment = units.of("moment", largest=p.resisting_moment)
     height = float(p.effective_height[0]) if p.n_modes else p.l0r / p.m_tot
     pivot = p.weaker_pivot
     slope = "h*_1/B" if p.n_modes else "h/B"
-    base = [] if p.base_mass is None else [value_fact("Mass of the base m_0", p.base_mass, "t", "base_mass", 1e3)]
-    top = [] if p.top_height is None else [value_fact("Height of the top", p.top_height, "m", "top_height")]
+    base = [] if p.base_mass is None else [value_fact("Mass of the base m_0", p.base_mass, mass, "base_mass")]
+    top = [] if p.top_height is None else [value_fact("Height of the top", p.top_height, length, "top_height")]
     leaning = [
-        value_fact("Leaning mass", p.leaning_mass, "t", "leaning_mass", 1e3, 4),
-        value_fact("Share of the weight on the base", 100.0 * p.weight_share, "%", "weight_share"),
+        value_fact("Leaning mass", p.leaning_mass, mass, "leaning_mass", 4),
+        value_fact("Share of the weight on the base", 100.0 * p.weight_share, Unit(1.0, "%"), "weight_share"),
     ]
-    shift = [value_fact("Eccentricity e", p.eccentricity, "m", "eccentricity")] if p.eccentricity else []
-    held = [value_fact("Prestress of the tendons", p.prestress, "kN", "prestress", 1e3)] if p.tendons else []
+    shift = [value_fact("Eccentricity e", p.eccentricity, length, "eccentricity")] if p.eccentricity else []
+    held = [value_fact("Prestress of the tendons", p.prestress, units.of("force"), "prestress")] if p.tendons else []
     return [
         ReportFact("Modes", ReportCell(str(p.n_modes) if p.n_modes else "none (rigid)", p.n_modes, "n_modes")),
-        value_fact("Total mass m_tot", p.m_tot, "t", "m_tot", 1e3, 4),
+        value_fact("Total mass m_tot", p.m_tot, mass, "m_tot", 4),
         *(leaning if p.leaning_mass else []),
         *base,
         *top,
-        value_fact("Half width of the base B", p.half_width, "m", "half_width"),
+        value_fact("Half width of the base B", p.half_width, length, "half_width"),
         *shift,
-        value_fact(f"Slenderness {slope}", height / p.half_width, "", "slenderness"),
-        *_rotation_limit_facts(p),
-        value_fact("Inertia about a pivot I_θ", pivot.i_theta, "t m²", "i_theta", 1e3, 4),
+        value_fact(f"Slenderness {slope}", height / p.half_width, ratio, "slenderness"),
+        *_rotation_limit_facts(p, units.of("rotation")),
+        value_fact("Inertia about a pivot I_θ", pivot.i_theta, units.of("inertia"), "i_theta", 4),
         *held,
-        value_fact("Resisting moment M_r", p.resisting_moment, unit, "resisting_moment", size, 4),
-        value_fact("Uplift at a_lift = M_r/L_0", p.uplift_acceleration, "g", "uplift_acceleration", GRAVITY),
+        value_fact("Resisting moment M_r", p.resisting_moment, moment, "resisting_moment", 4),
+        value_fact("Uplift at a_lift = M_r/L_0", p.uplift_acceleration, g, "uplift_acceleration"),
     ]
 
 
-def _rotation_limit_facts(p: RockingProperties) -> list[ReportFact]:
+def _rotation_limit_facts(p: RockingProperties, unit: Unit) -> list[ReportFact]:
     """Return θ_nom, and α where the static moment vanishes at all; about both edges if they differ."""
     height, found = "h*_1" if p.n_modes else "h", list[ReportFact]()
     for pivot, name, width in zip(p.pivots, ("right", "left"), ("B − e", "B + e"), strict=False):
@@ -188,22 +190,19 @@ def _rotation_limit_facts(p: RockingProperties) -> list[ReportFact]:
         label = "θ_nom" if one else f"θ_nom {name}"
         arm = "B" if not p.eccentricity else f"({width})"
         nominal, end = pivot.nominal_overturning_rotation, "" if one else f"_{name}"
-        found.append(value_fact(f"{label} = 0.7 atan({arm}/{height})", nominal, "mrad", f"nominal{end}", 1e-3))
+        found.append(value_fact(f"{label} = 0.7 atan({arm}/{height})", nominal, unit, f"nominal{end}"))
         if math.isfinite(pivot.balance_rotation):
             slope = "(L_0 g)" if not p.tendons else "(L_0 g − k_t)"
-            found.append(
-                value_fact(
-                    f"α{'' if one else f' {name}'} = M_r/{slope}", pivot.balance_rotation, "mrad", f"alpha{end}", 1e-3
-                )
-            )
+            label = f"α{'' if one else f' {name}'} = M_r/{slope}"
+            found.append(value_fact(label, pivot.balance_rotation, unit, f"alpha{end}"))
     return found
 
 
-def mode_table(p: RockingProperties) -> ReportTable | None:
+def mode_table(p: RockingProperties, units: UnitSystem) -> ReportTable | None:
     """Return the first modes, on a fixed base and while uplifted; None for a rigid block."""
     if not p.n_modes:
         return None
-    uplifted = _uplifted_modes_of_structure(p)
+    uplifted, length = _uplifted_modes_of_structure(p), units.of("length")
     shares = p.effective_mass / (p.horizontal_mass - (p.base_mass or 0.0))
     rows = [
         [
@@ -211,7 +210,7 @@ def mode_table(p: RockingProperties) -> ReportTable | None:
             value_cell(2.0 * math.pi / float(p.omega[n]), "period"),
             value_cell(None if uplifted is None else 2.0 * math.pi / float(uplifted.omega[n]), "uplifted_period"),
             value_cell(float(shares[n]), "mass_share", 0.01),
-            value_cell(float(p.effective_height[n]), "effective_height"),
+            value_cell(float(p.effective_height[n]), "effective_height", length.size),
             value_cell(float(p.zeta[n]), "zeta", 0.01),
             value_cell(None if uplifted is None else float(uplifted.damping_ratio[n]), "uplifted_damping_ratio", 0.01),
         ]
@@ -221,7 +220,8 @@ def mode_table(p: RockingProperties) -> ReportTable | None:
         total, empty = ReportCell(f"1–{p.n_modes}" if p.n_modes > MAX_MODES else "Σ"), ReportCell("")
         rows.append([total, empty, empty, value_cell(float(np.sum(shares)), "mass_share", 0.01), empty, empty, empty])
     share = "m*_n/m_tot" if p.base_mass is None else "m*_n/Σm"
-    heads = [("mode", ""), ("T_n", "s"), ("T*_n", "s"), (share, "%"), ("h*_n", "m"), ("ζ_n", "%"), ("ζ*_n", "%")]
+    heads = [("mode", ""), ("T_n", "s"), ("T*_n", "s"), (share, "%"), ("h*_n", length.name)]
+    heads += [("ζ_n", "%"), ("ζ*_n", "%")]
     return ReportTable(heads, rows)
 
 
@@ -237,19 +237,23 @@ def _class_name_in_words(structure: Any) -> str:
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(structure).__name__).capitalize()
 
 
-def initial_state_text(history: History) -> str:
+def initial_state_text(history: History, units: UnitSystem) -> str:
     """Return the rotation, the modal displacements and their velocities at the start, as far as they are not zero."""
     layout, state = history.model.layout, history.states[:1]
     # On springs the base may rest at an angle, from which the rotation of an initial state counts.
     rest = history.model.rest.rotation
     n = layout.modes
     values = [
-        ("θ", 1e3 * (layout.of(state, layout.rotation)[0] - rest), "mrad"),
-        ("θ′", layout.of(state, layout.spin)[0], "rad/s"),
-        *((f"D_{k + 1}", 1e3 * layout.of(state, k)[0], "mm") for k in range(n)),
-        *((f"D′_{k + 1}", layout.of(state, n + k)[0], "m/s") for k in range(n)),
+        ("θ", layout.of(state, layout.rotation)[0] - rest, units.of("rotation")),
+        ("θ′", layout.of(state, layout.spin)[0], named_unit("rad/s")),
+        *((f"D_{k + 1}", layout.of(state, k)[0], units.of("displacement")) for k in range(n)),
+        *((f"D′_{k + 1}", layout.of(state, n + k)[0], units.of("velocity")) for k in range(n)),
     ]
-    shown = [f"{name} = {rounded_number(float(value))} {unit}" for name, value, unit in values if np.abs(value) > 1e-12]
+    shown = [
+        f"{name} = {rounded_number(float(value) / unit.size)} {unit.name}"
+        for name, value, unit in values
+        if np.abs(value) / unit.size > 1e-12
+    ]
     return ", ".join([*shown[: 2 + MAX_COORDINATES], *(["…"] if len(shown) > 2 + MAX_COORDINATES else [])])
 
 
@@ -260,7 +264,7 @@ def assumption_lines(report: ReportedRuns) -> list[tuple[str, str]]:
     """
     found: dict[str, dict[str, list[str]]] = {head: {} for head in (_LAW, "Hysteresis", "Ground", "Friction", _INITIAL)}
     for label, history in zip(report.labels, report.histories, strict=True):
-        for head, text in _assumption_lines_of_run(history):
+        for head, text in _assumption_lines_of_run(history, report.units):
             found[head].setdefault(text, []).append(label)
     lines: list[tuple[str, str]] = []
     for head, texts in found.items():
@@ -270,14 +274,14 @@ def assumption_lines(report: ReportedRuns) -> list[tuple[str, str]]:
     return lines
 
 
-def _assumption_lines_of_run(history: History) -> list[tuple[str, str]]:
+def _assumption_lines_of_run(history: History, units: UnitSystem) -> list[tuple[str, str]]:
     """Return the assumptions of one run."""
     model = history.model
     lines = [(_LAW, _impact_law_text(model.law))] if follows_impact_law(model) else []
     if model.bouc_wen is not None:
-        lines.append(("Hysteresis", _hysteresis_text(model.bouc_wen)))
-    lines += _ground_lines(model)
-    start = initial_state_text(history)
+        lines.append(("Hysteresis", _hysteresis_text(model.bouc_wen, units)))
+    lines += _ground_lines(model, units)
+    start = initial_state_text(history, units)
     return [*lines, *([(_INITIAL, start)] if start else [])]
 
 
@@ -295,30 +299,31 @@ def _impact_law_text(law: Any) -> str:
     return getattr(law, "description", type(law).__name__)
 
 
-def _hysteresis_text(b: Any) -> str:
+def _hysteresis_text(b: Any, units: UnitSystem) -> str:
     return (
-        f"Bouc–Wen, D_y = {rounded_number(1e3 * b.yield_displacement)} mm, post-yield ratio {b.post_yield_ratio:g}, "
+        f"Bouc–Wen, D_y = {units.text(b.yield_displacement, 'displacement')}, post-yield ratio {b.post_yield_ratio:g}, "
         f"γ = {b.gamma:g}, β = {b.beta:g}, n = {b.exponent:g}"
     )
 
 
-def _ground_lines(model: Any) -> list[tuple[str, str]]:
+def _ground_lines(model: Any, units: UnitSystem) -> list[tuple[str, str]]:
     """Return the ground of a model; nothing for rigid ground on which it does not slide."""
     lines: list[tuple[str, str]] = []
-    springs, mass = model.springs, model.properties.m_tot
+    springs, mass, length = model.springs, model.properties.m_tot, units.of("length")
     if springs is not None:
         ratio = 0.5 * springs.total_damping / math.sqrt(springs.total_stiffness * mass)
         inertia = model.inertia - model.properties.translational_inertia
         parts = [
             f"{springs.n} springs without tension",
-            f"x = {rounded_number(float(springs.positions[0]))} to {rounded_number(float(springs.positions[-1]))} m",
-            f"Σk = {rounded_number(springs.total_stiffness / 1e6)} MN/m",
-            f"Σk x² = {rounded_number(springs.rotational_stiffness / 1e6)} MN m/rad",
-            f"Σc = {rounded_number(springs.total_damping / 1e3)} kN s/m "
+            f"x = {rounded_number(float(springs.positions[0]) / length.size)} to "
+            f"{units.text(float(springs.positions[-1]), 'length')}",
+            f"Σk = {units.text(springs.total_stiffness, 'stiffness')}",
+            f"Σk x² = {units.text(springs.rotational_stiffness, 'rotational stiffness')}",
+            f"Σc = {units.text(springs.total_damping, 'damping')} "
             f"({rounded_number(100.0 * ratio)} % of critical in heave)",
         ]
         if inertia > 1e-9 * model.inertia:
-            parts.append(f"I_b = {rounded_number(inertia / 1e3)} t m²")
+            parts.append(f"I_b = {units.text(inertia, 'inertia')}")
         lines.append(("Ground", ", ".join(parts)))
     friction = ground_friction_range(model)
     if friction is not None:
@@ -348,63 +353,70 @@ def element_table(report: ReportedRuns) -> ReportTable | None:
     runs = [run for run, history in both if history.model.lifts or away]
     if not (elements or stories) or not runs:
         return None
-    heads = [("element", ""), ("x", "m"), ("properties", ""), ("F_max", "kN"), ("δ_max", "mm"), ("state", "")]
-    rows = [_element_table_row(k, elements, runs) for k in range(len(elements))]
-    rows += [_story_table_row(each, runs) for each in stories]
+    units, names = report.units, [report.units.of(each).name for each in ("length", "force", "displacement")]
+    heads = [("element", ""), ("x", names[0]), ("properties", ""), ("F_max", names[1]), ("δ_max", names[2])]
+    heads.append(("state", ""))
+    rows = [_element_table_row(k, elements, runs, units) for k in range(len(elements))]
+    rows += [_story_table_row(each, runs, units) for each in stories]
     if len(rows) > MAX_ELEMENTS:
         blank = ReportCell("")
         rows[MAX_ELEMENTS:] = [[ReportCell(f"and {len(rows) - MAX_ELEMENTS} more"), *[blank] * 5]]
     return ReportTable(heads, rows)
 
 
-def _story_table_row(story: YieldingStory, runs: Sequence[Response]) -> list[ReportCell]:
+def _story_table_row(story: YieldingStory, runs: Sequence[Response], units: UnitSystem) -> list[ReportCell]:
     ductility = max(float(run.ductility[story.floor - 1]) for run in runs if run.ductility.size)
     left = max((abs(float(run.residual_drift[story.floor - 1])) for run in runs if run.ductility.size), default=0.0)
     beyond = ductility - 1.0 if ductility > 1.0 else 0.0
     force = story.yield_force * (min(ductility, 1.0) + story.post_yield_ratio * beyond)
-    properties = f"k = {rounded_number(story.stiffness / 1e6)} MN/m, F_y = {rounded_number(story.yield_force / 1e3)} kN"
+    drift = ductility * story.yield_force / story.stiffness
+    properties = f"k = {units.text(story.stiffness, 'stiffness')}, F_y = {units.text(story.yield_force, 'force')}"
     return [
         ReportCell(f"story {story.floor}"),
         ReportCell(""),
         ReportCell(f"{properties}, post-yield ratio {story.post_yield_ratio:.4g}"),
-        value_cell(force, f"max_story_force_{story.floor}", 1e3),
-        value_cell(ductility * story.yield_force / story.stiffness, f"max_story_drift_{story.floor}", 1e-3),
-        ReportCell(f"μ = {ductility:.2f}, {rounded_number(1e3 * left if left > ROUNDING else 0.0)} mm left"),
+        value_cell(force, f"max_story_force_{story.floor}", units.of("force").size),
+        value_cell(drift, f"max_story_drift_{story.floor}", units.of("displacement").size),
+        ReportCell(f"μ = {ductility:.2f}, {units.text(left if left > ROUNDING else 0.0, 'displacement')} left"),
     ]
 
 
-def _element_table_row(place: int, elements: Sequence[BaseElement], runs: Sequence[Response]) -> list[ReportCell]:
+def _element_table_row(
+    place: int, elements: Sequence[BaseElement], runs: Sequence[Response], units: UnitSystem
+) -> list[ReportCell]:
     element, yielded = elements[place], any(bool(run.element_yielded[place]) for run in runs)
     force = max(float(run.max_element_force[place]) for run in runs)
     elongation = max(float(run.max_element_elongation[place]) for run in runs)
-    name, properties, state = describe_element(element)
+    name, properties, state = describe_element(element, units)
     return [
         ReportCell(f"{place + 1} {name}"),
-        ReportCell(element.where) if element.attached else value_cell(element.position, "position"),
+        ReportCell(element.where)
+        if element.attached
+        else value_cell(element.position, "position", units.of("length").size),
         ReportCell(properties),
-        value_cell(force, f"max_element_force_{place + 1}", 1e3),
-        value_cell(elongation, f"max_element_elongation_{place + 1}", 1e-3),
+        value_cell(force, f"max_element_force_{place + 1}", units.of("force").size),
+        value_cell(elongation, f"max_element_elongation_{place + 1}", units.of("displacement").size),
         ReportCell(state[yielded], None, "", yielded and isinstance(element, Tendon)),
     ]
 
 
-def describe_element(element: BaseElement) -> tuple[str, str, tuple[str, str]]:
+def describe_element(element: BaseElement, units: UnitSystem) -> tuple[str, str, tuple[str, str]]:
     """Return kind, properties, and the words for an element that did not, or did, yield."""
     if isinstance(element, ElementLaw):
         values = {name: value for name, value in element_parameters(element).items() if name not in PLACE}
         return element.words, ", ".join(f"{name} = {shown(value)}" for name, value in values.items()), ("", "yielded")
     if isinstance(element, ViscousDamper):
-        return "viscous damper", f"c = {rounded_number(element.coefficient / 1e3)} kN s/m", ("", "")
+        return "viscous damper", f"c = {units.text(element.coefficient, 'damping')}", ("", "")
     if isinstance(element, FrictionDamper):
-        return "friction damper", f"F_0 = {rounded_number(element.force / 1e3)} kN", ("did not slide", "slid")
-    stiffness = f"k = {rounded_number(element.stiffness / 1e6)} MN/m"
-    limit = "" if element.yield_force is None else f", F_y = {rounded_number(element.yield_force / 1e3)} kN"
+        return "friction damper", f"F_0 = {units.text(element.force, 'force')}", ("did not slide", "slid")
+    stiffness = f"k = {units.text(element.stiffness, 'stiffness')}"
+    limit = "" if element.yield_force is None else f", F_y = {units.text(element.yield_force, 'force')}"
     after = "" if element.post_yield_ratio is None else f", post-yield ratio {element.post_yield_ratio:.4g}"
     longest = element.rupture_elongation
-    breaks = "" if longest is None else f", breaks at {rounded_number(1e3 * longest)} mm"
+    breaks = "" if longest is None else f", breaks at {units.text(longest, 'displacement')}"
     if isinstance(element, Tendon):
         state = ("elastic", "beyond F_y" if element.post_yield_ratio is None else "yielded")
-        start = f"F_0 = {rounded_number(element.initial_force / 1e3)} kN, "
+        start = f"F_0 = {units.text(element.initial_force, 'force')}, "
         return "tendon", start + stiffness + limit + after + breaks, state
     only = ", tension only" if element.tension_only else ""
     return "yielding dissipator", stiffness + limit + after + breaks + only, ("elastic", "yielded")
@@ -441,31 +453,32 @@ def peak_table(report: ReportedRuns) -> ReportTable:
         shaken = None if run.floors is None else float(np.max(run.floors.floor_acceleration))
         values = {"nominal_share": share, "floor_acceleration": shaken}
         cells = [
-            value_cell(values[of] if of in values else float(getattr(run, of)), of, size)
-            for of, (_, _, size) in columns.items()
+            value_cell(values[of] if of in values else float(getattr(run, of)), of, unit.size)
+            for of, (_, unit) in columns.items()
         ]
         rows.append([ReportCell(label), status, *cells, ReportCell(str(run.n_uplifts), run.n_uplifts, "n_uplifts")])
-    heads = [("model", ""), ("status", ""), *((name, unit) for name, unit, _ in columns.values()), ("uplifts", "")]
+    heads = [("model", ""), ("status", ""), *((name, unit.name) for name, unit in columns.values()), ("uplifts", "")]
     return ReportTable(heads, rows)
 
 
-def _peak_columns(report: ReportedRuns) -> dict[str, tuple[str, str, float]]:
-    """Return the headings, units and sizes of these of the columns, by the names of their values."""
-    size, unit = moment_unit(max(run.max_base_moment for run in report.responses))
-    layouts = [history.model.layout for history in report.histories]
-    floors = {"floor_acceleration": ("a_floor", "g", GRAVITY)}
-    slip = {"max_slip": ("slip", "mm", 1e-3), "residual_slip": ("slip left", "mm", 1e-3)}
-    edges = {"max_edge_uplift": ("edge up", "mm", 1e-3), "max_edge_settlement": ("edge down", "mm", 1e-3)}
+def _peak_columns(report: ReportedRuns) -> dict[str, tuple[str, Unit]]:
+    """Return the headings and units of these of the columns, by the names of their values."""
+    units, layouts = report.units, [history.model.layout for history in report.histories]
+    displacement, force = units.of("displacement"), units.of("force")
+    moment = units.of("moment", largest=max(run.max_base_moment for run in report.responses))
+    floors = {"floor_acceleration": ("a_floor", units.of("acceleration"))}
+    slip = {"max_slip": ("slip", displacement), "residual_slip": ("slip left", displacement)}
+    edges = {"max_edge_uplift": ("edge up", displacement), "max_edge_settlement": ("edge down", displacement)}
     return {
-        "max_rotation": ("θ_max", "mrad", 1e-3),
-        "nominal_share": ("θ_max/θ_nom", "%", 0.01),
-        "max_top_displacement": ("u_top relative", "mm", 1e-3),
-        "max_total_top_displacement": ("u_top total", "mm", 1e-3),
-        "max_base_shear": ("V_b", "kN", 1e3),
-        "max_base_moment": ("M_b", unit, size),
+        "max_rotation": ("θ_max", units.of("rotation")),
+        "nominal_share": ("θ_max/θ_nom", units.of("share")),
+        "max_top_displacement": ("u_top relative", displacement),
+        "max_total_top_displacement": ("u_top total", displacement),
+        "max_base_shear": ("V_b", force),
+        "max_base_moment": ("M_b", moment),
         **(floors if any(run.floors is not None for run in report.responses) else {}),
-        "max_horizontal_reaction": ("ΣF_x", "kN", 1e3),
-        "min_vertical_reaction": ("N_min", "kN", 1e3),
+        "max_horizontal_reaction": ("ΣF_x", force),
+        "min_vertical_reaction": ("N_min", force),
         **(slip if any(layout.slip >= 0 for layout in layouts) else {}),
         **(edges if any(layout.heave >= 0 for layout in layouts) else {}),
     }

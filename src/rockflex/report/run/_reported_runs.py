@@ -10,6 +10,7 @@ import numpy as np
 from rockflex._arrays import Array, Bools
 from rockflex._errors import InputError
 from rockflex._shown import shown
+from rockflex._units import UnitSystem
 from rockflex.modal import RockingProperties
 from rockflex.motion import GroundMotion
 from rockflex.response import History, Response
@@ -32,9 +33,12 @@ class ReportedRuns:
     structure: Any  # None if it is not known
     motion: GroundMotion | None  # before scaling
     scale: float  # by which it acted on the structure; 1 without a record
+    units: UnitSystem  # of the page
 
 
-def checked_reported_runs(responses: Response | Iterable[Response], structure: Any, motion: Any) -> ReportedRuns:
+def checked_reported_runs(
+    responses: Response | Iterable[Response], structure: Any, motion: Any, units: UnitSystem
+) -> ReportedRuns:
     """Check the input of a report."""
     runs = _checked_responses(responses)
     histories = tuple(_history_of_run(place, run) for place, run in enumerate(runs))
@@ -51,7 +55,7 @@ def checked_reported_runs(responses: Response | Iterable[Response], structure: A
     for run in runs:
         seen[run.model] += 1
         labels.append(run.model if counts[run.model] == 1 else f"{run.model} ({seen[run.model]})")
-    return ReportedRuns(runs, histories, tuple(labels), properties, structure, motion, scale)
+    return ReportedRuns(runs, histories, tuple(labels), properties, structure, motion, scale, units)
 
 
 def _checked_responses(responses: Any) -> tuple[Response, ...]:

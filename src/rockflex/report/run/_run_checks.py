@@ -7,6 +7,7 @@ from functools import partial
 
 from rockflex._errors import InputError, SolverError
 from rockflex._number_format import rounded_number
+from rockflex._units import UnitSystem
 from rockflex.report.run._report_tables import (
     ReportCell,
     ReportTable,
@@ -16,7 +17,7 @@ from rockflex.report.run._report_tables import (
     value_cell,
 )
 from rockflex.report.run._reported_runs import ReportedRuns
-from rockflex.response import BALANCED, IMPACT_WINDOW, NO_LIMIT, Check, CheckTable, History, Response
+from rockflex.response import BALANCED, IMPACT_WINDOW, NO_LIMIT, Check, CheckTable, History, Response, check_in_units
 
 NOT_COMPUTED = "not computed"
 NO_BREAK = "\u00a0"  # a space at which no line ends
@@ -35,6 +36,7 @@ class CheckedRun:
     friction: float | None
     long: bool
     """Whether to compute its energies and required friction, which may take minutes."""
+    units: UnitSystem
 
 
 def labels_of_long_runs(report: ReportedRuns) -> set[str]:
@@ -56,7 +58,7 @@ def has_bearing_area(history: History) -> bool:
 def run_check_table(report: ReportedRuns, friction: float | None, omitted: Collection[str]) -> ReportTable:
     """Return the checks, a row for each run; long ones are left out for the labels in `omitted`."""
     runs = [
-        CheckedRun(label, response, history, friction, label not in omitted)
+        CheckedRun(label, response, history, friction, label not in omitted, report.units)
         for label, response, history in zip(report.labels, report.responses, report.histories, strict=True)
     ]
     columns = {
@@ -108,7 +110,8 @@ def _contact_cell(run: CheckedRun) -> ReportCell:
         if not (run.long and has_bearing_area(run.history)):
             return ReportCell("springs only push", least, "min_vertical_reaction")
         bearing, soil = (float(q.max()) for q in (run.history.bearing_pressure, run.history.soil_pressure))
-        words = f"q {rounded_number(bearing / 1e3)} kPa, {rounded_number(soil / 1e3)} at a spring"
+        size = run.units.of("stress").size
+        words = f"q {run.units.text(bearing, 'stress')}, {rounded_number(soil / size)} at a spring"
         return ReportCell(words, bearing, "bearing_pressure")
     held = least >= 0.0
     words = "N ≥ 0" if held else f"N < 0 at {rounded_number(run.response.time_of_min_vertical_reaction)} s"
@@ -120,7 +123,8 @@ def _friction_cell(run: CheckedRun) -> ReportCell:
     limits = ground_friction_range(run.history.model)
     if limits is not None:
         moved = run.response.max_slip
-        return ReportCell(f"slides {rounded_number(1e3 * moved)} mm" if moved else "does not slide", moved, "max_slip")
+        words = f"slides {run.units.text(moved, 'displacement')}" if moved else "does not slide"
+        return ReportCell(words, moved, "max_slip")
     if not run.long:
         return ReportCell(NOT_COMPUTED)
     try:
@@ -141,7 +145,7 @@ def _tendon_cell(run: CheckedRun) -> ReportCell:
         return ReportCell("–")
     used, force = run.response.tendon_utilisation, run.response.max_tendon_force
     if math.isnan(used):
-        return ReportCell(f"{rounded_number(force / 1e3)} kN", force, "max_tendon_force")
+        return ReportCell(run.units.text(force, "force"), force, "max_tendon_force")
     sign = ">" if used > 1.0 else "≤"
     words = ", yields" if run.response.tendon_yield and not run.response.tendon_overload else ""
     return ReportCell(f"F/F_y = {rounded_number(used)} {sign} 1{words}", used, "tendon_utilisation", used > 1.0)
@@ -159,15 +163,15 @@ def _residual_rotation_cell(report: ReportedRuns, run: CheckedRun) -> ReportCell
         ratios += f", {rounded_number(p.recentring_ratio_at(turned))} at θ_max" if turned > 0.0 else ""
     left = _settled_rotation(run)
     if left is None:
-        now = rounded_number(1e3 * response.residual_rotation)
-        return ReportCell(f"not settled, θ = {now} mrad{ratios}", response.residual_rotation, "residual_rotation")
+        now = run.units.text(response.residual_rotation, "rotation")
+        return ReportCell(f"not settled, θ = {now}{ratios}", response.residual_rotation, "residual_rotation")
     if math.isnan(left):
         return ReportCell(f"overturns after the run{ratios}", None, "settled_rotation", True)
     if abs(left) < MAX_CLOSED_ROTATION:
         return ReportCell(f"closes{ratios}", left, "settled_rotation")
     # On springs fuses that yielded tilt a base that is closed.
     wrong = abs(left) > MAX_TILT or run.history.model.springs is None
-    return ReportCell(f"θ = {rounded_number(1e3 * left)} mrad left{ratios}", left, "settled_rotation", wrong)
+    return ReportCell(f"θ = {run.units.text(left, 'rotation')} left{ratios}", left, "settled_rotation", wrong)
 
 
 def _settled_rotation(run: CheckedRun) -> float | None:
@@ -226,7 +230,7 @@ def run_check_legend(report: ReportedRuns, friction: float | None, *, omitted: b
     return lines
 
 
-def limit_check_table(labels: Sequence[str], tables: Sequence[CheckTable]) -> ReportTable:
+def limit_check_table(labels: Sequence[str], tables: Sequence[CheckTable], units: UnitSystem) -> ReportTable:
     """Return checks against limits: a row a check, with the demand and its ratio for each label."""
     rows: dict[str, list[Check | None]] = {}
     for place, table in enumerate(tables):
@@ -241,10 +245,10 @@ def limit_check_table(labels: Sequence[str], tables: Sequence[CheckTable]) -> Re
     body: list[list[ReportCell]] = []
     for name, found in rows.items():
         first = next(each for each in found if each is not None)
-        limit, unit = first.in_table[1:]
+        limit, unit = check_in_units(first, units)[1:]
         sign = "≥" if first.at_least else "≤"
         words = "–" if limit is None else f"{sign} {rounded_number(limit)} {unit}".rstrip().replace(" ", NO_BREAK)
-        cells = [ReportCell("–") if each is None else _limit_check_cell(each) for each in found]
+        cells = [ReportCell("–") if each is None else _limit_check_cell(each, units) for each in found]
         body.append(
             [
                 ReportCell(name),
@@ -256,8 +260,8 @@ def limit_check_table(labels: Sequence[str], tables: Sequence[CheckTable]) -> Re
     return ReportTable(heads, body)
 
 
-def _limit_check_cell(row: Check) -> ReportCell:
-    demand, _, unit = row.in_table
+def _limit_check_cell(row: Check, units: UnitSystem) -> ReportCell:
+    demand, _, unit = check_in_units(row, units)
     if math.isnan(demand):
         return ReportCell("overturns", None, "demand", True)
     ratio = "" if row.ratio is None else f" ({rounded_number(row.ratio)})"

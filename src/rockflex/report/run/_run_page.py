@@ -10,6 +10,7 @@ import numpy as np
 
 from rockflex._errors import InputError
 from rockflex._shown import shortened
+from rockflex._units import UnitSystem
 from rockflex.motion import GroundMotion
 from rockflex.report.run import _report_tables
 from rockflex.report.run._report_appendix import ReportAppendix, report_appendix
@@ -84,6 +85,7 @@ class RunPage(OneSheet):
 def run_page(
     responses: Response | Iterable[Response],
     texts: ReportTexts,
+    units: UnitSystem,
     *,
     structure: Any = None,
     motion: GroundMotion | None = None,
@@ -94,7 +96,7 @@ def run_page(
 ) -> tuple[RunPage, Figures]:
     """Return the page of runs, and its figures; no energies and no friction of the models in `omitted`."""
     coefficient = None if friction is None else _checked_friction_coefficient(friction)
-    report = checked_reported_runs(responses, structure, motion)
+    report = checked_reported_runs(responses, structure, motion, units)
     known = report.properties if structure is None else structure
     record, kind = _report_tables.reported_record(report), _report_tables.structure_kind_text(known)
     left_out = labels_of_long_runs(report).union(omitted)
@@ -103,8 +105,8 @@ def run_page(
         title=shortened(texts.title or f"{kind} under {record.name or 'a ground motion'}", MAX_LETTERS["title"]),
         texts=texts,
         kind=kind,
-        facts=_report_tables.structure_facts(report.properties),
-        modes=_report_tables.mode_table(report.properties),
+        facts=_report_tables.structure_facts(report.properties, units),
+        modes=_report_tables.mode_table(report.properties, units),
         record=record,
         lines=_report_tables.assumption_lines(report),
         elements=_report_tables.element_table(report),
@@ -147,7 +149,7 @@ def _limits_of_runs(report: ReportedRuns, limits: CheckLimits, omitted: Collecti
         check(run, dataclasses.replace(limits, friction=None) if label in omitted else limits)
         for label, run in zip(report.labels, report.responses, strict=True)
     ]
-    return limit_check_table(report.labels, tables)
+    return limit_check_table(report.labels, tables, report.units)
 
 
 def warnings_of_runs(report: ReportedRuns, omitted: Collection[str]) -> list[str]:

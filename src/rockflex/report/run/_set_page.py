@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from rockflex._number_format import rounded_number
 from rockflex._shown import shortened
+from rockflex._units import UnitSystem
 from rockflex.report.run import _report_tables
 from rockflex.report.run._report_tables import DAGGER, STATUS, ReportCell, ReportTable, value_cell
 from rockflex.report.run._reported_runs import checked_reported_runs
@@ -52,12 +52,17 @@ class SetPage(ReportPage):
 
 
 def set_page(
-    found: RecordSet, texts: ReportTexts, *, structure: Any = None, limits: CheckLimits | None = None
+    found: RecordSet,
+    texts: ReportTexts,
+    units: UnitSystem,
+    *,
+    structure: Any = None,
+    limits: CheckLimits | None = None,
 ) -> tuple[SetPage, Figures]:
     """Return the page of a set of records, and its figure."""
     from rockflex.plot import plot_set
 
-    first = checked_reported_runs(found.responses[0], structure, None)
+    first = checked_reported_runs(found.responses[0], structure, None, units)
     known = found.properties if structure is None else structure
     kind, n = _report_tables.structure_kind_text(known), len(found.responses)
     checks = check(found, limits)
@@ -65,25 +70,26 @@ def set_page(
         title=shortened(texts.title or f"{kind} under {n} records", MAX_LETTERS["title"]),
         texts=texts,
         kind=kind,
-        facts=_report_tables.structure_facts(found.properties),
-        modes=_report_tables.mode_table(found.properties),
+        facts=_report_tables.structure_facts(found.properties, units),
+        modes=_report_tables.mode_table(found.properties, units),
         lines=_report_tables.assumption_lines(first),
         model=f"{found.responses[0].model}, {n} records",
-        records=_record_table(found),
+        records=_record_table(found, units),
         fell=found.n_overturned > 0,
-        statistics=_statistics_table(found),
+        statistics=_statistics_table(found, units),
         reasons=list(dict.fromkeys(found.statistics["reason"])),
-        limits=limit_check_table(["demand" if found.rule is None else "demand for design"], [checks]),
+        limits=limit_check_table(["demand" if found.rule is None else "demand for design"], [checks], units),
         missing=missing_checks_text(checks),
         warnings=[*structure_warnings(known), *found.warnings],
     )
     return page, {"peaks": ("Peaks of each record, and their statistics", plot_set(found))}
 
 
-def _record_table(found: RecordSet) -> ReportTable:
-    shown = [name for name in _OF_RECORDS if name in found.statistics.index]
-    heads = [("record", ""), ("", ""), ("PGA", "m/s²"), ("factor", "")]
-    heads += [(DEMANDS[name].symbol, DEMANDS[name].unit) for name in shown]
+def _record_table(found: RecordSet, units: UnitSystem) -> ReportTable:
+    shown = {name: DEMANDS[name].unit_in(units) for name in _OF_RECORDS if name in found.statistics.index}
+    pga = units.of("acceleration", "m/s²")
+    heads = [("record", ""), ("", ""), ("PGA", pga.name), ("factor", "")]
+    heads += [(DEMANDS[name].symbol, unit.name) for name, unit in shown.items()]
     rows: list[list[ReportCell]] = []
     for motion, (_, row) in zip(found.motions, found.peaks.iterrows(), strict=True):
         fell = row["status"] == "overturned"
@@ -92,25 +98,23 @@ def _record_table(found: RecordSet) -> ReportTable:
             [
                 ReportCell(motion.name),
                 ReportCell(STATUS[row["status"]] + (f" {DAGGER}" if fell else ""), None, "status", fell),
-                value_cell(motion.pga, "pga"),
+                value_cell(motion.pga, "pga", pga.size),
                 value_cell(scale, "scale"),
-                *(value_cell(float(row[name]), name, DEMANDS[name].size) for name in shown),
+                *(value_cell(float(row[name]), name, unit.size) for name, unit in shown.items()),
             ]
         )
     return ReportTable(heads, rows)
 
 
-def _statistics_table(found: RecordSet) -> ReportTable:
+def _statistics_table(found: RecordSet, units: UnitSystem) -> ReportTable:
     heads = [("demand", ""), ("unit", ""), *((words, "") for words in _COLUMNS.values())]
     rows = [
         [
             ReportCell(DEMANDS[str(name)].symbol),
-            ReportCell(DEMANDS[str(name)].unit),
-            *(
-                ReportCell(rounded_number(float(row[each]) / DEMANDS[str(name)].size), float(row[each]), each)
-                for each in _COLUMNS
-            ),
+            ReportCell(unit),
+            *(value_cell(float(row[each]), each, size) for each in _COLUMNS),
         ]
         for name, row in found.statistics.iterrows()
+        for size, unit in (DEMANDS[str(name)].unit_in(units),)
     ]
     return ReportTable(heads, rows)
