@@ -8,6 +8,7 @@ import typer
 
 from rockflex._errors import InputError
 from rockflex._schema import ReportKeys
+from rockflex._units import KN
 from rockflex.cli import _console as console
 from rockflex.cli import _options as options
 from rockflex.cli import _output as output
@@ -206,10 +207,13 @@ def _print_project(project: "Project", *, json: bool) -> None:
         console.print_line("no results: rockflex project run computes them")
         return
     design = _by_structure(results.statistics, "demand", "design")
-    sizes = {name: f"{DEMANDS[name].symbol} [{DEMANDS[name].unit}]" for name in design}
+    shown = {name: DEMANDS[name].unit_in(KN) for name in design}
     rows = [
-        (sizes[name], *(console.number(row.get(each, math.nan) / DEMANDS[name].size) for each in project.structures))
-        for name, row in design.items()
+        (
+            unit.heading(DEMANDS[name].symbol),
+            *(console.number(design[name].get(each, math.nan) / unit.size) for each in project.structures),
+        )
+        for name, unit in shown.items()
     ]
     console.print_rows(("for design", *project.structures), rows, 1)
     for reason in dict.fromkeys(results.statistics["reason"]):
