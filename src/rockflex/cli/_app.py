@@ -48,7 +48,7 @@ EPILOG = """[bold]Examples[/bold]
 
 rockflex motion fema-p695-far-field
 
-rockflex select fema-p695-far-field --target ec8:ag=0.25g,ground=C --count 7 --periods 0.2,2
+rockflex select fema-p695-far-field --target ec8:ag=0.25g,ground=C --count 7 --periods 0.2,2 --records chosen
 
 rockflex modes structure.toml
 

@@ -127,7 +127,7 @@ READERS: dict[str, Callable[[str, str], Any]] = {  # of the keys that are not pl
 
 EPILOG = """[bold]Examples[/bold]
 
-rockflex select fema-p695-far-field --target ec8:ag=0.25g,ground=C --count 7 --periods 0.2,2 --out chosen
+rockflex select fema-p695-far-field --target ec8:ag=0.25g,ground=C --count 7 --periods 0.2,2 --out choice
 
 rockflex select folder --target ec8:ag=2.5m/s2,ground=B,type=2,importance=1.2 -n 7 --periods 0.1,1 --per-event 1
 

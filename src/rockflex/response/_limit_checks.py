@@ -357,7 +357,7 @@ def _rupture_ratio(run: Response, history: History, _: CheckLimits) -> float:
     ends = [getattr(each, "rupture_elongation", None) for each in history.model.properties.elements]
     ratios = [float(run.max_element_elongation[k]) / end for k, end in enumerate(ends) if end is not None]
     if not ratios:
-        raise MissingQuantityError("no element has a rupture_elongation")
+        raise MissingQuantityError("no element breaks at an elongation")
     return max(ratios)
 
 
@@ -443,7 +443,7 @@ KINDS = (
         ),
     ),
     CheckKind("fuse strain", "", _fuse_strain, _user("fuse_strain", "fuse_length")),
-    CheckKind("rupture", "", _rupture_ratio, lambda _, __: Limit(1.0, "rupture_elongation of the element")),
+    CheckKind("rupture", "", _rupture_ratio, lambda _, __: Limit(1.0, "elongation at which the element breaks")),
     CheckKind("bearing pressure", "Pa", _bearing_pressure, _user("bearing_pressure")),
     CheckKind("contact length", "", _contact_ratio, _user("contact_ratio"), at_least=True),
     CheckKind("sliding", "", _required_friction, _user("friction")),

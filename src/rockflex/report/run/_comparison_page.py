@@ -1,7 +1,6 @@
 """The page of a comparison: the alternatives as they rock, and their demands with the differences."""
 
 import math
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
@@ -119,7 +118,7 @@ def alternatives_table(comparison: Comparison, units: UnitSystem) -> ReportTable
                 value_cell(p.half_width, "half_width", length.size),
                 value_cell(2.0 * math.pi / float(p.omega[0]) if p.n_modes else None, "period"),
                 value_cell(p.resisting_moment, "resisting_moment", moment.size),
-                ReportCell(_elements_text(p, units) or "–"),
+                ReportCell(_report_tables.elements_text(p, units) or "–"),
             ]
         )
     return ReportTable(heads, rows)
@@ -130,11 +129,6 @@ def model_line(comparison: Comparison) -> tuple[str, str]:
     labels = [run.model for run in comparison.responses]
     own = ", ".join(f"{name}: {label}" for name, label in zip(comparison.names, labels, strict=True))
     return "Model", labels[0] if len(set(labels)) == 1 else own
-
-
-def _elements_text(p: RockingProperties, units: UnitSystem) -> str:
-    kinds = Counter(" ".join(_report_tables.describe_element(each, units)[:2]) for each in p.elements)
-    return "; ".join(kind if count == 1 else f"{count} × {kind}" for kind, count in kinds.items())
 
 
 def demand_table(comparison: Comparison, units: UnitSystem) -> ReportTable:

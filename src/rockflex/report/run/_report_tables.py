@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -340,6 +341,12 @@ def ground_friction_range(model: Any) -> tuple[float, float] | None:
         return None
     values = np.atleast_1d(np.asarray(friction, dtype=np.float64))
     return float(values.min()), float(values.max())
+
+
+def elements_text(p: RockingProperties, units: UnitSystem) -> str:
+    """Return the elements of a structure in a line, alike ones together; empty if there are none."""
+    kinds = Counter(" ".join(describe_element(each, units)[:2]) for each in p.elements)
+    return "; ".join(kind if count == 1 else f"{count} × {kind}" for kind, count in kinds.items())
 
 
 def element_table(report: ReportedRuns) -> ReportTable | None:

@@ -65,14 +65,14 @@ def set_page(
     first = checked_reported_runs(found.responses[0], structure, None, units)
     known = found.properties if structure is None else structure
     kind, n = _report_tables.structure_kind_text(known), len(found.responses)
-    checks = check(found, limits)
+    checks, elements = check(found, limits), _report_tables.elements_text(found.properties, units)
     page = SetPage(
         title=shortened(texts.title or f"{kind} under {n} records", MAX_LETTERS["title"]),
         texts=texts,
         kind=kind,
         facts=_report_tables.structure_facts(found.properties, units),
         modes=_report_tables.mode_table(found.properties, units),
-        lines=_report_tables.assumption_lines(first),
+        lines=[*_report_tables.assumption_lines(first), *([("Elements", elements)] if elements else [])],
         model=f"{found.responses[0].model}, {n} records",
         records=_record_table(found, units),
         fell=found.n_overturned > 0,
