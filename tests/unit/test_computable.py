@@ -22,6 +22,12 @@ CANTILEVER = {
 TWO = {"base_mass": 1e3, "half_width": 1.0, "damping_ratio": 0.02}
 
 
+@pytest.fixture(autouse=True)
+def no_modes_are_kept():
+    """Of beams that other tests have solved."""
+    _finite_elements.finite_element_modes.cache_clear()
+
+
 def cantilever(**changes):
     return rf.CantileverWithTipMass(**(CANTILEVER | changes))
 
@@ -143,6 +149,7 @@ def test_a_solver_that_gives_up_is_told(monkeypatch):
 def test_what_the_solver_found_before_it_gave_up_is_kept(monkeypatch):
     solve, calls = _finite_elements.eigsh, []
     expected = cantilever().modal().omega
+    _finite_elements.finite_element_modes.cache_clear()
 
     def gives_up(*arguments, **options):
         calls.append(options["k"])
