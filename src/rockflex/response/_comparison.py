@@ -12,6 +12,7 @@ from rockflex._shown import number_with_noun, shown
 from rockflex._values import Value
 from rockflex.motion import GroundMotion
 from rockflex.response._demands import COMPARED_DEMANDS
+from rockflex.response._record_set import FRACTILE, MEDIAN, fractile
 from rockflex.response._response import Response
 
 if TYPE_CHECKING:
@@ -124,7 +125,5 @@ def _statistic_of(values: Array, statistic: str) -> float:
         return np.nan
     if statistic in ("max", "mean"):
         return float(known.max() if statistic == "max" else known.mean())
-    share = 0.5 if statistic == "median" else 0.84
-    with np.errstate(invalid="ignore"):  # between infinities
-        middle = float(np.quantile(known, share))
-    return float(np.quantile(known, share, method="higher")) if np.isnan(middle) else middle
+    share = MEDIAN if statistic == "median" else FRACTILE
+    return fractile(known, np.zeros(known.size, bool), share)
