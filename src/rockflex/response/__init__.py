@@ -19,7 +19,7 @@ from rockflex.response._moment_rotation import (
 from rockflex.response._peaks import GLOBAL, TrackedPeaks, tracked_quantities
 from rockflex.response._pushover import BilinearFit, Pushover, PushoverEvent, pushover_path
 from rockflex.response._quasi_static import static_path
-from rockflex.response._record_set import RecordSet, Rule, checked_rule
+from rockflex.response._record_set import RecordSet, Rule, checked_rule, floor_peaks
 from rockflex.response._respond import (
     BY_STORY,
     MAX_OF_STORIES,
@@ -80,6 +80,7 @@ __all__ = [
     "columns_of_responses",
     "complete_model_label",
     "element_resistance",
+    "floor_peaks",
     "friction_coefficient",
     "ground_columns",
     "history_columns",

@@ -178,7 +178,7 @@ class RecordSet(HtmlTable, Value):
         """
         import pandas as pd
 
-        rows = [run.peaks() | _floor_peaks(run) for run in self.responses]
+        rows = [run.peaks() | floor_peaks(run) for run in self.responses]
         return pd.DataFrame(rows).set_index("motion")
 
     @property
@@ -279,7 +279,8 @@ def history_of(run: Response) -> History:
     return run.history
 
 
-def _floor_peaks(run: Response) -> dict[str, float]:
+def floor_peaks(run: Response) -> dict[str, float]:
+    """Return `max_story_drift` in m and `max_floor_acceleration` in m/s² of all floors; nothing without floors."""
     if run.floors is None:
         return {}
     peaks = {"max_story_drift": run.floors.story_drift, "max_floor_acceleration": run.floors.floor_acceleration}

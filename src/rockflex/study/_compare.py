@@ -10,7 +10,7 @@ from rockflex._errors import InputError, SolverError
 from rockflex._shown import number_with_noun, shown
 from rockflex.modal import RockingProperties
 from rockflex.models import BoucWen, ImpactLaw, Model
-from rockflex.response import Comparison, Response
+from rockflex.response import Comparison, floor_peaks
 from rockflex.study._arguments import (
     WORK_LIMIT,
     GroundChoice,
@@ -131,13 +131,9 @@ def compare(
 
 def _with_floors(table: Any) -> Any:
     """Return a table of responses with the largest drift and acceleration of all floors; NaN if there are none."""
-    runs: list[Response] = table["response"].tolist()
-    peaks = {"max_story_drift": "story_drift", "max_floor_acceleration": "floor_acceleration"}
-    found = {
-        column: [np.nan if run.floors is None else float(np.max(getattr(run.floors, name))) for run in runs]
-        for column, name in peaks.items()
-    }
-    return table.assign(**found)
+    peaks = [floor_peaks(run) for run in table["response"]]
+    names = ("max_story_drift", "max_floor_acceleration")
+    return table.assign(**{name: [each.get(name, np.nan) for each in peaks] for name in names})
 
 
 def _for_each(option: str, given: Any, names: tuple[str, ...]) -> list[Any]:
