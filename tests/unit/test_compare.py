@@ -236,3 +236,11 @@ def test_wrong_commands(files, arguments, said):
     result = invoke(*arguments)
     assert result.exit_code == 2
     assert said in result.stderr
+
+
+def test_no_share_of_alpha_where_tendons_leave_none():
+    stiff = rf.Restrained(SLENDER, rf.Tendon(1e5, 5e7))
+    found = rf.compare({"free": SLENDER, "tied": stiff}, PULSES[2], "2DOF-S")
+    shares = found.demands().loc["balance_ratio"]
+    assert shares["free"] > 0.0
+    assert math.isnan(shares["tied"])

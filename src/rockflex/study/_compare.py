@@ -119,6 +119,8 @@ def compare(
                 raise SolverError(f"{name} under {row['motion']}, {row['model']}: {row['error']}")
             if free_vibration != "settle":
                 table["residual_rotation"] = np.nan
+            no_balance = table["balance_ratio"].eq(0.0) & table["max_rotation"].gt(0.0)  # tendons leave no α
+            table.loc[no_balance, "balance_ratio"] = np.nan
             tables.append(_with_floors(table))
             advance(len(records))
     first = tables[0]
