@@ -57,6 +57,7 @@ FOUNDATION = {
     "_files",
     "_html",
     "_json",
+    "_language",
     "_matrices",
     "_number_format",
     "_registry",

@@ -65,6 +65,7 @@ def check(
     work_limit: options.WorkLimit = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 1 if a limit is exceeded.")] = False,
     output_units: options.OutputUnits = None,
+    language: options.ReportLanguage = None,
     decimal_comma: options.DecimalComma = False,
     json: options.Json = False,
     report: Annotated[Path | None, options.option("--report", "FILE.html", "Write a report of the set.")] = None,
@@ -87,6 +88,7 @@ def check(
     from rockflex.study import simulate_set
 
     page = None if report is None else checked_path_of_report(report, force=force)
+    written = options.report_format(page, output_units, language, comma=decimal_comma)
     given = read_limits(limits)
     asked = RunArguments(
         arguments=arguments or [], structure=structure, motion=motion, model=None if model is None else [model],
@@ -134,7 +136,6 @@ def check(
         _print_checks(table, shown)
     console.print_warnings((*loaded.warnings, *found.warnings))
     if page is not None:
-        written = options.report_format(output_units, comma=decimal_comma)
         write_report(found, page, structure=loaded.built, title=loaded.name, limits=given, **written)
         console.print_remark(f"Written to {page}")
     if strict and not table.ok:
