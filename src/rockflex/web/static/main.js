@@ -17,7 +17,7 @@ const TABS = [
     "Find how wide the base must be to meet a target probability, with and without a tendon."],
 ];
 
-const LIVE = 300; // ms between two changes of the address
+const LIVE = 300; // ms after the last move, until the address changes
 const SLOW = 400; // ms after which a button says that it works
 const view = document.getElementById("view");
 const banner = document.getElementById("banner");
@@ -33,7 +33,8 @@ export const app = {
   // the address.
   change(patch, live = false) {
     merge(app.state, patch);
-    if (live) later ??= setTimeout(keep, LIVE);
+    clearTimeout(later);
+    if (live) later = setTimeout(keep, LIVE);
     else keep();
     refresh(live);
   },

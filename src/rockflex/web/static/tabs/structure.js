@@ -210,8 +210,8 @@ export default function structureTab(app) {
       form();
       below.refresh();
       options.refresh();
+      shown.quick.refresh();
     }
-    shown.quick.refresh();
     shown.resume();
     load();
   }
