@@ -108,7 +108,7 @@ def test_a_top_of_unknown_height_has_no_total_displacement(visit, link, client) 
     assert cell.inner_text() == "–"
     assert visitor.page.get_by_label("Plotted top displacement").is_hidden()
     assert "relative to the ground" not in visitor.page.locator("#verdict").inner_text()
-    _, content = client.download("/api/download/histories", state)
+    _, content = client.download("/api/file/histories", state)
     names, first = (line.split(",") for line in content.decode().splitlines()[:2])
     place = next(k for k, name in enumerate(names) if name.startswith("total_top_displacement"))
     assert first[place] == "nan"

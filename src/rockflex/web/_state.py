@@ -12,6 +12,7 @@ from rockflex._errors import InputError
 from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKED, ROCKING, LimitState, rotation_limit_state
 from rockflex.modal import Ground
 from rockflex.motion import Combination, IntensityMeasure, scalable_measures
+from rockflex.response import CheckLimits
 from rockflex.structure.file import StructureEntry, TomlTable, toml_problem_place
 from rockflex.study import RunOptions, yielding_model_labels
 from rockflex.study._ground_tables import GroundTable
@@ -240,6 +241,46 @@ class DesignChoice(TomlTable):
     target: float = Field(0.25, ge=1e-4, le=0.99, description="a probability from 0.0001 to 0.99")
 
 
+class RecordSetChoice(TomlTable):
+    """Records whose responses are one result, and the rule that makes one value for design of them."""
+
+    shown: bool = Field(False, description="true or false")
+    suites: Suites = Field(["chosen"], description="a list of one to four suites")
+    scale: Scale = 1.0
+    model: Name = Field("", description="one of the models; the first if it is none of them")
+    rule: Literal["", "ec8", "asce7", "asce7-ii"] = Field("ec8", description='"ec8", "asce7", "asce7-ii" or nothing')
+
+
+Limit = Annotated[float | None, Field(gt=0.0, description="a number above 0, or nothing")]
+
+
+class LimitsChoice(TomlTable):
+    """The limits of the checks, in SI units, by the arguments of `CheckLimits`."""
+
+    moment_ratio: Limit = None
+    rotation_ratio: Limit = None
+    drift_ratio: Limit = None
+    tendon_ratio: Limit = None
+    fuse_length: Limit = None
+    fuse_strain: Limit = None
+    bearing_pressure: Limit = None
+    breadth: Limit = None
+    contact_ratio: Limit = None
+    friction: Limit = None
+    slip: Limit = None
+    seat_width: Limit = None
+    toe_length: Limit = None
+    toe_stress: Limit = None
+
+    def limits(self, *, friction: bool = True) -> CheckLimits:
+        """Return the limits; without that of the friction where it would take too long."""
+        given = self.model_dump(exclude_none=True, exclude=None if friction else {"friction"})
+        try:
+            return CheckLimits(**given)
+        except InputError as error:
+            raise Refusal({f"limits.{error.field}": str(error)}) from error
+
+
 class PageState(RunOptionKeys):
     """The state of the whole page."""
 
@@ -256,6 +297,16 @@ class PageState(RunOptionKeys):
     cloud: CloudChoice = Field(default_factory=lambda: CloudChoice.model_validate({}), description="a table")
     design: DesignChoice = Field(default_factory=lambda: DesignChoice.model_validate({}), description="a table")
     target: TargetChoice = Field(default_factory=lambda: TargetChoice.model_validate({}), description="a table")
+
+    record_set: RecordSetChoice = Field(
+        default_factory=lambda: RecordSetChoice.model_validate({}), description="a table"
+    )
+    limits: LimitsChoice = Field(default_factory=LimitsChoice, description="a table")
+
+    @property
+    def model_of_set(self) -> str:
+        """The model of the set of records: the chosen one, or the first of the Response tab."""
+        return self.record_set.model if self.record_set.model in self.models else self.models[0]
 
     def run_options(self, ground: Ground | None) -> RunOptions:
         """Return the options of the runs of the Response tab, on the ground of the structure."""
@@ -322,6 +373,7 @@ def _check_models_of_state(state: PageState) -> None:
 def _check_run_options_of_state(state: PageState) -> None:
     with errors_as_refusals("restitution"):
         state.law()
+    state.limits.limits()
     if state.ground is not None:
         check_form_numbers("ground", state.ground.model_dump(), GroundTable)
     if state.bouc_wen is None:

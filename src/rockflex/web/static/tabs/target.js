@@ -5,6 +5,7 @@ import { Chart } from "../chart.js";
 import { CHOSEN, GIVEN, suitesOf } from "../choices.js";
 import { h, latest, number, scrolled, symbol, tableOf } from "../dom.js";
 import { box, field, fileBox, parseNumber, select, tableField, trouble } from "../form.js";
+import { downloads } from "../jobs.js";
 import { legend } from "../marks.js";
 
 const KINDS = [
@@ -138,7 +139,7 @@ export function target(app, root) {
     whole.hidden = now().source !== GIVEN;
     load();
   }
-  const files = app.downloads({ querySelector: (...a) => root().querySelector(...a), querySelectorAll: (...a) => root().querySelectorAll(...a) },
+  const files = downloads(app, { querySelector: (...a) => root().querySelector(...a), querySelectorAll: (...a) => root().querySelectorAll(...a) },
     [["selection", "Records (CSV)"], ["selection-spectra", "Spectra (CSV)"], ["selection-figure", "Figure (SVG)"],
       ["selection-records", "Scaled records (ZIP)"], ["selection-python", "Python lines"], ["records", "Your records (ZIP)"]]);
   const whole = files.querySelector('[data-file="records"]'); // which the program reads
