@@ -18,13 +18,11 @@ from contextlib import ExitStack, contextmanager
 import numpy as np
 import pandas as pd
 import pytest
-from typer.testing import CliRunner
 
 import rockflex as rf
 from builders import make_frame
 from rockflex._errors import InputError
 from rockflex._json import as_json_value
-from rockflex.cli import app
 from rockflex.study.spec import GroundTable
 from rockflex.web import make_app, serve
 from rockflex.web._forms import PRESETS
@@ -96,13 +94,6 @@ def test_every_preset_answers_on_every_tab(client, preset) -> None:
     state = client.state(structure=as_json_value(preset["structure"]))
     for path in ("/api/structure", "/api/record", "/api/response"):
         json.dumps(client.ask(path, state), allow_nan=False)
-
-
-def test_what_answers_need_is_imported_before(client) -> None:
-    end = time.monotonic() + HANG
-    while not json.loads(client.request("/api/about")[2])["ready"]:
-        assert time.monotonic() < end
-        time.sleep(0.1)
 
 
 def test_overturning_is_told(client) -> None:
@@ -337,38 +328,6 @@ def test_the_python_lines_repeat_the_numbers(client, tmp_path, monkeypatch) -> N
             for key in ("max_rotation", "max_top_displacement", "max_base_moment", "max_base_shear"):
                 assert getattr(response, key) == pytest.approx(shown[label][key], rel=1e-9)
         assert (tmp_path / "response.svg").read_text().startswith("<?xml")
-
-
-def test_the_study_repeats_the_numbers(client, tmp_path) -> None:
-    assumed = {"impact": "restitution", "restitution": 0.4, "bouc_wen": YIELDING}
-    state = client.state(scale=1.3, models=["2DOF-S-BW", "MDOF-S"], **assumed)
-    name, content = client.download("/api/file/study", state)
-    (tmp_path / name).write_bytes(content)
-    table = rf.run_study(tmp_path / name)
-    shown = client.ask("/api/response", state)["models"]
-    # A study keeps peaks, the page histories: what is tracked besides moves the last digits of an integrated run.
-    for peak in ("max_rotation", "max_total_top_displacement", "min_vertical_reaction"):
-        assert table[peak].tolist() == pytest.approx([each["peaks"][peak] for each in shown], rel=1e-9)
-    done = CliRunner().invoke(app, ["cloud", str(tmp_path / name), "--out", str(tmp_path / "kept")])
-    assert done.exit_code == 0, done.stderr
-    assert rf.StudyFolder.load(tmp_path / "kept").frame()["max_rotation"].tolist() == table["max_rotation"].tolist()
-
-
-@pytest.mark.parametrize("source", ["pulse", "upload"])
-def test_the_study_of_a_record_beside_it_is_run_by_the_command(client, tmp_path, source) -> None:
-    record = {"source": source} | ({"upload": upload(client)[1]["upload"]} if source == "upload" else {})
-    state = client.state(record=record, models=["2DOF-S", "fixed"])
-    name, content = client.download("/api/file/study", state)
-    (tmp_path / name).write_bytes(content)
-    (tmp_path / "records").mkdir()
-    name, content = client.download("/api/file/record", state)
-    assert name.startswith("Ricker" if source == "pulse" else "mine")
-    (tmp_path / "records" / name).write_bytes(content)
-    done = CliRunner().invoke(app, ["cloud", str(tmp_path / "study.toml"), "--out", str(tmp_path / "kept")])
-    assert done.exit_code == 0, done.stderr
-    found = rf.StudyFolder.load(tmp_path / "kept").frame()["max_rotation"]
-    shown = client.ask("/api/response", state)["models"]
-    assert found.to_numpy() == pytest.approx([each["peaks"]["max_rotation"] for each in shown], rel=1e-9)
 
 
 def test_every_download_is_what_it_says(client) -> None:

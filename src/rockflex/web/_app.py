@@ -56,7 +56,6 @@ class PageServer:
         self.uploads = UploadedRecords()
         self.jobs = BackgroundJobs[RunsJob]("studies", MAX_STUDIES)
         self.files = BackgroundJobs[BackgroundFileJob]("files", MAX_FILES, MAX_FILES_WRITTEN)
-        self._ready = Event()
         self._folders_received = asyncio.Semaphore(MAX_FOLDERS_RECEIVED)
         self._limiters: dict[int, anyio.CapacityLimiter] = {}
 
@@ -66,7 +65,6 @@ class PageServer:
         content = {"structure": PRESETS[0]["structure"], "record": pulse, "free_vibration": 0.0}
         state = PageState.model_validate(content | {"models": ["MDOF-S", "2DOF-S", "2DOF-C", "fixed"]})
         response_view(state, self.uploads)
-        self._ready.set()
 
     async def answer(self, work: Answer, most: int = MAX_ANSWERS) -> Any:
         """Compute outside the event loop, with a limited number of answers at once."""
@@ -96,8 +94,8 @@ class PageServer:
             watching.cancel()
 
     async def about(self, _: Request) -> Response:
-        """Forms, presets, suites, pulses and limits, and whether the first answer is ready."""
-        return JSONResponse(await anyio.to_thread.run_sync(_answer_about_page) | {"ready": self._ready.is_set()})
+        """Forms, presets, suites, pulses and limits."""
+        return JSONResponse(await anyio.to_thread.run_sync(_answer_about_page))
 
     async def suite(self, request: Request) -> Response:
         """Records of a suite."""
@@ -184,11 +182,6 @@ class PageServer:
         what = request.path_params["what"]
         return self._making(lambda _: study_file(PAGES[kind], job, state, what))
 
-    async def cancel(self, request: Request) -> Response:
-        """Stop a study."""
-        self.jobs.cancel(request.path_params["token"])
-        return JSONResponse({})
-
     async def make(self, request: Request) -> Response:
         """Start to make a file of the results on the page."""
         state, _ = await _state_and_content(request)
@@ -211,9 +204,10 @@ class PageServer:
         (name, content), job.file = job.file, None
         return _file_answer(name, MEDIA_TYPES[Path(name).suffix], content)
 
-    async def unmake(self, request: Request) -> Response:
-        """Stop to make a file."""
-        self.files.cancel(request.path_params["token"])
+    async def cancel(self, request: Request) -> Response:
+        """Stop a study, or to make a file."""
+        jobs = self.files if request.url.path.startswith("/api/file/") else self.jobs
+        jobs.cancel(request.path_params["token"])
         return JSONResponse({})
 
     def _job(self, request: Request) -> tuple[str, RunsJob]:
@@ -347,9 +341,9 @@ def create_page_application(host: str, names: Sequence[str]) -> Starlette:
         Route("/api/study/{kind}/{token}", server.progress, methods=["POST"]),
         Route("/api/study/{kind}/{token}/{what}", server.study_file, methods=["POST"]),
         Route("/api/job/{token}", server.cancel, methods=["DELETE"]),
+        Route("/api/file/{token}", server.cancel, methods=["DELETE"]),
         Route("/api/file/{what}", server.make, methods=["POST"]),
         Route("/api/file/{token}", server.making),
-        Route("/api/file/{token}", server.unmake, methods=["DELETE"]),
         Route("/api/file/{token}/content", server.made),
         Mount("/static", StaticFiles(directory=STATIC)),
     ]

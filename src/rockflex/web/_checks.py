@@ -14,8 +14,8 @@ def checks_view(result: Response | RecordSet, state: PageState, *, friction: boo
 
     `unlimited` has the names of the checks that only need a limit, and `missing` what the others lack.
     """
-    table = check(result, state.limits.limits(friction=friction))
-    left_out = {"sliding": LONG} if state.limits.friction is not None and not friction else {}
+    table = check(result, state.check_limits(friction=friction))
+    left_out = {"sliding": LONG} if "friction" in state.limits and not friction else {}
     missing = [(name, left_out.get(name, lacks)) for name, lacks in table.missing]
     rows: list[dict[str, Any]] = []
     for each in table.rows:

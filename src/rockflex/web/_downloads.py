@@ -5,7 +5,7 @@ import io
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import tomli_w
 
@@ -50,7 +50,7 @@ def run_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, st
             motion=motion,
             title=f"{name} under {motion.name or 'a ground motion'}{times}",
             omitted=[response.model for response in found if is_long_run_report(response, acting, state)],
-            limits=state.limits.limits(),
+            limits=state.check_limits(),
         )
     return "report.html", text
 
@@ -223,27 +223,6 @@ def _motion_file_name(motion: GroundMotion) -> str:
     return clean_upload_name(motion.name.replace("/", "_"))
 
 
-def _response_study_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
-    """The runs of the Response tab as a cloud study of one record."""
-    motion = chosen_motion(state.record, uploads)
-    head = "# rockflex cloud study.toml --out study\n"
-    records: dict[str, Any] = {"suites": [state.record.suite], "include": [motion.name]}
-    if state.record.source != "suite":
-        name = f"{_motion_file_name(motion)}.csv"
-        head += f'# Put the record, which the page saves as "{name}", into the folder records next to this file.\n'
-        records = {"folder": "records"}
-    content: dict[str, Any] = {
-        "study": "cloud",
-        "name": state.structure.name or "Response",
-        "models": list(state.models),
-        "scales": [state.scale],
-        "free_vibration": state.free_vibration,
-    }
-    content |= state.option_keys(state.models)
-    structure = state.structure.model_dump(exclude_none=True)
-    return "study.toml", head + tomli_w.dumps(content | {"records": records, "structures": [structure]})
-
-
 def _response_python_file(state: PageState, uploads: UploadedRecords) -> tuple[str, str]:
     own = state.record.source in ("upload", "folder")
     name = _motion_file_name(chosen_motion(state.record, uploads)) if own else ""
@@ -294,7 +273,6 @@ _MAKERS: dict[str, Callable[[PageState, UploadedRecords], tuple[str, str | bytes
     "record": _record_csv_file,
     "records": lambda state, uploads: (f"{WHOLE_FOLDER}.zip", records_as_zip(folder_suite(state, uploads))),
     "structure": lambda state, _: ("structure.toml", tomli_w.dumps(state.structure.model_dump(exclude_none=True))),
-    "study": _response_study_file,
     "python": _response_python_file,
     "selection": lambda state, uploads: ("selection.csv", _csv(_selection(state, uploads).table())),
     "selection-spectra": lambda state, uploads: ("spectra.csv", _csv(_selection(state, uploads).spectra())),

@@ -65,7 +65,7 @@ def record_set_study(state: PageState, uploads: UploadedRecords) -> RecordSetStu
         chosen = SELECTIONS.of(state, uploads)[0].periods
         periods = (float(chosen[0]), float(chosen[-1]))
     # On springs the required friction takes minutes.
-    friction = state.limits.friction is not None and case.model.springs is None
+    friction = "friction" in state.limits and case.model.springs is None
     return RecordSetStudy(built, case, records, motions, periods, friction, state)
 
 
@@ -84,8 +84,7 @@ class RecordSetJob(RunsJob):
             with errors_as_refusals("record_set.suites", f"{motion.name}: "):
                 found.append(study.case.run(motion))
             _ = found[-1].warnings  # its energies, which the response then has
-            if study.friction:
-                check(found[-1], study.state.limits.limits())
+            check(found[-1], study.state.check_limits(friction=study.friction))
             self.runs += 1
         given = {"properties": study.built.properties, "rule": None, "periods": study.periods}
         _SETS.put(self.key, RecordSet(responses=tuple(found), motions=study.motions, **given))
@@ -149,7 +148,7 @@ def _record_set_report(job: RecordSetJob, state: PageState) -> str:
         found,
         structure=study.built.structure,
         title=f"{name} under {len(found.responses)} records",
-        limits=state.limits.limits(friction=study.friction),
+        limits=state.check_limits(friction=study.friction),
     )
 
 

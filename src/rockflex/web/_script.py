@@ -114,7 +114,7 @@ def record_set_script(state: PageState, study: Any) -> str:
         [
             f"found = rf.simulate_set(structure, motions, {label!r}, {extra})",
             "print(found.statistics.to_string())",
-            f"limits = rf.CheckLimits({_python_named_arguments(state.limits.model_dump())})",
+            f"limits = rf.CheckLimits({_python_named_arguments(state.limits)})",
             "table = rf.check(found, limits)",
             "print(table.to_frame().to_string())",
             'rf.write_report(found, "report.html", structure=structure, limits=limits)',

@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Callable, Container, Sequence
+from dataclasses import fields
 from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import AfterValidator, AliasChoices, Field, StringConstraints, ValidationError
@@ -251,34 +252,7 @@ class RecordSetChoice(TomlTable):
     rule: Literal["", "ec8", "asce7", "asce7-ii"] = Field("ec8", description='"ec8", "asce7", "asce7-ii" or nothing')
 
 
-Limit = Annotated[float | None, Field(gt=0.0, description="a number above 0, or nothing")]
-
-
-class LimitsChoice(TomlTable):
-    """The limits of the checks, in SI units, by the arguments of `CheckLimits`."""
-
-    moment_ratio: Limit = None
-    rotation_ratio: Limit = None
-    drift_ratio: Limit = None
-    tendon_ratio: Limit = None
-    fuse_length: Limit = None
-    fuse_strain: Limit = None
-    bearing_pressure: Limit = None
-    breadth: Limit = None
-    contact_ratio: Limit = None
-    friction: Limit = None
-    slip: Limit = None
-    seat_width: Limit = None
-    toe_length: Limit = None
-    toe_stress: Limit = None
-
-    def limits(self, *, friction: bool = True) -> CheckLimits:
-        """Return the limits; without that of the friction where it would take too long."""
-        given = self.model_dump(exclude_none=True, exclude=None if friction else {"friction"})
-        try:
-            return CheckLimits(**given)
-        except InputError as error:
-            raise Refusal({f"limits.{error.field}": str(error)}) from error
+LimitOfCheck = Annotated[str, check_of_known_names(lambda: [each.name for each in fields(CheckLimits)])]
 
 
 class PageState(RunOptionKeys):
@@ -301,12 +275,21 @@ class PageState(RunOptionKeys):
     record_set: RecordSetChoice = Field(
         default_factory=lambda: RecordSetChoice.model_validate({}), description="a table"
     )
-    limits: LimitsChoice = Field(default_factory=LimitsChoice, description="a table")
+    limits: dict[LimitOfCheck, Any] = Field(
+        default_factory=dict, description="a table of the arguments of rockflex.CheckLimits"
+    )
 
     @property
     def model_of_set(self) -> str:
         """The model of the set of records: the chosen one, or the first of the Response tab."""
         return self.record_set.model if self.record_set.model in self.models else self.models[0]
+
+    def check_limits(self, *, friction: bool = True) -> CheckLimits:
+        """Return the limits of the checks; without that of the friction where it would take too long."""
+        try:
+            return CheckLimits(**{name: each for name, each in self.limits.items() if friction or name != "friction"})
+        except InputError as error:
+            raise Refusal({f"limits.{error.field}": str(error)}) from error
 
     def run_options(self, ground: Ground | None) -> RunOptions:
         """Return the options of the runs of the Response tab, on the ground of the structure."""
@@ -373,7 +356,7 @@ def _check_models_of_state(state: PageState) -> None:
 def _check_run_options_of_state(state: PageState) -> None:
     with errors_as_refusals("restitution"):
         state.law()
-    state.limits.limits()
+    state.check_limits()
     if state.ground is not None:
         check_form_numbers("ground", state.ground.model_dump(), GroundTable)
     if state.bouc_wen is None:

@@ -33,10 +33,8 @@ export function recordSet(app, root) {
   const shown = select("demand", t("Demand drawn"), [], "max_rotation", () => drawPeaks());
   const chart = new Chart({ label: t("Peaks of the records"), xLabel: t("record, as numbered in the table"), xName: t("record"), height: 240, zero: true });
   const over = new Chart({ label: t("Rotations under all records over time"), yLabel: "θ [mrad]", xLabel: t("time [s]"), xName: "t [s]", height: 200, symmetric: true });
-  const [head, keys, overKeys, warned, tables] = ["p", "div", "div", "div", "div"].map((tag) => h(tag));
-  head.className = "answer";
-  warned.className = "warning";
-  warned.setAttribute("role", "alert");
+  const [keys, overKeys, tables] = [h("div"), h("div"), h("div")];
+  const [head, warned] = [h("p", { class: "answer" }), h("div", { class: "warning", role: "alert" })];
   const drawing = h("div", { hidden: true }, head, warned, shown, keys, chart.element, overKeys, over.element, tables);
   const results = h("div", { class: "results", id: "record-set" }, drawing);
   const study = new Study(app, "record_set", {
@@ -125,9 +123,8 @@ function ofDemands({ demands }) {
 
 function ofRecords({ demands, records }) {
   const listed = demands.filter((each) => each.listed);
-  const outcome = { overturned: t("overturned"), rocking: t("rocking"), no_uplift: t("no uplift") };
   return tableOf([t("no."), t("record"), t("outcome"), t("factor"), ...listed.map((each) => symbol(plain(each)))],
     records.map((each, i) => h("tr", { "data-record": each.name }, h("td", {}, String(i + 1)), h("th", { scope: "row" }, each.name),
-      h("td", { class: each.status }, outcome[each.status] ?? each.status), h("td", {}, number(each.scale, 3)),
+      h("td", { class: each.status }, t(each.status.replace("_", " "))), h("td", {}, number(each.scale, 3)),
       listed.map((demand) => h("td", { "data-name": demand.name, "data-value": demand.peaks[i] }, number(demand.peaks[i] / demand.size))))));
 }

@@ -34,11 +34,10 @@ const OTHERS = ["t", "uplifted", "points", "element_elongation", "heave"];
 const FILES = [
   ["report", "Report (HTML)"], ["figure", "Figure (SVG)"], ["animation", "Animation (GIF)"], ["energy", "Energy (SVG)"],
   ["peaks", "Peaks (CSV)"], ["histories", "Histories (CSV)"],
-  ["study", "Study (TOML)"], ["python", "Python lines"], ["record", "Record (CSV)"],
+  ["python", "Python lines"], ["record", "Record (CSV)"],
 ];
 
 const PATIENCE = 1500; // ms before the page says that it is computing
-const FIRST = "Computing … The first run after an installation compiles the kernels, which takes some fifteen seconds.";
 
 export default function responseTab(app) {
   let view = null;
@@ -145,7 +144,7 @@ export default function responseTab(app) {
   const load = latest(async () => {
     const started = performance.now();
     const before = verdict.textContent;
-    const patience = setTimeout(() => (verdict.textContent = app.about.ready || view ? "Computing …" : FIRST), PATIENCE);
+    const patience = setTimeout(() => (verdict.textContent = "Computing …"), PATIENCE);
     const requested = JSON.stringify([app.state.scale, app.state.models]);
     const answer = await app.ask("/api/response", element, { focus: energy.focus, element: elements.element });
     clearTimeout(patience);
