@@ -29,8 +29,6 @@ A TOML file with the arguments of rockflex.CheckLimits in SI units, such as drif
 breadth = 6.0, bearing_pressure = 300e3, contact_ratio = 0.5, seat_width = 0.4, toe_length = 0.3, toe_stress = 20e6."""
 
 DEFAULT_MODELS = ("MDOF-S", "2DOF-S-BW", "rigid")
-OF_RECORDS = ("max_rotation", "max_total_top_displacement", "max_story_drift", "max_base_moment", "max_base_shear",
-              "min_vertical_reaction")  # fmt: skip
 STATISTICS = {"mean": "mean", "worst": "worst", "median": "median", "fractile_84": "84 %", "design": "design"}
 VERDICTS = {True: ("ok", "green"), False: ("fails", "bold red"), None: ("-", "")}
 
@@ -167,10 +165,10 @@ def read_limits(file: Path | None) -> "CheckLimits":
 
 
 def _print_set(found: "RecordSet", units: UnitSystem) -> None:
-    from rockflex.response import DEMANDS
+    from rockflex.response import DEMANDS, DEMANDS_BY_RECORD
 
     peaks, statistics = found.peaks, found.statistics
-    shown = {name: DEMANDS[name].unit_in(units) for name in OF_RECORDS if name in statistics.index}
+    shown = {name: DEMANDS[name].unit_in(units) for name in DEMANDS_BY_RECORD if name in statistics.index}
     rows = [
         [
             str(motion),

@@ -17,6 +17,7 @@ from rockflex.motion import GroundMotion
 from rockflex.response import History, Response, warnings_of_energy, warnings_of_response
 from rockflex.solve import cost_model_of
 from rockflex.study import PreparedCase
+from rockflex.web._checks import checks_view
 from rockflex.web._earthquake import chosen_motion
 from rockflex.web._encoding import envelope_indices, pack_array_as_base64
 from rockflex.web._limits import check_work_of_runs
@@ -189,6 +190,7 @@ def response_view(
             ),
             "suggested_yield": _suggested_yield_displacement(p, motion),
             "energy": energy,
+            "checks": checks_view(found[0], state, friction=not is_long_run_report(found[0], motion, state)),
         }
     )
 
@@ -295,6 +297,18 @@ def check_work_of_energy(response: Response, motion: GroundMotion, state: PageSt
     )  # more branches to follow
     if work > MAX_ENERGY_COST:
         raise Refusal({"energy": "the energy is not computed here for so many or such fast modes over so long a time."})
+
+
+def is_long_run_report(response: Response, motion: GroundMotion, state: PageState) -> bool:
+    """Whether energies and friction would take too long here, as they do on many stiff springs."""
+    assert response.history is not None  # asked for in `simulate_state_models`
+    if response.history.model.springs is not None:
+        return True
+    try:
+        check_work_of_energy(response, motion, state)
+    except Refusal:
+        return True
+    return False
 
 
 def _energy_view(motion: GroundMotion, response: Response, state: PageState) -> dict[str, Any]:

@@ -298,7 +298,9 @@ def _limit_check_cell(row: Check, units: UnitSystem) -> ReportCell:
     demand, _, unit = check_in_units(row, units)
     if math.isnan(demand):
         return ReportCell(translated("overturns"), None, "demand", True)
-    ratio = "" if row.ratio is None else f" ({rounded_number(row.ratio)})"
+    ratio = ""
+    if row.ratio is not None:
+        ratio = f" ({rounded_number(row.ratio)}, {translated('ok' if row.ok else 'fails')})"
     return ReportCell(
         f"{rounded_number(demand)} {unit}".rstrip().replace(" ", NO_BREAK) + ratio,
         row.demand,

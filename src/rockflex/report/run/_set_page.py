@@ -12,11 +12,9 @@ from rockflex.report.run._report_tables import DAGGER, STATUS, ReportCell, Repor
 from rockflex.report.run._reported_runs import checked_reported_runs
 from rockflex.report.run._run_checks import limit_check_table, missing_checks_text
 from rockflex.report.run._sheet import MAX_LETTERS, Block, Drawing, Figures, ReportPage, ReportTexts
-from rockflex.response import DEMANDS, CheckLimits, RecordSet, check
+from rockflex.response import DEMANDS, DEMANDS_BY_RECORD, CheckLimits, RecordSet, check
 from rockflex.structure import structure_warnings
 
-_OF_RECORDS = ("max_rotation", "max_total_top_displacement", "max_story_drift", "max_base_moment", "max_base_shear",
-               "min_vertical_reaction")  # fmt: skip
 STATISTIC_HEADS = {"mean": "mean", "worst": "worst", "median": "median", "fractile_84": "84 %", "design": "for design"}
 
 
@@ -91,7 +89,7 @@ def set_page(
 
 
 def _record_table(found: RecordSet, units: UnitSystem) -> ReportTable:
-    shown = {name: DEMANDS[name].unit_in(units) for name in _OF_RECORDS if name in found.statistics.index}
+    shown = {name: DEMANDS[name].unit_in(units) for name in DEMANDS_BY_RECORD if name in found.statistics.index}
     pga = units.of("acceleration", "m/s²")
     heads = [(translated("record"), ""), ("", ""), ("PGA", pga.name), (translated("factor"), "")]
     heads += [(translated(DEMANDS[name].symbol), unit.name) for name, unit in shown.items()]

@@ -1,8 +1,9 @@
 // The page: its state, which is stored in the address, its tabs, and what they share.
 
-import { ask, attempt, file, get, Refusal } from "./api.js";
-import { clone, h, number, printing, save } from "./dom.js";
+import { ask, attempt, get, Refusal } from "./api.js";
+import { clone, h, number, printing } from "./dom.js";
 import { showErrors } from "./form.js";
+import { t } from "./texts.js";
 
 const TABS = [
   ["structure", "Structure",
@@ -18,7 +19,6 @@ const TABS = [
 ];
 
 const LIVE = 300; // ms after the last move, until the address changes
-const SLOW = 400; // ms after which a button says that it works
 const view = document.getElementById("view");
 const banner = document.getElementById("banner");
 const made = {};
@@ -53,25 +53,14 @@ export const app = {
     const foot = root.querySelector(".foot");
     if (foot) foot.textContent = left.map(elsewhere).join(" ");
   },
-  download(path, root) {
-    return attempt(async () => save(...(await file(path, { state: app.state }))), (error) => app.complain(root, error.errors));
-  },
-  // Buttons that fetch files.
-  downloads(root, files, path = (what) => `/api/download/${what}`) {
-    const button = ([what, label]) => {
-      const run = () => once(one, () => app.download(path(what), root));
-      const one = h("button", { type: "button", "data-file": what, onclick: run }, label);
-      return one;
-    };
-    return h("div", { class: "buttons downloads" }, h("span", { class: "help" }, "Download:"), files.map(button));
-  },
-  // A button to another tab, below the results.
-  next(tab, text) {
+  // A button to another tab, below the results; `patch` changes the state before.
+  next(tab, text, patch = {}, label = titleOf(tab)) {
     const go = () => {
+      merge(app.state, patch);
       app.go(tab);
       tabOf(tab).focus();
     };
-    return h("p", { class: "help buttons" }, text, h("button", { type: "button", onclick: go }, titleOf(tab)));
+    return h("p", { class: "help buttons" }, text, h("button", { type: "button", onclick: go }, label));
   },
   go(tab) {
     if (!app.state) {
@@ -83,21 +72,6 @@ export const app = {
     show();
   },
 };
-
-// Do the work of a button once at a time; the button says so where it takes long.
-async function once(button, work) {
-  if (button.ariaBusy === "true") return;
-  const label = button.textContent;
-  button.ariaBusy = "true";
-  const slow = setTimeout(() => (button.textContent = `${label} …`), SLOW);
-  try {
-    await work();
-  } finally {
-    clearTimeout(slow);
-    button.ariaBusy = "false";
-    button.textContent = label;
-  }
-}
 
 const titleOf = (tab) => TABS.find(([name]) => name === tab)[1];
 const tabOf = (tab) => document.querySelector(`#tabs [data-tab="${tab}"]`);
@@ -135,7 +109,7 @@ function decoded(hash) {
 // What a printed sheet says of its tab; Swedish dates are those of ISO 8601.
 function heading() {
   if (!app.state) return "rockflex";
-  const { structure, record, scale, tab, target } = app.state;
+  const { structure, record, record_set, scale, tab, target } = app.state;
   const motion = {
     suite: record.name, pulse: "a pulse", upload: "an uploaded record", folder: record.given || "records of a folder",
   }[record.source];
@@ -143,7 +117,7 @@ function heading() {
   const under = {
     structure: "",
     earthquake: target.shown ? " under records for a target spectrum" : ` under ${motion}${times}`,
-    response: ` under ${motion}${times}`,
+    response: record_set.shown ? ` ${t("under a set of records")}` : ` under ${motion}${times}`,
   }[tab] ?? " under many records";
   return `${structure.name || "Structure"}${under} · ${titleOf(tab)} · ${new Date().toLocaleDateString("sv")} · rockflex`;
 }
