@@ -2,7 +2,7 @@
 
 import { bracket, FONT } from "./axes.js";
 import { color, context, h } from "./dom.js";
-import { colorOf, depthOf, drawSprings, drawStance, motionOf, strokes } from "./drawing.js";
+import { colorOf, depthOf, drawSprings, drawStance, isTendon, motionOf, strokes } from "./drawing.js";
 import { slider } from "./form.js";
 import { legend } from "./marks.js";
 
@@ -190,7 +190,7 @@ class Stage {
         this.#attached(g, frame, to, { kind, between, height, cosine });
         continue;
       }
-      const tendon = kind === "tendon";
+      const tendon = isTendon(kind);
       const sunk = frame.sprung ? this.depth / zoom : 0;
       const from = to([position, -sunk - (tendon ? 0.02 * top : 0)]);
       const end = to(frame.place(position, tendon ? 0.6 * top : Math.min(BRACKET / zoom, 0.4 * top)));
