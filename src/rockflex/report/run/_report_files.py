@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from rockflex._errors import InputError
-from rockflex._language import translated
+from rockflex._language import chosen_language, translated
 from rockflex._shown import shortened
 from rockflex.report.run._report_tables import ReportFact, ReportTable
 from rockflex.report.run._sheet import Drawing, ReportPage
@@ -107,6 +107,7 @@ def report_as_word(page: ReportPage, drawings: Mapping[str, tuple[str, bytes]]) 
     usual.paragraph_format.space_after = docx.shared.Pt(3)
     properties = document.core_properties
     properties.title, properties.author, properties.comments = page.title, page.texts.author, ""
+    properties.language = chosen_language()[0]
 
     document.add_heading(page.title, 1)
     _add_lines(document, [*page.texts.heads, (translated("Date"), page.texts.date)])
