@@ -3,6 +3,8 @@
 import { ask, attempt, file, get, Refusal } from "./api.js";
 import { clone, h, number, printing, save } from "./dom.js";
 import { showErrors } from "./form.js";
+import { t } from "./texts.js";
+import { setUnits } from "./units.js";
 
 const TABS = [
   ["structure", "Structure",
@@ -104,7 +106,10 @@ const tabOf = (tab) => document.querySelector(`#tabs [data-tab="${tab}"]`);
 // A message about a field of another tab, in words.
 function elsewhere(text) {
   const found = /^(?:structure|ground)(\.\w+)*?\.(\w+): (.*)$/s.exec(text);
-  return found ? `Structure, ${found[2].replaceAll("_", " ")}: ${found[3]}` : text.replace(/^record(\.\w+)*: /, "Earthquake: ");
+  if (!found) return text.replace(/^record(\.\w+)*: /, "Earthquake: ");
+  const values = { field: found[2].replaceAll("_", " "), message: found[3] };
+  const plain = app.state.units === "SI" || !/\d/.test(found[3]);
+  return plain ? t("Structure, {field}: {message}", values) : t("Structure, {field} (in SI units): {message}", values);
 }
 
 // Tables are merged key by key; a structure is replaced, and undefined removes a key.
@@ -171,12 +176,20 @@ async function open() {
   app.state = state;
   if (early) state.tab = early;
   early = null;
-  for (const [name, each] of Object.entries(made)) {
-    each.close?.();
+  for (const each of Object.values(made)) each.close?.();
+  document.getElementById("units").value = state.units;
+  await renew(Object.keys(made));
+}
+
+// Make tabs anew, with the units of the state.
+function renew(tabs) {
+  setUnits(app.about.units, app.state.units);
+  for (const name of tabs) {
+    made[name].leave?.();
     delete made[name];
   }
   keep();
-  await show();
+  return show();
 }
 
 function reason(error) {
@@ -244,6 +257,15 @@ function themes() {
   });
 }
 
+// Tabs with studies stay, since they would lose their runs; they write all units again when they are drawn.
+function unitsChoice() {
+  const choose = h("select", { id: "units", "aria-label": t("Units"), title: t("Units of the values shown and typed"), onchange: () => {
+    app.state.units = choose.value;
+    renew(Object.keys(made).filter((name) => !made[name].close));
+  } }, Object.keys(app.about.units).map((name) => h("option", {}, name)));
+  document.querySelector(".tools").prepend(choose);
+}
+
 function copying() {
   const button = document.getElementById("copy");
   button.addEventListener("click", async () => {
@@ -263,6 +285,7 @@ copying();
 printing(heading);
 try {
   app.about = await get("/api/about");
+  unitsChoice();
   await open();
   addEventListener("hashchange", () => {
     if (location.hash !== written) open();
