@@ -15,7 +15,7 @@ from playwright.sync_api import Page, sync_playwright
 from rockflex.web import make_app
 
 PORT = 18_322
-MOVES, RATE = 240, 120
+SECONDS = 3.0  # of a drag
 WATCH = """() => {
   window.found = [];
   const { player } = rockflexDrawn;
@@ -34,7 +34,7 @@ WATCH = """() => {
   };
 }"""
 # Within the page, since every event that Playwright sends takes some milliseconds of its own.
-DRAG = """async ([name, across, up, moves, rate]) => {
+DRAG = """async ([name, across, up, lasts]) => {
   const dot = document.querySelector(`[data-handle="${name}"]`);
   const { x, y, width, height } = dot.getBoundingClientRect();
   const [x0, y0] = [x + width / 2, y + height / 2];
@@ -46,9 +46,9 @@ DRAG = """async ([name, across, up, moves, rate]) => {
   window.found = [];
   tell("pointerdown", 0);
   const begun = performance.now();
-  for (let i = 1; i <= moves; i++) {
-    tell("pointermove", i / moves);
-    await new Promise((resolve) => setTimeout(resolve, begun + (1000 * i) / rate - performance.now()));
+  for (let seconds = 0; seconds < lasts; seconds = (performance.now() - begun) / 1000) {
+    tell("pointermove", seconds / lasts);
+    await new Promise(requestAnimationFrame); // as browsers align pointers to frames
   }
   const seconds = (performance.now() - begun) / 1000;
   const { found } = window;
@@ -58,10 +58,24 @@ DRAG = """async ([name, across, up, moves, rate]) => {
 }"""
 
 
+CASES = (
+    ("Frame #1: shear, 1 s, h*/B = 10", False),
+    ("Bridge pier on a footing, 24 m", False),
+    ("Bridge pier on a footing, 24 m", True),
+)
+HELD = """() => rockflexPage.change({
+  structure: { ...rockflexPage.state.structure, elements: [
+    { kind: "tendon", position: 0, initial_force: 2.5e6, stiffness: 36e6 },
+    { kind: "yielding_dissipator", position: -3, stiffness: 790e6, yield_force: 1.6e6 },
+    { kind: "yielding_dissipator", position: 3, stiffness: 790e6, yield_force: 1.6e6 },
+  ] },
+  ground: { mat_mass: 160e3, springs: { stiffness: 790e6, heave_damping_ratio: 0.1 } },
+})"""  # as the page's own new elements and springs
+
+
 def drag(page: Page, title: str, name: str, across: float, up: float) -> None:
-    page.get_by_label("Start from").select_option(label=title)
     page.wait_for_timeout(3000)
-    updates, answer, drawing = page.evaluate(DRAG, [name, across, up, MOVES, RATE])
+    updates, answer, drawing = page.evaluate(DRAG, [name, across, up, SECONDS])
     told = f"{updates:4.0f} updates/s, answer {answer:5.1f} ms, drawing {drawing:4.1f} ms"
     print(f"{title[:44]:44} {name}: {told}")
 
@@ -77,8 +91,11 @@ def main() -> None:
         page.goto(f"http://127.0.0.1:{PORT}/")
         page.wait_for_selector(".handle")
         page.evaluate(WATCH)
-        for title in ("Frame #1: shear, 1 s, h*/B = 10", "Bridge pier on a footing, 24 m"):
-            drag(page, title, "B", 60.0, 0.0)
+        for title, held in CASES:
+            page.get_by_label("Start from").select_option(label=title)
+            if held:
+                page.evaluate(HELD)
+            drag(page, title + ", tendon, fuses, springs" * held, "B", 60.0, 0.0)
             drag(page, title, "H", 0.0, 60.0)
         browser.close()
     server.should_exit = True

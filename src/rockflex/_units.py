@@ -116,8 +116,9 @@ def checked_unit_system(name: object, field: str = "units") -> UnitSystem:
     return UnitSystem(name)  # pyright: ignore[reportArgumentType]
 
 
-# Not in names and versions such as 2.1.3 or RSN6_1.5, nor in references to sections and equations.
-_DECIMAL_POINT = re.compile(r"(?<![\w.])(?<!Section )(?<!Eq\. )(\d[\d\u202f]*)\.(?=\d+(?:e[+\-−]?\d+)?(?!\.?\w))")
+# Not in names and versions such as 2.1.3 or RSN6_1.5, nor in references to sections and equations in any language.
+_REFERENCES = "".join(f"(?<!{word} )" for word in (r"Eq\.", "[Ss]ection", "Abschnitt", "Sezione", "sección"))
+_DECIMAL_POINT = re.compile(rf"(?<![\w.]){_REFERENCES}(\d[\d\u202f]*)\.(?=\d+(?:e[+\-−]?\d+)?(?!\.?\w))")
 
 
 def with_decimal_commas(text: str) -> str:

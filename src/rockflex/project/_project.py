@@ -9,8 +9,10 @@ from rockflex._checks import checked_instance
 from rockflex._errors import InputError
 from rockflex._files import checked_file_path, write_file_atomically
 from rockflex._html import HtmlTable
+from rockflex._language import Language
 from rockflex._schema import ReportKeys, schema_keys
 from rockflex._shown import number_with_noun, shown
+from rockflex._units import Decimal, SystemName
 from rockflex._values import Value
 from rockflex._versions import package_versions
 from rockflex.modal import Ground, RockingProperties
@@ -287,7 +289,16 @@ class Project(HtmlTable, Value):
         version = package_versions(("rockflex",))["rockflex"]
         return replace(self, results=ProjectResults(**made, inputs=self.inputs, version=version))
 
-    def report(self, path: str | Path, structure: str | None = None, workers: SupportsIndex | None = None) -> Path:
+    def report(
+        self,
+        path: str | Path,
+        structure: str | None = None,
+        workers: SupportsIndex | None = None,
+        *,
+        units: SystemName = "kN",
+        language: Language = "en",
+        decimal: Decimal | None = None,
+    ) -> Path:
         """Write the report of a structure: peaks by record, values for design, checks; or of all side by side.
 
         Parameters
@@ -298,6 +309,8 @@ class Project(HtmlTable, Value):
             Name of a structure. Default: all, compared with the first, or the only one.
         workers
             Number of threads; None for one a core.
+        units, language, decimal
+            Units, language and decimal sign, as in `write_report`.
 
         Returns
         -------
@@ -312,7 +325,7 @@ class Project(HtmlTable, Value):
             If a run cannot be solved.
         """
         checked_report_path("path", path)  # before anything is simulated
-        head: dict[str, Any] = dict(self.head)
+        head: dict[str, Any] = {**self.head, "units": units, "language": language, "decimal": decimal}
         if structure is None and len(self.structures) > 1:
             return write_report(self.comparison(workers), path, **head)
         name = self._checked_name(structure)

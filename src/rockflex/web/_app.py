@@ -24,24 +24,22 @@ from rockflex._json import as_json_value
 from rockflex._units import QUANTITIES, SystemName, UnitSystem
 from rockflex.solve import RunStoppedError, stopping_when
 from rockflex.web import _limits as limits
-from rockflex.web._downloads import MEDIA_TYPES, animation_file, download_file, study_file
+from rockflex.web._downloads import MEDIA_TYPES, PAGES, Progress, file_maker, study_file
 from rockflex.web._earthquake import PULSES, embedded_suite_names, record_view, suite_view
 from rockflex.web._folders import FIELD, MAX_LIST_BYTES, read_record_folder, unpacked_record_files
 from rockflex.web._forms import FIRST, PRESETS, forms_of_structures
-from rockflex.web._jobs import MAX_FILES, MAX_STUDIES, BackgroundFileJob, BackgroundJobs, StudyJob
+from rockflex.web._jobs import MAX_FILES, MAX_FILES_WRITTEN, MAX_STUDIES, BackgroundFileJob, BackgroundJobs, RunsJob
 from rockflex.web._protection import KnownHosts, SecurityHeaders
 from rockflex.web._refusal import Refusal
 from rockflex.web._response import response_view, sketch_view
 from rockflex.web._selection import scale_factor_view, selection_view
 from rockflex.web._state import PageState, limit_state_labels, measure_labels, parse_page_json, parse_page_state
 from rockflex.web._structure import structure_view
-from rockflex.web._studies import PAGES, study_plan
 from rockflex.web._uploads import UploadedRecords, read_uploaded_matrices, read_uploaded_record, read_uploaded_vertical
 
 WATCH_INTERVAL = 0.2  # s between checks whether a visitor still waits
 STATIC = Path(__file__).parent / "static"
 MAX_ANSWERS = 4  # answers computed at once: the engine releases the lock, and short answers must not wait for long ones
-MAX_FILES_WRITTEN = 2  # files written at once: they take long and mostly hold the lock
 MAX_FOLDERS_READ = 1  # folders read at once: each may need some hundred megabytes
 MAX_FOLDERS_RECEIVED = 3  # folders in memory that are received, or wait to be read: each may have 80 MB
 MAX_SELECTIONS_COMPUTED = 1  # selections at once: each may take some seconds
@@ -57,9 +55,8 @@ class PageServer:
 
     def __init__(self) -> None:
         self.uploads = UploadedRecords()
-        self.jobs = BackgroundJobs[StudyJob]("studies", MAX_STUDIES)
-        self.files = BackgroundJobs[BackgroundFileJob]("files", MAX_FILES)
-        self._ready = Event()
+        self.jobs = BackgroundJobs[RunsJob]("studies", MAX_STUDIES)
+        self.files = BackgroundJobs[BackgroundFileJob]("files", MAX_FILES, MAX_FILES_WRITTEN)
         self._folders_received = asyncio.Semaphore(MAX_FOLDERS_RECEIVED)
         self._limiters: dict[int, anyio.CapacityLimiter] = {}
 
@@ -69,7 +66,6 @@ class PageServer:
         content = {"structure": PRESETS[0]["structure"], "record": pulse, "free_vibration": 0.0}
         state = PageState.model_validate(content | {"models": ["MDOF-S", "2DOF-S", "2DOF-C", "fixed"]})
         response_view(state, self.uploads)
-        self._ready.set()
 
     async def answer(self, work: Answer, most: int = MAX_ANSWERS) -> Any:
         """Compute outside the event loop, with a limited number of answers at once."""
@@ -99,8 +95,8 @@ class PageServer:
             watching.cancel()
 
     async def about(self, _: Request) -> Response:
-        """Forms, presets, suites, pulses, units and limits, and whether the first answer is ready."""
-        return JSONResponse(await anyio.to_thread.run_sync(_answer_about_page) | {"ready": self._ready.is_set()})
+        """Forms, presets, suites, pulses, units and limits."""
+        return JSONResponse(await anyio.to_thread.run_sync(_answer_about_page))
 
     async def suite(self, request: Request) -> Response:
         """Records of a suite."""
@@ -164,21 +160,13 @@ class PageServer:
         name, part = query.get("name", "matrices"), query.get("part", "")
         return JSONResponse(await self.answer(lambda: read_uploaded_matrices(name, body, part)))
 
-    async def download(self, request: Request) -> Response:
-        """A file of the results on the page."""
-        state, _ = await _state_and_content(request)
-        what = request.path_params["what"]
-        return _file_answer(
-            *await self.run(request, lambda: download_file(state, what, self.uploads), MAX_FILES_WRITTEN)
-        )
-
     async def start(self, request: Request) -> Response:
         """Start a study."""
         kind = _study_kind_in_request(request)
         state, _ = await _state_and_content(request)
 
         def work() -> dict[str, str]:
-            return {"token": self.jobs.start(StudyJob(study_plan(PAGES[kind].study(state, self.uploads), kind), kind))}
+            return {"token": self.jobs.start(PAGES[kind].job(PAGES[kind].study(state, self.uploads), kind))}
 
         return JSONResponse(await self.answer(work))
 
@@ -189,26 +177,19 @@ class PageServer:
         return JSONResponse(await self.answer(lambda: PAGES[kind].view(job, state)))
 
     async def study_file(self, request: Request) -> Response:
-        """Table or figure of a study."""
+        """Start to make the table or the figure of a study."""
         kind, job = self._job(request)
         state, _ = await _state_and_content(request)
         what = request.path_params["what"]
-        return _file_answer(*await self.answer(lambda: study_file(PAGES[kind], job, state, what), MAX_FILES_WRITTEN))
-
-    async def cancel(self, request: Request) -> Response:
-        """Stop a study."""
-        self.jobs.cancel(request.path_params["token"])
-        return JSONResponse({})
+        return self._making(lambda _: study_file(PAGES[kind], job, state, what))
 
     async def make(self, request: Request) -> Response:
-        """Start to make a file that takes long."""
-        what = request.path_params["what"]
-        if what != "animation":
-            raise Refusal(f"There is no file named {what[:40]!r} to make.", 404)
+        """Start to make a file of the results on the page."""
         state, _ = await _state_and_content(request)
-        return JSONResponse(
-            {"token": self.files.start(BackgroundFileJob(lambda told: animation_file(state, self.uploads, told)))}
-        )
+        return self._making(file_maker(state, request.path_params["what"], self.uploads))
+
+    def _making(self, make: Callable[[Progress], tuple[str, bytes]]) -> Response:
+        return JSONResponse({"token": self.files.start(BackgroundFileJob(make))})
 
     async def making(self, request: Request) -> Response:
         """Progress of a file."""
@@ -217,19 +198,20 @@ class PageServer:
         return JSONResponse({"status": job.status, "done": job.done, "total": job.total, "errors": errors})
 
     async def made(self, request: Request) -> Response:
-        """Hand out a file that was made."""
+        """Hand out a file that was made, and forget its content."""
         job = self.files.get(request.path_params["token"])
         if job.file is None:
-            raise Refusal("The file is not finished.", 404)
-        name, content = job.file
+            raise Refusal("The file is not finished, or was handed out already.", 404)
+        (name, content), job.file = job.file, None
         return _file_answer(name, MEDIA_TYPES[Path(name).suffix], content)
 
-    async def unmake(self, request: Request) -> Response:
-        """Stop to make a file."""
-        self.files.cancel(request.path_params["token"])
+    async def cancel(self, request: Request) -> Response:
+        """Stop a study, or to make a file."""
+        jobs = self.files if request.url.path.startswith("/api/file/") else self.jobs
+        jobs.cancel(request.path_params["token"])
         return JSONResponse({})
 
-    def _job(self, request: Request) -> tuple[str, StudyJob]:
+    def _job(self, request: Request) -> tuple[str, RunsJob]:
         kind, job = _study_kind_in_request(request), self.jobs.get(request.path_params["token"])
         if job.kind != kind:
             raise Refusal(f"That study is not a {kind} study.", 404)
@@ -356,14 +338,13 @@ def create_page_application(host: str, names: Sequence[str]) -> Starlette:
         Route("/api/selection", view(selection, MAX_SELECTIONS_COMPUTED), methods=["POST"]),
         Route("/api/factor", view(factor), methods=["POST"]),
         Route("/api/matrices", server.matrices, methods=["POST"]),
-        Route("/api/download/{what}", server.download, methods=["POST"]),
         Route("/api/study/{kind}", server.start, methods=["POST"]),
         Route("/api/study/{kind}/{token}", server.progress, methods=["POST"]),
         Route("/api/study/{kind}/{token}/{what}", server.study_file, methods=["POST"]),
         Route("/api/job/{token}", server.cancel, methods=["DELETE"]),
+        Route("/api/file/{token}", server.cancel, methods=["DELETE"]),
         Route("/api/file/{what}", server.make, methods=["POST"]),
         Route("/api/file/{token}", server.making),
-        Route("/api/file/{token}", server.unmake, methods=["DELETE"]),
         Route("/api/file/{token}/content", server.made),
         Mount("/static", StaticFiles(directory=STATIC)),
     ]

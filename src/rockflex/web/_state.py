@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Callable, Container, Sequence
+from dataclasses import fields
 from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import AfterValidator, AliasChoices, Field, StringConstraints, ValidationError
@@ -13,6 +14,7 @@ from rockflex._units import SystemName
 from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKED, ROCKING, LimitState, rotation_limit_state
 from rockflex.modal import Ground
 from rockflex.motion import Combination, IntensityMeasure, scalable_measures
+from rockflex.response import CheckLimits
 from rockflex.structure.file import StructureEntry, TomlTable, toml_problem_place
 from rockflex.study import RunOptions, yielding_model_labels
 from rockflex.study._ground_tables import GroundTable
@@ -241,6 +243,19 @@ class DesignChoice(TomlTable):
     target: float = Field(0.25, ge=1e-4, le=0.99, description="a probability from 0.0001 to 0.99")
 
 
+class RecordSetChoice(TomlTable):
+    """Records whose responses are one result, and the rule that makes one value for design of them."""
+
+    shown: bool = Field(False, description="true or false")
+    suites: Suites = Field(["chosen"], description="a list of one to four suites")
+    scale: Scale = 1.0
+    model: Name = Field("", description="one of the models; the first if it is none of them")
+    rule: Literal["", "ec8", "asce7", "asce7-ii"] = Field("ec8", description='"ec8", "asce7", "asce7-ii" or nothing')
+
+
+LimitOfCheck = Annotated[str, check_of_known_names(lambda: [each.name for each in fields(CheckLimits)])]
+
+
 class PageState(RunOptionKeys):
     """The state of the whole page."""
 
@@ -258,6 +273,25 @@ class PageState(RunOptionKeys):
     cloud: CloudChoice = Field(default_factory=lambda: CloudChoice.model_validate({}), description="a table")
     design: DesignChoice = Field(default_factory=lambda: DesignChoice.model_validate({}), description="a table")
     target: TargetChoice = Field(default_factory=lambda: TargetChoice.model_validate({}), description="a table")
+
+    record_set: RecordSetChoice = Field(
+        default_factory=lambda: RecordSetChoice.model_validate({}), description="a table"
+    )
+    limits: dict[LimitOfCheck, Any] = Field(
+        default_factory=dict, description="a table of the arguments of rockflex.CheckLimits"
+    )
+
+    @property
+    def model_of_set(self) -> str:
+        """The model of the set of records: the chosen one, or the first of the Response tab."""
+        return self.record_set.model if self.record_set.model in self.models else self.models[0]
+
+    def check_limits(self, *, friction: bool = True) -> CheckLimits:
+        """Return the limits of the checks; without that of the friction where it would take too long."""
+        try:
+            return CheckLimits(**{name: each for name, each in self.limits.items() if friction or name != "friction"})
+        except InputError as error:
+            raise Refusal({f"limits.{error.field}": str(error)}) from error
 
     def run_options(self, ground: Ground | None) -> RunOptions:
         """Return the options of the runs of the Response tab, on the ground of the structure."""
@@ -324,6 +358,7 @@ def _check_models_of_state(state: PageState) -> None:
 def _check_run_options_of_state(state: PageState) -> None:
     with errors_as_refusals("restitution"):
         state.law()
+    state.check_limits()
     if state.ground is not None:
         check_form_numbers("ground", state.ground.model_dump(), GroundTable)
     if state.bouc_wen is None:

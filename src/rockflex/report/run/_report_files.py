@@ -11,6 +11,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from rockflex._errors import InputError
+from rockflex._language import translated
 from rockflex._shown import shortened
 from rockflex.report.run._report_tables import ReportFact, ReportTable
 from rockflex.report.run._sheet import Drawing, ReportPage
@@ -108,15 +109,17 @@ def report_as_word(page: ReportPage, drawings: Mapping[str, tuple[str, bytes]]) 
     properties.title, properties.author, properties.comments = page.title, page.texts.author, ""
 
     document.add_heading(page.title, 1)
-    _add_lines(document, [*page.texts.heads, ("Date", page.texts.date)])
+    _add_lines(document, [*page.texts.heads, (translated("Date"), page.texts.date)])
     for heading, blocks in page.sections:
         document.add_heading(heading, 2)
         for block in blocks:
             _add_block(docx, document, block, drawings)
-    _add_lines(document, [("Warning", text) for text in page.warnings])
+    _add_lines(document, [(translated("Warning"), text) for text in page.warnings])
     for text in page.texts.notes:
         document.add_paragraph(text)
-    document.add_paragraph(f"Computed by {page.versions}" + (f"; inputs {page.inputs}" if page.inputs else ""))
+    made = [translated("Computed by {versions}", versions=page.versions)]
+    made += [translated("inputs {hash}", hash=page.inputs)] if page.inputs else []
+    document.add_paragraph("; ".join(made))
     content = io.BytesIO()
     document.save(content)
     return content.getvalue()

@@ -108,6 +108,6 @@ export function suitesOf({ about, state }, chosen = [], forTarget = false) {
   const many = about.suites.filter((name) => name !== "el-centro-1940").map((name) => [name, name.replace("fema-p695-", "")]);
   const own = [];
   if (state.record.folder || chosen.includes(GIVEN) || (forTarget && state.target.source === GIVEN)) own.push([GIVEN, "your folder"]);
-  if (!forTarget && (state.target.shown || chosen.includes(CHOSEN))) own.push([CHOSEN, "records for the target"]);
+  if (!forTarget && (state.target.shown || state.record_set.shown || chosen.includes(CHOSEN))) own.push([CHOSEN, "records for the target"]);
   return [...many, ...own];
 }

@@ -13,6 +13,7 @@ const HEIGHTS = { frame: "story_height", wall_frame: "height", tapered_tower: "h
 const STIFFNESSES = ["bending_stiffness", "shear_stiffness", "elastic_modulus", "stiffness", "column_stiffness", "beam_stiffness"];
 const LEAD = 3; // s before the largest rotation at which the drawing begins to move
 const FAR_FIELD = "fema-p695-far-field";
+const SELDOM = 200; // ms between two values of a text field during a drag: browsers inspect the form after each
 const NEAR = 0.05; // of a range: arrow keys with Shift, Page Up and Page Down
 const tidy = (value) => Number(value.toPrecision(3));
 const clamp = (value, [low, high]) => Math.min(high, Math.max(low, value));
@@ -90,6 +91,7 @@ export function drawing(app, settle) {
   const dots = new Map(); // by the name of their handle
   let view = null;
   let wanted = {}; // width and height that no answer shows yet
+  let told = 0; // when the fields were last given their values
   let held = null; // the handle that is dragged, as it was before
 
   function act(handle, value, live) {
@@ -152,8 +154,7 @@ export function drawing(app, settle) {
       }
       const element = dots.get(name);
       const [x, y] = stage.spot(...at);
-      element.style.left = `${x}px`;
-      element.style.top = `${y + down}px`;
+      element.style.transform = `translate(${x}px, ${y + down}px)`; // without a new layout
       const length = inUnit(value, "length", 3);
       element.title = `${label}: ${length}`;
       const said = {
@@ -183,7 +184,11 @@ export function drawing(app, settle) {
     view = { ...run, of, end: m.t.at(-1), models: [{ ...m, label: explained(m.label) }] };
     player.set(view);
     figures.replaceChildren(...three(m, run));
-    quick.refresh();
+    const now = performance.now();
+    if (!stage.held || now - told > SELDOM) {
+      told = now;
+      quick.refresh();
+    }
     if (!first) return;
     const peak = m.peaks.time_of_max_rotation ?? 0;
     player.move(calm.matches ? peak : peak - LEAD);

@@ -1,7 +1,7 @@
 // The page: its state, which is stored in the address, its tabs, and what they share.
 
-import { ask, attempt, file, get, Refusal } from "./api.js";
-import { clone, h, number, printing, save } from "./dom.js";
+import { ask, attempt, get, Refusal } from "./api.js";
+import { clone, h, number, printing } from "./dom.js";
 import { showErrors } from "./form.js";
 import { t } from "./texts.js";
 import { setUnits } from "./units.js";
@@ -19,8 +19,7 @@ const TABS = [
     "Find how wide the base must be to meet a target probability, with and without a tendon."],
 ];
 
-const LIVE = 300; // ms between two changes of the address
-const SLOW = 400; // ms after which a button says that it works
+const LIVE = 300; // ms after the last move, until the address changes
 const view = document.getElementById("view");
 const banner = document.getElementById("banner");
 const made = {};
@@ -35,7 +34,8 @@ export const app = {
   // the address.
   change(patch, live = false) {
     merge(app.state, patch);
-    if (live) later ??= setTimeout(keep, LIVE);
+    clearTimeout(later);
+    if (live) later = setTimeout(keep, LIVE);
     else keep();
     refresh(live);
   },
@@ -54,25 +54,14 @@ export const app = {
     const foot = root.querySelector(".foot");
     if (foot) foot.textContent = left.map(elsewhere).join(" ");
   },
-  download(path, root) {
-    return attempt(async () => save(...(await file(path, { state: app.state }))), (error) => app.complain(root, error.errors));
-  },
-  // Buttons that fetch files.
-  downloads(root, files, path = (what) => `/api/download/${what}`) {
-    const button = ([what, label]) => {
-      const run = () => once(one, () => app.download(path(what), root));
-      const one = h("button", { type: "button", "data-file": what, onclick: run }, label);
-      return one;
-    };
-    return h("div", { class: "buttons downloads" }, h("span", { class: "help" }, "Download:"), files.map(button));
-  },
-  // A button to another tab, below the results.
-  next(tab, text) {
+  // A button to another tab, below the results; `patch` changes the state before.
+  next(tab, text, patch = {}, label = titleOf(tab)) {
     const go = () => {
+      merge(app.state, patch);
       app.go(tab);
       tabOf(tab).focus();
     };
-    return h("p", { class: "help buttons" }, text, h("button", { type: "button", onclick: go }, titleOf(tab)));
+    return h("p", { class: "help buttons" }, text, h("button", { type: "button", onclick: go }, label));
   },
   go(tab) {
     if (!app.state) {
@@ -84,21 +73,6 @@ export const app = {
     show();
   },
 };
-
-// Do the work of a button once at a time; the button says so where it takes long.
-async function once(button, work) {
-  if (button.ariaBusy === "true") return;
-  const label = button.textContent;
-  button.ariaBusy = "true";
-  const slow = setTimeout(() => (button.textContent = `${label} …`), SLOW);
-  try {
-    await work();
-  } finally {
-    clearTimeout(slow);
-    button.ariaBusy = "false";
-    button.textContent = label;
-  }
-}
 
 const titleOf = (tab) => TABS.find(([name]) => name === tab)[1];
 const tabOf = (tab) => document.querySelector(`#tabs [data-tab="${tab}"]`);
@@ -139,7 +113,7 @@ function decoded(hash) {
 // What a printed sheet says of its tab; Swedish dates are those of ISO 8601.
 function heading() {
   if (!app.state) return "rockflex";
-  const { structure, record, scale, tab, target } = app.state;
+  const { structure, record, record_set, scale, tab, target } = app.state;
   const motion = {
     suite: record.name, pulse: "a pulse", upload: "an uploaded record", folder: record.given || "records of a folder",
   }[record.source];
@@ -147,7 +121,7 @@ function heading() {
   const under = {
     structure: "",
     earthquake: target.shown ? " under records for a target spectrum" : ` under ${motion}${times}`,
-    response: ` under ${motion}${times}`,
+    response: record_set.shown ? ` ${t("under a set of records")}` : ` under ${motion}${times}`,
   }[tab] ?? " under many records";
   return `${structure.name || "Structure"}${under} · ${titleOf(tab)} · ${new Date().toLocaleDateString("sv")} · rockflex`;
 }
@@ -176,20 +150,22 @@ async function open() {
   app.state = state;
   if (early) state.tab = early;
   early = null;
-  for (const each of Object.values(made)) each.close?.();
   document.getElementById("units").value = state.units;
-  await renew(Object.keys(made));
+  await renew(false);
 }
 
-// Make tabs anew, with the units of the state.
-function renew(tabs) {
+// Make the tabs anew, in the units of the state; with `runs`, those of studies at once: runs that nobody asks for stop.
+async function renew(runs) {
   setUnits(app.about.units, app.state.units);
-  for (const name of tabs) {
-    made[name].leave?.();
+  const before = Object.entries(made);
+  for (const [name, each] of before) {
+    each.leave?.();
+    each.close?.(runs);
     delete made[name];
   }
   keep();
-  return show();
+  await show();
+  for (const [name, { close }] of before) if (runs && close) made[name] ??= (await import(`./tabs/${name}.js`)).default(app);
 }
 
 function reason(error) {
@@ -257,11 +233,10 @@ function themes() {
   });
 }
 
-// Tabs with studies stay, since they would lose their runs; they write all units again when they are drawn.
 function unitsChoice() {
   const choose = h("select", { id: "units", "aria-label": t("Units"), title: t("Units of the values shown and typed"), onchange: () => {
     app.state.units = choose.value;
-    renew(Object.keys(made).filter((name) => !made[name].close));
+    renew(true);
   } }, Object.keys(app.about.units).map((name) => h("option", {}, name)));
   document.querySelector(".tools").prepend(choose);
 }

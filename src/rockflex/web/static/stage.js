@@ -28,11 +28,6 @@ class Stage {
     new ResizeObserver(() => this.draw()).observe(this.canvas);
   }
 
-  set(view) {
-    this.view = view;
-    this.draw();
-  }
-
   show(time, amplification) {
     this.time = time;
     this.amplification = amplification;
@@ -91,13 +86,15 @@ class Stage {
       this.depth = depthOf(this.view, this.amplification, first);
       this.zoom = Math.min((this.height - 74 - this.depth) / (top * this.room), wide);
     }
-    this.placed?.();
+    const scale = [width, this.height, this.zoom, this.depth].join();
+    if (scale !== this.scale) this.placed?.(); // which reads and writes the page, so not at every frame
+    Object.assign(this, { width, scale });
     this.view.models.forEach((model, i) => this.#model(g, model, i, cell * (i + 0.5), this.zoom, cell));
   }
 
   // Where a point of the only model is while it rests, in px.
   spot(x, y) {
-    return [this.canvas.clientWidth / 2 + this.zoom * x, this.height - 44 - (this.view.models[0].heave ? this.depth : 0) - this.zoom * y];
+    return [this.width / 2 + this.zoom * x, this.height - 44 - (this.view.models[0].heave ? this.depth : 0) - this.zoom * y];
   }
 
   #model(g, model, index, centre, zoom, cell) {
@@ -333,7 +330,8 @@ export class Player {
       this.amplification = suited(view);
       this.amplify.setValue(this.amplification);
     }
-    this.stage.set({ ...view, colors });
+    this.stage.view = { ...view, colors };
+    if (this.stage.held && this.playing) return this.advance();
     const shown = Object.keys(this.kinds).filter((kind) => view.elements.some((each) => each.kind === kind));
     this.keys.replaceChildren(legend(shown.map((kind) => ({ label: this.kinds[kind].title, color: colorOf(kind) }))));
     this.scrub.max = view.end;
@@ -372,17 +370,22 @@ export class Player {
     if (!this.view) return;
     if (this.time >= this.view.end) this.move(0);
     this.button.textContent = "Pause";
-    let last = performance.now();
-    const frame = (now) => {
+    this.last = performance.now();
+    const frame = () => {
       if (!this.playing) return;
-      const step = Math.min(now - last, 100) / 1000;
-      last = now;
-      this.move(this.time + step * Number(this.speed.value));
-      if (this.time >= this.view.end && this.loop) this.move(0);
-      if (this.time >= this.view.end) this.pause();
-      else this.playing = requestAnimationFrame(frame);
+      if (!this.stage.held) this.advance(); // else each answer brings a picture
+      if (this.playing) this.playing = requestAnimationFrame(frame);
     };
     this.playing = requestAnimationFrame(frame);
+  }
+
+  // To the time that is due.
+  advance() {
+    const now = performance.now();
+    const next = this.time + (Math.min(now - this.last, 100) / 1000) * Number(this.speed.value);
+    this.last = now;
+    this.move(next >= this.view.end && this.loop ? 0 : next);
+    if (this.time >= this.view.end) this.pause();
   }
 
   #key(event) {

@@ -12,10 +12,13 @@ export function setUnits(units, name) {
 // The unit of a kind of quantity; the system "kN" has that of `usual`: accelerations are in m/s² there.
 export const unit = (quantity, usual = quantity === "acceleration" ? "SI" : "kN") => table[system === "kN" ? usual : system][quantity];
 
-// The unit that is shown for one of SI; rotations that are typed are in rad in every system.
+// Kinds of quantities of which others have the same unit in SI; rotations that are typed are in rad in every system.
+const KINDS = { m: "length", "N/m²": "elastic modulus", Pa: "stress", rad: "" };
+
+// The unit that is shown for one of SI.
 export function unitFor(si) {
-  const found = Object.entries(table.SI).findLast(([quantity, { name }]) => quantity !== "rotation" && name === si.replace("N/m²", "Pa"));
-  return found ? unit(found[0]) : { size: 1, name: si };
+  const quantity = KINDS[si] ?? Object.keys(table.SI).find((each) => table.SI[each].name === si);
+  return quantity ? unit(quantity) : { size: 1, name: si };
 }
 
 // A text with the name of its unit in place of "{unit}".

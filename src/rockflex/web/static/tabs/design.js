@@ -11,7 +11,6 @@ import { inUnit, titled, unit, valueIn } from "../units.js";
 const MODELS = ["2DOF-S", "3DOF-S", "MDOF-S", "2DOF-C", "rigid"];
 const YIELDING = ["2DOF-S-BW", "2DOF-C-BW"];
 const RUNS = ["scales", "narrowest", "widest", "widths", "tendons", "stiffness"];
-const WIDTH = t("half width of the base B [{unit}]");
 
 // Values in the unit of a kind of quantity, not a number where there are none.
 const numbers = (values, quantity = "ratio") => values.map((value) => (value ?? NaN) / unit(quantity).size);
@@ -37,11 +36,12 @@ export default function designTab(app) {
   const scales = entry("scales", "Scale factors", { many: true, hint: "up to five, each from 0.01 to 20" });
   const model = list("model", "Model", []);
 
+  const width = { xLabel: titled(t("half width of the base B [{unit}]"), "length"), xName: titled("B [{unit}]", "length") };
   const chart = new Chart({
-    label: "Probability over half width of the base", yLabel: "probability", height: 360,
+    label: "Probability over half width of the base", yLabel: "probability", height: 360, ...width,
   });
   const moments = new Chart({
-    label: "Median base moment over half width", height: 190, zero: true,
+    label: "Median base moment over half width", yLabel: titled("M_b [{unit}]", "moment"), height: 190, zero: true, ...width,
   });
   const keys = h("div");
   const verdict = h("div", { class: "answer", id: "width", role: "status" }, "A quick look is computed first. Press Search to find how wide the base must be.");
@@ -72,9 +72,6 @@ export default function designTab(app) {
 
   function show(answer) {
     drawing.hidden = !answer.curves.length;
-    chart.options.xLabel = moments.options.xLabel = titled(WIDTH, "length");
-    chart.options.xName = moments.options.xName = titled("B [{unit}]", "length");
-    moments.options.yLabel = titled("M_b [{unit}]", "moment");
     const curves = answer.curves.map((curve, i) => ({ ...curve, x: numbers(curve.half_width, "length"), look: look(i) }));
     const met = answer.answers.map((each, i) => ({ ...each, color: look(i).color }))
       .filter((each) => Number.isFinite(each.half_width) && ["met", "met more than once"].includes(each.outcome));
@@ -117,7 +114,7 @@ export default function designTab(app) {
     tendons.hidden = stiffness.hidden = held;
     study.refresh();
   }
-  return { element, refresh, close: () => study.close() };
+  return { element, refresh, close: (runs) => study.close(runs) };
 }
 
 // The result of a search for one tendon.

@@ -4,6 +4,7 @@ import { attempt, get } from "../api.js";
 import { Chart, overTime } from "../chart.js";
 import { decode, h, latest, number, svg } from "../dom.js";
 import { select, slider, trouble } from "../form.js";
+import { downloads } from "../jobs.js";
 import { t } from "../texts.js";
 import { fromSI, inUnit, titled, unit, unitFor } from "../units.js";
 import { folder, uploading } from "./files.js";
@@ -74,8 +75,8 @@ export default function earthquakeTab(app) {
   const side = h("form", { class: "side", onsubmit: (event) => event.preventDefault() }, task);
   const place = h("div");
   const element = h("div", { class: "columns" }, side, place);
-  given.report.append(app.downloads(element, [["records", "Your records (ZIP)"]]));
-  drawing.append(app.downloads(element, [["record", "Record (CSV)"]]), app.next("response", "Next: watch the structure rock."));
+  given.report.append(downloads(app, element, [["records", "Your records (ZIP)"]]));
+  drawing.append(downloads(app, element, [["record", "Record (CSV)"]]), app.next("response", "Next: watch the structure rock."));
 
   const load = latest(async () => {
     const answer = await app.ask("/api/record", element);

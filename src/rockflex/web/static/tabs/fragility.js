@@ -103,7 +103,7 @@ export default function fragilityTab(app) {
     rotation.hidden = choice().limit !== "rotation";
     study.refresh();
   }
-  return { element, refresh, close: () => study.close() };
+  return { element, refresh, close: (runs) => study.close(runs) };
 }
 
 function fits(curves, label, own) {

@@ -2,11 +2,13 @@
 
 import { bracket } from "../axes.js";
 import { overTime } from "../chart.js";
+import { checksTable, limitsForm } from "../checks.js";
 import { yields } from "../choices.js";
 import { decode, h, latest, number, scrolled, symbol, tableOf } from "../dom.js";
 import { select, slider } from "../form.js";
-import { making } from "../jobs.js";
+import { downloads } from "../jobs.js";
 import { legend, looks } from "../marks.js";
+import { recordSet } from "../set.js";
 import { Player } from "../stage.js";
 import { t } from "../texts.js";
 import { inUnit, titled, unit, valueIn } from "../units.js";
@@ -31,13 +33,12 @@ const DISPLACEMENTS = [
 const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge", "element_force"];
 const OTHERS = ["t", "uplifted", "points", "element_elongation", "heave"];
 const FILES = [
-  ["report", "Report (HTML)"], ["figure", "Figure (SVG)"], ["energy", "Energy (SVG)"],
+  ["report", "Report (HTML)"], ["figure", "Figure (SVG)"], ["animation", "Animation (GIF)"], ["energy", "Energy (SVG)"],
   ["peaks", "Peaks (CSV)"], ["histories", "Histories (CSV)"],
-  ["study", "Study (TOML)"], ["python", "Python lines"], ["record", "Record (CSV)"],
+  ["python", "Python lines"], ["record", "Record (CSV)"],
 ];
 
 const PATIENCE = 1500; // ms before the page says that it is computing
-const FIRST = "Computing … The first run after an installation compiles the kernels, which takes some fifteen seconds.";
 
 export default function responseTab(app) {
   let view = null;
@@ -63,23 +64,26 @@ export default function responseTab(app) {
   const keys = h("div", { id: "keys" });
   const peaks = scrolled("Largest values", { id: "peaks" });
   const verdict = h("p", { class: "answer", id: "verdict", role: "status" });
+  const checks = h("div");
   const warned = h("div", { class: "warning", id: "warnings", role: "alert", hidden: true });
   const results = h("div", { class: "results" }, verdict, warned, keys, seen, charts.map((chart) => chart.element),
     h("p", { class: "hint" }, "Shaded: the base of the first model is uplifted. Triangles: its impacts. ",
       h("span", { class: "screen" }, "Point at one of these charts to read all of them. Click or use the arrow keys to set the time; ",
         "drag or press + and − to zoom; double-click or press Escape to reset.")),
-    h("h2", {}, "Largest values"), peaks, elements.table,
+    h("h2", {}, "Largest values"), peaks, elements.table, checks,
     h("div", { class: "pair" }, h("div", {}, h("h2", {}, "Moment and rotation"), loop.chart.element), elements.chart,
       energy.element));
+  const records = select("records", t("Records"), [["", t("One record")], ["set", t("A set of records as one result")]], "",
+    (value) => app.change({ record_set: { shown: value === "set" } }));
+  const form = h("div");
+  let set = null; // the set of records, once it is looked at
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
-      player.element,
-      h("fieldset", {}, h("legend", {}, "Runs"), scale, options.element, h("p", { class: "error foot", role: "alert" }))),
+      records, player.element, form,
+      h("fieldset", {}, h("legend", {}, "Runs"), scale, options.element, h("p", { class: "error foot", role: "alert" })),
+      limitsForm(app)),
     results);
-  const moving = making(app, element, "animation", "Animation (GIF)");
-  const files = app.downloads(element, FILES);
-  files.querySelector('[data-file="figure"]').after(moving.button);
-  results.append(files, moving.element);
+  results.append(downloads(app, element, FILES));
 
   function draw() {
     const [first] = view.models;
@@ -107,6 +111,7 @@ export default function responseTab(app) {
     energy.set(view);
     keys.replaceChildren(legend(view.models.map((m) => ({ label: m.label, ...m.look }))));
     peaks.replaceChildren(...table(view));
+    checks.replaceChildren(checksTable(view.checks, first.label));
     verdict.textContent = summary(view);
     warned.replaceChildren(...warnings(view));
     warned.hidden = !warned.children.length;
@@ -140,7 +145,7 @@ export default function responseTab(app) {
   const load = latest(async () => {
     const started = performance.now();
     const before = verdict.textContent;
-    const patience = setTimeout(() => (verdict.textContent = app.about.ready || view ? "Computing …" : FIRST), PATIENCE);
+    const patience = setTimeout(() => (verdict.textContent = "Computing …"), PATIENCE);
     const requested = JSON.stringify([app.state.scale, app.state.models]);
     const answer = await app.ask("/api/response", element, { focus: energy.focus, element: elements.element });
     clearTimeout(patience);
@@ -167,7 +172,17 @@ export default function responseTab(app) {
   function refresh() {
     scale.setValue(app.state.scale);
     options.refresh();
-    load();
+    const { shown } = app.state.record_set;
+    records.setValue(shown ? "set" : "");
+    if (shown && !set) {
+      set = recordSet(app, element);
+      form.append(set.form);
+      element.append(set.results);
+    }
+    for (const each of [player.element, scale, results]) each.hidden = shown;
+    for (const each of set ? [form, set.results] : []) each.hidden = !shown;
+    if (shown) player.pause();
+    (shown ? set.refresh : load)();
   }
   globalThis.rockflexStage = {
     stage: player.stage,
@@ -180,7 +195,7 @@ export default function responseTab(app) {
     charts: Object.fromEntries(panels),
     loops: { base: loop, element: elements.loop },
   };
-  return { element, refresh, leave: () => player.pause() };
+  return { element, refresh, leave: () => player.pause(), close: (runs) => set?.close(runs) };
 }
 
 // Intervals of time in which the base of a model is uplifted.

@@ -4,6 +4,7 @@ import { attempt, send } from "../api.js";
 import { clone, h, ink, latest, number, scrolled, svg, symbol, tableOf, tooLarge } from "../dom.js";
 import { drawing, kindOf } from "../drawn.js";
 import { field, fileBox, folded, select, tableField, tableGroup, trouble } from "../form.js";
+import { downloads } from "../jobs.js";
 import { t } from "../texts.js";
 import { fromSI, titled, unit, unitFor, valueIn } from "../units.js";
 import { base, elements, ground, without } from "./base.js";
@@ -81,7 +82,8 @@ export default function structureTab(app) {
   const options = runs(app, () => null);
   const facts = h("div");
   const more = folded("modes", "Modes, masses, and which model to use", facts);
-  const results = h("div", { class: "results" }, more, app.next("response", "Next: see forces and energies over time."));
+  const results = h("div", { class: "results" }, more, app.next("response", "Next: see forces and energies over time."),
+    app.next("response", t("Or design for a set of records, with checks and a report."), { record_set: { shown: true } }, t("Set of records")));
   const element = h("div", { class: "columns first" }, shown.player.element,
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       h("fieldset", {}, preset, shown.quick.element, h("p", { class: "error foot", role: "alert" })),
@@ -162,7 +164,7 @@ export default function structureTab(app) {
     put(next, anew);
   }
 
-  results.append(app.downloads(element, [["report", "Report (HTML)"], ["modes", "Modes (SVG)"], ["structure", "Structure (TOML)"]]));
+  results.append(downloads(app, element, [["report", "Report (HTML)"], ["modes", "Modes (SVG)"], ["structure", "Structure (TOML)"]]));
   let quick = false; // whether the drawing alone is needed
   const load = latest(async () => {
     const fast = quick;
@@ -212,8 +214,8 @@ export default function structureTab(app) {
       form();
       below.refresh();
       options.refresh();
+      shown.quick.refresh();
     }
-    shown.quick.refresh();
     shown.resume();
     load();
   }

@@ -5,6 +5,7 @@ import { Chart } from "../chart.js";
 import { CHOSEN, GIVEN, suitesOf } from "../choices.js";
 import { h, latest, number, scrolled, symbol, tableOf } from "../dom.js";
 import { box, field, fileBox, parseNumber, select, tableField, trouble } from "../form.js";
+import { downloads } from "../jobs.js";
 import { legend } from "../marks.js";
 import { t } from "../texts.js";
 import { titled, unit } from "../units.js";
@@ -90,10 +91,11 @@ export function target(app, root) {
   const spectra = new Spectra();
   const used = h("p", { class: "help", id: "used", role: "status" });
   const use = h("button", { type: "button", class: "primary", id: "use", onclick: () => {
-    app.change({ cloud: { suites: [CHOSEN] }, design: { suites: [CHOSEN] } });
-    used.textContent = "The Fragility and Design tabs use these records, with these factors times the scale factors given there.";
+    app.change(Object.fromEntries(["cloud", "design", "record_set"].map((kind) => [kind, { suites: [CHOSEN] }])));
+    used.textContent = t("The set of records on the Response tab, and the Fragility and Design tabs use these records, with these factors times the scale factors given there.");
   } }, "Use as the suite of the studies");
-  const results = h("section", { id: "selection", hidden: true }, said, spectra.element, h("div", { class: "buttons" }, use), used);
+  const results = h("section", { id: "selection", hidden: true }, said, spectra.element, h("div", { class: "buttons" }, use), used,
+    app.next("response", t("Next: design for these records."), { record_set: { shown: true, suites: [CHOSEN] } }, t("Set of records")));
 
   async function read(file) {
     const content = file.size > 4 * LONGEST ? "" : await file.text();
@@ -140,7 +142,7 @@ export function target(app, root) {
     whole.hidden = now().source !== GIVEN;
     load();
   }
-  const files = app.downloads({ querySelector: (...a) => root().querySelector(...a), querySelectorAll: (...a) => root().querySelectorAll(...a) },
+  const files = downloads(app, { querySelector: (...a) => root().querySelector(...a), querySelectorAll: (...a) => root().querySelectorAll(...a) },
     [["selection", "Records (CSV)"], ["selection-spectra", "Spectra (CSV)"], ["selection-figure", "Figure (SVG)"],
       ["selection-records", "Scaled records (ZIP)"], ["selection-python", "Python lines"], ["records", "Your records (ZIP)"]]);
   const whole = files.querySelector('[data-file="records"]'); // which the program reads
