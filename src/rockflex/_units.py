@@ -40,6 +40,7 @@ QUANTITIES: Mapping[str, tuple[str, str, str, str]] = {
     "elastic modulus": ("GPa", "GPa", "Pa", "ksi"),
     "stiffness": ("MN/m", "MN/m", "N/m", "kip/in"),
     "rotational stiffness": ("MN m/rad", "MN m/rad", "N m/rad", "kip in/rad"),
+    "subgrade modulus": ("MN/m³", "MN/m³", "N/m³", "kip/in³"),
     "damping": ("kN s/m", "MN s/m", "N s/m", "kip s/in"),
     "area": ("m²", "m²", "m²", "in²"),
     "second moment of area": ("m⁴", "m⁴", "m⁴", "in⁴"),

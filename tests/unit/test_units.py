@@ -30,6 +30,7 @@ DIMENSIONS = {
     "elastic modulus": (1, -2, 0),
     "stiffness": (1, -1, 0),
     "rotational stiffness": (1, 1, 0),
+    "subgrade modulus": (1, -3, 0),
     "damping": (1, -1, 1),
     "area": (0, 2, 0),
     "second moment of area": (0, 4, 0),

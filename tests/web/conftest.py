@@ -104,9 +104,9 @@ class Client:
         pytest.fail(f"The file took more than {seconds} s.")
 
     def state(self, **changes: Any) -> dict[str, Any]:
-        """The first state of the page with a frame of Table 1, changed."""
+        """The first state of the page with a frame of Table 1, in SI units, changed."""
         about = json.loads(self.request("/api/about")[2])
-        return about["state"] | {"structure": about["presets"][0]["structure"], "scale": 1.0} | changes
+        return about["state"] | {"structure": about["presets"][0]["structure"], "scale": 1.0, "units": "SI"} | changes
 
     def wait(self, kind: str, token: str, state: dict[str, Any], seconds: float = 60.0) -> Any:
         """Progress of a study once it is over."""
@@ -242,7 +242,8 @@ class Visitor:
 
 
 def link_to(state: Any) -> str:
-    """Address of a state."""
+    """Address of a state, in SI units where it names no others."""
+    state = {"units": "SI"} | state if isinstance(state, dict) else state
     text = base64.urlsafe_b64encode(json.dumps(state).encode()).decode().rstrip("=")
     return f"/#s={text}"
 

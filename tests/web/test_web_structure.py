@@ -285,7 +285,7 @@ def test_a_structure_tells_the_springs_under_it():
     assert len(view["springs"]) == 9
     assert (view["springs"][0], view["springs"][-1]) == (springs.positions[0], springs.positions[-1])
     facts = {fact["symbol"]: fact["value"] for fact in view["facts"]}
-    assert facts["w"] == pytest.approx(1e3 * p.m_tot * 9.81 / springs.total_stiffness)
+    assert facts["w"] == pytest.approx(p.m_tot * 9.81 / springs.total_stiffness)
     assert facts["ζ_z"] == pytest.approx(0.25)
     assert facts["Σkx²"] == springs.rotational_stiffness
     assert structure_view(state.structure)["ground"] is None

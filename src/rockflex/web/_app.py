@@ -7,7 +7,7 @@ from collections.abc import AsyncGenerator, Callable, Coroutine, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 from threading import Event, Thread
-from typing import Any
+from typing import Any, get_args
 from urllib.parse import quote
 
 import anyio
@@ -21,6 +21,7 @@ from starlette.staticfiles import StaticFiles
 
 from rockflex._errors import InputError, SolverError
 from rockflex._json import as_json_value
+from rockflex._units import QUANTITIES, SystemName, UnitSystem
 from rockflex.solve import RunStoppedError, stopping_when
 from rockflex.web import _limits as limits
 from rockflex.web._downloads import MEDIA_TYPES, PAGES, Progress, file_maker, study_file
@@ -94,7 +95,7 @@ class PageServer:
             watching.cancel()
 
     async def about(self, _: Request) -> Response:
-        """Forms, presets, suites, pulses and limits."""
+        """Forms, presets, suites, pulses, units and limits."""
         return JSONResponse(await anyio.to_thread.run_sync(_answer_about_page))
 
     async def suite(self, request: Request) -> Response:
@@ -379,6 +380,10 @@ def _answer_about_page() -> dict[str, Any]:
         "limit_states": limit_state_labels(),
         "pulses": pulses,
         "limits": most,
+        "units": {
+            name: {quantity: UnitSystem(name).of(quantity)._asdict() for quantity in QUANTITIES}
+            for name in get_args(SystemName)
+        },
         "state": as_json_value(first.model_dump(exclude_none=True)),
     }
 

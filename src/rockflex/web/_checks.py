@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from rockflex._units import KN
+from rockflex._units import UnitSystem
 from rockflex.response import NO_LIMIT, RecordSet, Response, check, check_in_units
 from rockflex.web._state import PageState
 
@@ -19,7 +19,7 @@ def checks_view(result: Response | RecordSet, state: PageState, *, friction: boo
     missing = [(name, left_out.get(name, lacks)) for name, lacks in table.missing]
     rows: list[dict[str, Any]] = []
     for each in table.rows:
-        demand, limit, unit = check_in_units(each, KN)
+        demand, limit, unit = check_in_units(each, UnitSystem(state.units))
         row: dict[str, Any] = {"name": each.name, "value": each.demand, "demand": demand, "limit": limit, "unit": unit}
         rows.append(row | {key: getattr(each, key) for key in ("ratio", "ok", "at_least", "source", "note")})
     return {

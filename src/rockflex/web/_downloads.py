@@ -48,6 +48,7 @@ def run_report_file(state: PageState, uploads: UploadedRecords) -> tuple[str, st
             found,
             structure=built.structure,
             motion=motion,
+            units=state.units,
             title=f"{name} under {motion.name or 'a ground motion'}{times}",
             omitted=[response.model for response in found if is_long_run_report(response, acting, state)],
             limits=state.check_limits(),

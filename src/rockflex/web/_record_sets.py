@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from rockflex._json import as_json_value
-from rockflex._units import KN
+from rockflex._units import UnitSystem
 from rockflex.models import parse_model
 from rockflex.motion import GroundMotion
 from rockflex.report.run import run_report_as_html
@@ -112,7 +112,7 @@ def record_set_view(job: RecordSetJob, state: PageState) -> dict[str, Any]:
         return view
     found = _set_of_job(job, state)
     peaks, statistics = found.peaks, found.statistics
-    units = {str(name): DEMANDS[str(name)].unit_in(KN) for name in statistics.index}
+    units = {str(name): DEMANDS[str(name)].unit_in(UnitSystem(state.units)) for name in statistics.index}
     view["demands"] = [
         {"name": name, "symbol": DEMANDS[name].symbol, "unit": unit.name, "size": unit.size,
          "listed": name in DEMANDS_BY_RECORD, "peaks": peaks[name].tolist(), **statistics.loc[name].to_dict()}
@@ -147,6 +147,7 @@ def _record_set_report(job: RecordSetJob, state: PageState) -> str:
     return run_report_as_html(
         found,
         structure=study.built.structure,
+        units=state.units,
         title=f"{name} under {len(found.responses)} records",
         limits=state.check_limits(friction=study.friction),
     )

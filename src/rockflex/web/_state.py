@@ -10,6 +10,7 @@ from pydantic import AfterValidator, AliasChoices, Field, StringConstraints, Val
 from pydantic_core import PydanticCustomError
 
 from rockflex._errors import InputError
+from rockflex._units import SystemName
 from rockflex.fragility import LIMIT_STATES, NOMINAL, OVERTURNING, ROCKED, ROCKING, LimitState, rotation_limit_state
 from rockflex.modal import Ground
 from rockflex.motion import Combination, IntensityMeasure, scalable_measures
@@ -83,13 +84,13 @@ SameForAll = Annotated[
 
 
 def measure_labels() -> list[dict[str, Any]]:
-    """Return the labels of each measure, and whether a search for a width can use it."""
+    """Return the labels and the SI unit of each measure, and whether a search for a width can use it."""
     return [
         {
             "name": measure.name,
             "title": measure.title,
             "unit": measure.unit,
-            "axis": measure.with_unit(measure.label),
+            "axis": measure.label,
             "of_base": measure.of_what == "base",
         }
         for measure in sorted(_measures_on_page(), key=_measure_list_order)
@@ -261,6 +262,7 @@ class PageState(RunOptionKeys):
     tab: Literal["structure", "earthquake", "response", "fragility", "design"] = Field(
         "structure", description="the name of a tab"
     )
+    units: SystemName = Field("kN", description='"kN", "MN", "SI" or "kip-in"')
     structure: StructureEntry = Field(description="a table")
     record: RecordChoice = Field(default_factory=lambda: RecordChoice.model_validate({}), description="a table")
     scale: Scale = 1.0

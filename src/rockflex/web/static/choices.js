@@ -2,6 +2,7 @@
 
 import { clone, h } from "./dom.js";
 import { trouble } from "./form.js";
+import { unitFor } from "./units.js";
 
 const MODELS = [
   ["MDOF-S", "all modes, small rotations"],
@@ -92,8 +93,11 @@ const named = (about, name) => about.measures.find((each) => each.name === name)
 
 export const unitOf = (about, name) => named(about, name).unit;
 
-// Short name of a measure with its unit, for an axis.
-export const axisOf = (about, name) => named(about, name).axis;
+// Short name of a measure with the unit that is shown, for an axis.
+export function axisOf(about, name) {
+  const { axis, unit } = named(about, name);
+  return unit ? `${axis} [${unitFor(unit).name}]` : axis;
+}
 
 export const GIVEN = "given"; // the folder of the visitor among the suites
 export const CHOSEN = "chosen"; // and the records for the target spectrum

@@ -1,6 +1,8 @@
 // Strokes and colours of the parts of a drawing: elements between base and ground, springs, and how the base moves on them.
 
 import { color } from "./dom.js";
+import { t } from "./texts.js";
+import { inUnit } from "./units.js";
 
 const COLORS = { tendon: "tendons", yielding_dissipator: "fuse", viscous_damper: "damper", friction_damper: "friction" };
 
@@ -13,9 +15,8 @@ export const isTendon = (kind) => colorOf(kind) === "tendons";
 export function nameOf(about, each, place) {
   const title = `${place + 1}: ${about.elements[each.kind].title}`;
   if (each.between?.length === 2) return `${title}, floors ${each.between.join(" to ")}`;
-  if (each.height) return `${title}, tie at ${each.height} m`;
-  const x = each.position ?? 0;
-  return `${place + 1}: ${about.elements[each.kind].title} at ${String(Number(Number(x).toPrecision(4))).replace("-", "−")} m`;
+  if (each.height) return t("{element}, tie at {height}", { element: title, height: inUnit(each.height, "length") });
+  return t("{element} at {position}", { element: title, position: inUnit(each.position ?? 0, "length") });
 }
 
 // Strokes in pixels, [across, along], of an element that reaches from the ground to `length` along.

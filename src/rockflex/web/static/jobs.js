@@ -59,16 +59,18 @@ export class Remarks {
 
 const goes = (answer) => ["waiting", "running"].includes(answer.status);
 
+const kept = {}; // what a study goes on with, by its kind
+
 export class Study {
   // `key` identifies everything that determines the runs; `show` draws an answer into `results`; `example` returns the
   // choices of a quick look, so that the tab begins with something to see.
   constructor(app, kind, { verb, key, show, results, example }) {
     Object.assign(this, { app, kind, verb, key, show, results, example });
-    this.token = null;
-    this.looked = null; // the choices of the quick look, while it is what is shown
     this.answer = null;
-    this.ran = ""; // the key of the present or last run
     this.watching = false;
+    // The token of the runs, the choices of the quick look while it is what is shown, and the key of the present or last run.
+    Object.assign(this, kept[kind] ?? { token: null, looked: null, ran: "" });
+    delete kept[kind];
     this.run = h("button", { type: "button", class: "primary", id: "run", onclick: () => this.#start(null) }, verb);
     this.cancel = h("button", { type: "button", id: "cancel", disabled: true, onclick: () => this.#stop() }, "Cancel");
     this.bar = h("progress", { max: 1, value: 0, "aria-label": "Progress" });
@@ -78,6 +80,7 @@ export class Study {
       h("div", { "data-path": kind }, h("div", { class: "buttons" }, this.run, this.cancel), this.bar, this.status, trouble()),
       this.foot);
     this.load = latest(() => this.#load());
+    if (this.token) this.#watch();
   }
 
   // Update the tab after a change of the state.
@@ -88,8 +91,9 @@ export class Study {
     if (this.answer) this.load();
   }
 
-  // The page was reopened from a link.
-  close() {
+  // The page was reopened from a link; or the tab is made anew, and goes on with its `runs`.
+  close(runs) {
+    if (runs && this.token) kept[this.kind] = { token: this.token, looked: this.looked, ran: this.ran };
     this.token = this.answer = null;
   }
 

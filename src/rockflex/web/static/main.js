@@ -4,6 +4,7 @@ import { ask, attempt, get, Refusal } from "./api.js";
 import { clone, h, number, printing } from "./dom.js";
 import { showErrors } from "./form.js";
 import { t } from "./texts.js";
+import { setUnits } from "./units.js";
 
 const TABS = [
   ["structure", "Structure",
@@ -79,7 +80,10 @@ const tabOf = (tab) => document.querySelector(`#tabs [data-tab="${tab}"]`);
 // A message about a field of another tab, in words.
 function elsewhere(text) {
   const found = /^(?:structure|ground)(\.\w+)*?\.(\w+): (.*)$/s.exec(text);
-  return found ? `Structure, ${found[2].replaceAll("_", " ")}: ${found[3]}` : text.replace(/^record(\.\w+)*: /, "Earthquake: ");
+  if (!found) return text.replace(/^record(\.\w+)*: /, "Earthquake: ");
+  const values = { field: found[2].replaceAll("_", " "), message: found[3] };
+  const plain = app.state.units === "SI" || !/\d/.test(found[3]);
+  return plain ? t("Structure, {field}: {message}", values) : t("Structure, {field} (in SI units): {message}", values);
 }
 
 // Tables are merged key by key; a structure is replaced, and undefined removes a key.
@@ -146,12 +150,22 @@ async function open() {
   app.state = state;
   if (early) state.tab = early;
   early = null;
-  for (const [name, each] of Object.entries(made)) {
-    each.close?.();
+  document.getElementById("units").value = state.units;
+  await renew(false);
+}
+
+// Make the tabs anew, in the units of the state; with `runs`, those of studies at once: runs that nobody asks for stop.
+async function renew(runs) {
+  setUnits(app.about.units, app.state.units);
+  const before = Object.entries(made);
+  for (const [name, each] of before) {
+    each.leave?.();
+    each.close?.(runs);
     delete made[name];
   }
   keep();
   await show();
+  for (const [name, { close }] of before) if (runs && close) made[name] ??= (await import(`./tabs/${name}.js`)).default(app);
 }
 
 function reason(error) {
@@ -219,6 +233,14 @@ function themes() {
   });
 }
 
+function unitsChoice() {
+  const choose = h("select", { id: "units", "aria-label": t("Units"), title: t("Units of the values shown and typed"), onchange: () => {
+    app.state.units = choose.value;
+    renew(true);
+  } }, Object.keys(app.about.units).map((name) => h("option", {}, name)));
+  document.querySelector(".tools").prepend(choose);
+}
+
 function copying() {
   const button = document.getElementById("copy");
   button.addEventListener("click", async () => {
@@ -238,6 +260,7 @@ copying();
 printing(heading);
 try {
   app.about = await get("/api/about");
+  unitsChoice();
   await open();
   addEventListener("hashchange", () => {
     if (location.hash !== written) open();

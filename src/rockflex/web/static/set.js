@@ -8,6 +8,7 @@ import { select } from "./form.js";
 import { assumed, choices, recordsOf, Study } from "./jobs.js";
 import { legend } from "./marks.js";
 import { t } from "./texts.js";
+import { titled, unit } from "./units.js";
 
 const rules = () => [
   ["ec8", t("EN 1998-1: the mean of 7 and more records, the worst of 3 to 6")],
@@ -32,7 +33,7 @@ export function recordSet(app, root) {
   const rule = list("rule", t("Value for design"), rules());
   const shown = select("demand", t("Demand drawn"), [], "max_rotation", () => drawPeaks());
   const chart = new Chart({ label: t("Peaks of the records"), xLabel: t("record, as numbered in the table"), xName: t("record"), height: 240, zero: true });
-  const over = new Chart({ label: t("Rotations under all records over time"), yLabel: "θ [mrad]", xLabel: t("time [s]"), xName: "t [s]", height: 200, symmetric: true });
+  const over = new Chart({ label: t("Rotations under all records over time"), yLabel: titled("θ [{unit}]", "rotation"), xLabel: t("time [s]"), xName: "t [s]", height: 200, symmetric: true });
   const [keys, overKeys, tables] = [h("div"), h("div"), h("div")];
   const [head, warned] = [h("p", { class: "answer" }), h("div", { class: "warning", role: "alert" })];
   const drawing = h("div", { hidden: true }, head, warned, shown, keys, chart.element, overKeys, over.element, tables);
@@ -83,14 +84,14 @@ export function recordSet(app, root) {
   }
 
   function drawRotations() {
-    const all = view.records.map((each) => ({ x: decode(each.t), y: decode(each.rotation).map((v) => 1000 * v), color: "muted", width: 0.7, alpha: 0.6 }));
+    const all = view.records.map((each) => ({ x: decode(each.t), y: decode(each.rotation).map((v) => v / unit("rotation").size), color: "muted", width: 0.7, alpha: 0.6 }));
     const peaks = view.demands.find(({ name }) => name === "max_rotation")?.peaks ?? [];
     const worst = peaks.indexOf(Math.max(...peaks));
     over.element.hidden = overKeys.hidden = worst < 0;
     if (worst < 0) return;
     const top = { ...all[worst], color: "c0", width: 1.6, alpha: 1, label: view.records[worst].name };
     const fell = view.records.some((each) => each.status === "overturned");
-    const limit = fell ? 1.2 * Math.max(...peaks.filter((_, i) => view.records[i].status !== "overturned"), 1e-3) * 1000 : null;
+    const limit = fell ? 1.2 * Math.max(...peaks.filter((_, i) => view.records[i].status !== "overturned"), 1e-3) / unit("rotation").size : null;
     over.set({ series: [...all, top], ...(limit ? { yRange: [-limit, limit] } : {}) });
     overKeys.replaceChildren(legend([top, { ...all[0], label: t("the other records") }]));
   }
@@ -101,10 +102,10 @@ export function recordSet(app, root) {
     rule.setValue(choice().rule);
     study.refresh();
   }
-  return { form, results, refresh, close: () => study.close() };
+  return { form, results, refresh, close: (runs) => study.close(runs) };
 }
 
-const plain = ({ symbol: text, unit }) => (unit ? `${text} [${unit}]` : text);
+const plain = ({ symbol: text, unit: name }) => (name ? `${text} [${name}]` : text);
 
 function summary({ demands, records, model }) {
   const fell = records.filter((each) => each.status === "overturned").length;

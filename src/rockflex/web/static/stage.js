@@ -5,6 +5,7 @@ import { color, context, h } from "./dom.js";
 import { colorOf, depthOf, drawSprings, drawStance, isTendon, motionOf, strokes } from "./drawing.js";
 import { slider } from "./form.js";
 import { legend } from "./marks.js";
+import { unit } from "./units.js";
 
 const IMPACT = 0.12; // s for which an impact is marked
 const BRACKET = 34; // px above the base to which elements reach
@@ -239,8 +240,9 @@ class Stage {
     g.fillStyle = color(tone);
     g.fillText(text, centre, this.height - 20, room);
     g.fillStyle = color("muted");
-    const rotation = (1000 * frame.theta).toFixed(2).replace("-", "−");
-    g.fillText(room > 100 ? `θ = ${rotation} mrad` : `${rotation} mrad`, centre, this.height - 5, room);
+    const { size, name } = unit("rotation");
+    const rotation = `${(frame.theta / size).toFixed(size < 1 ? 2 : 5).replace("-", "−")} ${name}`;
+    g.fillText(room > 100 ? `θ = ${rotation}` : rotation, centre, this.height - 5, room);
   }
 }
 

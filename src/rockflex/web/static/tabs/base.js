@@ -267,8 +267,7 @@ export function ground(app, shown) {
     element.querySelector("summary").textContent = `Ground: ${title}${given?.friction === undefined ? "" : ", can slide"}`;
     if (key !== drawn) form();
     drawn = key;
-    const box = fields.querySelector('[data-path="ground.springs.positions"] input'); // springs can be dragged
-    if (box && box !== document.activeElement) box.value = [given.springs.positions ?? []].flat().join(", ");
+    fields.querySelector('[data-path="ground.springs.positions"]')?.setValue(given.springs.positions); // springs can be dragged
   };
   return element;
 }

@@ -3,6 +3,8 @@
 import { attempt, get, isArchive, send, sendAll } from "../api.js";
 import { counted, h, latest, number, scrolled, tableOf, tooLarge } from "../dom.js";
 import { box, field, fileBox, select, trouble } from "../form.js";
+import { t } from "../texts.js";
+import { inUnit, unit as unitIn } from "../units.js";
 
 const UNITS = [["", "as in the file"], ["g", "g"], ["m/s2", "m/s²"], ["cm/s2", "cm/s²"]];
 
@@ -26,8 +28,9 @@ export function uploading(app, complain) {
     if (large) return;
     await attempt(async () => {
       const found = await send(`/api/upload?${new URLSearchParams({ name: file.name, units: unit, dt: step, under })}`, file);
-      const both = found.pva === null ? "" : `, vertical ${number(found.pva)} m/s²`;
-      said.textContent = `${found.name}: ${found.samples} samples, PGA ${number(found.pga)} m/s²${both}`;
+      const values = { name: found.name, count: found.samples, pga: inUnit(found.pga, "acceleration"), pva: inUnit(found.pva, "acceleration") };
+      said.textContent = found.pva === null ? t("{name}: {count} samples, PGA {pga}", values)
+        : t("{name}: {count} samples, PGA {pga}, vertical {pva}", values);
       if (!vertical) along = found.upload;
       app.change({ record: { source: "upload", upload: found.upload, name: found.name } });
     }, (error) => {
@@ -45,8 +48,7 @@ export function uploading(app, complain) {
     h("p", { class: "help" }, "A link does not contain the file: whoever opens it needs the file, too."));
 }
 
-const GRAVITY = 9.81;
-const HEAD = ["record", "PGA [g]", "duration [s]", "Δt [s]", "M", "R [km]", "V_s30 [m/s]", "recording", "component", "format", "file"];
+const HEAD = ["record", "PGA [{unit}]", "duration [s]", "Δt [s]", "M", "R [km]", "V_s30 [m/s]", "recording", "component", "format", "file"];
 
 // `complain` takes messages by the path of their field. `report` is the table, which belongs to the results.
 export function folder(app, complain) {
@@ -113,7 +115,7 @@ export function folder(app, complain) {
     said.textContent = "";
     summary.textContent = `${counted(taken.length, "record")} taken, ${counted(left, "entry", "entries")} not. `
       + `${pairs.length} of ${counted(found.stations.length, "recording has", "recordings have")} two horizontal components, ${upright} of these a vertical one, too.`;
-    rows.replaceChildren(tableOf(HEAD.map(subscript), found.entries.map(row)));
+    rows.replaceChildren(tableOf(HEAD.map((text) => subscript(text.replace("{unit}", unitIn("acceleration", "kN").name))), found.entries.map(row)));
     stations.replaceChildren(tableOf(["recording", "horizontal", "vertical"], found.stations.map((each) => h("tr", {},
       h("th", { scope: "row" }, each.name), h("td", {}, each.horizontal.join(", ") || "–"), h("td", {}, each.vertical ?? "–")))));
     notes.replaceChildren(...found.notes.map((text) => h("li", {}, text)));
@@ -127,7 +129,7 @@ export function folder(app, complain) {
     }
     const use = h("button", { type: "button", "data-given": entry.name, title: "Use this record", onclick: () => (
       put({ source: "folder", given: entry.name })) }, entry.name);
-    const pga = h("td", { "data-value": entry.pga }, number(entry.pga / GRAVITY, 3));
+    const pga = h("td", { "data-value": entry.pga }, number(entry.pga / unitIn("acceleration", "kN").size, 3));
     const facts = [entry.magnitude, entry.distance, entry.vs30].map((value) => h("td", {}, number(value)));
     const recording = [entry.recording ?? "–", entry.vertical ? " with vertical" : "", entry.reason ? ` (${entry.reason})` : ""];
     return h("tr", { "data-file": entry.file },

@@ -6,6 +6,7 @@ import { drawing, kindOf } from "../drawn.js";
 import { field, fileBox, folded, select, tableField, tableGroup, trouble } from "../form.js";
 import { downloads } from "../jobs.js";
 import { t } from "../texts.js";
+import { fromSI, titled, unit, unitFor, valueIn } from "../units.js";
 import { base, elements, ground, without } from "./base.js";
 import { runs } from "./runs.js";
 
@@ -222,8 +223,9 @@ export default function structureTab(app) {
 }
 
 function parameter(p) {
-  const value = p.none ? `none: ${p.none}` : number(p.value);
-  return h("div", {}, h("dt", {}, symbol(p.symbol), p.unit ? ` [${p.unit}]` : ""),
+  const own = p.quantity ? unit(p.quantity) : unitFor(p.unit);
+  const value = p.none ? t("none: {reason}", { reason: p.none }) : number(fromSI(p.value, own));
+  return h("div", {}, h("dt", {}, symbol(p.symbol), own.name ? ` [${own.name}]` : ""),
     h("dd", { "data-value": p.value }, value), h("dd", { class: "hint" }, p.help));
 }
 
@@ -414,14 +416,17 @@ function picture(view, shape, n) {
 function table(view) {
   if (!view.modes.length)
     return h("p", { class: "help" }, "A rigid block has no modes. Use the model “rigid”.");
-  const edges = view.modes[0].uplifted.length > 1 ? [", right edge", ", left edge"] : [""];
-  const head = ["Mode", "Period T [s]", "Mass m* [kg]", "Share of total mass", "Height h* [m]", "Damping",
-    ...edges.flatMap((edge) => [`Period while uplifted${edge} [s]`, `Damping while uplifted${edge}`])];
-  const value = (v) => h("td", { "data-value": v }, number(v));
+  const uplifted = view.modes[0].uplifted.length > 1 ? [
+    t("Period while uplifted, right edge [s]"), t("Damping while uplifted, right edge"),
+    t("Period while uplifted, left edge [s]"), t("Damping while uplifted, left edge"),
+  ] : [t("Period while uplifted [s]"), t("Damping while uplifted")];
+  const head = [t("Mode"), t("Period T [s]"), titled(t("Mass m* [{unit}]"), "mass"), t("Share of total mass"),
+    titled(t("Height h* [{unit}]"), "length"), t("Damping"), ...uplifted];
+  const value = (v, quantity = "time") => h("td", { "data-value": v }, valueIn(v, quantity));
   const percent = (v) => h("td", {}, `${number(100 * v, 3)} %`);
   const rows = view.modes.slice(0, ROWS).map((m, i) => h("tr", {},
     h("th", { scope: "row" }, String(i + 1)),
-    value(m.period), value(m.effective_mass), percent(m.mass_share), value(m.effective_height), percent(m.damping),
+    value(m.period), value(m.effective_mass, "mass"), percent(m.mass_share), value(m.effective_height, "length"), percent(m.damping),
     m.uplifted.flatMap((each) => [value(each.period), percent(each.damping)])));
   return h("div", {},
     scrolled("Modes", {}, tableOf(head, rows, { id: "modes" })),

@@ -8,6 +8,7 @@ import { box, field, fileBox, parseNumber, select, tableField, trouble } from ".
 import { downloads } from "../jobs.js";
 import { legend } from "../marks.js";
 import { t } from "../texts.js";
+import { titled, unit } from "../units.js";
 
 const KINDS = [
   ["ec8", "EN 1998-1:2004"], ["ec8_second", "EN 1998-1-1:2024 (second generation)"],
@@ -154,7 +155,7 @@ const HEAD = ["record", "earthquake", "M", "R [km]", "V_s30 [m/s]", "factor", "m
 class Spectra {
   constructor() {
     this.chart = new Chart({
-      label: "Spectra of the chosen records over the period", yLabel: "Sa [m/s²]", xLabel: "period [s]", xName: "T [s]",
+      label: "Spectra of the chosen records over the period", yLabel: titled("Sa [{unit}]", "acceleration"), xLabel: t("period [s]"), xName: "T [s]",
       height: 360, xLog: true, yLog: true,
     });
     this.title = h("h2", { id: "target-title" });
@@ -178,15 +179,16 @@ class Spectra {
       ["largest spread", answer.dispersion, "standard deviation of ln S_a"],
     ].map(([name, value, help]) => h("div", {}, h("dt", {}, name), h("dd", { "data-fact": name, "data-value": value }, number(value)),
       h("dd", { class: "hint" }, symbol(help)))));
+    const inOwn = (values) => values.map((value) => value / unit("acceleration").size);
     const lines = [
-      { y: answer.wanted, label: "target", color: "c1", width: 2.2 },
-      { y: answer.mean, label: "mean", color: "c0", width: 2.2 },
+      { y: inOwn(answer.wanted), label: "target", color: "c1", width: 2.2 },
+      { y: inOwn(answer.mean), label: "mean", color: "c0", width: 2.2 },
     ].map((each) => ({ x, ...each }));
     this.chart.set({
       spans: [[low, high]],
       series: [
-        ...(answer.singles.length > 1 ? [{ kind: "band", x, low: answer.low, high: answer.high, color: "c0", alpha: 0.16 }] : []),
-        ...answer.singles.map((y) => ({ x, y, color: "muted", width: 0.8, alpha: 0.7 })),
+        ...(answer.singles.length > 1 ? [{ kind: "band", x, low: inOwn(answer.low), high: inOwn(answer.high), color: "c0", alpha: 0.16 }] : []),
+        ...answer.singles.map((y) => ({ x, y: inOwn(y), color: "muted", width: 0.8, alpha: 0.7 })),
         ...lines,
       ],
     });
