@@ -140,7 +140,7 @@ def sketch_view(state: PageState, uploads: UploadedRecords, *, quick: bool) -> d
         if not found:
             return {"note": " ".join(error.errors.values())}
     fixed = found[1] if len(found) > 1 else None
-    curves = _response_curves(built, found[0], None, SKETCH_POINTS)
+    curves = response_curves(built, found[0], None, SKETCH_POINTS)
     return as_json_value(
         {
             **structure_outline_view(state.structure, built),
@@ -164,7 +164,7 @@ def response_view(
     main = next((r for r in found if r.model == focus), found[0])
     p = built.properties
     drawn = chosen_element(element, p)
-    energy, curves = _energy_view(motion, main, state), [_response_curves(built, response, drawn) for response in found]
+    energy, curves = _energy_view(motion, main, state), [response_curves(built, response, drawn) for response in found]
     curves[found.index(main)]["warnings"] += warnings_of_energy(energy.get("closing_error", 0.0))
     return as_json_value(
         {
@@ -193,9 +193,10 @@ def _suggested_yield_displacement(p: RockingProperties, motion: GroundMotion) ->
     return float(f"{min(max(min(held, fixed), 1e-4), 10.0):.2g}")
 
 
-def _response_curves(
+def response_curves(
     built: BuiltStructure, response: Response, element: int | None, points: int = MAX_HISTORY_POINTS
 ) -> dict[str, Any]:
+    """Return a response as the page draws it, with its peaks and the loop of one element."""
     history = response.history
     assert history is not None  # asked for in `simulate_state_models`
     pulled = None if element is None or not history.model.lifts else history.element_force[:, element]

@@ -1,5 +1,6 @@
 // Response: the rocking structure, animated with its response histories, its peaks and its assumptions.
 
+import { alternatives } from "../alternatives.js";
 import { bracket } from "../axes.js";
 import { overTime } from "../chart.js";
 import { yields } from "../choices.js";
@@ -7,6 +8,7 @@ import { decode, h, latest, number, scrolled, symbol, tableOf } from "../dom.js"
 import { select, slider } from "../form.js";
 import { making } from "../jobs.js";
 import { legend, looks } from "../marks.js";
+import { project } from "../project.js";
 import { Player } from "../stage.js";
 import { Elements, Energy, Loop } from "./energy.js";
 import { runs } from "./runs.js";
@@ -29,9 +31,8 @@ const DISPLACEMENTS = [
 const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge", "element_force"];
 const OTHERS = ["t", "uplifted", "points", "element_elongation", "heave"];
 const FILES = [
-  ["report", "Report (HTML)"], ["figure", "Figure (SVG)"], ["energy", "Energy (SVG)"],
-  ["peaks", "Peaks (CSV)"], ["histories", "Histories (CSV)"],
-  ["study", "Study (TOML)"], ["python", "Python lines"], ["record", "Record (CSV)"],
+  ["report", "Report (HTML)"], ["figure", "Figure (SVG)"], ["histories", "Histories (CSV)"],
+  ["python", "Python lines"], ["record", "Record (CSV)"],
 ];
 
 const PATIENCE = 1500; // ms before the page says that it is computing
@@ -39,6 +40,7 @@ const FIRST = "Computing … The first run after an installation compiles the ke
 
 export default function responseTab(app) {
   let view = null;
+  let ghosts = []; // the responses of kept alternatives
   const player = new Player(follow, app.about.elements);
   const scale = slider("scale", "Scale factor", { low: 0.01, high: 20, log: true }, app.state.scale,
     (value) => app.change({ scale: value }));
@@ -62,17 +64,26 @@ export default function responseTab(app) {
   const peaks = scrolled("Largest values", { id: "peaks" });
   const verdict = h("p", { class: "answer", id: "verdict", role: "status" });
   const warned = h("div", { class: "warning", id: "warnings", role: "alert", hidden: true });
+  const kept = alternatives(app, (found) => {
+    ghosts = found.map(({ models: [m] }) => m);
+    ghosts.forEach(inUnits);
+    Object.assign(player.stage, { ghosts: found }).draw();
+    if (!view) return;
+    choose(view);
+    draw();
+  });
+  const saved = project(app);
   const results = h("div", { class: "results" }, verdict, warned, keys, seen, charts.map((chart) => chart.element),
     h("p", { class: "hint" }, "Shaded: the base of the first model is uplifted. Triangles: its impacts. ",
       h("span", { class: "screen" }, "Point at one of these charts to read all of them. Click or use the arrow keys to set the time; ",
         "drag or press + and − to zoom; double-click or press Escape to reset.")),
-    h("h2", {}, "Largest values"), peaks, elements.table,
+    h("h2", {}, "Largest values"), peaks, kept.element, elements.table,
     h("div", { class: "pair" }, h("div", {}, h("h2", {}, "Moment and rotation"), loop.chart.element), elements.chart,
       energy.element));
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       player.element,
-      h("fieldset", {}, h("legend", {}, "Runs"), scale, options.element, h("p", { class: "error foot", role: "alert" }))),
+      h("fieldset", {}, h("legend", {}, "Runs"), scale, options.element, h("p", { class: "error foot", role: "alert" })), saved.element),
     results);
   const moving = making(app, element, "animation", "Animation (GIF)");
   const files = app.downloads(element, FILES);
@@ -86,7 +97,7 @@ export default function responseTab(app) {
     // Of the element whose loop is drawn, with its number in the drawing of the base.
     if (view.held) charts[panels.findIndex(([name]) => name === "element")].options.yLabel = `F_${view.element + 1} [kN]`;
     panels.forEach(([, chart, parts], p) => {
-      const series = view.models.flatMap((m, i) => parts.filter(([part]) => m.scaled[part]).map(([part, suffix], k) => ({
+      const series = [...view.models, ...ghosts].flatMap((m, i) => parts.filter(([part]) => m.scaled[part]).map(([part, suffix], k) => ({
         x: m.t, y: m.scaled[part], until: m.fall_time ?? Infinity, label: m.label + suffix, ...m.look,
         width: i ? 1.2 : 1.6, alpha: k ? 0.55 : 1,
       })));
@@ -97,13 +108,13 @@ export default function responseTab(app) {
         vlines: falls.map((t, i) => ({ x: t, color: "error", label: p + i === 0 ? "falls" : "" })),
       });
     });
-    const lifting = view.models.filter((m) => m.lifts);
+    const lifting = [...view.models, ...ghosts].filter((m) => m.lifts);
     loop.set(lifting.map((m) => (
       { t: m.t, x: m.scaled.rotation, y: m.scaled.base_moment, until: m.fall_time ?? Infinity, label: m.label, look: m.look })));
     loop.chart.element.parentElement.hidden = !lifting.length;
     elements.set(view);
     energy.set(view);
-    keys.replaceChildren(legend(view.models.map((m) => ({ label: m.label, ...m.look }))));
+    keys.replaceChildren(legend([...view.models, ...ghosts].map((m) => ({ label: m.label, ...m.look }))));
     peaks.replaceChildren(...table(view));
     verdict.textContent = summary(view);
     warned.replaceChildren(...warnings(view));
@@ -116,7 +127,7 @@ export default function responseTab(app) {
     const known = answer.models.every((m) => m.scaled.total_top_displacement);
     seen.hidden = !known;
     const key = known ? seen.querySelector("select").value : "top_displacement";
-    for (const m of answer.models) m.scaled.displacement = m.scaled[key];
+    for (const m of [...answer.models, ...ghosts]) m.scaled.displacement = m.scaled[key];
     const [, chart] = panels.find(([name]) => name === "displacement");
     chart.options.yLabel = DISPLACEMENTS.find(([name]) => name === key)[2];
   }
@@ -150,8 +161,7 @@ export default function responseTab(app) {
     const all = looks(answer.models);
     answer.models.forEach((m, i) => {
       for (const name of [...OTHERS, ...SERIES]) m[name] = m[name] && decode(m[name]);
-      const factor = (key) => PANELS.find(([name, , , , , parts = []]) => name === key || parts.some(([part]) => part === key))?.[2] ?? 1;
-      m.scaled = Object.fromEntries(SERIES.map((key) => [key, m[key]?.map((v) => v * factor(key))]));
+      inUnits(m);
       m.look = all[i];
     });
     choose(answer);
@@ -165,6 +175,8 @@ export default function responseTab(app) {
   function refresh() {
     scale.setValue(app.state.scale);
     options.refresh();
+    kept.refresh();
+    saved.refresh();
     load();
   }
   globalThis.rockflexStage = {
@@ -179,6 +191,12 @@ export default function responseTab(app) {
     loops: { base: loop, element: elements.loop },
   };
   return { element, refresh, leave: () => player.pause() };
+}
+
+// The curves of a model in the units of their charts.
+function inUnits(m) {
+  const factor = (key) => PANELS.find(([name, , , , , parts = []]) => name === key || parts.some(([part]) => part === key))?.[2] ?? 1;
+  m.scaled = Object.fromEntries(SERIES.map((key) => [key, m[key]?.map((v) => v * factor(key))]));
 }
 
 // Intervals of time in which the base of a model is uplifted.
