@@ -118,9 +118,9 @@ def test_the_link_keeps_the_units_and_files_are_in_si_units(visit, client):
     other = visit(f"/{address}")
     assert other.page.locator("#units").input_value() == "kip-in"
     assert float(field(other, "few.B").input_value()) == pytest.approx(half / constants.inch, rel=6e-4)
-    _, structure = client.download("/api/download/structure", other.state())
+    _, structure = client.download("/api/file/structure", other.state())
     assert f"half_width = {half}" in structure.decode()
-    _, report = client.download("/api/download/report", other.state())
+    _, report = client.download("/api/file/report", other.state())
     assert "kip in" in report.decode()
     assert "kN m" not in report.decode()
 

@@ -23,6 +23,12 @@ _MARGIN, _WIDTH = 12.0, 186.0  # of a sheet of A4 in mm
 _SUBSCRIPT = re.compile(r"(?<=[^\W\d_])(\*?)_([\w*–]+)|\^(−?\d+)")
 
 
+def found_browser() -> str | None:
+    """Return the program of a browser of the Chromium family; None if there is none."""
+    named = os.environ.get(BROWSER_VARIABLE)
+    return shutil.which(named) if named else next(filter(None, map(shutil.which, BROWSERS)), None)
+
+
 def chromium() -> str:
     """Return the program of a browser of the Chromium family.
 
@@ -31,8 +37,7 @@ def chromium() -> str:
     InputError
         If there is none.
     """
-    named = os.environ.get(BROWSER_VARIABLE)
-    found = shutil.which(named) if named else next(filter(None, map(shutil.which, BROWSERS)), None)
+    found, named = found_browser(), os.environ.get(BROWSER_VARIABLE)
     if found is None:
         said = f"{BROWSER_VARIABLE} is {named}, which is no program" if named else f"none of {', '.join(BROWSERS)} is"
         raise InputError(
