@@ -98,13 +98,6 @@ def test_every_preset_answers_on_every_tab(client, preset) -> None:
         json.dumps(client.ask(path, state), allow_nan=False)
 
 
-def test_what_answers_need_is_imported_before(client) -> None:
-    end = time.monotonic() + HANG
-    while not json.loads(client.request("/api/about")[2])["ready"]:
-        assert time.monotonic() < end
-        time.sleep(0.1)
-
-
 def test_overturning_is_told(client) -> None:
     answer = client.ask("/api/response", client.state(scale=20.0, models=["2DOF-S"]))
     (shown,) = answer["models"]

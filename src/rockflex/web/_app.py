@@ -58,7 +58,6 @@ class PageServer:
         self.uploads = UploadedRecords()
         self.jobs = BackgroundJobs[StudyJob]("studies", MAX_STUDIES)
         self.files = BackgroundJobs[BackgroundFileJob]("files", MAX_FILES)
-        self._ready = Event()
         self._folders_received = asyncio.Semaphore(MAX_FOLDERS_RECEIVED)
         self._limiters: dict[int, anyio.CapacityLimiter] = {}
 
@@ -68,7 +67,6 @@ class PageServer:
         content = {"structure": PRESETS[0]["structure"], "record": pulse, "free_vibration": 0.0}
         state = PageState.model_validate(content | {"models": ["MDOF-S", "2DOF-S", "2DOF-C", "fixed"]})
         response_view(state, self.uploads)
-        self._ready.set()
 
     async def answer(self, work: Answer, most: int = MAX_ANSWERS) -> Any:
         """Compute outside the event loop, with a limited number of answers at once."""
@@ -98,8 +96,8 @@ class PageServer:
             watching.cancel()
 
     async def about(self, _: Request) -> Response:
-        """Forms, presets, suites, pulses and limits, and whether the first answer is ready."""
-        return JSONResponse(await anyio.to_thread.run_sync(_answer_about_page) | {"ready": self._ready.is_set()})
+        """Forms, presets, suites, pulses and limits."""
+        return JSONResponse(await anyio.to_thread.run_sync(_answer_about_page))
 
     async def suite(self, request: Request) -> Response:
         """Records of a suite."""

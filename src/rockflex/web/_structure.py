@@ -45,7 +45,6 @@ def ground_view(ground: Ground | None, p: RockingProperties) -> dict[str, Any] |
     ratio = 0.5 * springs.total_damping / math.sqrt(springs.total_stiffness * p.m_tot)
     return view | {
         "springs": springs.positions[kept],
-        "settlement": settlement,
         "facts": [
             _fact_about_ground("w", 1e3 * settlement, "mm", "settlement of the axis under the weight"),
             _fact_about_ground("Σk", springs.total_stiffness, "N/m", "vertical stiffness of all springs"),

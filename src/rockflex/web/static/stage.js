@@ -20,10 +20,8 @@ class Stage {
     });
     this.layer = h("div", { class: "handles" });
     this.element = h("div", { class: "pinned" }, this.canvas, this.layer);
-    Object.assign(this, { tall: height, height, room, held: false }); // held: the scale stays while something is dragged
-    this.view = null;
-    this.time = 0;
-    this.amplification = 1;
+    Object.assign(this, { tall: height, height, room, view: null, time: 0, amplification: 1 });
+    this.held = false; // whether something is dragged, while which the scale stays
     new ResizeObserver(() => this.draw()).observe(this.canvas);
   }
 
@@ -289,13 +287,8 @@ const STEPS = 200; // of the arrow keys over the whole duration
 export class Player {
   // `moved` is called with each time shown; `kinds` are those of elements; with `loop` it begins again at its end.
   constructor(moved, kinds, { loop = false, ...size } = {}) {
-    Object.assign(this, { moved, kinds, loop });
-    this.stage = new Stage(size);
-    this.view = null;
-    this.time = 0;
-    this.amplification = 1;
+    Object.assign(this, { moved, kinds, loop, stage: new Stage(size), view: null, time: 0, amplification: 1, playing: null });
     this.chosen = false; // whether the user chose the amplification
-    this.playing = null;
     this.button = h("button", { type: "button", class: "primary", id: "play", onclick: () => this.toggle() }, "Play");
     this.speed = h("select", { id: "speed", "aria-label": "Speed" },
       SPEEDS.map(([value, text]) => h("option", { value }, text)));

@@ -35,7 +35,6 @@ const FILES = [
 ];
 
 const PATIENCE = 1500; // ms before the page says that it is computing
-const FIRST = "Computing … The first run after an installation compiles the kernels, which takes some fifteen seconds.";
 
 export default function responseTab(app) {
   let view = null;
@@ -138,7 +137,7 @@ export default function responseTab(app) {
   const load = latest(async () => {
     const started = performance.now();
     const before = verdict.textContent;
-    const patience = setTimeout(() => (verdict.textContent = app.about.ready || view ? "Computing …" : FIRST), PATIENCE);
+    const patience = setTimeout(() => (verdict.textContent = "Computing …"), PATIENCE);
     const requested = JSON.stringify([app.state.scale, app.state.models]);
     const answer = await app.ask("/api/response", element, { focus: energy.focus, element: elements.element });
     clearTimeout(patience);
