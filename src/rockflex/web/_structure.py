@@ -45,7 +45,6 @@ def ground_view(ground: Ground | None, p: RockingProperties) -> dict[str, Any] |
     ratio = 0.5 * springs.total_damping / math.sqrt(springs.total_stiffness * p.m_tot)
     return view | {
         "springs": springs.positions[kept],
-        "settlement": settlement,
         "facts": [
             _fact_about_ground("w", settlement, "m", "settlement of the axis under the weight")
             | {"quantity": "displacement"},

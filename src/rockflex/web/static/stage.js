@@ -304,13 +304,8 @@ const STEPS = 200; // of the arrow keys over the whole duration
 export class Player {
   // `moved` is called with each time shown; `kinds` are those of elements; with `loop` it begins again at its end.
   constructor(moved, kinds, { loop = false, ...size } = {}) {
-    Object.assign(this, { moved, kinds, loop });
-    this.stage = new Stage(size);
-    this.view = null;
-    this.time = 0;
-    this.amplification = 1;
+    Object.assign(this, { moved, kinds, loop, stage: new Stage(size), view: null, time: 0, amplification: 1, playing: null });
     this.chosen = false; // whether the user chose the amplification
-    this.playing = null;
     this.button = h("button", { type: "button", class: "primary", id: "play", onclick: () => this.toggle() }, "Play");
     this.speed = h("select", { id: "speed", "aria-label": "Speed" },
       SPEEDS.map(([value, text]) => h("option", { value }, text)));

@@ -173,9 +173,8 @@ const KINDS = [
   ["asce41", "bed of ASCE 41, by shear modulus"], ["gazetas", t("bed of Gazetas, by shear modulus")],
 ];
 const WITHOUT = {
-  winkler: ["shear_modulus", "poisson_ratio", "method", "density"],
+  winkler: ["shear_modulus", "poisson_ratio", "method", "density"], gazetas: ["subgrade_modulus", "end_ratio", "damping", "method"],
   asce41: ["subgrade_modulus", "end_zone", "end_ratio", "method", "density"],
-  gazetas: ["subgrade_modulus", "end_ratio", "damping", "method"],
 };
 const [FRICTION, DAMPING, SETTLEMENT, GRAVITY] = [0.5, 0.3, 0.005, 9.81]; // of new springs, and m and m/s²
 const USUAL = { mass: 2e5, half_width: 1 }; // kg and m of a structure that cannot be built yet
