@@ -21,7 +21,7 @@ from rockflex.structure.file import ELEMENTS, KINDS, TomlTable
 from rockflex.web._encoding import envelope_indices
 from rockflex.web._forms import PRESETS, _form_fields, forms_of_structures
 from rockflex.web._refusal import Refusal
-from rockflex.web._state import PageState, TargetChoice, parse_page_json, parse_page_state
+from rockflex.web._state import PageState, RecordSetChoice, TargetChoice, parse_page_json, parse_page_state
 from rockflex.web._structure import build_page_structure, structure_view
 
 FRAME = PRESETS[0]["structure"]
@@ -254,6 +254,7 @@ def test_an_old_link_still_opens() -> None:
     content["cloud"]["confidence"] = content["cloud"].pop("level")  # its name now
     content["record"] |= {"folder": "", "given": "", "vertical": False}  # which it did not have
     content["target"] = as_json_value(TargetChoice.model_validate({}).model_dump(exclude_none=True))
+    content |= {"limits": {}, "record_set": as_json_value(RecordSetChoice.model_validate({}).model_dump())}
     (tendon,) = content["structure"]["tendons"]
     content["structure"] |= {"tendons": [], "elements": [{"kind": "tendon", **tendon}]}
     assert as_json_value(state.model_dump(exclude_none=True)) == content
