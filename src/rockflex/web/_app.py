@@ -39,6 +39,7 @@ from rockflex.web._uploads import UploadedRecords, read_uploaded_matrices, read_
 
 WATCH_INTERVAL = 0.2  # s between checks whether a visitor still waits
 STATIC = Path(__file__).parent / "static"
+LANGUAGES = Path(__file__).parents[1] / "languages"  # a catalogue of texts for each, by the English ones
 MAX_ANSWERS = 4  # answers computed at once: the engine releases the lock, and short answers must not wait for long ones
 MAX_FILES_WRITTEN = 2  # files written at once: they take long and mostly hold the lock
 MAX_FOLDERS_READ = 1  # folders read at once: each may need some hundred megabytes
@@ -365,6 +366,7 @@ def create_page_application(host: str, names: Sequence[str]) -> Starlette:
         Route("/api/file/{token}", server.unmake, methods=["DELETE"]),
         Route("/api/file/{token}/content", server.made),
         Mount("/static", StaticFiles(directory=STATIC)),
+        Mount("/languages", StaticFiles(directory=LANGUAGES, check_dir=False)),
     ]
     handlers: dict[Any, Any] = {
         Refusal: _answer_to_refusal,

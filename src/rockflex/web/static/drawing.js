@@ -1,6 +1,7 @@
 // Strokes and colours of the parts of a drawing: elements between base and ground, springs, and how the base moves on them.
 
-import { color } from "./dom.js";
+import { color, number } from "./dom.js";
+import { t } from "./texts.js";
 
 const COLORS = { tendon: "tendons", yielding_dissipator: "fuse", viscous_damper: "damper", friction_damper: "friction" };
 
@@ -8,11 +9,11 @@ export const colorOf = (kind) => COLORS[kind] ?? "fuse";
 
 // "2: Viscous damper at 0.8 m".
 export function nameOf(about, each, place) {
-  const title = `${place + 1}: ${about.elements[each.kind].title}`;
-  if (each.between?.length === 2) return `${title}, floors ${each.between.join(" to ")}`;
-  if (each.height) return `${title}, tie at ${each.height} m`;
-  const x = each.position ?? 0;
-  return `${place + 1}: ${about.elements[each.kind].title} at ${String(Number(Number(x).toPrecision(4))).replace("-", "−")} m`;
+  const title = `${place + 1}: ${t(about.elements[each.kind].title)}`;
+  const [low, high] = each.between ?? [];
+  if (each.between?.length === 2) return t("{element}, floors {low} to {high}", { element: title, low, high });
+  if (each.height) return t("{element}, tie at {height}", { element: title, height: `${number(each.height)} m` });
+  return t("{element} at {position}", { element: title, position: `${number(each.position ?? 0)} m` });
 }
 
 // Strokes in pixels, [across, along], of an element that reaches from the ground to `length` along.

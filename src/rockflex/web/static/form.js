@@ -1,8 +1,12 @@
 // Fields with a label, a unit, limits, help and space for an error.
 
 import { h, number, symbol } from "./dom.js";
+import { t } from "./texts.js";
 
 let serial = 0;
+
+// The range of a number, in words.
+export const between = (low, high, unit = "") => `${t("{low} to {high}", { low: number(low), high: number(high) })}${unit ? ` ${unit}` : ""}`;
 
 // A field around any control; the server's messages about `path` appear in it.
 export function field(path, label, control, { unit = "", hint = "", help = "" } = {}) {
@@ -150,12 +154,11 @@ export function tableField(path, spec, value, change) {
       value: write(shown), onchange: () => change(understood(control, read(spec.type, control.value))),
     });
   }
-  const unit = spec.unit ? ` ${spec.unit}` : "";
-  const limits = spec.low === null ? "" : `${number(spec.low)} to ${number(spec.high)}${unit}`;
+  const limits = spec.low === null ? "" : between(spec.low, spec.high, spec.unit);
   const typed = spec.type !== "flag" && spec.type !== "choice";
-  const optional = typed && !spec.required ? "optional" : "";
-  const hint = [spec.help.replace(/\.$/, ""), limits, optional].filter(Boolean).join("; ");
-  return field(path, spec.label, control, { unit: spec.unit, hint });
+  const optional = typed && !spec.required ? t("optional") : "";
+  const hint = [t(spec.help).replace(/\.$/, ""), limits, optional].filter(Boolean).join("; ");
+  return field(path, t(spec.label), control, { unit: spec.unit, hint });
 }
 
 // An optional table within a table; `change` gets the whole table, or undefined once it is removed.
@@ -176,8 +179,8 @@ export function tableGroup(path, spec, value, start, change) {
       now = { ...now, [each.name]: v };
       change(now);
     })) : [];
-    element.replaceChildren(h("legend", {}, spec.label), h("p", { class: "hint" }, symbol(spec.help)), ...inner,
-      now ? button("Remove", () => undefined, "button") : button("Add", start, "input"), trouble());
+    element.replaceChildren(h("legend", {}, t(spec.label)), h("p", { class: "hint" }, symbol(t(spec.help))), ...inner,
+      now ? button(t("Remove"), () => undefined, "button") : button(t("Add"), start, "input"), trouble());
   }
   draw();
   return element;
@@ -252,8 +255,7 @@ export function slider(path, label, { low, high, step, unit = "", hint = "", log
     },
   });
   range.value = to(value);
-  const limits = `${number(low)} to ${number(high)}${unit ? ` ${unit}` : ""}`;
-  const element = field(path, label, entry, { unit, hint: hint || limits });
+  const element = field(path, label, entry, { unit, hint: hint || between(low, high, unit) });
   element.querySelector(".row").prepend(range);
   element.setValue = (v) => {
     if (document.activeElement !== entry) entry.value = v;

@@ -3,18 +3,19 @@
 import { ask, attempt, file, get, Refusal } from "./api.js";
 import { clone, h, number, printing, save } from "./dom.js";
 import { showErrors } from "./form.js";
+import { t } from "./texts.js";
 
 const TABS = [
-  ["structure", "Structure",
-    "A structure that is not tied to the ground: in an earthquake it lifts off and rocks from edge to edge, which limits its forces. Drag the dots, or type numbers."],
-  ["earthquake", "Earthquake",
-    "Choose the ground motion: a recorded earthquake, a pulse or your own file. Scale it as you like."],
-  ["response", "Response",
-    "See the structure rock, with amplified displacements, next to its rotation, forces and energy over time."],
-  ["fragility", "Fragility",
-    "Estimate how likely a limit state is at a given intensity, from runs with many scaled records."],
-  ["design", "Design",
-    "Find how wide the base must be to meet a target probability, with and without a tendon."],
+  ["structure", t("Structure"),
+    t("A structure that is not tied to the ground: in an earthquake it lifts off and rocks from edge to edge, which limits its forces. Drag the dots, or type numbers.")],
+  ["earthquake", t("Earthquake"),
+    t("Choose the ground motion: a recorded earthquake, a pulse or your own file. Scale it as you like.")],
+  ["response", t("Response"),
+    t("See the structure rock, with amplified displacements, next to its rotation, forces and energy over time.")],
+  ["fragility", t("Fragility"),
+    t("Estimate how likely a limit state is at a given intensity, from runs with many scaled records.")],
+  ["design", t("Design"),
+    t("Find how wide the base must be to meet a target probability, with and without a tendon.")],
 ];
 
 const LIVE = 300; // ms between two changes of the address
@@ -62,7 +63,7 @@ export const app = {
       const one = h("button", { type: "button", "data-file": what, onclick: run }, label);
       return one;
     };
-    return h("div", { class: "buttons downloads" }, h("span", { class: "help" }, "Download:"), files.map(button));
+    return h("div", { class: "buttons downloads" }, h("span", { class: "help" }, t("Download:")), files.map(button));
   },
   // A button to another tab, below the results.
   next(tab, text) {
@@ -104,7 +105,9 @@ const tabOf = (tab) => document.querySelector(`#tabs [data-tab="${tab}"]`);
 // A message about a field of another tab, in words.
 function elsewhere(text) {
   const found = /^(?:structure|ground)(\.\w+)*?\.(\w+): (.*)$/s.exec(text);
-  return found ? `Structure, ${found[2].replaceAll("_", " ")}: ${found[3]}` : text.replace(/^record(\.\w+)*: /, "Earthquake: ");
+  if (found) return t("Structure, {field}: {text}", { field: found[2].replaceAll("_", " "), text: found[3] });
+  const [, of] = /^record(?:\.\w+)*: (.*)$/s.exec(text) ?? [];
+  return of === undefined ? text : t("Earthquake: {text}", { text: of });
 }
 
 // Tables are merged key by key; a structure is replaced, and undefined removes a key.
@@ -136,15 +139,14 @@ function heading() {
   if (!app.state) return "rockflex";
   const { structure, record, scale, tab, target } = app.state;
   const motion = {
-    suite: record.name, pulse: "a pulse", upload: "an uploaded record", folder: record.given || "records of a folder",
+    suite: record.name, pulse: t("a pulse"), upload: t("an uploaded record"), folder: record.given || t("records of a folder"),
   }[record.source];
   const times = scale === 1 ? "" : ` × ${number(scale)}`;
-  const under = {
-    structure: "",
-    earthquake: target.shown ? " under records for a target spectrum" : ` under ${motion}${times}`,
-    response: ` under ${motion}${times}`,
-  }[tab] ?? " under many records";
-  return `${structure.name || "Structure"}${under} · ${titleOf(tab)} · ${new Date().toLocaleDateString("sv")} · rockflex`;
+  const of = { structure: structure.name || t("Structure"), motion: `${motion}${times}` };
+  const one = t("{structure} under {motion}", of);
+  const earthquake = target.shown ? t("{structure} under records for a target spectrum", of) : one;
+  const about = { structure: of.structure, earthquake, response: one }[tab] ?? t("{structure} under many records", of);
+  return `${about} · ${titleOf(tab)} · ${new Date().toLocaleDateString("sv")} · rockflex`;
 }
 
 let written = "";
@@ -164,7 +166,7 @@ async function open() {
     try {
       state = await ask("/api/state", { state: decoded(location.hash) });
     } catch (error) {
-      banner.textContent = `The link cannot be opened: ${reason(error)} The default structure is shown instead.`;
+      banner.textContent = t("The link cannot be opened: {reason} The default structure is shown instead.", { reason: reason(error) });
       banner.hidden = false;
     }
   }
@@ -180,7 +182,7 @@ async function open() {
 }
 
 function reason(error) {
-  if (!(error instanceof Refusal)) return "it is damaged.";
+  if (!(error instanceof Refusal)) return t("it is damaged.");
   return Object.entries(error.errors).map(([path, text]) => (path ? `${path}: ${text}` : text)).join(" ");
 }
 
@@ -209,6 +211,8 @@ function refresh(live = false) {
 
 function tabs() {
   const list = document.getElementById("tabs");
+  list.ariaLabel = t("Steps");
+  document.getElementById("language").ariaLabel = t("Language");
   list.append(...TABS.map(([name, title]) => h("button", {
     type: "button", role: "tab", id: `tab-${name}`, "aria-controls": "view", "data-tab": name, onclick: () => app.go(name),
   }, title)));
@@ -223,7 +227,9 @@ function tabs() {
     tabOf(name).focus();
   });
   // Following the link itself would replace the state in the address.
-  document.getElementById("skip").addEventListener("click", (event) => {
+  const skip = document.getElementById("skip");
+  skip.textContent = t("Skip to content");
+  skip.addEventListener("click", (event) => {
     event.preventDefault();
     document.getElementById("main").focus();
   });
@@ -237,7 +243,9 @@ function theme(name) {
 function themes() {
   const dark = matchMedia("(prefers-color-scheme: dark)");
   theme(localStorage.getItem("rockflex-theme") ?? (dark.matches ? "dark" : "light"));
-  document.getElementById("theme").addEventListener("click", () => {
+  const button = document.getElementById("theme");
+  button.title = button.ariaLabel = t("Light or dark theme");
+  button.addEventListener("click", () => {
     const next = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
     localStorage.setItem("rockflex-theme", next);
     theme(next);
@@ -246,14 +254,16 @@ function themes() {
 
 function copying() {
   const button = document.getElementById("copy");
+  button.title = t("Copy a link to the page in its present state");
+  button.textContent = t("Copy link");
   button.addEventListener("click", async () => {
     try {
       await navigator.clipboard.writeText(location.href);
-      button.textContent = "Copied";
+      button.textContent = t("Copied");
     } catch {
-      button.textContent = "Copy it from the address";
+      button.textContent = t("Copy it from the address");
     }
-    setTimeout(() => (button.textContent = "Copy link"), 2000);
+    setTimeout(() => (button.textContent = t("Copy link")), 2000);
   });
 }
 

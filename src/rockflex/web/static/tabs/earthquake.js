@@ -4,44 +4,45 @@ import { attempt, get } from "../api.js";
 import { Chart, overTime } from "../chart.js";
 import { unitOf } from "../choices.js";
 import { decode, h, latest, number, svg } from "../dom.js";
-import { select, slider, trouble } from "../form.js";
+import { between, select, slider, trouble } from "../form.js";
+import { t } from "../texts.js";
 import { folder, uploading } from "./files.js";
 import { target } from "./target.js";
 
-const SOURCES = [["suite", "A recorded suite"], ["pulse", "A pulse"], ["upload", "Your own file"], ["folder", "Your folder of records"]];
+const SOURCES = [["suite", t("A recorded suite")], ["pulse", t("A pulse")], ["upload", t("Your own file")], ["folder", t("Your folder of records")]];
 const MISSING = {
-  upload: "Choose a file; its motion and spectrum will appear here.",
-  folder: "Choose a folder, files or a ZIP archive of records; a report of them will appear here.",
+  upload: t("Choose a file; its motion and spectrum will appear here."),
+  folder: t("Choose a folder, files or a ZIP archive of records; a report of them will appear here."),
 };
 const PULSE = {
-  amplitude: ["Amplitude", { low: 0.1, high: 15, step: 0.05, unit: "m/s²" }],
-  period: ["Period", { low: 0.1, high: 5, step: 0.01, unit: "s" }],
-  gamma: ["Oscillations", { low: 1, high: 4, step: 0.05, hint: "number of oscillations γ, 1 to 4" }],
-  nu: ["Phase", { low: -3.14, high: 3.14, step: 0.01, unit: "rad", hint: "phase ν, −π to π" }],
+  amplitude: [t("Amplitude"), { low: 0.1, high: 15, step: 0.05, unit: "m/s²" }],
+  period: [t("Period"), { low: 0.1, high: 5, step: 0.01, unit: "s" }],
+  gamma: [t("Oscillations"), { low: 1, high: 4, step: 0.05, hint: t("number of oscillations γ, 1 to 4") }],
+  nu: [t("Phase"), { low: -3.14, high: 3.14, step: 0.01, unit: "rad", hint: t("phase ν, −π to π") }],
 };
-const TASKS = [["", "Choose one ground motion"], ["target", "Choose records for a target spectrum"]];
+const TASKS = [["", t("Choose one ground motion")], ["target", t("Choose records for a target spectrum")]];
 const HISTORIES = [
-  ["acceleration", "a [m/s²]", "c0", 160],
-  ["vertical", "a_v [m/s²]", "c1", 110],
-  ["velocity", "v [m/s]", "c2", 110],
-  ["displacement", "d [m]", "c3", 126],
+  ["acceleration", "a [m/s²]", "c0", 160, t("Ground acceleration over time"), t("acceleration")],
+  ["vertical", "a_v [m/s²]", "c1", 110, t("Vertical ground acceleration over time"), t("vertical acceleration")],
+  ["velocity", "v [m/s]", "c2", 110, t("Ground velocity over time"), t("velocity")],
+  ["displacement", "d [m]", "c3", 126, t("Ground displacement over time"), t("displacement")],
 ];
 
 export default function earthquakeTab(app) {
   const { about } = app;
   const { record } = app.state;
   const put = (patch) => app.change({ record: patch });
-  const source = select("record.source", "Source", SOURCES, record.source, (value) => put({ source: value }));
-  const suite = select("record.suite", "Suite", about.suites.map((name) => [name, name]), record.suite, async (value) => {
+  const source = select("record.source", t("Source"), SOURCES, record.source, (value) => put({ source: value }));
+  const suite = select("record.suite", t("Suite"), about.suites.map((name) => [name, name]), record.suite, async (value) => {
     const found = await get(`/api/suite/${encodeURIComponent(value)}`);
     put({ suite: value, name: found.records[0].name });
   });
   const thumbs = records(app);
-  const titles = Object.entries(about.pulses).map(([name, { title }]) => [name, title]);
-  const shape = select("record.pulse.shape", "Shape", titles, record.pulse.shape, (value) => put({ pulse: { shape: value } }));
+  const titles = Object.entries(about.pulses).map(([name, { title }]) => [name, t(title)]);
+  const shape = select("record.pulse.shape", t("Shape"), titles, record.pulse.shape, (value) => put({ pulse: { shape: value } }));
   const sliders = Object.fromEntries(Object.entries(PULSE).map(([key, [label, spec]]) => [key,
     slider(`record.pulse.${key}`, label, spec, record.pulse[key], (value) => put({ pulse: { [key]: value } }))]));
-  const scale = slider("scale", "Scale factor", { low: 0.01, high: 20, log: true }, app.state.scale,
+  const scale = slider("scale", t("Scale factor"), { low: 0.01, high: 20, log: true }, app.state.scale,
     (value) => app.change({ scale: value }));
   const given = folder(app, (errors) => app.complain(element, errors));
   const panels = {
@@ -51,29 +52,29 @@ export default function earthquakeTab(app) {
     folder: given.element,
   };
 
-  const charts = overTime(HISTORIES.map(([key, yLabel, , height]) => ({ label: `Ground ${key} over time`, yLabel, height })));
+  const charts = overTime(HISTORIES.map(([, yLabel, , height, over]) => ({ label: over, yLabel, height })));
   const spectrum = new Chart({
-    label: "Acceleration spectrum", yLabel: "Sa [m/s²]", xLabel: "period [s]", xName: "T [s]", height: 230,
+    label: t("Acceleration spectrum"), yLabel: "Sa [m/s²]", xLabel: "period [s]", xName: "T [s]", height: 230,
     xLog: true, zero: true,
   });
   const title = h("h2", { id: "record-title" });
   const measures = h("dl", { class: "values", id: "measures" });
   const drawing = h("div", {},
     title, charts.map((chart) => chart.element), measures,
-    h("h2", {}, "Response spectrum, 5 % damping"), spectrum.element);
+    h("h2", {}, t("Response spectrum, 5 % damping")), spectrum.element);
   const empty = h("p", { class: "answer", hidden: true }, "");
   const results = h("div", { class: "results" }, empty, given.report, drawing);
   const chosen = target(app, () => side);
   const single = [
-    h("fieldset", {}, h("legend", {}, "Ground motion"), source, Object.values(panels),
+    h("fieldset", {}, h("legend", {}, t("Ground motion")), source, Object.values(panels),
       h("p", { class: "error foot", role: "alert" })),
-    h("fieldset", {}, h("legend", {}, "Scale"), scale)];
-  const task = select("task", "Task", TASKS, "", (value) => app.change({ target: { shown: value === "target" } }));
+    h("fieldset", {}, h("legend", {}, t("Scale")), scale)];
+  const task = select("task", t("Task"), TASKS, "", (value) => app.change({ target: { shown: value === "target" } }));
   const side = h("form", { class: "side", onsubmit: (event) => event.preventDefault() }, task);
   const place = h("div");
   const element = h("div", { class: "columns" }, side, place);
-  given.report.append(app.downloads(element, [["records", "Your records (ZIP)"]]));
-  drawing.append(app.downloads(element, [["record", "Record (CSV)"]]), app.next("response", "Next: watch the structure rock."));
+  given.report.append(app.downloads(element, [["records", t("Your records (ZIP)")]]));
+  drawing.append(app.downloads(element, [["record", t("Record (CSV)")]]), app.next("response", t("Next: watch the structure rock.")));
 
   const load = latest(async () => {
     const answer = await app.ask("/api/record", element);
@@ -85,20 +86,20 @@ export default function earthquakeTab(app) {
     const times = app.state.scale === 1 ? "" : ` × ${number(app.state.scale)}`;
     title.textContent = [answer.name, answer.title].filter(Boolean).join(" · ") + times;
     const x = decode(answer.t);
-    HISTORIES.forEach(([key, , color], i) => {
+    HISTORIES.forEach(([key, , color, , , name], i) => {
       charts[i].element.hidden = !answer[key];
       if (!answer[key]) return;
       const level = key === "acceleration" && answer.lifting;
       const lifting = { color: "c1", dash: [4, 4] };
       charts[i].set({
-        series: [{ x, y: decode(answer[key]), color, width: 1, label: key }],
-        hlines: level ? [{ ...lifting, y: level, label: "static uplift" }, { ...lifting, y: -level }] : [],
+        series: [{ x, y: decode(answer[key]), color, width: 1, label: name }],
+        hlines: level ? [{ ...lifting, y: level, label: t("static uplift") }, { ...lifting, y: -level }] : [],
       });
     });
     measures.replaceChildren(...answer.measures.map((m) => h("div", {},
-      h("dt", {}, `${m.name} [${m.unit}]`),
+      h("dt", {}, `${t(m.name)} [${m.unit}]`),
       h("dd", { "data-measure": m.name, "data-value": m.value }, number(m.value)),
-      h("dd", { class: "hint" }, m.help))));
+      h("dd", { class: "hint" }, t(m.help)))));
     const first = answer.first_period;
     spectrum.set({
       series: [{ x: decode(answer.periods), y: decode(answer.sa), color: "c0", label: "Sa" }],
@@ -127,7 +128,7 @@ export default function earthquakeTab(app) {
     }
     const unit = now.pulse.shape === "mavroeidis" ? "m/s" : "m/s²";
     sliders.amplitude.querySelector(".unit").textContent = unit;
-    sliders.amplitude.querySelector(".hint").textContent = `0.1 to 15 ${unit}${unit === "m/s" ? ", of the velocity" : ""}`;
+    sliders.amplitude.querySelector(".hint").textContent = unit === "m/s" ? t("{range}, of the velocity", { range: between(0.1, 15, unit) }) : between(0.1, 15, unit);
     for (const [key, panel] of Object.entries(panels)) panel.hidden = key !== now.source;
     if (now.source === "suite") thumbs.refresh();
     given.refresh();
@@ -144,7 +145,7 @@ export default function earthquakeTab(app) {
 const GRAVITY = 9.81;
 
 function records(app) {
-  const thumbs = h("div", { class: "thumbs", role: "group", "aria-label": "Records" });
+  const thumbs = h("div", { class: "thumbs", role: "group", "aria-label": t("Records") });
   let shown = "";
 
   function thumb(suite, record) {
@@ -172,8 +173,8 @@ function records(app) {
 }
 
 function picture(record) {
-  const t = decode(record.t);
+  const times = decode(record.t);
   const a = decode(record.a);
-  const d = Array.from(t, (x, i) => `${i ? "L" : "M"}${(100 * x).toFixed(2)} ${(17 - 16 * a[i]).toFixed(2)}`).join("");
+  const d = Array.from(times, (x, i) => `${i ? "L" : "M"}${(100 * x).toFixed(2)} ${(17 - 16 * a[i]).toFixed(2)}`).join("");
   return svg("svg", { viewBox: "0 0 100 34", preserveAspectRatio: "none", "aria-hidden": "true" }, svg("path", { d }));
 }

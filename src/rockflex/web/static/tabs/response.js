@@ -8,73 +8,74 @@ import { select, slider } from "../form.js";
 import { making } from "../jobs.js";
 import { legend, looks } from "../marks.js";
 import { Player } from "../stage.js";
+import { t } from "../texts.js";
 import { Elements, Energy, Loop } from "./energy.js";
 import { runs } from "./runs.js";
 
-const EDGES = [["left_edge", ", left"], ["right_edge", ", right"]];
+const EDGES = [["left_edge", t("{model}, left")], ["right_edge", t("{model}, right")]];
 // Name, axis, factor, title, height, and the curves of each model where there are several.
 const PANELS = [
   ["rotation", "θ [mrad]", 1000, "Rotation", 150],
   ["slip", "slip [mm]", 1000, "Slip of the base", 118],
   ["edges", "edges [mm]", 1000, "Rise of the edges", 118, EDGES],
   ["displacement", "", 1, "Displacement of the top", 118],
-  ["element", "F [kN]", 1e-3, "Force of an element", 118, [["element_force", ""]]],
+  ["element", "F [kN]", 1e-3, "Force of an element", 118, [["element_force", "{model}"]]],
   ["base_moment", "M_b [kN m]", 1e-3, "Base moment", 118],
   ["base_shear", "V_b [kN]", 1e-3, "Base shear", 134],
 ];
 const DISPLACEMENTS = [
-  ["total_top_displacement", "relative to the ground", "u_top total [m]"],
-  ["top_displacement", "relative to the rotating base", "u_top relative [m]"],
+  ["total_top_displacement", t("relative to the ground"), "u_top total [m]"],
+  ["top_displacement", t("relative to the rotating base"), "u_top relative [m]"],
 ];
 const SERIES = ["rotation", ...DISPLACEMENTS.map(([key]) => key), "base_moment", "base_shear", "slip", "left_edge", "right_edge", "element_force"];
 const OTHERS = ["t", "uplifted", "points", "element_elongation", "heave"];
 const FILES = [
-  ["report", "Report (HTML)"], ["figure", "Figure (SVG)"], ["energy", "Energy (SVG)"],
-  ["peaks", "Peaks (CSV)"], ["histories", "Histories (CSV)"],
-  ["study", "Study (TOML)"], ["python", "Python lines"], ["record", "Record (CSV)"],
+  ["report", t("Report (HTML)")], ["figure", t("Figure (SVG)")], ["energy", t("Energy (SVG)")],
+  ["peaks", t("Peaks (CSV)")], ["histories", t("Histories (CSV)")],
+  ["study", t("Study (TOML)")], ["python", t("Python lines")], ["record", t("Record (CSV)")],
 ];
 
 const PATIENCE = 1500; // ms before the page says that it is computing
-const FIRST = "Computing … The first run after an installation compiles the kernels, which takes some fifteen seconds.";
+const FIRST = t("Computing … The first run after an installation compiles the kernels, which takes some fifteen seconds.");
 
 export default function responseTab(app) {
   let view = null;
   const player = new Player(follow, app.about.elements);
-  const scale = slider("scale", "Scale factor", { low: 0.01, high: 20, log: true }, app.state.scale,
+  const scale = slider("scale", t("Scale factor"), { low: 0.01, high: 20, log: true }, app.state.scale,
     (value) => app.change({ scale: value }));
   const options = runs(app, () => view?.suggested_yield);
   const onpick = (time) => player.go(time);
   const charts = overTime(PANELS.map(([, yLabel, , name, height, parts]) => (
-    { label: `${name} over time`, yLabel, height, firstOnTop: true, onpick, symmetric: !parts })));
-  const panels = PANELS.map(([key, , , , , parts = [[key, ""]]], i) => [key, charts[i], parts]);
-  const loop = new Loop({ label: "Base moment over rotation", yLabel: "M_b [kN m]", xLabel: "θ [mrad]" });
+    { label: t("{quantity} over time", { quantity: name }), yLabel, height, firstOnTop: true, onpick, symmetric: !parts })));
+  const panels = PANELS.map(([key, , , , , parts = [[key, "{model}"]]], i) => [key, charts[i], parts]);
+  const loop = new Loop({ label: t("Base moment over rotation"), yLabel: "M_b [kN m]", xLabel: "θ [mrad]" });
   const energy = new Energy(() => load());
   const elements = new Elements(app.about, () => {
     energy.focus = elements.model.value;
     load();
   });
-  const seen = select("displacement", "Plotted top displacement", DISPLACEMENTS, DISPLACEMENTS[0][0], () => {
+  const seen = select("displacement", t("Plotted top displacement"), DISPLACEMENTS, DISPLACEMENTS[0][0], () => {
     if (!view) return;
     choose(view);
     draw();
   });
   const keys = h("div", { id: "keys" });
-  const peaks = scrolled("Largest values", { id: "peaks" });
+  const peaks = scrolled(t("Largest values"), { id: "peaks" });
   const verdict = h("p", { class: "answer", id: "verdict", role: "status" });
   const warned = h("div", { class: "warning", id: "warnings", role: "alert", hidden: true });
   const results = h("div", { class: "results" }, verdict, warned, keys, seen, charts.map((chart) => chart.element),
-    h("p", { class: "hint" }, "Shaded: the base of the first model is uplifted. Triangles: its impacts. ",
-      h("span", { class: "screen" }, "Point at one of these charts to read all of them. Click or use the arrow keys to set the time; ",
-        "drag or press + and − to zoom; double-click or press Escape to reset.")),
-    h("h2", {}, "Largest values"), peaks, elements.table,
-    h("div", { class: "pair" }, h("div", {}, h("h2", {}, "Moment and rotation"), loop.chart.element), elements.chart,
+    h("p", { class: "hint" }, t("Shaded: the base of the first model is uplifted. Triangles: its impacts."), " ",
+      h("span", { class: "screen" }, t("Point at one of these charts to read all of them. Click or use the arrow keys to set the time; " +
+        "drag or press + and − to zoom; double-click or press Escape to reset."))),
+    h("h2", {}, t("Largest values")), peaks, elements.table,
+    h("div", { class: "pair" }, h("div", {}, h("h2", {}, t("Moment and rotation")), loop.chart.element), elements.chart,
       energy.element));
   const element = h("div", { class: "columns" },
     h("form", { class: "side", onsubmit: (event) => event.preventDefault() },
       player.element,
-      h("fieldset", {}, h("legend", {}, "Runs"), scale, options.element, h("p", { class: "error foot", role: "alert" }))),
+      h("fieldset", {}, h("legend", {}, t("Runs")), scale, options.element, h("p", { class: "error foot", role: "alert" }))),
     results);
-  const moving = making(app, element, "animation", "Animation (GIF)");
+  const moving = making(app, element, "animation", t("Animation (GIF)"));
   const files = app.downloads(element, FILES);
   files.querySelector('[data-file="figure"]').after(moving.button);
   results.append(files, moving.element);
@@ -86,15 +87,15 @@ export default function responseTab(app) {
     // Of the element whose loop is drawn, with its number in the drawing of the base.
     if (view.held) charts[panels.findIndex(([name]) => name === "element")].options.yLabel = `F_${view.element + 1} [kN]`;
     panels.forEach(([, chart, parts], p) => {
-      const series = view.models.flatMap((m, i) => parts.filter(([part]) => m.scaled[part]).map(([part, suffix], k) => ({
-        x: m.t, y: m.scaled[part], until: m.fall_time ?? Infinity, label: m.label + suffix, ...m.look,
+      const series = view.models.flatMap((m, i) => parts.filter(([part]) => m.scaled[part]).map(([part, name], k) => ({
+        x: m.t, y: m.scaled[part], until: m.fall_time ?? Infinity, label: name.replace("{model}", m.label), ...m.look,
         width: i ? 1.2 : 1.6, alpha: k ? 0.55 : 1,
       })));
       chart.element.hidden = !series.length;
       chart.set({
         series, spans, xRange: [0, view.end],
         ticks: p === 0 ? first.impact_times : [],
-        vlines: falls.map((t, i) => ({ x: t, color: "error", label: p + i === 0 ? "falls" : "" })),
+        vlines: falls.map((x, i) => ({ x, color: "error", label: p + i === 0 ? t("falls") : "" })),
       });
     });
     const lifting = view.models.filter((m) => m.lifts);
@@ -138,7 +139,7 @@ export default function responseTab(app) {
   const load = latest(async () => {
     const started = performance.now();
     const before = verdict.textContent;
-    const patience = setTimeout(() => (verdict.textContent = app.about.ready || view ? "Computing …" : FIRST), PATIENCE);
+    const patience = setTimeout(() => (verdict.textContent = app.about.ready || view ? t("Computing …") : FIRST), PATIENCE);
     const requested = JSON.stringify([app.state.scale, app.state.models]);
     const answer = await app.ask("/api/response", element, { focus: energy.focus, element: elements.element });
     clearTimeout(patience);
@@ -207,12 +208,12 @@ const PEAKS = [
   ["max_horizontal_reaction", "ΣF_x,max [kN]", 1e-3, true],
   ["min_vertical_reaction", "N_min [kN]", 1e-3, false],
 ];
-const PEAKS_HELP = "In total: relative to the ground, including the part due to the rotation. ΣF_x: horizontal ground reaction; "
-  + "unlike V_b it includes the mass of the base and the damping. N_min: smallest vertical force between base and ground.";
+const PEAKS_HELP = t("In total: relative to the ground, including the part due to the rotation. ΣF_x: horizontal ground reaction; " +
+  "unlike V_b it includes the mass of the base and the damping. N_min: smallest vertical force between base and ground.");
 const SLIPS = [["max_slip", "slip_max [mm]", 1000], ["residual_slip", "slip_end [mm]", 1000]];
 const EDGE_PEAKS = [["max_edge_uplift", "Edge up [mm]", 1000], ["max_edge_settlement", "Edge down [mm]", 1000]];
-const ON_SPRINGS = " Edge up and down: how far an edge rises above the unloaded springs, and sinks below them.";
-const LEFT = " θ_res: rotation at the end of the run, from that at rest.";
+const ON_SPRINGS = t("Edge up and down: how far an edge rises above the unloaded springs, and sinks below them.");
+const LEFT = t("θ_res: rotation at the end of the run, from that at rest.");
 
 // The fixed-base model to compare with, if any; preferably one that yields too if the model does.
 function reference(view, model) {
@@ -221,7 +222,7 @@ function reference(view, model) {
 }
 
 function named(fixed) {
-  return fixed.label === "fixed" ? "the same structure on a fixed base" : `the fixed base of ${fixed.label}`;
+  return fixed.label === "fixed" ? t("the same structure on a fixed base") : t("the fixed base of {model}", { model: fixed.label });
 }
 
 function table(view) {
@@ -231,11 +232,11 @@ function table(view) {
   const fixed = [...new Set(standing.map((m) => reference(view, m)).filter(Boolean).map(named))];
   const base = [...(view.ground?.slides ? SLIPS : []), ...(view.ground?.springs.length ? EDGE_PEAKS : [])];
   const last = [...(held ? ["θ_res [mrad]"] : []), ...base.map(([, label]) => label)];
-  const meant = PEAKS_HELP + (held ? LEFT : "") + (view.ground?.springs.length ? ON_SPRINGS : "");
+  const meant = [PEAKS_HELP, held ? LEFT : "", view.ground?.springs.length ? ON_SPRINGS : ""].filter(Boolean).join(" ");
   const head = ["Model", "Outcome", ...PEAKS.map(([, label]) => label), "Impacts", "θ_max/θ_nom", ...last];
   return [
     tableOf(head.map(symbol), view.models.map((m) => row(m, view, held, base))),
-    h("p", { class: "hint" }, ...symbol(meant), fixed.length ? ` In brackets: relative to ${fixed.join(" and to ")}.` : ""),
+    h("p", { class: "hint" }, ...symbol(meant), fixed.length ? ` ${t("In brackets: relative to {references}.", { references: fixed.join("; ") })}` : ""),
   ];
 }
 
