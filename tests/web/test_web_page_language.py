@@ -32,8 +32,8 @@ LEFT = """([left, sentences]) => {
     for (const of of document.querySelectorAll(`[${name}]`)) keep(of.getAttribute(name), of);
   return [...found].filter((text) => !left.includes(text));
 }"""
-# Sentences of the server, with values; names of languages, arrays of files, records and suites.
-SENTENCES = "#adequacy, #warnings, #freedoms, .notes, .error, #language, #part, .thumbs, #record-title"
+# Sentences of the server, with values; names of languages, arrays of files, records and suites; the example of a table.
+SENTENCES = "#adequacy, #warnings, #freedoms, .notes, .error, #language, #part, .thumbs, #record-title, textarea"
 # Texts with the units that a visitor chooses.
 UNITS = "#three, .handle, #modes, #peaks, #verdict, #elements thead, #width, #designs thead"
 
